@@ -91,6 +91,10 @@ void printImprovement(const ImproveReport& report) {
     printLine("off the surface", fmt::format("{} vertices, where nothing else made cells positive",
                                              report.offSurface));
   }
+  if (report.offCreases > 0) {
+    printLine("off creases", fmt::format("{} vertices, where nothing else made cells positive",
+                                         report.offCreases));
+  }
   // Rounding is no distance.
   const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
   if (report.distanceAfter.hausdorff() > limit) {
@@ -98,7 +102,21 @@ void printImprovement(const ImproveReport& report) {
         "The mesh came farther from the surface where cells could not be good nearer to it; "
         "--report lists what is far from it.");
   }
-  if (left > 0) printWarning(refutationAsText(report.after));
+  const double mean = report.before.quality.mean;
+  if (report.after.quality.mean < mean - 1e-6) {
+    printWarning(fmt::format(
+        "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
+        "--target unless beside mended ones, so that those below it are better.",
+        mean, report.after.quality.mean));
+  }
+  if (left == 0) return;
+  printWarning(refutationAsText(report.after));
+  if (report.vertices[2] + report.vertices[3] > 0) {
+    printWarning(
+        "Vertices stay on curves and at corners. Where these are no features of the object, "
+        "--feature-angle 180 leaves out those that are found by angle, and --slack lets vertices "
+        "come farther from the surface.");
+  }
 }
 
 Json improvementAsJson(const ImproveReport& report) {
@@ -130,6 +148,7 @@ Json improvementAsJson(const ImproveReport& report) {
       {"largest_move", report.largestMove},
       {"mean_move", report.meanMove},
       {"off_surface", report.offSurface},
+      {"off_creases", report.offCreases},
       {"seconds", report.seconds}};
 }
 

@@ -39,10 +39,11 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Parts]:
 def rewrite(folder: Path, runs: list[Run], about: dict[str, str]) -> list[str]:
     """@return the names of parts for which there are no figures"""
     return [part for page, parts in _parts(runs, about).items()
-            for part in _rewrite_page(folder / page, parts)]
+            for part in rewrite_page(folder / page, parts)]
 
 
-def _rewrite_page(document: Path, parts: Parts) -> list[str]:
+def rewrite_page(document: Path, parts: Parts) -> list[str]:
+    """@return as rewrite()"""
     missing = []
 
     def replacement(match: re.Match[str]) -> str:

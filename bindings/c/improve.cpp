@@ -33,7 +33,8 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .inner_distance_before = r.innerDistanceBefore,
           .inner_distance_after = r.innerDistanceAfter,
           .tagged_vertices = r.taggedVertices,
-          .boundary_vertices = r.boundaryVertices};
+          .boundary_vertices = r.boundaryVertices,
+          .off_creases = r.offCreases};
 }
 
 /// @param meshOf  the mesh of a handle

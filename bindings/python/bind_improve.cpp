@@ -51,6 +51,7 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["largest_move"] = report.largestMove;
   d["mean_move"] = report.meanMove;
   d["off_surface"] = report.offSurface;
+  d["off_creases"] = report.offCreases;
   d["seconds"] = report.seconds;
   return nb::make_tuple(std::move(moved), asTuple(std::move(report.before)),
                         asTuple(std::move(report.after)), d);

@@ -67,15 +67,19 @@ struct ImproveReport {
   double meanMove = 0;           ///< of those that moved
   std::uint64_t offSurface = 0;  ///< vertices that used the slack
   double seconds = 0;
+  /// Vertices that left creases where nothing else made cells positive. Creases are curves that
+  /// have no tag, and on both sides of which the surface goes on.
+  std::uint64_t offCreases = 0;
 };
 
 /// Moves vertices. The surface is that of the map: its boundary, tagged triangles and those between
 /// regions.
 ///
-/// The least scaled Jacobian is no less in the end, and no cell that is certified loses that.
-/// Connectivity, tags and regions stay as they are; so do vertices at corners. Vertices on tagged
-/// curves and patches stay on them. The result does not depend on the number of threads. If it
-/// throws, the mesh is as it was.
+/// The least scaled Jacobian is no less in the end, and no cell that is certified loses that. Cells
+/// at the target or above end there, unless cells beside them were untangled. Connectivity, tags
+/// and regions stay as they are; so do vertices at tagged corners. Vertices on tagged curves and
+/// patches stay on them. The result does not depend on the number of threads. If it throws, the
+/// mesh is as it was.
 ///
 /// @param mesh  with generators in the map: what extract() returns, or what was read from `.vtu`,
 ///              `.ovm` or `.ovmb`

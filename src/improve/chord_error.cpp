@@ -24,7 +24,7 @@ double ChordError::at(Index vertex) const {
       for (const Index v : quad) centre = plus(centre, times(0.25, mesh.points[v]));
       const auto* const start = std::find_if(
           quad.begin(), quad.end(), [&](Index v) { return places.freedom[v] == Freedom::OnPatch; });
-      if (start != quad.end()) add(centre, surface.onPatch(centre, places.simplex[*start]));
+      if (start != quad.end()) add(centre, places.nearest(*start, centre));
       if (places.freedom[vertex] != Freedom::OnCurve) continue;
       for (const Index other : {quad[(at + 1) % 4], quad[(at + 3) % 4]}) {
         // Other edges lead away from the curve.

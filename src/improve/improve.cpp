@@ -109,10 +109,11 @@ double distanceInside(const VertexPlaces& places, const HexMesh& mesh, const Imp
 /// @return how many vertices could have moved
 std::uint64_t fixBoundary(VertexPlaces& places) {
   std::uint64_t count = 0;
-  for (Freedom& freedom : places.freedom) {
-    if (freedom == Freedom::Free || freedom == Freedom::Fixed) continue;
-    freedom = Freedom::Fixed;
-    ++count;
+  for (std::size_t v = 0; v < places.freedom.size(); ++v) {
+    if (places.freedom[v] == Freedom::Free) continue;
+    if (places.freedom[v] != Freedom::Fixed) ++count;
+    places.freedom[v] = Freedom::Fixed;
+    places.simplex[v] = kNone;
   }
   return count;
 }
@@ -175,8 +176,6 @@ struct Boundary {
   }
 };
 
-/// Rounds in which vertices go back where they came too far from the surface.
-constexpr int kReturns = 8;
 /// Of distances that are the same but for rounding.
 constexpr double kSame = 1 + 1e-6;
 
@@ -187,26 +186,38 @@ BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, Ve
                             ImproveReport& report, Context& context, Stage& stage) {
   std::optional<CurvedCells> curved;
   if (subject.curved != nullptr) curved.emplace(*subject.curved);
-  const Array<Index> simplices = places.simplex;
+  Array<Index> simplices = places.simplex;
   const auto newSweeps = [&] {
     return Sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
   };
   const auto distance = [&] {
     return boundary.distanceTo(places, subject.mesh.points, report.diagonal, stage);
   };
+  const double limit = kSame * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
+  const auto quadsBeyond = [&](const std::vector<double>& distances) {
+    Array<Quad> far;
+    for (Index q = 0; q < distances.size(); ++q) {
+      if (distances[q] > limit) far.push_back(boundary.quads[q]);
+    }
+    return far;
+  };
   BoundaryDistance after;
   {
     Sweeps sweeps = newSweeps();
-    sweeps.untangle(options.slack * report.diagonal);
+    const double slack = options.slack * report.diagonal;
+    sweeps.untangle(slack);
+    const std::vector<Index> loose =
+        sweeps.untangleAcrossCreases(slack, [&] { return quadsBeyond(distance().fromQuads); });
+    report.offCreases = loose.size();
+    for (const Index v : loose) {
+      simplices[v] = places.surface.acrossCreases(before[v], places.simplex[v]).simplex;
+    }
     sweeps.raiseWorst(options.target);
     const double floor = std::max(options.target, report.before.quality.minimum);
     sweeps.smooth(options.passes, floor);
     after = distance();
-    const double limit = kSame * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
-    for (int i = 0; i < kReturns && after.largest.hausdorff() > limit; ++i) {
-      Array<Quad> far;
-      for (const Index q : after.quadsBeyond(limit)) far.push_back(boundary.quads[q]);
-      sweeps.moveBack(far, before, simplices, floor);
+    for (int i = 0; i < Sweeps::kReturns && after.largest.hausdorff() > limit; ++i) {
+      sweeps.moveBack(quadsBeyond(after.ofQuads), before, simplices, floor);
       after = distance();
     }
   }  // its memory is free for certificates

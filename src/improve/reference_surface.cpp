@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <base/disjoint_sets.hpp>
@@ -140,6 +141,8 @@ void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
   const std::vector<std::array<Index, 2>> given = segments_;
   const double limit = std::cos(parts.angle * std::numbers::pi / 180);
   DisjointSets sets(triangles_.size());
+  DisjointSets setsWithCreases(triangles_.size());
+  std::vector<std::array<Index, 2>> creases;
   std::vector<Index> around;
   for (std::size_t begin = 0; begin < edges.size();) {
     std::size_t end = begin;
@@ -149,25 +152,36 @@ void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
     }
     const std::array<Index, 2>& vertices = edges[begin].vertices;
     begin = end;
-    if (std::binary_search(given.begin(), given.end(), vertices)) continue;
-    if (isCurve(around, parts, limit)) {
-      segments_.push_back(vertices);
-    } else {
+    const bool isGiven = std::binary_search(given.begin(), given.end(), vertices);
+    const bool goesOn = around.size() == 2 &&
+                        parts.triangles[around[0]].tag == parts.triangles[around[1]].tag &&
+                        !(isGiven && parts.areTagged);
+    if (goesOn) setsWithCreases.unite(around[0], around[1]);
+    if (!isGiven && !isCurve(around, parts, limit)) {
       sets.unite(around[0], around[1]);
+      continue;
     }
+    if (!isGiven) segments_.push_back(vertices);
+    if (goesOn) creases.push_back(vertices);
   }
   std::sort(segments_.begin(), segments_.end());
   for (const std::array<Index, 2>& segment : segments_) {
     taggedSegments_.push_back(parts.areTagged &&
                               std::binary_search(given.begin(), given.end(), segment));
+    creases_.push_back(std::binary_search(creases.begin(), creases.end(), segment));
   }
   patches_.resize(triangles_.size());
-  parallelFor(stage, triangles_.size(), kGrain,
-              [&](std::size_t t) { patches_[t] = sets.find(static_cast<Index>(t)); });
+  withCreases_.resize(triangles_.size());
+  parallelFor(stage, triangles_.size(), kGrain, [&](std::size_t t) {
+    patches_[t] = sets.find(static_cast<Index>(t));
+    withCreases_[t] = setsWithCreases.find(static_cast<Index>(t));
+  });
 }
 
 void ReferenceSurface::findCorners(const SurfaceParts& parts) {
   corners_ = parts.corners;
+  taggedCorners_ = parts.corners;
+  std::sort(taggedCorners_.begin(), taggedCorners_.end());
   const double limit = std::cos(parts.angle * std::numbers::pi / 180);
   for (std::size_t v = 0; v < points_.size(); ++v) {
     const std::span<const Index> at = segmentsAt_(v);
@@ -202,6 +216,7 @@ Freedom ReferenceSurface::freedomAt(std::span<const Index> corners, Index& simpl
     });
   };
   if (corners.size() == 1 && std::binary_search(corners_.begin(), corners_.end(), corners[0])) {
+    simplex = corners[0];
     return Freedom::Fixed;
   }
   for (const Index s : segmentsAt_(corners[0])) {
@@ -217,16 +232,52 @@ Freedom ReferenceSurface::freedomAt(std::span<const Index> corners, Index& simpl
   return Freedom::Free;
 }
 
-SurfacePlace ReferenceSurface::onPatch(const Vec3& point, Index triangle) const {
+bool ReferenceSurface::isCrease(Freedom freedom, Index simplex) const {
+  if (simplex == kNone) return false;
+  if (freedom == Freedom::OnCurve) return creases_[simplex];
+  if (freedom != Freedom::Fixed) return false;
+  const std::span<const Index> at = segmentsAt_(simplex);
+  return !std::binary_search(taggedCorners_.begin(), taggedCorners_.end(), simplex) &&
+         std::all_of(at.begin(), at.end(), [this](Index s) { return creases_[s]; });
+}
+
+Index ReferenceSurface::triangleAt(Freedom freedom, Index simplex, const Vec3& point) const {
+  const bool isCorner = freedom == Freedom::Fixed;
+  const std::array<Index, 2> ends =
+      isCorner ? std::array<Index, 2>{simplex, simplex} : segments_[simplex];
+  Index best = kNone;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Index t : trianglesAt_(ends[0])) {
+    if (std::find(triangles_[t].begin(), triangles_[t].end(), ends[1]) == triangles_[t].end()) {
+      continue;
+    }
+    const double distance = squaredDistance(nearestOf(triangle(t), point), point);
+    if (distance >= least) continue;
+    best = t;
+    least = distance;
+  }
+  return best;
+}
+
+SurfacePlace ReferenceSurface::onTriangles(const Vec3& point, Index triangle,
+                                           const std::vector<Index>& sets) const {
   struct Allowed {
-    const std::vector<Index>& patches;
-    Index patch;
+    const std::vector<Index>& sets;
+    Index set;
     bool operator()(Index /*corner*/) const { return true; }
-    bool operator()(Index /*corner*/, Index next) const { return patches[next] == patch; }
+    bool operator()(Index /*corner*/, Index next) const { return sets[next] == set; }
   };
   return walk(
       point, triangle, triangles_, trianglesAt_, [this](Index t) { return this->triangle(t); },
-      Allowed{patches_, patches_[triangle]});
+      Allowed{sets, sets[triangle]});
+}
+
+SurfacePlace ReferenceSurface::onPatch(const Vec3& point, Index triangle) const {
+  return onTriangles(point, triangle, patches_);
+}
+
+SurfacePlace ReferenceSurface::acrossCreases(const Vec3& point, Index triangle) const {
+  return onTriangles(point, triangle, withCreases_);
 }
 
 SurfacePlace ReferenceSurface::onCurve(const Vec3& point, Index segment) const {

@@ -55,7 +55,7 @@ class ReferenceSurface {
 
   /// How a vertex may move that lies inside of a simplex with these corners.
   /// @param corners  one to three points
-  /// @param[out] simplex  that holds the place, unless it is Free or Fixed
+  /// @param[out] simplex  that holds the place, unless it is Free; if it is Fixed, that point
   [[nodiscard]] Freedom freedomAt(std::span<const Index> corners, Index& simplex) const;
 
   /// Whether a triangle or curve has a tag.
@@ -63,25 +63,38 @@ class ReferenceSurface {
     return freedom == Freedom::OnCurve ? taggedSegments_[simplex] : taggedTriangles_[simplex];
   }
 
+  /// Whether a curve or corner is one only because of its angle, or of a number of cells: the
+  /// surface goes on beyond it.
+  [[nodiscard]] bool isCrease(Freedom freedom, Index simplex) const;
+  /// A triangle at a curve or corner, the nearest to a point.
+  [[nodiscard]] Index triangleAt(Freedom freedom, Index simplex, const Vec3& point) const;
+
   /// The nearest place of the patch around a triangle, as a walk downhill finds it.
   [[nodiscard]] SurfacePlace onPatch(const Vec3& point, Index triangle) const;
+  /// The same, across creases.
+  [[nodiscard]] SurfacePlace acrossCreases(const Vec3& point, Index triangle) const;
   /// The nearest place of the curve around a segment, up to its ends.
   [[nodiscard]] SurfacePlace onCurve(const Vec3& point, Index segment) const;
 
  private:
   void findCurves(const SurfaceParts& parts, Stage& stage);
   void findCorners(const SurfaceParts& parts);
+  [[nodiscard]] SurfacePlace onTriangles(const Vec3& point, Index triangle,
+                                         const std::vector<Index>& sets) const;
   [[nodiscard]] bool isCurve(std::span<const Index> around, const SurfaceParts& parts,
                              double limit) const;
 
   Array<Vec3> points_;
   std::vector<std::array<Index, 3>> triangles_;
   std::size_t boundaryTriangles_ = 0;
-  std::vector<Index> patches_;  ///< per triangle
+  std::vector<Index> patches_;      ///< per triangle
+  std::vector<Index> withCreases_;  ///< per triangle: of patches that only creases divide
   std::vector<bool> taggedTriangles_;
   std::vector<std::array<Index, 2>> segments_;
   std::vector<bool> taggedSegments_;
-  std::vector<Index> corners_;  ///< points, ascending
+  std::vector<bool> creases_;         ///< per segment
+  std::vector<Index> corners_;        ///< points, ascending
+  std::vector<Index> taggedCorners_;  ///< of these
   VertexLists<Index> trianglesAt_;
   VertexLists<Index> segmentsAt_;
 };

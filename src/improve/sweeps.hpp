@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -35,12 +36,23 @@ class Sweeps {
   /// @param slack  so far may vertices without tags leave the surface if nothing else helps
   void untangle(double slack);
 
-  /// Moves vertices around cells whose scaled Jacobian is below the target.
+  /// The same where vertices around bad cells may leave creases. What takes the boundary too far
+  /// from the surface is put back.
+  /// @param farQuads  of the boundary, which are too far
+  /// @return vertices that left their creases, and may go on
+  std::vector<Index> untangleAcrossCreases(double slack,
+                                           const std::function<Array<Quad>()>& farQuads);
+
+  /// Moves vertices around cells whose scaled Jacobian is below the target. Those at the target
+  /// stay there.
   void raiseWorst(double target);
 
-  /// Moves all vertices, so many times. Scaled Jacobians below the floor do not fall.
+  /// Moves all vertices, so many times. No scaled Jacobian falls below the floor, and of those that
+  /// are there, none below the least around.
   void smooth(int passes, double floor);
 
+  /// Rounds of moveBack() until it is given up.
+  static constexpr int kReturns = 8;
   /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
   /// worse than smooth() would leave it.
   /// @param before, simplicesBefore  of all vertices
@@ -60,6 +72,8 @@ class Sweeps {
   [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(std::vector<Index> list, const Wanted& isWanted) const;
+  /// Raises cells below the floor, which is the target.
+  void raise(const Exchange& exchange);
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
 

@@ -51,15 +51,23 @@ double VertexMover::sizeAt(Index vertex) const {
   return size;
 }
 
-double VertexMover::measureAround(Index vertex) {
+bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& exchange) {
   measured_.clear();
-  double least = 1;
   forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
             [&](Index cell, const CellState& state) {
               measured_.emplace_back(cell, certifiedQuality(state));
-              least = std::min(least, measured_.back().second);
             });
-  return least;
+  const double floor = exchange.floor;
+  const double lowest = std::min(least, floor);
+  double gained = 0;
+  double lost = 0;
+  for (const auto& [cell, quality] : measured_) {
+    const double old = all_.qualities[cell];
+    if (quality < (old < floor || exchange.belowFloor ? lowest : floor)) return false;
+    gained += std::min(quality, floor) - std::min(old, floor);
+    lost += std::max(old, floor) - std::max(quality, floor);
+  }
+  return exchange.price == 0 || lost <= 0 || lost <= exchange.price * gained;
 }
 
 double VertexMover::untangle(Index vertex) {
@@ -81,16 +89,16 @@ void VertexMover::keepMeasured() {
   for (const auto& [cell, quality] : measured_) all_.qualities[cell] = quality;
 }
 
-double VertexMover::smooth(Index vertex, int power, double floor) {
+double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   if (!mover_.canMove(vertex)) return 0;
   const double before = leastQualityAt(vertex);
   if (!isCertified(before)) return 0;
   collect(vertex, false);
-  const double least = std::min(before, floor);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
   const double farthest = bounded ? std::max(all_.chordError.chord, all_.chordError.at(vertex)) : 0;
   const double moved = mover_.descend(vertex, terms_, EnergyKind{power, 0, 0}, [&] {
-    return measureAround(vertex) >= least && (!bounded || all_.chordError.at(vertex) <= farthest);
+    return isGoodAround(vertex, before, exchange) &&
+           (!bounded || all_.chordError.at(vertex) <= farthest);
   });
   if (moved == 0) return 0;
   keepMeasured();
@@ -98,11 +106,10 @@ double VertexMover::smooth(Index vertex, int power, double floor) {
 }
 
 void VertexMover::moveBack(Index vertex, const SurfacePlace& place, double floor) {
-  const double least = std::min(leastQualityAt(vertex), floor);
+  const double least = leastQualityAt(vertex);
   if (!isCertified(least)) return;
-  if (mover_.moveBack(vertex, place, [&] { return measureAround(vertex) >= least; })) {
-    keepMeasured();
-  }
+  const auto isGood = [&] { return isGoodAround(vertex, least, {floor}); };
+  if (mover_.moveBack(vertex, place, isGood)) keepMeasured();
 }
 
 }  // namespace hexhex

@@ -26,6 +26,14 @@ struct MovingMesh {
   Array<double>& qualities;  ///< per cell: certifiedQuality(), while vertices are smoothed
 };
 
+/// What cells give so that others around the same vertex gain.
+struct Exchange {
+  double floor;             ///< cells below it gain
+  bool belowFloor = false;  ///< whether others may fall below it, too
+  /// So many times what those below the floor gain may those above it lose; 0: as much as it takes.
+  double price = 0;
+};
+
 /// A vertex with all that a step of it takes. One per thread.
 class VertexMover {
  public:
@@ -38,12 +46,12 @@ class VertexMover {
   /// @return the share of the cells' size that it moved by
   double untangle(Index vertex);
 
-  /// Lowers the energy at corners, if all cells around are certified and stay so, and the least
-  /// scaled Jacobian does not fall below `floor`, or at all if it is there; nor does the boundary
-  /// leave the surface.
+  /// Lowers the energy at corners, if all cells around are certified and stay so. No scaled
+  /// Jacobian that is not below the floor falls below it, unless that is said, and none below the
+  /// least around; nor does the boundary leave the surface.
   /// @param power  of EnergyKind
   /// @return as untangle()
-  double smooth(Index vertex, int power, double floor);
+  double smooth(Index vertex, int power, const Exchange& exchange);
 
   /// Moves a vertex of the boundary towards a place where it was, if the cells around stay as good
   /// as smooth() would leave them.
@@ -55,8 +63,9 @@ class VertexMover {
   [[nodiscard]] double leastQualityAt(Index vertex) const;
   void keepMeasured();
   /// Takes the qualities of the cells around a vertex that has moved.
-  /// @return the least
-  double measureAround(Index vertex);
+  /// @param least  scaled Jacobian that was around
+  /// @return whether they are as good as they must be
+  bool isGoodAround(Index vertex, double least, const Exchange& exchange);
   [[nodiscard]] double sizeAt(Index vertex) const;
 
   MovingMesh all_;

@@ -182,6 +182,7 @@ void place(const Array<Vec3>& points, const Features& features, const GeneratorO
   const std::size_t n = points.size();
   places.freedom.resize(n);
   places.simplex.resize(n);
+  places.isLoose.assign(n, 0);
   parallelFor(stage, n, kGrain, [&](std::size_t v) {
     std::array<Index, 4> corners{};
     const std::size_t count = generatorOf(v, corners);

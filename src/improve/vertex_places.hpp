@@ -13,14 +13,20 @@ namespace hexhex {
 
 struct VertexPlaces {
   ReferenceSurface surface;
-  Array<Freedom> freedom;        ///< per vertex
-  Array<Index> simplex;          ///< per vertex: the triangle or segment that holds it, or kNone
+  Array<Freedom> freedom;  ///< per vertex
+  /// Per vertex: the triangle or segment that holds it, the corner, or kNone.
+  Array<Index> simplex;
+  /// Per vertex on a patch: 1 if it may leave it across creases.
+  std::vector<std::uint8_t> isLoose;
   std::vector<Quad> innerQuads;  ///< of the mesh, on triangles of the surface that are inside
   std::uint64_t tagged = 0;      ///< vertices that are Fixed because they have a tag
 
   /// The place nearest to a point that a vertex may move to.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {
-    if (freedom[vertex] == Freedom::OnPatch) return surface.onPatch(point, simplex[vertex]);
+    if (freedom[vertex] == Freedom::OnPatch) {
+      return isLoose[vertex] != 0 ? surface.acrossCreases(point, simplex[vertex])
+                                  : surface.onPatch(point, simplex[vertex]);
+    }
     if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
     return {point, simplex[vertex]};
   }

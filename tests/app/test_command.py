@@ -1015,6 +1015,21 @@ class Repair(CommandTest):
         run = self.run_command("improve", "bar.mesh", "-o", "better.vtu", "--fix-boundary")
         self.assertIn("20 held: 8 at corners, 2 with a tag, 10 on the boundary\n", run.stdout)
 
+    def write_sheared_layers(self):
+        """Three layers of cells between a refined side and an even one."""
+        side, layers = 13, 4
+        points = [(12 * ((1 - k / 3) * (i / 12) ** 3 + k / 3 * i / 12), j, 0.2 * k)
+                  for k in range(layers) for j in range(5) for i in range(side)]
+        corner = lambda i, j, k: 1 + i + side * (j + 5 * k)
+        ring = ((0, 0), (1, 0), (1, 1), (0, 1))
+        cells = [[corner(i + x, j + y, k + z) for z in (0, 1) for x, y in ring]
+                 for k in range(layers - 1) for j in range(4) for i in range(side - 1)]
+        lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(points))]
+        lines += [" ".join(map(str, point)) + " 0" for point in points]
+        lines += ["Hexahedra", str(len(cells))] + [" ".join(map(str, cell)) + " 0" for cell in cells] + ["End"]
+        (self.folder / "sheared.mesh").write_text("\n".join(lines))
+        return "sheared.mesh"
+
     def test_improve(self):
         self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
         self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2", "--quiet")
@@ -1036,6 +1051,12 @@ class Repair(CommandTest):
         self.run_command("extract", "sphere.hexex", "-o", "sphere.vtu", "--quiet")
         self.assert_fails("improve", "sphere.vtu", "--map", "map.hexex", "-o", "bad.vtu", expect=BAD_USAGE,
                           code="InvalidArgument", words=["is not where the map is"])
+        # Cells that are sheared for good: the mean falls for them, and that is said.
+        self.run_command("convert", self.write_sheared_layers(), "sheared.vtu", "--quiet")
+        run = self.run_command("improve", "sheared.vtu", "-o", "worse.vtu", "--fix-boundary", "--passes", "0")
+        self.assertRegex(run.stderr, r"mean scaled Jacobian fell from 0\.21\d+ to 0\.19\d+")
+        run = self.run_command("improve", "two.vtu", "-o", "three.vtu")
+        self.assertNotIn("fell", run.stderr)
         # Formats that do not tell generators, options out of range, names that are the same.
         self.run_command("convert", "rough.vtu", "rough.mesh", "--quiet")
         self.assert_fails("improve", "rough.mesh", "--map", "map.hexex", "-o", "bad.vtu", expect=BAD_USAGE,

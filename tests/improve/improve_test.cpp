@@ -3,15 +3,22 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <span>
+#include <vector>
 
+#include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
 
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
+
+#include <base/vector3.hpp>
 
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
@@ -67,6 +74,11 @@ void distort(HexMesh& mesh, double n, double amount, std::uint64_t seed) {
       if (x > 0 && x < n) x += move;
     }
   }
+}
+
+std::filesystem::path dataFolder() {
+  const char* const chosen = std::getenv("HEXHEX_DATA");
+  return chosen != nullptr ? chosen : HEXHEX_DATA_DIR;
 }
 
 bool isOnCube(const Vec3& point, double n) {
@@ -309,9 +321,7 @@ TEST(Improve, ComesNoFartherFromCurvedSurfaces) {
 }
 
 TEST(Improve, MendsMeshesOfRealMaps) {
-  const char* const chosen = std::getenv("HEXHEX_DATA");
-  const std::filesystem::path folder =
-      std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "maps";
+  const std::filesystem::path folder = dataFolder() / "maps";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without real maps";
   for (const auto& [name, scale] :
        {std::pair("fandisk_r0.01", 2), std::pair("s17c_sphere_r0.1", 4)}) {
@@ -325,6 +335,213 @@ TEST(Improve, MendsMeshesOfRealMaps) {
     EXPECT_GE(report.after.quality.minimum, 0.3) << name;
     EXPECT_EQ(report.offSurface, 0U) << name;
   }
+}
+
+/// Layers between two sides that do not move, one of which is refined: their cells are sheared more
+/// than the target allows, wherever vertices inside go.
+HexMesh shearedLayers(std::size_t n, std::size_t layers, double height, double grading) {
+  HexMesh mesh =
+      gridMesh(n, [&](std::size_t, std::size_t y, std::size_t z) { return y < 4 && z < layers; });
+  const auto length = static_cast<double>(n);
+  for (Vec3& point : mesh.points) {
+    const double share = point[2] / static_cast<double>(layers);
+    const double refined = length * std::pow(point[0] / length, grading);
+    point = {(1 - share) * refined + share * point[0], point[1], share * height};
+  }
+  return mesh;
+}
+
+/// What could not reach the target pulled cells that had below it, too: 16, 52 and 24 of these.
+TEST(Improve, LeavesGoodCellsGoodWhereOthersCannotBe) {
+  for (HexMesh mesh :
+       {shearedLayers(12, 3, 0.6, 3), shearedLayers(12, 6, 1, 4), shearedLayers(16, 8, 2, 5)}) {
+    for (const int passes : {0, 2}) {
+      ImproveOptions options;
+      options.fixBoundary = true;
+      options.passes = passes;
+      HexMesh moved = mesh;
+      const ImproveReport report = improved(moved, options);
+      expectNoWorse(report);
+      EXPECT_GT(report.movedVertices, 0U);
+      std::size_t low = 0;
+      std::size_t wereLow = 0;
+      for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        const bool wasLow = report.before.scaledJacobians[c] < options.target;
+        const bool isLow = report.after.scaledJacobians[c] < options.target;
+        EXPECT_TRUE(wasLow || !isLow) << "cell " << c;
+        low += isLow ? 1 : 0;
+        wereLow += wasLow ? 1 : 0;
+      }
+      EXPECT_LE(low, wereLow);
+      EXPECT_GT(low, 0U);
+    }
+  }
+}
+
+/// 48 cells at a flat corner that nothing mends: 826 others became worse for them.
+TEST(Improve, LeavesAMeshAsGoodAsItWasWhereNothingMendsIt) {
+  const std::filesystem::path file = dataFolder() / "hexes" / "hexbox_CAD10.mesh";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "without public meshes";
+  Context context(2);
+  const HexMesh mesh = readHexMesh(file, context);
+  for (const int passes : {0, 2}) {
+    ImproveOptions options;
+    options.passes = passes;
+    HexMesh moved = mesh;
+    const ImproveReport report = improved(moved, options);
+    expectNoWorse(report);
+    EXPECT_EQ(report.notPositive.size(), 48U);
+    EXPECT_GE(report.after.quality.mean, report.before.quality.mean);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      if (report.before.scaledJacobians[c] < options.target) continue;
+      EXPECT_GE(report.after.scaledJacobians[c], options.target) << "cell " << c;
+    }
+  }
+}
+
+/// Of a point to the boundary of a mesh: quads are bilinear, and searched ever more finely.
+double distanceToBoundary(const HexMesh& mesh, std::span<const Quad> quads, const Vec3& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Quad& quad : quads) {
+    double u = 0.5;
+    double v = 0.5;
+    for (double width = 0.5; width > 1e-4; width /= 3) {
+      const std::array<double, 2> centre = {u, v};
+      double best = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < 49; ++i) {
+        const double a = std::clamp(centre[0] + width * (i % 7 - 3) / 3, 0.0, 1.0);
+        const double b = std::clamp(centre[1] + width * (i / 7 - 3) / 3, 0.0, 1.0);
+        double square = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto at = [&](std::size_t c) { return mesh.points[quad[c]][k]; };
+          const double x =
+              (1 - a) * ((1 - b) * at(0) + b * at(3)) + a * ((1 - b) * at(1) + b * at(2));
+          square += (x - point[k]) * (x - point[k]);
+        }
+        if (square >= best) continue;
+        best = square;
+        u = a;
+        v = b;
+      }
+      least = std::min(least, std::sqrt(best));
+    }
+  }
+  return least;
+}
+
+/// The quads of the boundary, found as those that occur once.
+std::vector<Quad> boundaryOf(const HexMesh& mesh) {
+  std::map<Quad, std::vector<Quad>> quads;
+  for (const Hex& cell : mesh.cells) {
+    for (const auto& face : kHexFaces) {
+      const Quad quad = {cell[face[0]], cell[face[1]], cell[face[2]], cell[face[3]]};
+      Quad key = quad;
+      std::sort(key.begin(), key.end());
+      quads[key].push_back(quad);
+    }
+  }
+  std::vector<Quad> boundary;
+  for (const auto& [key, found] : quads) {
+    if (found.size() == 1) boundary.push_back(found[0]);
+  }
+  return boundary;
+}
+
+/// Moves some vertices of the boundary to beyond a neighbour there, so that quads are folded.
+void crumple(HexMesh& mesh, std::size_t count, double share, std::uint64_t seed,
+             const std::function<bool(const Vec3&)>& isMovable) {
+  Random random(seed);
+  const std::vector<Quad> boundary = boundaryOf(mesh);
+  for (std::size_t done = 0; done < count;) {
+    const Quad& quad = boundary[static_cast<std::size_t>(random.real() * 0.9999 *
+                                                         static_cast<double>(boundary.size()))];
+    Vec3& point = mesh.points[quad[0]];
+    const Vec3 other = mesh.points[quad[2]];
+    if (!isMovable(point) || !isMovable(other)) continue;
+    for (std::size_t k = 0; k < 3; ++k) point[k] += share * (other[k] - point[k]);
+    ++done;
+  }
+}
+
+/// The folds are no creases, though the surface turns by half a circle there. While they were held,
+/// one of these meshes was mended.
+TEST(Improve, MendsCrumpledBalls) {
+  const TetMap map = generateSample(SampleKind::Sphere, {.cells = 3}).map;
+  const HexMesh smooth = extracted(map, 3);
+  std::uint64_t leftCreases = 0;
+  int mended = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    HexMesh mesh = smooth;
+    crumple(mesh, 5, 1.2, seed, [](const Vec3&) { return true; });
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      if (mesh.points[v] == smooth.points[v]) continue;
+      const double factor = length(smooth.points[v]) / length(mesh.points[v]);
+      for (double& x : mesh.points[v]) x *= factor;
+    }
+    {
+      Context cc(1);
+      writeHexMesh(mesh, "/tmp/ball" + std::to_string(seed) + ".vtu", {}, cc);
+    }
+    {
+      Context cc(1);
+      writeHexMesh(mesh, "/tmp/ball" + std::to_string(seed) + ".vtu", {}, cc);
+    }
+    const ImproveReport report = improved(mesh);
+    expectNoWorse(report);
+    EXPECT_FALSE(report.before.allPositive());
+    EXPECT_LT(report.after.refuted, report.before.refuted);
+    EXPECT_LE(report.distanceAfter.fromMesh, 1.25 * report.distanceBefore.hausdorff());
+    mended += report.after.allPositive() ? 1 : 0;
+    leftCreases += report.offCreases;
+  }
+  EXPECT_GE(mended, 4);
+  EXPECT_GT(leftCreases, 0U);
+}
+
+TEST(Improve, KeepsCreasesOfACrumpledCube) {
+  constexpr double kSide = 6;
+  const HexMesh cube = gridMesh(6);
+  std::uint64_t leftCreases = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    HexMesh mesh = cube;
+    crumple(mesh, 8, 1.2, seed, [](const Vec3& point) {
+      return std::count_if(point.begin(), point.end(),
+                           [](double x) { return x == 0 || x == kSide; }) == 1;
+    });
+    {
+      Context cc(1);
+      writeHexMesh(mesh, "/tmp/cube" + std::to_string(seed) + ".vtu", {}, cc);
+    }
+    const ImproveReport report = improved(mesh);
+    expectNoWorse(report);
+    EXPECT_FALSE(report.before.allPositive());
+    EXPECT_TRUE(report.after.allPositive()) << "seed " << seed;
+    leftCreases += report.offCreases;
+    const std::vector<Quad> boundary = boundaryOf(mesh);
+    const double limit = kSurfaceTolerance * kSide * std::numbers::sqrt3;
+    for (const Quad& quad : boundary) {
+      for (const Index v : quad) {
+        double outside = 0;
+        double nearest = kSide;
+        for (const double x : mesh.points[v]) {
+          outside = std::max({outside, -x, x - kSide});
+          nearest = std::min({nearest, std::abs(x), std::abs(kSide - x)});
+        }
+        EXPECT_LE(std::max(outside, nearest), limit) << "vertex " << v;
+      }
+    }
+    for (std::size_t edge = 0; edge < 12; ++edge) {
+      const std::size_t axis = edge / 4;
+      for (int i = 0; i <= 12; ++i) {
+        Vec3 point{};
+        point[axis] = kSide * i / 12;
+        point[(axis + 1) % 3] = edge % 2 == 0 ? 0 : kSide;
+        point[(axis + 2) % 3] = edge / 2 % 2 == 0 ? 0 : kSide;
+        EXPECT_LE(distanceToBoundary(mesh, boundary, point), 1.01 * limit) << "edge " << edge;
+      }
+    }
+  }
+  EXPECT_GT(leftCreases, 0U);
 }
 
 TEST(Improve, SaysWhatIsWrongWithItsInput) {

@@ -1187,11 +1187,12 @@ typedef struct hexhex_improve_report {
   double inner_distance_after;  /**< from such triangles; 0 if there are none */
   uint64_t tagged_vertices;     /**< of fixed_vertices: that have a tag, */
   uint64_t boundary_vertices;   /**< and that only fix_boundary holds; the rest are corners */
+  uint64_t off_creases; /**< vertices that left creases, where nothing else made cells positive */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
     sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0                                                                             \
+        0, 0, 0, 0, 0, 0                                                                          \
   }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.

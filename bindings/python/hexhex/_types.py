@@ -853,6 +853,7 @@ class ImproveReport:
     largest_move: float
     mean_move: float  #: of those that moved
     off_surface: int  #: vertices that used the slack
+    off_creases: int  #: that left creases, where nothing else made cells positive
     seconds: float
 
 
