@@ -141,8 +141,8 @@ class PoissonProblem {
   const TetTopology& topology_;
   const std::vector<TetShape>& shapes_;
   std::vector<int> unknownOf_;
-  SparseMatrix matrix_;
-  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver_;
+  Matrix matrix_;
+  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> solver_;
 };
 
 /// How tets have to turn for the boundary to face where its labels say: harmonic between rotations
