@@ -1,0 +1,84 @@
+// The foldover-free energy of all elements, and its derivatives by the unknowns.
+//
+// V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, "Foldover-free maps in
+// 50 lines of code", ACM Transactions on Graphics 40 (2021).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <untangle/problem.hpp>
+
+#include <base/stage.hpp>
+
+namespace hexhex::untangle {
+
+using Vector = Eigen::VectorXd;
+
+/// A positive stand-in for a determinant: near it if it is positive, near 0 if it is negative.
+[[nodiscard]] double regularized(double epsilon, double det) noexcept;
+
+/// The energy at some place.
+struct Height {
+  double energy = 0;
+  double leastDeterminant = std::numeric_limits<double>::infinity();
+  std::size_t flipped = 0;  ///< elements whose determinant is not positive
+};
+
+/// Which elements have an unknown, and as which coordinate: entries are 12 * element + 3 * corner +
+/// axis.
+class Uses {
+ public:
+  explicit Uses(const Problem& problem);
+  [[nodiscard]] std::span<const std::uint32_t> operator()(std::size_t unknown) const {
+    return std::span(entries_).subspan(begins_[unknown], begins_[unknown + 1] - begins_[unknown]);
+  }
+
+ private:
+  std::vector<std::uint32_t> begins_;
+  std::vector<std::uint32_t> entries_;
+};
+
+/// Gradients of all four corners.
+[[nodiscard]] Eigen::Matrix<double, 4, 3> cornerGradients(const Element& element);
+[[nodiscard]] Eigen::Matrix3d jacobian(const Problem& problem, const Element& element,
+                                       const double* x);
+/// The rotation that an element is pulled to.
+[[nodiscard]] Eigen::Matrix3d targetOf(const Problem& problem, const Element& element);
+
+/// Sum over all elements of their weight times
+///
+///     |J|^2 / chi^(2/3) + (det^2 + 1) / chi + pull / 2 |J - target|^2
+///
+/// with chi = regularized(epsilon, det J). With epsilon 0 it is infinite where an element is not
+/// positive. The same bits with any number of threads.
+class Energy {
+ public:
+  /// @param problem  must outlive this, and keep its elements; x and pull may change
+  Energy(const Problem& problem, Stage& stage);
+
+  [[nodiscard]] std::size_t unknownCount() const noexcept { return problem_.x.size(); }
+  [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
+  [[nodiscard]] const Uses& uses() const noexcept { return uses_; }
+
+  [[nodiscard]] Height at(const Vector& x, double epsilon) const;
+  /// @param[out] gradient  by unknown; of no use where the energy is infinite
+  [[nodiscard]] Height at(const Vector& x, double epsilon, Vector& gradient);
+
+ private:
+  template <class Visit>
+  Height collect(const Visit& visit) const;
+  void add(const Element& element, const Eigen::Matrix3d& j, double density, Height& height) const;
+
+  const Problem& problem_;
+  Stage& stage_;
+  Uses uses_;
+  std::vector<std::array<double, 12>> forces_;  ///< per element, corner and axis
+};
+
+}  // namespace hexhex::untangle

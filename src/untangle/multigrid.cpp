@@ -1,0 +1,184 @@
+#include <cmath>
+#include <utility>
+
+#include <untangle/multigrid.hpp>
+
+namespace hexhex::untangle {
+
+namespace {
+
+/// Unknowns are strongly connected from this share of the mean of their diagonal entries on; on
+/// each coarser level, half of that.
+constexpr double kStrong = 0.08;
+/// A level that has not so many times fewer unknowns than the one before is as good as none.
+constexpr double kCoarser = 1.5;
+
+/// Power iterations come near to the largest eigenvalue from below.
+constexpr int kPowerIterations = 12;
+constexpr double kFromBelow = 1.1;
+
+/// Which unknown of the next level each one belongs to, and with which sign: charts may differ by
+/// that.
+struct Aggregates {
+  std::vector<int> of;
+  std::vector<double> sign;
+  int count = 0;
+};
+
+/// Calls visit(neighbour, entry) for all that are strongly connected with an unknown.
+template <class Visit>
+void forEachStrong(const SparseMatrix& matrix, const Vector& diagonal, double share, int i,
+                   const Visit& visit) {
+  for (SparseMatrix::InnerIterator it(matrix, i); it; ++it) {
+    const auto j = static_cast<int>(it.row());
+    if (j != i && std::abs(it.value()) >= share * std::sqrt(diagonal[i] * diagonal[j])) {
+      visit(j, it.value());
+    }
+  }
+}
+
+Aggregates aggregate(const SparseMatrix& matrix, double share) {
+  const auto n = static_cast<int>(matrix.rows());
+  const Vector diagonal = matrix.diagonal();
+  Aggregates result{std::vector<int>(static_cast<std::size_t>(n), -1),
+                    std::vector<double>(static_cast<std::size_t>(n), 1), 0};
+  const auto join = [&result](int i, int other, double entry) {
+    result.of[static_cast<std::size_t>(i)] = result.of[static_cast<std::size_t>(other)];
+    result.sign[static_cast<std::size_t>(i)] = entry < 0
+                                                   ? result.sign[static_cast<std::size_t>(other)]
+                                                   : -result.sign[static_cast<std::size_t>(other)];
+  };
+  const auto isFree = [&result](int i) { return result.of[static_cast<std::size_t>(i)] < 0; };
+  // Whole neighbourhoods first,
+  for (int i = 0; i < n; ++i) {
+    bool allFree = isFree(i);
+    forEachStrong(matrix, diagonal, share, i,
+                  [&](int j, double /*entry*/) { allFree = allFree && isFree(j); });
+    if (!allFree) continue;
+    result.of[static_cast<std::size_t>(i)] = result.count++;
+    forEachStrong(matrix, diagonal, share, i, [&](int j, double entry) { join(j, i, entry); });
+  }
+  // then what is left beside them, by the strongest connection,
+  const std::vector<int> wholes = result.of;
+  for (int i = 0; i < n; ++i) {
+    if (!isFree(i)) continue;
+    double strongest = 0;
+    forEachStrong(matrix, diagonal, share, i, [&](int j, double entry) {
+      if (wholes[static_cast<std::size_t>(j)] < 0 || !(std::abs(entry) > strongest)) return;
+      strongest = std::abs(entry);
+      join(i, j, entry);
+    });
+  }
+  // and the rest.
+  for (int i = 0; i < n; ++i) {
+    if (!isFree(i)) continue;
+    result.of[static_cast<std::size_t>(i)] = result.count++;
+    forEachStrong(matrix, diagonal, share, i, [&](int j, double entry) {
+      if (isFree(j)) join(j, i, entry);
+    });
+  }
+  return result;
+}
+
+/// About the largest eigenvalue of the matrix over its diagonal.
+double largestEigenvalue(const SparseMatrix& matrix, const Vector& diagonal) {
+  Vector v(matrix.rows());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(static_cast<double>(i + 1));
+  double value = 1;
+  for (int i = 0; i < kPowerIterations; ++i) {
+    v /= v.norm();
+    v = Vector((matrix * v).cwiseQuotient(diagonal));
+    value = v.norm();
+  }
+  return kFromBelow * value;
+}
+
+SparseMatrix prolongationOf(const SparseMatrix& matrix, double share) {
+  const Aggregates aggregates = aggregate(matrix, share);
+  const auto n = static_cast<int>(matrix.rows());
+  SparseMatrix tentative(n, aggregates.count);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    entries.emplace_back(i, aggregates.of[static_cast<std::size_t>(i)],
+                         aggregates.sign[static_cast<std::size_t>(i)]);
+  }
+  tentative.setFromTriplets(entries.begin(), entries.end());
+  const Vector diagonal = matrix.diagonal();
+  const double damping = 4.0 / 3 / largestEigenvalue(matrix, diagonal);
+  const SparseMatrix moved = matrix * tentative;
+  return tentative - SparseMatrix(damping * diagonal.cwiseInverse().asDiagonal() * moved);
+}
+
+/// One sweep of Gauss and Seidel through a symmetric matrix, whose columns are its rows.
+void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward) {
+  const auto n = static_cast<int>(matrix.rows());
+  for (int k = 0; k < n; ++k) {
+    const int i = forward ? k : n - 1 - k;
+    double rest = v[i];
+    double diagonal = 1;
+    for (SparseMatrix::InnerIterator it(matrix, i); it; ++it) {
+      if (it.row() == i) {
+        diagonal = it.value();
+      } else {
+        rest -= it.value() * x[it.row()];
+      }
+    }
+    x[i] = rest / diagonal;
+  }
+}
+
+}  // namespace
+
+Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Context& context) {
+  double share = kStrong;
+  while (matrix.rows() > mostFactored) {
+    context.throwIfCancelled();
+    SparseMatrix prolongation = prolongationOf(matrix, share);
+    if (kCoarser * static_cast<double>(prolongation.cols()) > static_cast<double>(matrix.rows())) {
+      break;
+    }
+    const SparseMatrix moved = matrix * prolongation;
+    SparseMatrix coarser = prolongation.transpose() * moved;
+    levels_.push_back({std::move(matrix), std::move(prolongation)});
+    matrix = std::move(coarser);
+    share /= 2;
+  }
+  factor_.compute(matrix);
+}
+
+Vector Multigrid::cycle(std::size_t level, const Vector& v) const {
+  if (level == levels_.size()) return factor_.solve(v);
+  const auto& [matrix, prolongation] = levels_[level];
+  Vector x = Vector::Zero(v.size());
+  sweep(matrix, v, x, true);
+  const Vector rest = prolongation.transpose() * (v - matrix * x);
+  x += prolongation * cycle(level + 1, rest);
+  sweep(matrix, v, x, false);
+  return x;
+}
+
+Vector Multigrid::solve(const Vector& v) const {
+  if (levels_.empty()) return factor_.solve(v);
+  constexpr double kTolerance = 1e-5;
+  constexpr int kMostSteps = 200;
+  const SparseMatrix& matrix = levels_.front().matrix;
+  Vector x = Vector::Zero(v.size());
+  Vector rest = v;
+  Vector preconditioned = cycle(rest);
+  Vector direction = preconditioned;
+  double product = rest.dot(preconditioned);
+  for (int i = 0; i < kMostSteps && rest.norm() > kTolerance * v.norm(); ++i) {
+    const Vector image = matrix * direction;
+    const double length = product / direction.dot(image);
+    x += length * direction;
+    rest -= length * image;
+    preconditioned = cycle(rest);
+    const double next = rest.dot(preconditioned);
+    direction = preconditioned + next / product * direction;
+    product = next;
+  }
+  return x;
+}
+
+}  // namespace hexhex::untangle

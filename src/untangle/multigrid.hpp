@@ -1,0 +1,45 @@
+// Multigrid by smoothed aggregation, with a factored coarsest level: in linear time near the
+// inverse of a weighted Laplacian.
+//
+// P. Vaněk, J. Mandel, M. Brezina, "Algebraic multigrid by smoothed aggregation for second and
+// fourth order elliptic problems", Computing 56 (1996).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <hexhex/context.hpp>
+
+namespace hexhex::untangle {
+
+using Vector = Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+class Multigrid {
+ public:
+  /// @param matrix  symmetric and positive definite; all of it
+  /// @param mostFactored  a matrix with so many rows, at most, is factored
+  Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Context& context);
+
+  /// One cycle: a linear map, symmetric and positive definite, and the inverse if the matrix was
+  /// factored.
+  [[nodiscard]] Vector cycle(const Vector& v) const { return cycle(0, v); }
+  /// The matrix's inverse times a vector, by conjugate gradients.
+  [[nodiscard]] Vector solve(const Vector& v) const;
+
+ private:
+  struct Level {
+    SparseMatrix matrix;
+    SparseMatrix prolongation;  ///< from the next coarser level
+  };
+  [[nodiscard]] Vector cycle(std::size_t level, const Vector& v) const;
+
+  std::vector<Level> levels_;
+  Eigen::SimplicialLDLT<SparseMatrix> factor_;
+};
+
+}  // namespace hexhex::untangle

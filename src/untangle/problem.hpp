@@ -1,0 +1,78 @@
+// What the solver takes: elements whose corners are affine functions of the unknowns.
+//
+// An element maps its ideal shape by a Jacobian matrix that is linear in its corners u_0 to u_3:
+//
+//     J = C + (u_1 - u_0) g_1^T + (u_2 - u_0) g_2^T + (u_3 - u_0) g_3^T
+//
+// It is good where det J > 0. Three kinds of elements:
+//
+// - Tets: C = 0 and g = tetGradients(ideal edges).
+// - Triangles of a surface that is to face the direction e, with the outward normal n: the g_i are
+//   the gradients in the triangle's plane, g_3 = 0, C = e n^T. det J is the ratio of areas,
+//   negative where the triangle is turned over. No energy over tets alone sees triangles fold over
+//   in the plane that they are bound to.
+// - Edges of a border that is to run along s e_c (a signed axis): with their direction d and length
+//   l, g_1 = d / l, g_2 = g_3 = 0, C = R - s e_c d^T for a rotation R that turns d to s e_c; only
+//   coordinate c of the corners varies. det J is the ratio of lengths, negative where the edge runs
+//   backwards.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex::untangle {
+
+using Matrix3 = std::array<Vec3, 3>;  ///< rows
+
+/// Coordinate k is constant[k] + sign[k] * x[unknown[k]], or constant[k] alone where unknown[k] is
+/// negative. Several coordinates, also of one corner, may share an unknown.
+struct Corner {
+  Vec3 constant{};
+  std::array<int, 3> unknown = {-1, -1, -1};
+  std::array<std::int8_t, 3> sign{};  ///< 1 or -1 where there is an unknown
+
+  [[nodiscard]] Vec3 at(const double* x) const noexcept {
+    Vec3 u = constant;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (unknown[k] >= 0) u[k] += sign[k] * x[unknown[k]];
+    }
+    return u;
+  }
+};
+
+struct Element {
+  std::array<Corner, 4> corners;
+  std::array<Vec3, 3> gradients{};  ///< of corners 1 to 3; that of corner 0 is minus their sum
+  double weight = 1;                ///< positive
+  int offset = -1;                  ///< C, as an index of Problem::matrices; -1: 0
+  int target = -1;                  ///< the rotation it is pulled to, as such an index; -1: 1
+};
+
+/// Of a tet whose ideal shape has these edges from corner 0: the rows of the inverse of the matrix
+/// whose columns they are.
+[[nodiscard]] inline std::array<Vec3, 3> tetGradients(const std::array<Vec3, 3>& edges) {
+  const double det = tripleProduct(edges[0], edges[1], edges[2]);
+  std::array<Vec3, 3> rows = {cross(edges[1], edges[2]), cross(edges[2], edges[0]),
+                              cross(edges[0], edges[1])};
+  for (Vec3& row : rows) {
+    for (double& component : row) component /= det;
+  }
+  return rows;
+}
+
+struct Problem {
+  std::vector<Element> elements;
+  std::vector<Matrix3> matrices;
+  /// Weight of 0.5 |J - target|^2 beside the foldover-free energy. Maps of which no corner is
+  /// constant need it: otherwise some collapse.
+  double pull = 0;
+  std::vector<double> x;  ///< the unknowns: where they are, and where they are to go
+};
+
+}  // namespace hexhex::untangle
