@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -6,8 +5,10 @@
 #include <quantize/bend.hpp>
 #include <quantize/bend_split.hpp>
 #include <quantize/edge_turns.hpp>
-#include <quantize/newton.hpp>
+#include <quantize/vertex_unknowns.hpp>
+#include <untangle/untangle.hpp>
 
+#include <base/vector3.hpp>
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex {
@@ -21,6 +22,15 @@ constexpr int kMostRounds = 16;
 constexpr int kFractionBits = 30;
 /// Of tets around flipped ones that may move to make room for them.
 constexpr int kRings = 4;
+
+/// Edges of a tet from its first corner.
+std::array<Vec3, 3> edgesOf(const TetParameters& u) {
+  return {minus(u[1], u[0]), minus(u[2], u[0]), minus(u[3], u[0])};
+}
+
+double determinantOf(const std::array<Vec3, 3>& edges) {
+  return tripleProduct(edges[0], edges[1], edges[2]);
+}
 
 /// One mesh and its unknowns: what is new after each round of splitting.
 class Round {
@@ -57,65 +67,95 @@ class Round {
   /// @param isFresh  not from where they are bent to
   /// @return whether nothing good comes from going on from there: tets are positive, but wind
   bool run(bool isFresh, int polishing, BentMap& map) {
-    BendEnergy energy(topology_, state_.problem.reference, unknowns_);
-    Vector x = isFresh ? Vector(Vector::Zero(energy.unknownCount())) : unknownsOf(energy);
-    map.iterations += solve(energy, isFresh, polishing, x);
-    map.flippedTets = round(energy, x);
-    map.energy = energy.value({EnergyKind::Name::FoldoverFree, 0}, x, stage_);
+    untangle::Problem problem = describe(isFresh);
+    untangle::Solver solver(problem, stage_);
+    if (isFresh) solver.start();
+    // After a split, most of the map is good: a small penalty leaves it so, and often suffices.
+    untangle::Result result = solver.run({.epsilon = isFresh ? 1 : 1e-3, .polishing = polishing});
+    map.iterations += result.steps;
+    if (!isFresh && !result.flipped.empty()) {
+      result = solver.run({.epsilon = 0.1, .polishing = polishing});
+      map.iterations += result.steps;
+    }
+    map.energy = result.energy;
+    map.flippedTets = round(problem);
     if (!map.flippedTets.empty()) return false;
     map.flippedTets = tetsAtOtherTurns(topology_, state_.problem.reference, state_.bent, stage_);
     return !map.flippedTets.empty();
   }
 
  private:
-  /// @return Newton steps
-  int solve(BendEnergy& energy, bool isFresh, int polishing, Vector& x) {
-    NewtonSolver solver(energy, stage_);
-    if (isFresh) solver.start(x);
-    energy.adaptScale(x);
-    if (isFresh) solver.start(x);  // again, towards shapes of the right size
-    if (untangle(solver, isFresh, x)) solver.polish(x, polishing);
-    return solver.iterations();
-  }
-
-  /// After a split, most of the map is good: a small penalty leaves it so, and often suffices.
-  static bool untangle(NewtonSolver& solver, bool isFresh, Vector& x) {
-    return isFresh ? solver.untangle(x, 1) : solver.untangle(x, 1e-3) || solver.untangle(x, 0.1);
-  }
-
   [[nodiscard]] const Vec3& representative(Index v) const {
     const Index t = topology_.vertexTet[v];
     return state_.bent[t][static_cast<std::size_t>(topology_.localCorner(t, v))];
   }
 
-  [[nodiscard]] Vector unknownsOf(const BendEnergy& energy) const {
-    Vector x(energy.unknownCount());
+  /// Numbers the unknowns. All tets are elements that are to be as large as the bent map, whose
+  /// volume follows from its integers alone: at low densities that is several times as much as the
+  /// reference, and tets would fight for their size.
+  untangle::Problem describe(bool isFresh) {
+    untangle::Problem problem;
+    numbers_.assign(topology_.pointCount, {-1, -1, -1});
     for (Index v = 0; v < topology_.pointCount; ++v) {
-      if (unknowns_.fixed[v] == kAllAxes) continue;
       for (std::size_t k = 0; k < 3; ++k) {
-        if (energy.unknownsOf(v)[k] >= 0) x[energy.unknownsOf(v)[k]] = representative(v)[k];
+        if ((unknowns_.fixed[v] >> k & 1U) != 0) continue;
+        numbers_[v][k] = static_cast<int>(problem.x.size());
+        problem.x.push_back(isFresh ? 0 : representative(v)[k]);
       }
     }
-    return x;
+    problem.elements.resize(topology_.tetCount());
+    double volume = 0;
+    double bentVolume = 0;
+    for (Index t = 0; t < topology_.tetCount(); ++t) {
+      untangle::Element& element = problem.elements[t];
+      for (std::size_t i = 0; i < 4; ++i) element.corners[i] = cornerOf(4 * t + i);
+      volume += determinantOf(edgesOf(state_.problem.reference[t]));
+      bentVolume += determinantOf(edgesOf(cornersAt(element, problem.x)));
+    }
+    const double scale = bentVolume > 0 ? std::cbrt(bentVolume / volume) : 1;
+    for (Index t = 0; t < topology_.tetCount(); ++t) {
+      std::array<Vec3, 3> edges = edgesOf(state_.problem.reference[t]);
+      problem.elements[t].weight = determinantOf(edges) / volume;
+      for (Vec3& edge : edges) {
+        for (double& component : edge) component *= scale;
+      }
+      problem.elements[t].gradients = untangle::tetGradients(edges);
+    }
+    return problem;
+  }
+
+  [[nodiscard]] untangle::Corner cornerOf(std::size_t corner) const {
+    const Index v = topology_.vertex(static_cast<CornerIndex>(corner));
+    const Transition& way = unknowns_.toCorner[corner];
+    const auto rotation = static_cast<std::size_t>(way.rotation.index());
+    untangle::Corner result;
+    result.constant = way(unknowns_.fixedPosition[v], 1.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.unknown[k] = numbers_[v][detail::kAxisSources.axis[rotation][k]];
+      result.sign[k] = detail::kAxisSources.sign[rotation][k];
+    }
+    return result;
+  }
+
+  static TetParameters cornersAt(const untangle::Element& element, const std::vector<double>& x) {
+    return {element.corners[0].at(x.data()), element.corners[1].at(x.data()),
+            element.corners[2].at(x.data()), element.corners[3].at(x.data())};
   }
 
   /// Rounds unknowns, and derives all corners.
   /// @return tets that are not positive, exactly
-  std::vector<Index> round(const BendEnergy& energy, Vector& x) {
+  std::vector<Index> round(untangle::Problem& problem) {
     constexpr double kUnit = 1 << kFractionBits;
-    for (double& value : x) value = std::nearbyint(value * kUnit) / kUnit;
+    for (double& value : problem.x) value = std::nearbyint(value * kUnit) / kUnit;
     state_.bent.resize(topology_.tetCount());
     return collectFromBlocks<Index>(
         stage_, topology_.tetCount(), 1024, [&](std::size_t begin, std::size_t end, auto& list) {
           for (auto t = static_cast<Index>(begin); t < end; ++t) {
-            const auto columns = energy.corners(t, x);
+            state_.bent[t] = cornersAt(problem.elements[t], problem.x);
             LatticeTet lattice;
             for (std::size_t i = 0; i < 4; ++i) {
               for (std::size_t k = 0; k < 3; ++k) {
-                const double u =
-                    columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
-                state_.bent[t][i][k] = u;
-                lattice[i][k] = static_cast<std::int64_t>(u * kUnit);
+                lattice[i][k] = static_cast<std::int64_t>(state_.bent[t][i][k] * kUnit);
               }
             }
             if (orientation(lattice[0], lattice[1], lattice[2], lattice[3]) <= 0) list.push_back(t);
@@ -127,6 +167,7 @@ class Round {
   Stage& stage_;
   TetTopology topology_;
   VertexUnknowns unknowns_;
+  std::vector<std::array<int, 3>> numbers_;  ///< per vertex: unknowns of its representative, or -1
 };
 
 BendState initialState(BendProblem problem) {

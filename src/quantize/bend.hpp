@@ -45,8 +45,8 @@ struct BendProblem {
 struct BendOptions {
   /// Tets may be split until there are so many times as many.
   double maxGrowth = 2;
-  /// Newton steps that lower distortion once no tet is flipped.
-  int polishing = 10;
+  /// Steps that lower distortion, at most, once no tet is flipped.
+  int polishing = 60;
 };
 
 /// An edge that was split: its middle is a new vertex, numbered after all others.
@@ -69,7 +69,7 @@ struct BentMap {
   std::vector<Index> flippedTets;
 
   double energy = 0;  ///< mean of the foldover-free energy, by volume; 5 where nothing is distorted
-  int iterations = 0;  ///< Newton steps in all
+  int iterations = 0;  ///< steps of the solver in all
   int rounds = 0;      ///< of splitting and untangling
 
   [[nodiscard]] bool isValid() const noexcept {

@@ -20,8 +20,8 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <Eigen/SparseCore>
 #include <quantize/bend.hpp>
-#include <quantize/bend_energy.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
@@ -37,6 +37,7 @@ namespace hexhex {
 namespace {
 
 using Matrix33 = Eigen::Matrix3d;
+using Matrix = Eigen::SparseMatrix<double>;
 using Rotations = std::vector<Matrix33>;
 
 /// Planes lie on a grid of so many lines or more along the object's longest side.

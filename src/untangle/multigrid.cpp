@@ -13,6 +13,9 @@ constexpr double kStrong = 0.08;
 /// A level that has not so many times fewer unknowns than the one before is as good as none.
 constexpr double kCoarser = 1.5;
 
+/// A matrix that is not factored as it is has so many rows, at most, on its coarsest level: those
+/// have many entries each.
+constexpr Eigen::Index kCoarsest = 500;
 /// Power iterations come near to the largest eigenvalue from below.
 constexpr int kPowerIterations = 12;
 constexpr double kFromBelow = 1.1;
@@ -132,7 +135,7 @@ void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward)
 
 Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Context& context) {
   double share = kStrong;
-  while (matrix.rows() > mostFactored) {
+  while (matrix.rows() > (levels_.empty() ? mostFactored : kCoarsest)) {
     context.throwIfCancelled();
     SparseMatrix prolongation = prolongationOf(matrix, share);
     if (kCoarser * static_cast<double>(prolongation.cols()) > static_cast<double>(matrix.rows())) {
