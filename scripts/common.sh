@@ -69,7 +69,7 @@ install_python_programs() {
 }
 
 # Libraries of optional parts: .vtkhdf, .cgns, repair. Without them these are left out.
-optional_packages=(liblbfgs-dev libhdf5-dev libeigen3-dev coinor-libcbc-dev)
+optional_packages=(libhdf5-dev libeigen3-dev coinor-libcbc-dev)
 # ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)

@@ -43,7 +43,7 @@ struct RepairReport {
   double seconds = 0;
 };
 
-/// Whether this build can repair (it was made with libLBFGS).
+/// Whether this build can repair (it was made with Eigen).
 [[nodiscard]] bool canRepair() noexcept;
 
 /// Returns a valid map: the same where it was valid, bit for bit, but for patches of a few rings of

@@ -65,17 +65,6 @@ using Edges = std::array<Vec3, 3>;
 
 double determinant(const Edges& e) { return tripleProduct(e[0], e[1], e[2]); }
 
-/// Rows of the inverse of the matrix whose columns are given.
-std::array<Vec3, 3> inverseOf(const Edges& columns) {
-  const double det = determinant(columns);
-  std::array<Vec3, 3> rows = {cross(columns[1], columns[2]), cross(columns[2], columns[0]),
-                              cross(columns[0], columns[1])};
-  for (Vec3& row : rows) {
-    for (double& x : row) x /= det;
-  }
-  return rows;
-}
-
 Edges edgesInSpace(const TetMapView& map, Index tet, double magnification) {
   const Tet& t = map.tets[tet];
   Edges edges{};
@@ -160,7 +149,7 @@ PatchProblem::PatchProblem(const TetMapView& map, const TetTopology& topology,
     }
   }
   const double scale = parametricScale(patch);
-  problem_.tets.reserve(patch.tets.size());
+  problem_.elements.reserve(patch.tets.size());
   for (const Index t : patch.tets) addTet(t, scale);
 }
 
@@ -178,7 +167,7 @@ double PatchProblem::parametricScale(const Patch& patch) const {
 }
 
 void PatchProblem::addTet(Index tet, double scale) {
-  UntangleTet entry;
+  untangle::Element entry;
   for (int c = 0; c < 4; ++c) entry.corners[static_cast<std::size_t>(c)] = cornerOf(tet, c);
   Edges ideal = edgesInSpace(map_, tet, magnification_);
   const double stretch = std::cbrt(scale);
@@ -192,8 +181,8 @@ void PatchProblem::addTet(Index tet, double scale) {
     const double least = 1e-12;
     ideal = regularTet(std::max({std::abs(det), kThin * longest * longest * longest, least}));
   }
-  entry.inverseShape = inverseOf(ideal);
-  problem_.tets.push_back(entry);
+  entry.gradients = untangle::tetGradients(ideal);
+  problem_.elements.push_back(entry);
 }
 
 std::size_t PatchProblem::patchVertexOf(Index vertex) const {
@@ -204,8 +193,8 @@ std::size_t PatchProblem::patchVertexOf(Index vertex) const {
   return static_cast<std::size_t>(found - vertices_.begin());
 }
 
-UntangleCorner PatchProblem::cornerOf(Index tet, int corner) const {
-  UntangleCorner result;
+untangle::Corner PatchProblem::cornerOf(Index tet, int corner) const {
+  untangle::Corner result;
   const std::size_t i = patchVertexOf(topology_.tets[tet][static_cast<std::size_t>(corner)]);
   if (i == kNotInPatch) {
     result.constant = parameters_(tet, corner);
@@ -220,7 +209,7 @@ UntangleCorner PatchProblem::cornerOf(Index tet, int corner) const {
     const auto own = static_cast<std::size_t>(axisOf(image));
     const auto k = static_cast<std::size_t>(axis);
     result.constant[own] = copy->fromFirst.translation[own];
-    result.sign[own] = signOf(image);
+    result.sign[own] = static_cast<std::int8_t>(signOf(image));
     result.unknown[own] = unknowns_[i][k];
     if (unknowns_[i][k] < 0) result.constant[own] += signOf(image) * vertex.parameter[k];
   }
@@ -230,17 +219,17 @@ UntangleCorner PatchProblem::cornerOf(Index tet, int corner) const {
 std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
   std::vector<LockedTet> locked;
   for (const Index t : patch.startTets) {
-    std::array<UntangleCorner, 4> corners{};
+    std::array<untangle::Corner, 4> corners{};
     for (int c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = cornerOf(t, c);
     // Along how many axes all corners of a simplex are bound to the same coordinate.
     const auto commonBonds = [&](CornerMask simplex) {
-      const UntangleCorner& first = corners[firstCorner(simplex)];
+      const untangle::Corner& first = corners[firstCorner(simplex)];
       int bonds = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         bool common = true;
         for (int c = 0; c < 4; ++c) {
           if (!contains(simplex, c)) continue;
-          const UntangleCorner& corner = corners[static_cast<std::size_t>(c)];
+          const untangle::Corner& corner = corners[static_cast<std::size_t>(c)];
           common = common && corner.unknown[k] < 0 && corner.constant[k] == first.constant[k];
         }
         bonds += common ? 1 : 0;

@@ -5,10 +5,11 @@
 #include <span>
 #include <vector>
 
+#include <untangle/problem.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <repair/patch_charts.hpp>
-#include <repair/untangle.hpp>
 
 namespace hexhex {
 
@@ -48,7 +49,7 @@ class PatchProblem {
   /// Locked tets among the start tets.
   [[nodiscard]] std::vector<LockedTet> lockedTets(const Patch& patch) const;
 
-  [[nodiscard]] UntangleProblem& problem() { return problem_; }
+  [[nodiscard]] untangle::Problem& problem() { return problem_; }
 
   /// The parameter of a vertex of the patch in the chart of its first corner, by the unknowns,
   /// rounded to multiples of a quantum.
@@ -58,7 +59,7 @@ class PatchProblem {
 
  private:
   void addTet(Index tet, double scale);
-  [[nodiscard]] UntangleCorner cornerOf(Index tet, int corner) const;
+  [[nodiscard]] untangle::Corner cornerOf(Index tet, int corner) const;
   [[nodiscard]] std::size_t patchVertexOf(Index vertex) const;
   [[nodiscard]] double parametricScale(const Patch& patch) const;
 
@@ -68,7 +69,7 @@ class PatchProblem {
   std::span<const PatchVertex> vertices_;
   double magnification_;                      ///< of edges in space
   std::vector<std::array<int, 3>> unknowns_;  ///< per vertex and axis of its first chart, or -1
-  UntangleProblem problem_;
+  untangle::Problem problem_;
 };
 
 }  // namespace hexhex

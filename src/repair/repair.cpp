@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include <untangle/untangle.hpp>
+
 #include <hexhex/repair.hpp>
 
 #include <base/vector3.hpp>
@@ -21,7 +23,6 @@
 #include <repair/patch_problem.hpp>
 #include <repair/repair_errors.hpp>
 #include <repair/repair_map.hpp>
-#include <repair/untangle.hpp>
 #include <repair/valid_tets.hpp>
 
 namespace hexhex {
@@ -42,6 +43,23 @@ struct Snapshot {
   DefectCollector defects;
   PreparedMap prepared;
 };
+
+/// Steps that lower distortion once all tets are positive: they move away from what is barely
+/// legal.
+constexpr int kPolishing = 300;
+
+#if defined(HEXHEX_HAS_REPAIR)
+constexpr bool kHasSolver = true;
+
+/// Moves the unknowns so that tets become positive. What becomes of them is looked at afterwards.
+void movePatch(untangle::Problem& problem, Stage& stage) {
+  static_cast<void>(untangle::Solver(problem, stage).run({.polishing = kPolishing}));
+}
+#else
+constexpr bool kHasSolver = false;
+
+void movePatch(untangle::Problem& /*problem*/, Stage& /*stage*/) {}
+#endif
 
 /// What must be as before: singular edges around the patches.
 using EdgeKey = std::pair<Index, Index>;
@@ -183,7 +201,7 @@ class Repairer {
       // What is locked stays so; there is no use in moving anything yet.
       if (!locked_.empty()) return;
     }
-    static_cast<void>(untangle(problem.problem(), stage));
+    movePatch(problem.problem(), stage);
     noteSplitCandidates(patch, charts);
     write(problem, vertices, patch);
   }
@@ -410,7 +428,7 @@ class Repairer {
 
 }  // namespace
 
-bool canRepair() noexcept { return canUntangle(); }
+bool canRepair() noexcept { return kHasSolver; }
 
 TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
                      RepairReport& report) {

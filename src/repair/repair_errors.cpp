@@ -25,8 +25,8 @@ void throwWithoutSolver(const DefectCollector& defects) {
   throw Error(first.code,
               first.sentence +
                   " A repair might help, but this build of hexhex cannot repair maps: it was made "
-                  "without libLBFGS. Build it again where that is installed (on Debian "
-                  "liblbfgs-dev), or compute the map again.",
+                  "without Eigen. Build it again where that is installed (on Debian "
+                  "libeigen3-dev), or compute the map again.",
               first.worst.empty() ? Place{} : first.worst.front().place);
 }
 

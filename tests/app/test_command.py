@@ -784,16 +784,16 @@ class Repair(CommandTest):
         if result.returncode == SUCCESS:
             return True
         self.assertEqual(result.returncode, INVALID_MAP)
-        self.assertIn("liblbfgs-dev", result.stderr)
+        self.assertIn("libeigen3-dev", result.stderr)
         extraction = subprocess.run([self.command, "extract", map_file, "-o", "probe.vtu"],
                                     cwd=self.folder, text=True, capture_output=True, check=False)
         self.assertEqual(extraction.returncode, INVALID_MAP)
-        self.assertIn("liblbfgs-dev", extraction.stderr)
+        self.assertIn("libeigen3-dev", extraction.stderr)
         return False
 
     def test_extract_repairs_with_a_notice(self):
         if not self.can_repair():
-            self.skipTest("built without libLBFGS")
+            self.skipTest("built without Eigen")
         for kind in ["interior", "singular", "boundary", "sliver"]:
             map_file = self.damaged("--defect-kind", kind)
             self.run_command("check", map_file, "--quiet", expect=INVALID_MAP)
@@ -809,7 +809,7 @@ class Repair(CommandTest):
 
     def test_repair_writes_a_valid_map(self):
         if not self.can_repair():
-            self.skipTest("built without libLBFGS")
+            self.skipTest("built without Eigen")
         map_file = self.damaged()
         run = self.run_command("repair", map_file, "-o", "repaired.hexex", "--report", "r.json")
         self.assertIn("It was repaired", run.stdout)
@@ -826,7 +826,7 @@ class Repair(CommandTest):
 
     def test_repair_follows_higher_orders_and_arcs(self):
         if not self.can_repair():
-            self.skipTest("built without libLBFGS")
+            self.skipTest("built without Eigen")
         map_file = self.damaged()
         run = self.run_command("extract", map_file, "-o", "curved.vtu", "--order", "2")
         self.assertIn("It was repaired", run.stderr)

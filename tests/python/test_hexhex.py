@@ -328,7 +328,7 @@ def test_repair():
     assert 0 < len(part.mesh.cells) < 3584 and part.missing_cells > 0 and part.holes[0].tets > 0
     assert set(part.mesh.regions.tolist()) == {0, 1}
     if not hexhex.can_repair():
-        pytest.skip("without libLBFGS")
+        pytest.skip("without Eigen")
     good, report = hexhex.repair(bad)
     assert report.changed and report.bad_tets >= 2 and report.regions[0].place.startswith("tet")
     mesh = hexhex.extract(bad, repair=True)
@@ -743,7 +743,7 @@ def test_small_things(sphere, tmp_path):
 
 def test_repair_of_pieces(tmp_path):
     if not hexhex.can_repair():
-        pytest.skip("without libLBFGS")
+        pytest.skip("without Eigen")
     bad = hexhex.generate("sphere", cells=8, refine=4, defects=2)
     notes = hexhex.extract_to_file(tmp_path / "m.vtu", bad, repair=True)
     assert notes["repair"].bad_tets >= 2

@@ -42,7 +42,7 @@ Error errorOfRepair(const TetMap& map) {
 class HostileMaps : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+    if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   }
 };
 

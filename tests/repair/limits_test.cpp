@@ -27,7 +27,7 @@ TetMap damagedSphere(DefectKind kind, std::uint64_t seed) {
 class RepairLimits : public ::testing::TestWithParam<DefectKind> {
  protected:
   void SetUp() override {
-    if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+    if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   }
 };
 

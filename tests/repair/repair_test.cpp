@@ -81,7 +81,7 @@ TEST(Repair, LeavesAValidMapAlone) {
 
 /// What the file knows of rotations and valences is used in the place of what damaged tets say.
 TEST(Repair, BelievesWhatIsKnown) {
-  if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+  if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   SampleOptions options;
   options.refine = 4;
   options.features = true;  // its curves are the edges of the box
@@ -101,7 +101,7 @@ TEST(Repair, BelievesWhatIsKnown) {
 class DamagedSamples : public ::testing::TestWithParam<DefectKind> {
  protected:
   void SetUp() override {
-    if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+    if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   }
 };
 
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DamagedSamples,
 class Repairs : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+    if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   }
 
   static TetMap damaged(int defects = 6, int cells = 4) {
@@ -392,7 +392,7 @@ std::filesystem::path defectiveFile(const std::string& name) {
 class RealDefects : public ::testing::TestWithParam<RealCase> {};
 
 TEST_P(RealDefects, ComeOutWhole) {
-  if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+  if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   const std::filesystem::path file = defectiveFile(GetParam().name);
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: no real maps here";
   const TetMap repaired = repair(readMap(file));
@@ -410,7 +410,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, RealDefects,
                                            RealCase{"notch", 2, 38240, 42117}));
 
 TEST(RealDefects, BeyondRepairAreDiagnosed) {
-  if (!canRepair()) GTEST_SKIP() << "skipped: built without libLBFGS";
+  if (!canRepair()) GTEST_SKIP() << "skipped: built without Eigen";
   const std::filesystem::path file = defectiveFile("spot");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: no real maps here";
   try {

@@ -533,7 +533,7 @@ HEXHEX_API hexhex_status hexhex_mesh_structure(const hexhex_mesh* mesh, hexhex_c
 
 /* ---- Repair ---------------------------------------------------------------------------------- */
 
-/** 1 if this build can repair (it was made with libLBFGS). */
+/** 1 if this build can repair (it was made with Eigen). */
 HEXHEX_API int hexhex_can_repair(void);
 
 /** See RepairOptions in <hexhex/repair.hpp>. */

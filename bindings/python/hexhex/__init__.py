@@ -497,7 +497,7 @@ class Extractor:
 
 
 def can_repair() -> bool:
-    """Whether this build can repair maps (it was made with libLBFGS).
+    """Whether this build can repair maps (it was made with Eigen).
 
     >>> isinstance(hexhex.can_repair(), bool)
     True
