@@ -44,12 +44,11 @@ struct Snapshot {
   PreparedMap prepared;
 };
 
+#if defined(HEXHEX_HAS_REPAIR)
+constexpr bool kHasSolver = true;
 /// Steps that lower distortion once all tets are positive: they move away from what is barely
 /// legal.
 constexpr int kPolishing = 300;
-
-#if defined(HEXHEX_HAS_REPAIR)
-constexpr bool kHasSolver = true;
 
 /// Moves the unknowns so that tets become positive. What becomes of them is looked at afterwards.
 void movePatch(untangle::Problem& problem, Stage& stage) {

@@ -24,7 +24,7 @@ Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses) 
       const Eigen::Matrix<double, 4, 3> gradients = cornerGradients(element);
       const std::size_t axis = use % 3;
       const auto own = static_cast<Eigen::Index>(use % 12 / 3);
-      const int sign = element.corners[use % 12 / 3].sign[axis];
+      const double sign = element.corners[use % 12 / 3].sign[axis];
       for (std::size_t i = 0; i < 4; ++i) {
         const Corner& corner = element.corners[i];
         if (corner.unknown[axis] < u) continue;

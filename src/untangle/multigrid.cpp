@@ -1,5 +1,5 @@
 #include <cmath>
-#include <utility>
+#include <vector>
 
 #include <untangle/multigrid.hpp>
 
@@ -143,8 +143,11 @@ Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Conte
     }
     const SparseMatrix moved = matrix * prolongation;
     SparseMatrix coarser = prolongation.transpose() * moved;
-    levels_.push_back({std::move(matrix), std::move(prolongation)});
-    matrix = std::move(coarser);
+    // Swapped, as Eigen's sparse matrices cannot be moved.
+    levels_.emplace_back();
+    levels_.back().matrix.swap(matrix);
+    levels_.back().prolongation.swap(prolongation);
+    matrix.swap(coarser);
     share /= 2;
   }
   factor_.compute(matrix);

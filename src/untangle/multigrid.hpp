@@ -6,7 +6,7 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+#include <deque>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
@@ -38,7 +38,7 @@ class Multigrid {
   };
   [[nodiscard]] Vector cycle(std::size_t level, const Vector& v) const;
 
-  std::vector<Level> levels_;
+  std::deque<Level> levels_;  ///< which Eigen could not move
   Eigen::SimplicialLDLT<SparseMatrix> factor_;
 };
 

@@ -12,8 +12,8 @@
 // metric is the Laplacian of the elements, inverted by multigrid: a step takes a time proportional
 // to the number of elements. It ends when there are no fewer flipped elements after 8 penalties, or
 // after 150 of them. (Newton's method with a semidefinite stand-in for the Hessian matrix finds the
-// same maps, but takes twice as long over those of docs/quantize.md, and five times where it is
-// hard.)
+// same maps, but takes half as long again over those of docs/quantize.md, and three times as long
+// over the hardest one.)
 //
 // Where flips stay, flatElements() says which ones no unknowns can mend.
 #pragma once
