@@ -64,7 +64,7 @@ const source = `// Made by viewer/build.mjs from viewer/src. Do not edit.
 // Compilers that matter take literals of any length.
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 
-namespace hexhex {
+namespace hexhex::view {
 
 const PageTemplate* pageTemplate() {
   static const PageTemplate kTemplate{
@@ -72,7 +72,7 @@ ${pieces.filter((_, i) => i % 2 === 0).map(literal).join(",\n")}};
   return &kTemplate;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::view
 `;
 await writeFile(output, source);
 console.log(`${output}: ${Math.round(source.length / 1024)} KiB`);

@@ -25,13 +25,13 @@ namespace {
 
 /// The vertices of the map at one scale, and the tets in which they are looked up.
 struct Scene {
-  VertexTables vertices;
+  sweep::VertexTables vertices;
   std::size_t tetCount;
   std::vector<Index> tets;
   std::size_t points = 0;  ///< of these tets
 
   /// @param maxPoints  of so many tets as have about so many points, evenly chosen
-  Scene(const PreparedMap& map, std::size_t maxPoints, Stage& stage)
+  Scene(const igm::PreparedMap& map, std::size_t maxPoints, Stage& stage)
       : vertices(map, stage), tetCount(map.topology.tetCount()) {
     std::size_t all = 0;
     for (std::size_t t = 0; t < tetCount; ++t) all += pointsOf(static_cast<Index>(t));
@@ -47,13 +47,14 @@ struct Scene {
  private:
   [[nodiscard]] std::size_t pointsOf(Index tet) const {
     std::size_t count = 0;
-    vertices.forEach(tet, [&](const GridPoint&, const VertexTables::Found&) { ++count; });
+    vertices.forEach(
+        tet, [&](const lattice::GridPoint&, const sweep::VertexTables::Found&) { ++count; });
     return count;
   }
 };
 
 std::unique_ptr<Scene> makeScene(int scale, std::size_t maxPoints) {
-  const PreparedMap& map = scaledMap(scale);
+  const igm::PreparedMap& map = scaledMap(scale);
   Context context(1);
   Stage stage(context, "vertices");
   return std::make_unique<Scene>(map, maxPoints, stage);
@@ -77,16 +78,16 @@ class Table {
  public:
   static constexpr std::size_t kMaxPoints = kUnlimited;
   explicit Table(const Scene& scene) : tables_(scene.vertices) {}
-  [[nodiscard]] Index find(Index tet, const GridPoint& z) const {
+  [[nodiscard]] Index find(Index tet, const lattice::GridPoint& z) const {
     return tables_.find(tet, z).vertex;
   }
 
  private:
-  const VertexTables& tables_;
+  const sweep::VertexTables& tables_;
 };
 
 struct HashOfPoint {
-  [[nodiscard]] std::size_t operator()(const GridPoint& z) const noexcept {
+  [[nodiscard]] std::size_t operator()(const lattice::GridPoint& z) const noexcept {
     std::uint64_t hash = 0;
     for (const std::int32_t coordinate : z) {
       hash = (hash ^ static_cast<std::uint32_t>(coordinate)) * 0x9E3779B97F4A7C15U;
@@ -101,18 +102,19 @@ class Hash {
   static constexpr std::size_t kMaxPoints = kUnlimited;
   explicit Hash(const Scene& scene) : maps_(scene.tetCount) {
     for (const Index tet : scene.tets) {
-      scene.vertices.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& found) {
-        maps_[tet].emplace(z, found.vertex);
-      });
+      scene.vertices.forEach(
+          tet, [&](const lattice::GridPoint& z, const sweep::VertexTables::Found& found) {
+            maps_[tet].emplace(z, found.vertex);
+          });
     }
   }
-  [[nodiscard]] Index find(Index tet, const GridPoint& z) const {
+  [[nodiscard]] Index find(Index tet, const lattice::GridPoint& z) const {
     const auto found = maps_[tet].find(z);
     return found == maps_[tet].end() ? kNone : found->second;
   }
 
  private:
-  std::vector<std::unordered_map<GridPoint, Index, HashOfPoint>> maps_;
+  std::vector<std::unordered_map<lattice::GridPoint, Index, HashOfPoint>> maps_;
 };
 
 class List {
@@ -121,12 +123,13 @@ class List {
   static constexpr std::size_t kMaxPoints = 50'000;
   explicit List(const Scene& scene) : lists_(scene.tetCount) {
     for (const Index tet : scene.tets) {
-      scene.vertices.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& found) {
-        lists_[tet].emplace_back(z, found.vertex);
-      });
+      scene.vertices.forEach(
+          tet, [&](const lattice::GridPoint& z, const sweep::VertexTables::Found& found) {
+            lists_[tet].emplace_back(z, found.vertex);
+          });
     }
   }
-  [[nodiscard]] Index find(Index tet, const GridPoint& z) const {
+  [[nodiscard]] Index find(Index tet, const lattice::GridPoint& z) const {
     for (const auto& [point, vertex] : lists_[tet]) {
       if (point == z) return vertex;
     }
@@ -134,7 +137,7 @@ class List {
   }
 
  private:
-  std::vector<std::vector<std::pair<GridPoint, Index>>> lists_;
+  std::vector<std::vector<std::pair<lattice::GridPoint, Index>>> lists_;
 };
 
 /// As when edges are traced: from each point of each tet one step in each direction, whether that
@@ -143,9 +146,11 @@ template <class Method>
 std::uint64_t findAll(const Method& method, const Scene& scene) {
   std::uint64_t sum = 0;
   for (const Index tet : scene.tets) {
-    scene.vertices.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& /*found*/) {
-      for (Direction d = 0; d < kDirections; ++d) sum += method.find(tet, step(z, d));
-    });
+    scene.vertices.forEach(
+        tet, [&](const lattice::GridPoint& z, const sweep::VertexTables::Found& /*found*/) {
+          for (lattice::Direction d = 0; d < lattice::kDirections; ++d)
+            sum += method.find(tet, lattice::step(z, d));
+        });
   }
   return sum;
 }
@@ -165,7 +170,7 @@ void lookup(benchmark::State& state, int scale) {
   }
   state.counters["tets"] = static_cast<double>(scene.tets.size());
   state.counters["points"] = static_cast<double>(scene.points);
-  state.counters["queries"] = static_cast<double>(scene.points) * kDirections;
+  state.counters["queries"] = static_cast<double>(scene.points) * lattice::kDirections;
 }
 
 template <class Method>

@@ -22,12 +22,13 @@ struct Found {
   std::uint64_t points = 0;
   std::array<std::uint64_t, 16> bySimplex{};
 
-  void add(CornerMask simplex, std::uint64_t count) {
+  void add(lattice::CornerMask simplex, std::uint64_t count) {
     points += count;
     bySimplex[simplex] += count;
   }
   /// A line of points by the simplices of its ends.
-  void addLine(CornerMask left, CornerMask inner, CornerMask right, std::uint64_t count) {
+  void addLine(lattice::CornerMask left, lattice::CornerMask inner, lattice::CornerMask right,
+               std::uint64_t count) {
     if (count == 0) return;
     add(left, 1);
     if (count > 1) add(right, 1);
@@ -37,43 +38,45 @@ struct Found {
 };
 
 struct BoundingBox {
-  static void run(const LatticeTet& corners, std::int64_t unit, Found& found) {
-    const GridBox box = gridBox(corners, unit);
-    GridPoint z{};
+  static void run(const lattice::LatticeTet& corners, std::int64_t unit, Found& found) {
+    const lattice::GridBox box = lattice::gridBox(corners, unit);
+    lattice::GridPoint z{};
     for (z[0] = box.range[0].first; z[0] <= box.range[0].last; ++z[0]) {
       for (z[1] = box.range[1].first; z[1] <= box.range[1].last; ++z[1]) {
         for (z[2] = box.range[2].first; z[2] <= box.range[2].last; ++z[2]) {
-          const CornerMask simplex = simplexOf(corners, z, unit);
-          if (simplex != kNoSimplex) found.add(simplex, 1);
+          const lattice::CornerMask simplex = lattice::simplexOf(corners, z, unit);
+          if (simplex != lattice::kNoSimplex) found.add(simplex, 1);
         }
       }
     }
   }
 };
 
-void findLines(const LatticeTet& corners, std::int64_t unit, double epsilon, Found& found) {
-  TetRasterizer(corners, unit, epsilon).sweep(kVertexGrid, [&found](const SweptLine& line) {
-    found.addLine(line.left, line.inner(), line.right, line.count);
-  });
+void findLines(const lattice::LatticeTet& corners, std::int64_t unit, double epsilon,
+               Found& found) {
+  lattice::TetRasterizer(corners, unit, epsilon)
+      .sweep(lattice::kVertexGrid, [&found](const lattice::SweptLine& line) {
+        found.addLine(line.left, line.inner(), line.right, line.count);
+      });
 }
 
 struct Enlarged {
-  static void run(const LatticeTet& corners, std::int64_t unit, Found& found) {
+  static void run(const lattice::LatticeTet& corners, std::int64_t unit, Found& found) {
     constexpr double kEpsilon = 1e-6;
     findLines(corners, unit, kEpsilon, found);
   }
 };
 
 struct Lines {
-  static void run(const LatticeTet& corners, std::int64_t unit, Found& found) {
+  static void run(const lattice::LatticeTet& corners, std::int64_t unit, Found& found) {
     findLines(corners, unit, 0, found);
   }
 };
 
 template <class Method>
-Found findAll(const ExactMap& map) {
+Found findAll(const igm::ExactMap& map) {
   Found found;
-  for (const LatticeTet& corners : map.corners) Method::run(corners, map.unit, found);
+  for (const lattice::LatticeTet& corners : map.corners) Method::run(corners, map.unit, found);
   return found;
 }
 
@@ -90,7 +93,7 @@ const Found& expected(int scale) {
 
 template <class Method>
 void rasterization(benchmark::State& state, int scale) {
-  const PreparedMap& map = scaledMap(scale);
+  const igm::PreparedMap& map = scaledMap(scale);
   Found found;
   for (auto _ : state) {
     found = findAll<Method>(map.exact);

@@ -11,24 +11,24 @@ namespace hexhex::bench {
 
 namespace {
 
-std::unique_ptr<PreparedMap> prepare(int scale) {
+std::unique_ptr<igm::PreparedMap> prepare(int scale) {
   constexpr double kTolerance = 1e-2;
   Context context(1);
-  DefectCollector defects;
-  auto map = std::make_unique<PreparedMap>(
-      prepareMap(load(sphereMap()), kTolerance, scale, context, defects));
+  igm::DefectCollector defects;
+  auto map = std::make_unique<igm::PreparedMap>(
+      igm::prepareMap(load(sphereMap()), kTolerance, scale, context, defects));
   defects.throwIfAny();
   Stage stage(context, "scaling");
-  scaleMap(map->exact, scale, stage);
-  addStars(map->topology, stage);
+  igm::scaleMap(map->exact, scale, stage);
+  adjacency::addStars(map->topology, stage);
   return map;
 }
 
 }  // namespace
 
-const PreparedMap& scaledMap(int scale) {
+const igm::PreparedMap& scaledMap(int scale) {
   static int preparedScale = 0;
-  static std::unique_ptr<PreparedMap> prepared;
+  static std::unique_ptr<igm::PreparedMap> prepared;
   if (preparedScale != scale) {
     prepared.reset();
     prepared = prepare(scale);

@@ -67,7 +67,7 @@ HexMesh extractOnce(const Entry& entry, const BenchMap& map, bool on, Totals& to
   Context context(entry.threads);
   const double cpu = processorSeconds();
   const auto begin = std::chrono::steady_clock::now();
-  HexMesh mesh = extractWith(input, {options, switches}, context);
+  HexMesh mesh = extraction::extractWith(input, {options, switches}, context);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   totals.cpu += processorSeconds() - cpu;
   totals.wall += wall.count();

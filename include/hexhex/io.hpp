@@ -16,7 +16,7 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 class OutputFile;
 }
 
@@ -190,7 +190,7 @@ class TextFile {
   void commit(std::string_view text);
 
  private:
-  std::unique_ptr<OutputFile> output_;
+  std::unique_ptr<io::OutputFile> output_;
 };
 
 /// Gives a file that is written another name, of its folder, also for the time after a power

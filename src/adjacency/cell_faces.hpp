@@ -14,7 +14,7 @@
 
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// Local corners of the six faces of a hexahedron, counter-clockwise seen from outside, in VTK's
 /// order: 2 * axis at corner 0, 2 * axis + 1 across from it.
@@ -42,7 +42,7 @@ template <class Cell>
     return kHexFaces;
   } else {
     static_assert(std::is_same_v<Cell, Tet>);
-    return kFaceCorners;
+    return lattice::kFaceCorners;
   }
 }
 
@@ -142,4 +142,4 @@ void forEachFace(std::span<const Cell> cells, std::size_t begin, std::size_t end
       cells, begin, end, cellsAt, [](Index /*cell*/, std::size_t /*face*/) { return true; }, visit);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

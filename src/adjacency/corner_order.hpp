@@ -9,7 +9,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// A number below kCornerOrders for each order of a tet's four different vertices: which corner has
 /// the smallest, and so on.
@@ -57,4 +57,4 @@ inline constexpr auto kAscendingFaceCorners =
       return corners;
     });
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

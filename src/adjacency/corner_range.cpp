@@ -7,7 +7,7 @@
 
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage) {
   const auto vertices = static_cast<Index>(std::min<std::size_t>(mesh.points.size(), kNone));
@@ -39,4 +39,4 @@ void requireCornersInRange(const TetMapView& map, Stage& stage) {
               Place{PlaceKind::Tet, bad});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

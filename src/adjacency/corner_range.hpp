@@ -7,7 +7,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// The first cell with a corner that is not a vertex of the mesh, or the number of cells.
 [[nodiscard]] std::size_t firstCellOutOfRange(const HexMesh& mesh, Stage& stage);
@@ -18,4 +18,4 @@ void requireCornersInRange(const HexMesh& mesh, Stage& stage);
 /// @throws Error IndexOutOfRange, with the first tet, if a corner is not a vertex of the map
 void requireCornersInRange(const TetMapView& map, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -11,7 +11,7 @@
 #include <base/low_level.hpp>
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 namespace {
 
 constexpr std::size_t kGrain = 2048;
@@ -252,4 +252,4 @@ Array<Quad> quadsAt(const HexMesh& mesh, std::span<const std::uint64_t> places) 
   return quads;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

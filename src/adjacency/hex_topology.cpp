@@ -14,7 +14,7 @@
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 namespace {
 
 /// Vertices or cells per block: a block has about 10^5 operations, so its start costs nothing.
@@ -270,4 +270,4 @@ HexEdges findEdges(const HexMesh& mesh, const VertexCells& around, const HexFace
   return edges;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

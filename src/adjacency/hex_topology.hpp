@@ -20,7 +20,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// The cells around each vertex, ascending. A cell is listed once for each corner that has the
 /// vertex, so a cell with repeated vertices is listed repeatedly. 32 bytes per cell plus 8 per
@@ -116,4 +116,4 @@ struct HexEdges {
          static_cast<std::int64_t>(edges.count + mesh.cells.size());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -7,7 +7,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// Numbers keys (tets, vertices) in the order in which they come. Emptied in no time, and made so
 /// that the processor has no branch to predict: whether a key is new follows no pattern. With
@@ -106,4 +106,4 @@ class KeyTable {
   Index size_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -6,7 +6,7 @@
 
 #include <adjacency/tet_topology.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 namespace {
 
@@ -32,7 +32,7 @@ constexpr auto kRankedFaces = byCornerOrder<std::array<OpenFace, 4>>([](const Te
   std::array<OpenFace, 4> faces{};
   for (std::size_t rank = 0; rank < 4; ++rank) {
     const std::size_t corner = kAscendingCorners[cornerOrder(tet)][rank];
-    const std::array<int, 3>& face = kFaceCorners[corner];
+    const std::array<int, 3>& face = lattice::kFaceCorners[corner];
     int descents = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Index here = tet[static_cast<std::size_t>(face[k])];
@@ -229,4 +229,4 @@ bool matchFaces(TetTopology& topology, Stage& stage) {
   return sound;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -2,7 +2,7 @@
 
 #include <adjacency/tet_topology.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 namespace {
 
@@ -56,7 +56,7 @@ namespace {
 
 /// Calls visit(tet) for the other tets around an edge, until it returns false.
 template <class Visit>
-void visitOthersAround(const TetTopology& topology, Index tet, CornerMask edge,
+void visitOthersAround(const TetTopology& topology, Index tet, lattice::CornerMask edge,
                        const Visit& visit) {
   const int first = otherFaceAtEdge(edge, -1);
   // In one direction, and from a boundary in the other, too.
@@ -71,12 +71,12 @@ void visitOthersAround(const TetTopology& topology, Index tet, CornerMask edge,
 
 }  // namespace
 
-Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept {
-  switch (dimension(simplex)) {
+Index ownerTet(const TetTopology& topology, Index tet, lattice::CornerMask simplex) noexcept {
+  switch (lattice::dimension(simplex)) {
     case 3:
       return tet;
     case 2: {
-      const HalfFace mate = topology.mate[halfFaceOf(tet, oppositeCorner(simplex))];
+      const HalfFace mate = topology.mate[halfFaceOf(tet, lattice::oppositeCorner(simplex))];
       return mate == kNone ? tet : std::min(tet, tetOf(mate));
     }
     case 1: {
@@ -88,12 +88,12 @@ Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexc
       return owner;
     }
     default:
-      return topology.vertexTet[topology.tets[tet][firstCorner(simplex)]];
+      return topology.vertexTet[topology.tets[tet][lattice::firstCorner(simplex)]];
   }
 }
 
-bool ownsSimplex(const TetTopology& topology, Index tet, CornerMask simplex) noexcept {
-  if (dimension(simplex) != 1) return ownerTet(topology, tet, simplex) == tet;
+bool ownsSimplex(const TetTopology& topology, Index tet, lattice::CornerMask simplex) noexcept {
+  if (lattice::dimension(simplex) != 1) return ownerTet(topology, tet, simplex) == tet;
   bool owns = true;
   visitOthersAround(topology, tet, simplex, [&owns, tet](Index other) {
     owns = tet < other;
@@ -102,4 +102,4 @@ bool ownsSimplex(const TetTopology& topology, Index tet, CornerMask simplex) noe
   return owns;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

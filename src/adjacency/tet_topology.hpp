@@ -17,7 +17,7 @@
 #include <base/stage.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// Index 4 * tet + corner of a corner of a tet, or of the face opposite that corner (a half-face).
 using CornerIndex = std::uint32_t;
@@ -60,15 +60,16 @@ struct TetTopology {
   [[nodiscard]] bool isIsolated(Index vertex) const noexcept { return vertexTet[vertex] == kNone; }
   /// Position of a vertex in a tet that contains it.
   [[nodiscard]] int localCorner(Index tet, Index vertex) const noexcept {
-    return static_cast<int>(hexhex::localCorner(tets[tet], vertex));
+    return static_cast<int>(adjacency::localCorner(tets[tet], vertex));
   }
   /// The same simplex (given by corners of tet `from`) as corners of tet `to`, which contains it.
-  [[nodiscard]] CornerMask translated(CornerMask mask, Index from, Index to) const noexcept {
-    CornerMask result = 0;
+  [[nodiscard]] lattice::CornerMask translated(lattice::CornerMask mask, Index from,
+                                               Index to) const noexcept {
+    lattice::CornerMask result = 0;
     for (int i = 0; i < 4; ++i) {
-      if (contains(mask, i)) {
-        result = static_cast<CornerMask>(
-            result | cornerBit(localCorner(to, tets[from][static_cast<std::size_t>(i)])));
+      if (lattice::contains(mask, i)) {
+        result = static_cast<lattice::CornerMask>(
+            result | lattice::cornerBit(localCorner(to, tets[from][static_cast<std::size_t>(i)])));
       }
     }
     return result;
@@ -105,7 +106,7 @@ class SharedFace {
       for (std::size_t first = 0; first < 3; ++first) {
         for (std::size_t k = 0; k < 3; ++k) {
           const auto corner = [face](std::size_t i) {
-            return static_cast<std::uint8_t>(kFaceCorners[face][i % 3]);
+            return static_cast<std::uint8_t>(lattice::kFaceCorners[face][i % 3]);
           };
           turns[face][first][k] = corner(first + k);
           turns[face][3 + first][k] = corner(first + 3 - k);
@@ -121,8 +122,8 @@ class SharedFace {
 
 /// A simplex of a face as the neighbour has it.
 /// @param here  the face, as a half-face that is not on the boundary
-[[nodiscard]] inline CornerMask acrossFace(const TetTopology& topology, HalfFace here,
-                                           CornerMask simplex) noexcept {
+[[nodiscard]] inline lattice::CornerMask acrossFace(const TetTopology& topology, HalfFace here,
+                                                    lattice::CornerMask simplex) noexcept {
   return topology.translated(simplex, tetOf(here), tetOf(topology.mate[here]));
 }
 
@@ -175,9 +176,9 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
 
 /// The half-face of a tet through which a walk around the edge (two corners) leaves that came in
 /// through half-face `entered`: the other face at the edge.
-[[nodiscard]] constexpr int otherFaceAtEdge(CornerMask edge, int entered) noexcept {
+[[nodiscard]] constexpr int otherFaceAtEdge(lattice::CornerMask edge, int entered) noexcept {
   for (int face = 0; face < 4; ++face) {
-    if (!contains(edge, face) && face != entered) return face;
+    if (!lattice::contains(edge, face) && face != entered) return face;
   }
   return entered;
 }
@@ -187,7 +188,7 @@ class EdgeTurn {
  public:
   /// @param edge  two corners of the tet
   /// @param face  at the edge, through which it goes first
-  EdgeTurn(const TetTopology& topology, Index tet, CornerMask edge, int face) noexcept
+  EdgeTurn(const TetTopology& topology, Index tet, lattice::CornerMask edge, int face) noexcept
       : topology_(topology),
         tet_(tet),
         edge_(edge),
@@ -196,7 +197,7 @@ class EdgeTurn {
 
   [[nodiscard]] Index tet() const noexcept { return tet_; }
   /// The edge, as corners of the tet.
-  [[nodiscard]] CornerMask edge() const noexcept { return edge_; }
+  [[nodiscard]] lattice::CornerMask edge() const noexcept { return edge_; }
   /// The half-face that it leaves the tet through.
   [[nodiscard]] HalfFace out() const noexcept { return out_; }
   /// The same in the next tet, or kNone.
@@ -208,7 +209,8 @@ class EdgeTurn {
     tet_ = tetOf(in);
     // The third corner of the face behind is the one opposite the face ahead.
     const int opposite = topology_.localCorner(tet_, ahead_);
-    edge_ = static_cast<CornerMask>(kWholeTet ^ cornerBit(opposite) ^ cornerBit(localOf(in)));
+    edge_ = static_cast<lattice::CornerMask>(lattice::kWholeTet ^ lattice::cornerBit(opposite) ^
+                                             lattice::cornerBit(localOf(in)));
     ahead_ = topology_.tets[tet_][static_cast<std::size_t>(localOf(in))];
     out_ = halfFaceOf(tet_, opposite);
   }
@@ -216,15 +218,17 @@ class EdgeTurn {
  private:
   const TetTopology& topology_;
   Index tet_;
-  CornerMask edge_;
+  lattice::CornerMask edge_;
   HalfFace out_;
   Index ahead_;  ///< third corner of the face that it leaves through
 };
 
 /// The smallest tet that contains a simplex of a tet: the simplex's owner (ParentTet of the paper).
-[[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
+[[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet,
+                             lattice::CornerMask simplex) noexcept;
 
 /// Whether that is the tet itself, which takes less time to say.
-[[nodiscard]] bool ownsSimplex(const TetTopology& topology, Index tet, CornerMask simplex) noexcept;
+[[nodiscard]] bool ownsSimplex(const TetTopology& topology, Index tet,
+                               lattice::CornerMask simplex) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

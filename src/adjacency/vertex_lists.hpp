@@ -12,7 +12,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 
 /// The values of each vertex, ascending.
 /// @tparam Offset  counts all values
@@ -61,4 +61,4 @@ class VertexLists {
   Array<T> values_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -12,7 +12,7 @@
 #include <atlas/vertex_grid.hpp>
 #include <base/workspaces.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 namespace {
 
@@ -46,7 +46,8 @@ constexpr std::array<WorkStep, 7> kStreamSteps = {{{"charts", 0.01},
 template <class Id>
 class Atlas {
  public:
-  Atlas(const PreparedMap& map, bool keepLines, Context& context, const EngineSwitches& switches)
+  Atlas(const igm::PreparedMap& map, bool keepLines, Context& context,
+        const EngineSwitches& switches)
       : map_(map),
         vertices_(map, charts_, numbers_, keepLines),
         cells_(map.topology.tetCount(), keepLines),
@@ -58,7 +59,7 @@ class Atlas {
 
   /// @param observer  sees every tet, if there is one
   /// @return the number of vertices
-  std::uint64_t sweep(std::uint64_t expectedCells, SweepObserver* observer = nullptr) {
+  std::uint64_t sweep(std::uint64_t expectedCells, sweep::SweepObserver* observer = nullptr) {
     Stage stage(context_, "sweep");
     vertices_.sweep(cells_, stage, observer, switches_.fewPoints);
     requireExpected(cells_.count(), expectedCells);
@@ -89,18 +90,18 @@ class Atlas {
   }
 
   [[nodiscard]] const VertexGrid<Id>& vertices() const noexcept { return vertices_; }
-  [[nodiscard]] SweptVertices takeVertices() noexcept { return vertices_.takeVertices(); }
-  [[nodiscard]] const CellCenters& cells() const noexcept { return cells_; }
+  [[nodiscard]] sweep::SweptVertices takeVertices() noexcept { return vertices_.takeVertices(); }
+  [[nodiscard]] const sweep::CellCenters& cells() const noexcept { return cells_; }
   [[nodiscard]] CellEmitter<Id> makeEmitter() const {
     return {map_, vertices_, transitions_, switches_.lookAcrossCuts};
   }
 
  private:
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   Charts charts_;
-  VertexNumbers numbers_;
+  sweep::VertexNumbers numbers_;
   VertexGrid<Id> vertices_;
-  CellCenters cells_;
+  sweep::CellCenters cells_;
   CutTransitions transitions_;
   Context& context_;
   EngineSwitches switches_;
@@ -136,11 +137,11 @@ void forEachPiece(const Array<std::uint64_t>& begin, const Visit& visit) {
 /// Emits the cells of a piece.
 /// @return how many have a corner that their chart does not show
 template <class Id>
-std::uint64_t emitCells(const PreparedMap& map, const Atlas<Id>& atlas, const Piece& piece,
+std::uint64_t emitCells(const igm::PreparedMap& map, const Atlas<Id>& atlas, const Piece& piece,
                         std::span<typename CellEmitter<Id>::Cell> cells, Stage& stage) {
   struct Workspace {
     CellEmitter<Id> emitter;
-    std::vector<SweptLine> lines;  ///< of a tet, where they are not kept
+    std::vector<lattice::SweptLine> lines;  ///< of a tet, where they are not kept
   };
   const Array<std::uint64_t>& begin = atlas.cells().begin;
   std::atomic<std::uint64_t> resolved{0};
@@ -181,8 +182,8 @@ void streamPoints(const VertexGrid<Id>& vertices, MeshSink& sink, Context& conte
 }
 
 template <class Id>
-void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink, Context& context,
-                 ExtractStatistics& statistics) {
+void streamCells(const igm::PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink,
+                 Context& context, ExtractStatistics& statistics) {
   Stage stage(context, "cells");
   stage.setTotal(map.topology.tetCount());
   using Cell = typename CellEmitter<Id>::Cell;
@@ -195,7 +196,7 @@ void streamCells(const PreparedMap& map, const Atlas<Id>& atlas, MeshSink& sink,
 }
 
 template <class Id>
-void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Context& context,
+void streamFrom(Atlas<Id>& atlas, const igm::PreparedMap& map, MeshSink& sink, Context& context,
                 ExtractStatistics& statistics) {
   atlas.fill({}, false, statistics);
   sink.begin(atlas.vertices().numbers().count(), atlas.cells().count());
@@ -206,9 +207,9 @@ void streamFrom(Atlas<Id>& atlas, const PreparedMap& map, MeshSink& sink, Contex
 
 }  // namespace
 
-HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& context,
+HexMesh runAtlas(const igm::PreparedMap& map, std::uint64_t expectedCells, Context& context,
                  ExtractStatistics& statistics, const EngineSwitches& switches,
-                 SweepObserver* observer) {
+                 sweep::SweepObserver* observer) {
   const WorkSteps steps(context, "engine", kEngineSteps);
   Atlas<Index> atlas(map, true, context, switches);
   const std::uint64_t count = atlas.sweep(expectedCells, observer);
@@ -234,7 +235,7 @@ HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells, Context& c
   return mesh;
 }
 
-void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
+void streamAtlas(const igm::PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
                  Context& context, ExtractStatistics& statistics, const EngineSwitches& switches) {
   const WorkSteps steps(context, "engine", kStreamSteps);
   if (!switches.wideIds) {
@@ -249,4 +250,4 @@ void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& 
   streamFrom(atlas, map, sink, context, statistics);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

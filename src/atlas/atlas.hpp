@@ -19,19 +19,19 @@
 #include <igm/prepare.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
 /// @param observer       sees the tets that are swept, if there is one
-[[nodiscard]] HexMesh runAtlas(const PreparedMap& map, std::uint64_t expectedCells,
+[[nodiscard]] HexMesh runAtlas(const igm::PreparedMap& map, std::uint64_t expectedCells,
                                Context& context, ExtractStatistics& statistics,
                                const EngineSwitches& switches = {},
-                               SweepObserver* observer = nullptr);
+                               sweep::SweepObserver* observer = nullptr);
 
 /// The same in pieces.
-void streamAtlas(const PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
+void streamAtlas(const igm::PreparedMap& map, std::uint64_t expectedCells, MeshSink& sink,
                  Context& context, ExtractStatistics& statistics,
                  const EngineSwitches& switches = {});
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

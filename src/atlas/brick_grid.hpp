@@ -20,7 +20,7 @@
 #include <atlas/cut_cells.hpp>
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 template <class Id>
 struct Brick {
@@ -187,19 +187,19 @@ class BrickCache {
   }
 
   /// The brick that holds a point of a chart, or null.
-  [[nodiscard]] Brick<Id>* find(Index chart, const ChartPoint& c) noexcept {
+  [[nodiscard]] Brick<Id>* find(Index chart, const lattice::ChartPoint& c) noexcept {
     const BrickKey key = brickKey(chart, c);
     Entry& entry = entries_[recentBrick(c)];
     if (entry.key != key) entry = {key, grid_.find(key)};
     return entry.brick;
   }
   /// The same, or Brick::none().
-  [[nodiscard]] const Brick<Id>& at(Index chart, const ChartPoint& c) noexcept {
+  [[nodiscard]] const Brick<Id>& at(Index chart, const lattice::ChartPoint& c) noexcept {
     const Brick<Id>* const brick = find(chart, c);
     return brick != nullptr ? *brick : Brick<Id>::none();
   }
   /// What the grid shows at a point of a chart.
-  [[nodiscard]] Id idAt(Index chart, const ChartPoint& c) noexcept {
+  [[nodiscard]] Id idAt(Index chart, const lattice::ChartPoint& c) noexcept {
     return at(chart, c).ids[placeInBrick(c)];
   }
 
@@ -212,4 +212,4 @@ class BrickCache {
   std::array<Entry, kRecentBricks> entries_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -6,7 +6,7 @@
 #include <base/disjoint_sets.hpp>
 #include <base/low_level.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 namespace {
 
@@ -15,18 +15,18 @@ constexpr std::size_t kGrain = 4096;
 /// Joins tets across identity transitions, and numbers the resulting patches.
 class Patches {
  public:
-  Patches(const PreparedMap& map, Stage& stage) : of_(map.topology.tetCount()) {
+  Patches(const igm::PreparedMap& map, Stage& stage) : of_(map.topology.tetCount()) {
     const std::size_t tets = map.topology.tetCount();
-    const Array<HalfFace>& mate = map.topology.mate;
+    const Array<adjacency::HalfFace>& mate = map.topology.mate;
     DisjointSets sets(tets);
     parallelFor(stage, tets, kGrain, [&](std::size_t t) {
       // Smaller neighbours, as each face needs to be seen once; listed without branches, which
       // cannot be predicted: with them, an extraction of s17c_sphere_r0.1 takes 4 % longer.
       std::array<Index, 4> smaller{};
       std::size_t count = 0;
-      const auto first = static_cast<HalfFace>(4 * t);
-      for (HalfFace h = first; h < first + 4; ++h) {
-        smaller[count] = tetOf(mate[h]);
+      const auto first = static_cast<adjacency::HalfFace>(4 * t);
+      for (adjacency::HalfFace h = first; h < first + 4; ++h) {
+        smaller[count] = adjacency::tetOf(mate[h]);
         count += allOf(mate[h] < first, !map.exact.transitions.isNonTrivial(h)) ? 1 : 0;
       }
       auto patch = static_cast<Index>(t);
@@ -54,31 +54,33 @@ class Patches {
 
 /// The half-faces through which one patch borders on another, by patch.
 struct Borders {
-  std::vector<HalfFace> halfFaces;
+  std::vector<adjacency::HalfFace> halfFaces;
   std::vector<std::size_t> begin;  ///< per patch (+1)
 };
 
-Borders findBorders(const PreparedMap& map, const Patches& patches) {
-  const Array<HalfFace>& mate = map.topology.mate;
-  const auto isBorder = [&](HalfFace halfFace) {
-    return halfFace != kNone && patches.of(tetOf(halfFace)) != patches.of(tetOf(mate[halfFace]));
+Borders findBorders(const igm::PreparedMap& map, const Patches& patches) {
+  const Array<adjacency::HalfFace>& mate = map.topology.mate;
+  const auto isBorder = [&](adjacency::HalfFace halfFace) {
+    return halfFace != kNone &&
+           patches.of(adjacency::tetOf(halfFace)) != patches.of(adjacency::tetOf(mate[halfFace]));
   };
   Borders borders;
   borders.begin.assign(std::size_t{patches.count()} + 1, 0);
-  for (const HalfFace halfFace : map.exact.transitions.halfFaces) {
-    if (isBorder(halfFace)) ++borders.begin[patches.of(tetOf(halfFace))];
+  for (const adjacency::HalfFace halfFace : map.exact.transitions.halfFaces) {
+    if (isBorder(halfFace)) ++borders.begin[patches.of(adjacency::tetOf(halfFace))];
   }
   borders.halfFaces.resize(exclusiveScan(std::span(borders.begin)));
   std::vector<std::size_t> next(borders.begin.begin(), borders.begin.end() - 1);
-  for (const HalfFace halfFace : map.exact.transitions.halfFaces) {
-    if (isBorder(halfFace)) borders.halfFaces[next[patches.of(tetOf(halfFace))]++] = halfFace;
+  for (const adjacency::HalfFace halfFace : map.exact.transitions.halfFaces) {
+    if (isBorder(halfFace))
+      borders.halfFaces[next[patches.of(adjacency::tetOf(halfFace))]++] = halfFace;
   }
   return borders;
 }
 
 }  // namespace
 
-Charts buildCharts(const PreparedMap& map, Stage& stage) {
+Charts buildCharts(const igm::PreparedMap& map, Stage& stage) {
   Patches patches(map, stage);
   const Borders borders = findBorders(map, patches);
   Charts charts;
@@ -93,8 +95,8 @@ Charts buildCharts(const PreparedMap& map, Stage& stage) {
     for (std::size_t head = 0; head < queue.size(); ++head) {
       const Index patch = queue[head];
       for (std::size_t i = borders.begin[patch]; i < borders.begin[patch + 1]; ++i) {
-        const HalfFace mate = map.topology.mate[borders.halfFaces[i]];
-        const Index neighbour = patches.of(tetOf(mate));
+        const adjacency::HalfFace mate = map.topology.mate[borders.halfFaces[i]];
+        const Index neighbour = patches.of(adjacency::tetOf(mate));
         if (chartOfPatch[neighbour] != kNone) continue;
         chartOfPatch[neighbour] = charts.count;
         charts.gauges[neighbour] = charts.gauges[patch] * map.exact.transitions.across(mate);
@@ -110,4 +112,4 @@ Charts buildCharts(const PreparedMap& map, Stage& stage) {
   return charts;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

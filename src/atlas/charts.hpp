@@ -8,7 +8,7 @@
 #include <igm/prepare.hpp>
 #include <lattice/gauge.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// Every tet belongs to a chart and has a gauge that takes its own chart there.
 struct Charts {
@@ -17,26 +17,30 @@ struct Charts {
 
   Array<Index> chart;    ///< per tet
   Array<Index> gaugeOf;  ///< per tet: index in `gauges`
-  Array<Gauge> gauges;
+  Array<lattice::Gauge> gauges;
   Index count = 0;  ///< charts
 
-  [[nodiscard]] const Gauge& gauge(Index tet) const noexcept { return gauges[gaugeOf[tet]]; }
+  [[nodiscard]] const lattice::Gauge& gauge(Index tet) const noexcept {
+    return gauges[gaugeOf[tet]];
+  }
 
   /// Whether the chart continues across a half-face (with a mate): both tets are in one chart,
   /// and both gauges agree on the face.
-  [[nodiscard]] bool isGlued(const TetTopology& topology, const Transitions& transitions,
-                             HalfFace halfFace) const noexcept {
-    const Index here = tetOf(halfFace);
-    const Index there = tetOf(topology.mate[halfFace]);
+  [[nodiscard]] bool isGlued(const adjacency::TetTopology& topology,
+                             const igm::Transitions& transitions,
+                             adjacency::HalfFace halfFace) const noexcept {
+    const Index here = adjacency::tetOf(halfFace);
+    const Index there = adjacency::tetOf(topology.mate[halfFace]);
     return chart[here] == chart[there] && chart[here] != kNoChart &&
            gaugesAgree(topology, transitions, halfFace);
   }
 
   /// Whether both gauges agree on a half-face (with a mate), whatever the charts.
-  [[nodiscard]] bool gaugesAgree(const TetTopology& topology, const Transitions& transitions,
-                                 HalfFace halfFace) const noexcept {
-    const Index here = tetOf(halfFace);
-    const Index there = tetOf(topology.mate[halfFace]);
+  [[nodiscard]] bool gaugesAgree(const adjacency::TetTopology& topology,
+                                 const igm::Transitions& transitions,
+                                 adjacency::HalfFace halfFace) const noexcept {
+    const Index here = adjacency::tetOf(halfFace);
+    const Index there = adjacency::tetOf(topology.mate[halfFace]);
     if (!transitions.isNonTrivial(halfFace)) {
       return gaugeOf[here] == gaugeOf[there] || gauge(here) == gauge(there);
     }
@@ -46,6 +50,6 @@ struct Charts {
 
 /// One chart for every connected component. Tets connected by identity transitions share a gauge;
 /// these patches are joined along a breadth-first tree.
-[[nodiscard]] Charts buildCharts(const PreparedMap& map, Stage& stage);
+[[nodiscard]] Charts buildCharts(const igm::PreparedMap& map, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

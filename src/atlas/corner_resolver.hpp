@@ -21,15 +21,15 @@
 #include <atlas/vertex_grid.hpp>
 #include <sweep/cell_tracer.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// A cell, as the tet that owns its centre sees it.
 struct CellInQuestion {
   Index tet;
-  const SweptLine* centers;  ///< a line of the tet's sweep over centres
-  std::uint32_t index;       ///< of the cell's centre in that line
-  ChartPoint place;          ///< the cell's smallest corner in the tet's chart
-  CutCell cuts;              ///< noted there: corners behind them are in question
+  const lattice::SweptLine* centers;  ///< a line of the tet's sweep over centres
+  std::uint32_t index;                ///< of the cell's centre in that line
+  lattice::ChartPoint place;          ///< the cell's smallest corner in the tet's chart
+  CutCell cuts;                       ///< noted there: corners behind them are in question
 };
 
 /// Answers for one cell after the other. One per thread.
@@ -38,7 +38,7 @@ class CornerResolver {
  public:
   using Cell = std::array<Id, 8>;
 
-  CornerResolver(const PreparedMap& map, const VertexGrid<Id>& vertices,
+  CornerResolver(const igm::PreparedMap& map, const VertexGrid<Id>& vertices,
                  const CutTransitions& transitions, bool lookAcrossCuts)
       : vertices_(vertices),
         transitions_(transitions),
@@ -56,26 +56,26 @@ class CornerResolver {
   struct Image {
     CutTransitionId id = kNoCut;         ///< leads there
     const CutTransition* map = nullptr;  ///< null if it leads to no certain place
-    ChartPoint place{};                  ///< smallest corner
+    lattice::ChartPoint place{};         ///< smallest corner
     CutCell cuts;                        ///< noted there
   };
 
-  [[nodiscard]] CellCornerSet lookAcross(const CellInQuestion& question, Cell& cell,
-                                         BrickCache<Id>& cache);
-  [[nodiscard]] Image imageAcross(CutTransitionId id, const ChartPoint& place,
+  [[nodiscard]] lattice::CellCornerSet lookAcross(const CellInQuestion& question, Cell& cell,
+                                                  BrickCache<Id>& cache);
+  [[nodiscard]] Image imageAcross(CutTransitionId id, const lattice::ChartPoint& place,
                                   BrickCache<Id>& cache);
   [[nodiscard]] std::optional<Id> shownBeyond(const Image& image, std::size_t corner,
                                               BrickCache<Id>& cache);
-  void trace(const CellInQuestion& question, CellCornerSet corners, Cell& cell,
+  void trace(const CellInQuestion& question, lattice::CellCornerSet corners, Cell& cell,
              BrickCache<Id>& cache);
 
   const VertexGrid<Id>& vertices_;
   const CutTransitions& transitions_;
   bool lookAcrossCuts_;
-  CellTracer tracer_;
+  sweep::CellTracer tracer_;
 };
 
 extern template class CornerResolver<std::uint32_t>;
 extern template class CornerResolver<std::uint64_t>;
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

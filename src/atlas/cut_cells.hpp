@@ -10,7 +10,7 @@
 #include <atlas/bricks.hpp>
 #include <lattice/cell_corners.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// Names a transition across a cut (CutTransitions).
 using CutTransitionId = std::uint8_t;
@@ -26,8 +26,8 @@ class alignas(4) CutCell {
  public:
   [[nodiscard]] constexpr bool isCut() const noexcept { return transitions_[0] != kNoCut; }
   /// The corners with a cut in front of them.
-  [[nodiscard]] constexpr CellCornerSet corners() const noexcept {
-    CellCornerSet all = 0;
+  [[nodiscard]] constexpr lattice::CellCornerSet corners() const noexcept {
+    lattice::CellCornerSet all = 0;
     for (const std::uint8_t set : corners_) all |= set;
     return all;
   }
@@ -43,7 +43,7 @@ class alignas(4) CutCell {
   }
 
   /// With one more cut in front of some corners.
-  [[nodiscard]] constexpr CutCell with(CellCornerSet corners,
+  [[nodiscard]] constexpr CutCell with(lattice::CellCornerSet corners,
                                        CutTransitionId transition) const noexcept {
     CutCell after = *this;
     std::size_t i = 0;
@@ -72,7 +72,7 @@ struct CutCells {
   std::array<CutCell, kBrickPoints> cells{};
 
   /// Adds a cut face. Thread-safe.
-  void add(std::size_t place, CellCornerSet corners, CutTransitionId transition) noexcept {
+  void add(std::size_t place, lattice::CellCornerSet corners, CutTransitionId transition) noexcept {
     const std::atomic_ref cell(cells[place]);
     CutCell before = cell.load(std::memory_order_relaxed);
     for (;;) {
@@ -84,4 +84,4 @@ struct CutCells {
   }
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

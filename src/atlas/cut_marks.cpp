@@ -8,45 +8,45 @@
 #include <lattice/triangle_cells.hpp>
 #include <sweep/tet_lines.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 namespace {
 
-using Triangle = std::array<LatticePoint, 3>;
+using Triangle = std::array<lattice::LatticePoint, 3>;
 
-Triangle triangleOf(const ExactMap& map, HalfFace halfFace) {
-  const LatticeTet& corners = map.corners[tetOf(halfFace)];
-  const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
+Triangle triangleOf(const igm::ExactMap& map, adjacency::HalfFace halfFace) {
+  const lattice::LatticeTet& corners = map.corners[adjacency::tetOf(halfFace)];
+  const std::array<int, 3>& face = lattice::kFaceCorners[halfFace % 4];
   return {corners[static_cast<std::size_t>(face[0])], corners[static_cast<std::size_t>(face[1])],
           corners[static_cast<std::size_t>(face[2])]};
 }
 
 /// Gauge::cell() prepared for many cells: it differs from the gauge by a constant.
-SweepFrame cellFrame(const Gauge& gauge) noexcept {
-  return {{gauge.rotation, gauge.cell(GridPoint{})}, {0, 1, 2}};
+SweepFrame cellFrame(const lattice::Gauge& gauge) noexcept {
+  return {{gauge.rotation, gauge.cell(lattice::GridPoint{})}, {0, 1, 2}};
 }
 
 /// A half-face at which a chart ends, and where cells are to be marked, in its tet's chart.
 struct CutFace {
-  HalfFace halfFace;
-  std::span<const GridBox> boxes;  ///< none: everywhere
+  adjacency::HalfFace halfFace;
+  std::span<const lattice::GridBox> boxes;  ///< none: everywhere
 };
 
 /// Those of a region. Of a face between two of its tets the half-face of one is enough, as their
 /// boxes agree.
-std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts,
+std::vector<CutFace> findCuts(const igm::PreparedMap& map, const Charts& charts,
                               const GridRegion& region, Stage& stage) {
   return collectFromBlocks<CutFace>(
-      stage, region.tets.size(), kSweepBlock,
+      stage, region.tets.size(), sweep::kSweepBlock,
       [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
         for (std::size_t i = begin; i < end; ++i) {
           for (int face = 0; face < 4; ++face) {
             if ((region.faces[i] >> face & 1) == 0) continue;
-            const HalfFace here = halfFaceOf(region.tets[i], face);
-            const HalfFace mate = map.topology.mate[here];
+            const adjacency::HalfFace here = adjacency::halfFaceOf(region.tets[i], face);
+            const adjacency::HalfFace mate = map.topology.mate[here];
             if (mate == kNone || charts.isGlued(map.topology, map.exact.transitions, here))
               continue;
-            if (mate > here && charts.chart[tetOf(mate)] != Charts::kNoChart) continue;
+            if (mate > here && charts.chart[adjacency::tetOf(mate)] != Charts::kNoChart) continue;
             cuts.push_back({here, region.boxesOf(i)});
           }
         }
@@ -55,15 +55,15 @@ std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts,
 
 /// One half-face of each inner face that is cut.
 /// @param identitiesGlue  as in markCutCells()
-std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
-                              Stage& stage) {
+std::vector<CutFace> findCuts(const igm::PreparedMap& map, const Charts& charts,
+                              bool identitiesGlue, Stage& stage) {
   constexpr std::size_t kGrain = 4096;
-  const auto isCut = [&](HalfFace halfFace) {
+  const auto isCut = [&](adjacency::HalfFace halfFace) {
     return !charts.isGlued(map.topology, map.exact.transitions, halfFace);
   };
   if (identitiesGlue) {
     // Both half-faces of a face with another transition are neighbours, behind the identity.
-    const Array<HalfFace>& halfFaces = map.exact.transitions.halfFaces;
+    const Array<adjacency::HalfFace>& halfFaces = map.exact.transitions.halfFaces;
     return collectFromBlocks<CutFace>(
         stage, halfFaces.size() / 2, kGrain,
         [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
@@ -72,7 +72,7 @@ std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts, bool
           }
         });
   }
-  const Array<HalfFace>& mate = map.topology.mate;
+  const Array<adjacency::HalfFace>& mate = map.topology.mate;
   return collectFromBlocks<CutFace>(
       stage, mate.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<CutFace>& cuts) {
@@ -84,20 +84,20 @@ std::vector<CutFace> findCuts(const PreparedMap& map, const Charts& charts, bool
 
 }  // namespace
 
-CutTransitionId CutTransitions::across(const PreparedMap& map, const Charts& charts,
-                                       HalfFace halfFace) {
-  const Index here = tetOf(halfFace);
-  const Index there = tetOf(map.topology.mate[halfFace]);
+CutTransitionId CutTransitions::across(const igm::PreparedMap& map, const Charts& charts,
+                                       adjacency::HalfFace halfFace) {
+  const Index here = adjacency::tetOf(halfFace);
+  const Index there = adjacency::tetOf(map.topology.mate[halfFace]);
   const Index from = charts.chart[here];
   const Index to = charts.chart[there];
   if (from == Charts::kNoChart || to == Charts::kNoChart) return kAnyCuts;
-  const Gauge forth =
+  const lattice::Gauge forth =
       charts.gauge(there) * map.exact.transitions.across(halfFace) / charts.gauge(here);
   const auto id = static_cast<CutTransitionId>(all_.size());
   const auto [known, isNew] = ids_.try_emplace(keyOf(from, to, forth), id);
   if (!isNew) return known->second;
   if (all_.size() + 2 > kAnyCuts) return known->second = kAnyCuts;
-  const Gauge back = Gauge{} / forth;
+  const lattice::Gauge back = lattice::Gauge{} / forth;
   const auto [inverse, isOther] = ids_.try_emplace(keyOf(to, from, back), id + 1);
   all_.push_back({from, to, forth, inverse->second});
   if (isOther) all_.push_back({to, from, back, id});
@@ -110,7 +110,8 @@ std::size_t CutTransitions::Hash::operator()(const Key& key) const noexcept {
   return static_cast<std::size_t>(hash >> 32);
 }
 
-CutTransitions::Key CutTransitions::keyOf(Index from, Index to, const Gauge& map) noexcept {
+CutTransitions::Key CutTransitions::keyOf(Index from, Index to,
+                                          const lattice::Gauge& map) noexcept {
   return {from,
           to,
           static_cast<std::uint32_t>(map.rotation.index()),
@@ -127,7 +128,7 @@ namespace detail {
 struct LoneCut {
   BrickKey key;
   std::size_t place;
-  CellCornerSet corners;
+  lattice::CellCornerSet corners;
   CutTransitionId transition;
 };
 
@@ -136,46 +137,50 @@ struct LoneCut {
 template <class Id>
 class CutMarker {
  public:
-  CutMarker(const PreparedMap& map, const Charts& charts, const CutTransitions& transitions,
+  CutMarker(const igm::PreparedMap& map, const Charts& charts, const CutTransitions& transitions,
             BrickGrid<Id>& grid)
       : map_(map), charts_(charts), transitions_(transitions), grid_(grid), cache_(grid) {}
 
   /// @param lone  receives cut cells without a brick
   void mark(const CutFace& cut, CutTransitionId transition, std::vector<LoneCut>& lone) {
-    const HalfFace halfFace = cut.halfFace;
+    const adjacency::HalfFace halfFace = cut.halfFace;
     const Triangle triangle = triangleOf(map_.exact, halfFace);
     // Made when first needed, as most small triangles meet no half diagonal.
     std::optional<BothSides> sides;
-    TriangleCells(triangle, map_.exact.unit).run([&](const GridPoint& z, CellCornerSet corners) {
-      if (!sides) sides.emplace(sidesOf(halfFace, transition));
-      for (const Side& side : *sides) {
-        add(
-            {side.chart, side.frame(z[0], z[1], z[2])}, turned(side.rotation, corners),
-            side.transition, [&] { return isWanted(cut.boxes, z); }, lone);
-      }
-    });
+    lattice::TriangleCells(triangle, map_.exact.unit)
+        .run([&](const lattice::GridPoint& z, lattice::CellCornerSet corners) {
+          if (!sides) sides.emplace(sidesOf(halfFace, transition));
+          for (const Side& side : *sides) {
+            add(
+                {side.chart, side.frame(z[0], z[1], z[2])}, lattice::turned(side.rotation, corners),
+                side.transition, [&] { return isWanted(cut.boxes, z); }, lone);
+          }
+        });
   }
 
  private:
   /// A cut face in the chart of one of its sides.
   struct Side {
     Index chart;
-    Rotation rotation;
+    lattice::Rotation rotation;
     SweepFrame frame;            ///< of cells
     CutTransitionId transition;  ///< to the other side
   };
   using BothSides = std::array<Side, 2>;
 
-  [[nodiscard]] static bool isWanted(std::span<const GridBox> boxes, const GridPoint& z) {
-    return boxes.empty() || std::any_of(boxes.begin(), boxes.end(),
-                                        [&](const GridBox& box) { return holdsCell(box, z); });
+  [[nodiscard]] static bool isWanted(std::span<const lattice::GridBox> boxes,
+                                     const lattice::GridPoint& z) {
+    return boxes.empty() ||
+           std::any_of(boxes.begin(), boxes.end(),
+                       [&](const lattice::GridBox& box) { return holdsCell(box, z); });
   }
 
-  [[nodiscard]] BothSides sidesOf(HalfFace halfFace, CutTransitionId transition) const {
-    const Index here = tetOf(halfFace);
-    const Index there = tetOf(map_.topology.mate[halfFace]);
-    const Gauge& gaugeHere = charts_.gauge(here);
-    const Gauge gaugeThere = charts_.gauge(there) * map_.exact.transitions.across(halfFace);
+  [[nodiscard]] BothSides sidesOf(adjacency::HalfFace halfFace, CutTransitionId transition) const {
+    const Index here = adjacency::tetOf(halfFace);
+    const Index there = adjacency::tetOf(map_.topology.mate[halfFace]);
+    const lattice::Gauge& gaugeHere = charts_.gauge(here);
+    const lattice::Gauge gaugeThere =
+        charts_.gauge(there) * map_.exact.transitions.across(halfFace);
     const CutTransitionId back =
         transition == kAnyCuts ? kAnyCuts : transitions_[transition].inverse;
     return {Side{charts_.chart[here], gaugeHere.rotation, cellFrame(gaugeHere), transition},
@@ -184,11 +189,11 @@ class CutMarker {
 
   struct Place {
     Index chart;
-    ChartPoint point;
+    lattice::ChartPoint point;
   };
   /// @param isWanted  whether the cell gets a brick if there is none
   template <class IsWanted>
-  void add(const Place& place, CellCornerSet corners, CutTransitionId transition,
+  void add(const Place& place, lattice::CellCornerSet corners, CutTransitionId transition,
            const IsWanted& isWanted, std::vector<LoneCut>& lone) {
     const auto& [chart, c] = place;
     if (chart == Charts::kNoChart) return;
@@ -201,7 +206,7 @@ class CutMarker {
     }
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   const Charts& charts_;
   const CutTransitions& transitions_;
   BrickGrid<Id>& grid_;
@@ -213,7 +218,7 @@ class CutMarker {
 namespace {
 
 template <class Id>
-Cuts markCells(const PreparedMap& map, const Charts& charts, const std::vector<CutFace>& faces,
+Cuts markCells(const igm::PreparedMap& map, const Charts& charts, const std::vector<CutFace>& faces,
                BrickGrid<Id>& grid, Stage& stage) {
   Cuts cuts;
   cuts.faces = faces.size();
@@ -243,25 +248,25 @@ Cuts markCells(const PreparedMap& map, const Charts& charts, const std::vector<C
 }  // namespace
 
 template <class Id>
-Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
+Cuts markCutCells(const igm::PreparedMap& map, const Charts& charts, bool identitiesGlue,
                   BrickGrid<Id>& grid, Stage& stage) {
   return markCells(map, charts, findCuts(map, charts, identitiesGlue, stage), grid, stage);
 }
 
 template <class Id>
-Cuts markCutCells(const PreparedMap& map, const Charts& charts, const GridRegion& region,
+Cuts markCutCells(const igm::PreparedMap& map, const Charts& charts, const GridRegion& region,
                   BrickGrid<Id>& grid, Stage& stage) {
   return markCells(map, charts, findCuts(map, charts, region, stage), grid, stage);
 }
 
-template Cuts markCutCells(const PreparedMap&, const Charts&, bool, BrickGrid<std::uint32_t>&,
+template Cuts markCutCells(const igm::PreparedMap&, const Charts&, bool, BrickGrid<std::uint32_t>&,
                            Stage&);
-template Cuts markCutCells(const PreparedMap&, const Charts&, bool, BrickGrid<std::uint64_t>&,
+template Cuts markCutCells(const igm::PreparedMap&, const Charts&, bool, BrickGrid<std::uint64_t>&,
                            Stage&);
 
-template Cuts markCutCells(const PreparedMap&, const Charts&, const GridRegion&,
+template Cuts markCutCells(const igm::PreparedMap&, const Charts&, const GridRegion&,
                            BrickGrid<std::uint32_t>&, Stage&);
-template Cuts markCutCells(const PreparedMap&, const Charts&, const GridRegion&,
+template Cuts markCutCells(const igm::PreparedMap&, const Charts&, const GridRegion&,
                            BrickGrid<std::uint64_t>&, Stage&);
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -14,13 +14,13 @@
 #include <atlas/grid_region.hpp>
 #include <igm/prepare.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// What many faces of a cut have in common.
 struct CutTransition {
   Index from;               ///< the chart on this side
   Index to;                 ///< the chart on the other side
-  Gauge map;                ///< takes places of the one to places of the other
+  lattice::Gauge map;       ///< takes places of the one to places of the other
   CutTransitionId inverse;  ///< from the other side back
 };
 
@@ -31,8 +31,8 @@ class CutTransitions {
  public:
   /// The transition across a half-face that is not glued, found or added together with its inverse;
   /// kAnyCuts if there is no chart on one of the sides, or no name left.
-  [[nodiscard]] CutTransitionId across(const PreparedMap& map, const Charts& charts,
-                                       HalfFace halfFace);
+  [[nodiscard]] CutTransitionId across(const igm::PreparedMap& map, const Charts& charts,
+                                       adjacency::HalfFace halfFace);
 
   [[nodiscard]] const CutTransition& operator[](CutTransitionId id) const noexcept {
     return all_[id];
@@ -43,7 +43,7 @@ class CutTransitions {
   struct Hash {
     [[nodiscard]] std::size_t operator()(const Key& key) const noexcept;
   };
-  [[nodiscard]] static Key keyOf(Index from, Index to, const Gauge& map) noexcept;
+  [[nodiscard]] static Key keyOf(Index from, Index to, const lattice::Gauge& map) noexcept;
 
   std::vector<CutTransition> all_ = std::vector<CutTransition>(1);  ///< by id; kNoCut is none
   std::unordered_map<Key, CutTransitionId, Hash> ids_;
@@ -59,12 +59,12 @@ struct Cuts {
 /// half diagonal. Faces of the boundary lie in grid planes and meet none.
 /// @param identitiesGlue  whether faces with the identity as transition are known to be glued
 template <class Id>
-[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts, bool identitiesGlue,
-                                BrickGrid<Id>& grid, Stage& stage);
+[[nodiscard]] Cuts markCutCells(const igm::PreparedMap& map, const Charts& charts,
+                                bool identitiesGlue, BrickGrid<Id>& grid, Stage& stage);
 
 /// The same for the cells in the boxes of a region; faces to tets without a chart are cut.
 template <class Id>
-[[nodiscard]] Cuts markCutCells(const PreparedMap& map, const Charts& charts,
+[[nodiscard]] Cuts markCutCells(const igm::PreparedMap& map, const Charts& charts,
                                 const GridRegion& region, BrickGrid<Id>& grid, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

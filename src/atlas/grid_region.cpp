@@ -2,9 +2,9 @@
 
 #include <atlas/grid_region.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
-std::span<const LinePoints> BoxedLines::of(const SweptLine& line) {
+std::span<const LinePoints> BoxedLines::of(const lattice::SweptLine& line) {
   found_.clear();
   if (boxes_.empty()) {
     found_.push_back({0, line.count});
@@ -20,7 +20,7 @@ std::span<const LinePoints> BoxedLines::of(const SweptLine& line) {
     join(axes[2]);
   }
   const std::int64_t last = std::int64_t{line.first} + line.count - 1;
-  for (const GridRange& range : ranges_) {
+  for (const lattice::GridRange& range : ranges_) {
     const std::int64_t first = std::max(line.first, range.first);
     const std::int64_t end = std::min<std::int64_t>(last, range.last) + 1;
     if (first >= end) continue;
@@ -30,11 +30,12 @@ std::span<const LinePoints> BoxedLines::of(const SweptLine& line) {
   return found_;
 }
 
-BoxedLines::Known BoxedLines::select(std::span<const GridBox> from, std::size_t axis,
-                                     std::int64_t at, std::vector<GridBox>& selected) const {
+BoxedLines::Known BoxedLines::select(std::span<const lattice::GridBox> from, std::size_t axis,
+                                     std::int64_t at,
+                                     std::vector<lattice::GridBox>& selected) const {
   selected.clear();
   Known known{at, std::numeric_limits<std::int64_t>::max()};
-  for (const GridBox& box : from) {
+  for (const lattice::GridBox& box : from) {
     const std::int64_t end = std::int64_t{box.range[axis].last} - beyond_ + 1;
     if (at < box.range[axis].first) {
       known.end = std::min<std::int64_t>(known.end, box.range[axis].first);
@@ -49,13 +50,14 @@ BoxedLines::Known BoxedLines::select(std::span<const GridBox> from, std::size_t 
 /// Joins the boxes of a row to ranges along it.
 void BoxedLines::join(std::size_t axis) {
   ranges_.clear();
-  for (const GridBox& box : atRow_) {
+  for (const lattice::GridBox& box : atRow_) {
     ranges_.push_back({box.range[axis].first, box.range[axis].last - beyond_});
   }
-  std::sort(ranges_.begin(), ranges_.end(),
-            [](const GridRange& a, const GridRange& b) { return a.first < b.first; });
+  std::sort(
+      ranges_.begin(), ranges_.end(),
+      [](const lattice::GridRange& a, const lattice::GridRange& b) { return a.first < b.first; });
   std::size_t count = 0;
-  for (const GridRange& next : ranges_) {
+  for (const lattice::GridRange& next : ranges_) {
     if (count == 0 || next.first > ranges_[count - 1].last + 1) {
       ranges_[count++] = next;
     } else {
@@ -65,4 +67,4 @@ void BoxedLines::join(std::size_t axis) {
   ranges_.resize(count);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -11,25 +11,26 @@
 
 #include <lattice/swept_line.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// Some tets, and in the chart of each the boxes of grid points that may be asked for. What lies
 /// beyond may be in the grid or not.
 struct GridRegion {
   std::vector<Index> tets;         ///< ascending
   std::vector<std::size_t> begin;  ///< of each of them (+1): its boxes; none if all of it counts
-  std::vector<GridBox> boxes;
+  std::vector<lattice::GridBox> boxes;
   /// Of each tet: its faces that the boxes may meet, a bit for each. The tets behind are in the
   /// region, too.
   std::vector<std::uint8_t> faces;
 
-  [[nodiscard]] std::span<const GridBox> boxesOf(std::size_t i) const noexcept {
+  [[nodiscard]] std::span<const lattice::GridBox> boxesOf(std::size_t i) const noexcept {
     return std::span(boxes).subspan(begin[i], begin[i + 1] - begin[i]);
   }
 };
 
 /// Whether a box holds all corners of the cell with smallest corner z.
-[[nodiscard]] constexpr bool holdsCell(const GridBox& box, const GridPoint& z) noexcept {
+[[nodiscard]] constexpr bool holdsCell(const lattice::GridBox& box,
+                                       const lattice::GridPoint& z) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     if (z[k] < box.range[k].first || z[k] >= box.range[k].last) return false;
   }
@@ -47,11 +48,11 @@ class BoxedLines {
  public:
   /// @param boxes   if there are none, everything is
   /// @param beyond  0 for points; 1 for cells, by smallest corner: all their corners are in a box
-  BoxedLines(std::span<const GridBox> boxes, std::int32_t beyond) noexcept
+  BoxedLines(std::span<const lattice::GridBox> boxes, std::int32_t beyond) noexcept
       : boxes_(boxes), beyond_(beyond) {}
 
   /// Ascending ranges that do not touch.
-  [[nodiscard]] std::span<const LinePoints> of(const SweptLine& line);
+  [[nodiscard]] std::span<const LinePoints> of(const lattice::SweptLine& line);
 
  private:
   /// Coordinates for which something was found; no others.
@@ -63,19 +64,19 @@ class BoxedLines {
   };
   /// The boxes that hold a coordinate.
   /// @return up to where these are the same
-  [[nodiscard]] Known select(std::span<const GridBox> from, std::size_t axis, std::int64_t at,
-                             std::vector<GridBox>& selected) const;
+  [[nodiscard]] Known select(std::span<const lattice::GridBox> from, std::size_t axis,
+                             std::int64_t at, std::vector<lattice::GridBox>& selected) const;
   void join(std::size_t axis);
 
-  std::span<const GridBox> boxes_;
+  std::span<const lattice::GridBox> boxes_;
   std::int32_t beyond_;
   // Many lines in a row are in the same boxes.
   Known levels_;
   Known rows_;
-  std::vector<GridBox> atLevel_;
-  std::vector<GridBox> atRow_;
-  std::vector<GridRange> ranges_;  ///< along lines, ascending, apart
+  std::vector<lattice::GridBox> atLevel_;
+  std::vector<lattice::GridBox> atRow_;
+  std::vector<lattice::GridRange> ranges_;  ///< along lines, ascending, apart
   std::vector<LinePoints> found_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -3,7 +3,7 @@
 #include <atlas/overlaps.hpp>
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 namespace {
 
@@ -12,16 +12,16 @@ namespace {
 template <class Id, class BrickAt, class Visit>
 void forEachEntry(const TetClaims& tet, const BrickAt& brickAt, const Visit& visit) {
   for (const Claim& claim : tet.claims) {
-    claim.row.forEachPart(
-        [&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count, std::ptrdiff_t stride) {
-          Brick<Id>* const brick = brickAt(c);
-          if (brick == nullptr) return;
-          auto place = static_cast<std::ptrdiff_t>(placeInBrick(c));
-          for (std::uint32_t i = 0; i < count; ++i, place += stride) {
-            visit(brick->ids[static_cast<std::size_t>(place)],
-                  static_cast<Id>(claim.first + offset + i));
-          }
-        });
+    claim.row.forEachPart([&](const lattice::ChartPoint& c, std::uint32_t offset,
+                              std::uint32_t count, std::ptrdiff_t stride) {
+      Brick<Id>* const brick = brickAt(c);
+      if (brick == nullptr) return;
+      auto place = static_cast<std::ptrdiff_t>(placeInBrick(c));
+      for (std::uint32_t i = 0; i < count; ++i, place += stride) {
+        visit(brick->ids[static_cast<std::size_t>(place)],
+              static_cast<Id>(claim.first + offset + i));
+      }
+    });
   }
 }
 
@@ -35,7 +35,7 @@ namespace detail {
 template <class Id>
 class TetMover {
  public:
-  TetMover(const PreparedMap& map, Charts& charts, BrickGrid<Id>& grid)
+  TetMover(const igm::PreparedMap& map, Charts& charts, BrickGrid<Id>& grid)
       : map_(map), charts_(charts), grid_(grid) {}
 
   /// Takes tets out of their charts, and into charts again one sheet after the other: the first
@@ -68,11 +68,12 @@ class TetMover {
     std::vector<Index> queue(1, contested_[start]->tet);
     for (std::size_t head = 0; head < queue.size(); ++head) {
       for (int face = 0; face < 4; ++face) {
-        const HalfFace halfFace = halfFaceOf(queue[head], face);
-        const HalfFace mate = map_.topology.mate[halfFace];
-        if (mate == kNone || pending_[tetOf(mate)] == kNone) continue;
+        const adjacency::HalfFace halfFace = adjacency::halfFaceOf(queue[head], face);
+        const adjacency::HalfFace mate = map_.topology.mate[halfFace];
+        if (mate == kNone || pending_[adjacency::tetOf(mate)] == kNone) continue;
         if (!charts_.gaugesAgree(map_.topology, map_.exact.transitions, halfFace)) continue;
-        if (tryClaim(*contested_[pending_[tetOf(mate)]], chart)) queue.push_back(tetOf(mate));
+        if (tryClaim(*contested_[pending_[adjacency::tetOf(mate)]], chart))
+          queue.push_back(adjacency::tetOf(mate));
       }
     }
   }
@@ -80,16 +81,18 @@ class TetMover {
   /// Claims all points of a tet in a chart if none of them belongs to another vertex, be it one of
   /// the tet's own.
   bool tryClaim(const TetClaims& tet, Index chart) {
-    const auto brickAt = [&](const ChartPoint& c) { return grid_.find(brickKey(chart, c)); };
+    const auto brickAt = [&](const lattice::ChartPoint& c) {
+      return grid_.find(brickKey(chart, c));
+    };
     bool isFree = true;
     forEachEntry<Id>(
-        tet, [&](const ChartPoint& c) { return isFree ? brickAt(c) : nullptr; },
+        tet, [&](const lattice::ChartPoint& c) { return isFree ? brickAt(c) : nullptr; },
         [&](Id entry, Id vertex) {
           isFree = isFree && (!Brick<Id>::isVertex(entry) || entry == vertex);
         });
     if (!isFree) return false;
     forEachEntry<Id>(
-        tet, [&](const ChartPoint& c) { return &grid_.add(brickKey(chart, c)); },
+        tet, [&](const lattice::ChartPoint& c) { return &grid_.add(brickKey(chart, c)); },
         [](Id& entry, Id vertex) { entry = vertex; });
     forEachEntry<Id>(tet, brickAt,
                      [&](Id entry, Id vertex) { isFree = isFree && entry == vertex; });
@@ -103,7 +106,7 @@ class TetMover {
     return true;
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   Charts& charts_;
   BrickGrid<Id>& grid_;
   std::vector<const TetClaims*> contested_;
@@ -113,13 +116,13 @@ class TetMover {
 }  // namespace detail
 
 template <class Id>
-std::uint64_t resolveOverlaps(const PreparedMap& map, const std::vector<TetClaims>& claims,
+std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<TetClaims>& claims,
                               Charts& charts, BrickGrid<Id>& grid, Stage& stage) {
   constexpr std::size_t kFewTets = 64;  // of which each may take long
   const auto forEachOf = [&](BrickCache<Id>& cache, const TetClaims& tet, const auto& visit) {
     const Index chart = charts.chart[tet.tet];
     forEachEntry<Id>(
-        tet, [&](const ChartPoint& c) { return cache.find(chart, c); }, visit);
+        tet, [&](const lattice::ChartPoint& c) { return cache.find(chart, c); }, visit);
   };
   // Entries are only ever replaced by "contested", so it does not matter who looks first.
   parallelBlocks(stage, claims.size(), kFewTets,
@@ -151,9 +154,9 @@ std::uint64_t resolveOverlaps(const PreparedMap& map, const std::vector<TetClaim
   return contested.size();
 }
 
-template std::uint64_t resolveOverlaps(const PreparedMap&, const std::vector<TetClaims>&, Charts&,
+template std::uint64_t resolveOverlaps(const igm::PreparedMap&, const std::vector<TetClaims>&, Charts&,
                                        BrickGrid<std::uint32_t>&, Stage&);
-template std::uint64_t resolveOverlaps(const PreparedMap&, const std::vector<TetClaims>&, Charts&,
+template std::uint64_t resolveOverlaps(const igm::PreparedMap&, const std::vector<TetClaims>&, Charts&,
                                        BrickGrid<std::uint64_t>&, Stage&);
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -11,7 +11,7 @@
 #include <atlas/charts.hpp>
 #include <igm/prepare.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// Points of a tet in its chart, which it claims for consecutive vertices.
 struct Claim {
@@ -30,7 +30,7 @@ struct TetClaims {
 /// @param grid    with the claims of all tets entered, one of each contested point
 /// @return the number of tets with contested points
 template <class Id>
-std::uint64_t resolveOverlaps(const PreparedMap& map, const std::vector<TetClaims>& claims,
+std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<TetClaims>& claims,
                               Charts& charts, BrickGrid<Id>& grid, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -4,12 +4,12 @@
 #include <atlas/vertex_grid.hpp>
 #include <base/workspaces.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 namespace {
 
-ChartRow rowOf(const VertexRun& run, const SweepFrame& frame, Index chart) {
-  const SweptLine& line = *run.line;
+ChartRow rowOf(const sweep::VertexRun& run, const SweepFrame& frame, Index chart) {
+  const lattice::SweptLine& line = *run.line;
   const std::int32_t first = line.first + static_cast<std::int32_t>(run.offset);
   return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
 }
@@ -34,22 +34,24 @@ bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, s
 }  // namespace
 
 template <class Id>
-std::span<const SweptLine> VertexGrid<Id>::linesOf(Index tet,
-                                                   std::vector<SweptLine>& scratch) const {
+std::span<const lattice::SweptLine> VertexGrid<Id>::linesOf(
+    Index tet, std::vector<lattice::SweptLine>& scratch) const {
   if (stored_) return stored_->of(tet);
   scratch.clear();
-  TetRasterizer(map_.exact.corners[tet], map_.exact.unit).append(kVertexGrid, scratch);
+  lattice::TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
+      .append(lattice::kVertexGrid, scratch);
   return scratch;
 }
 
 template <class Id>
-void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* observer,
+void VertexGrid<Id>::sweep(sweep::CellCenters& cells, Stage& stage, sweep::SweepObserver* observer,
                            bool fewPoints) {
   const std::size_t tets = map_.topology.tetCount();
-  VertexCounter counter(map_, numbers_);
-  keys_.resize(blockCount(tets, kSweepBlock));
+  sweep::VertexCounter counter(map_, numbers_);
+  keys_.resize(blockCount(tets, sweep::kSweepBlock));
   const auto makeLines = [&] {
-    return SweptLines{BlockLines(stored_.has_value()), BlockLines(cells.lines.has_value())};
+    return SweptLines{sweep::BlockLines(stored_.has_value()),
+                      sweep::BlockLines(cells.lines.has_value())};
   };
   const auto sweepBlock = [&](std::size_t begin, std::size_t end, std::size_t block,
                               SweptLines& swept) {
@@ -57,19 +59,19 @@ void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* obse
     lines.clear();
     centers.clear();
     KeyFilter filter;
-    keys_[block].reserve(kSweepBlock / 16);
+    keys_[block].reserve(sweep::kSweepBlock / 16);
     for (std::size_t t = begin; t < end; ++t) {
       const auto tet = static_cast<Index>(t);
-      std::vector<SweptLine>& ofVertices = lines.next();
-      std::vector<SweptLine>& ofCenters = centers.next();
-      TetRasterizer rasterizer(map_.exact.corners[t], map_.exact.unit, 0, fewPoints);
-      rasterizer.append(kVertexGrid, ofVertices);
-      rasterizer.append(kCenterGrid, ofCenters);
+      std::vector<lattice::SweptLine>& ofVertices = lines.next();
+      std::vector<lattice::SweptLine>& ofCenters = centers.next();
+      lattice::TetRasterizer rasterizer(map_.exact.corners[t], map_.exact.unit, 0, fewPoints);
+      rasterizer.append(lattice::kVertexGrid, ofVertices);
+      rasterizer.append(lattice::kCenterGrid, ofCenters);
       if (observer != nullptr) observer->add(block, tet, rasterizer);
       cells.begin[t] = 0;
       counter.countNothing(tet);
       if (const auto own = centers.last(); !own.empty()) {
-        cells.begin[t] = countOwned(map_.topology, tet, own);
+        cells.begin[t] = sweep::countOwned(map_.topology, tet, own);
       }
       if (const auto own = lines.last(); !own.empty()) {
         counter.count(block, tet, own);
@@ -81,7 +83,7 @@ void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* obse
     lines.shrink();
     centers.shrink();
   };
-  parallelBlocksWith(stage, tets, kSweepBlock, makeLines, sweepBlock);
+  parallelBlocksWith(stage, tets, sweep::kSweepBlock, makeLines, sweepBlock);
   counter.finish();
   exclusiveScan(std::span(cells.begin));
 }
@@ -90,46 +92,47 @@ void VertexGrid<Id>::sweep(CellCenters& cells, Stage& stage, SweepObserver* obse
 template <class Id>
 void VertexGrid<Id>::collectRegion(Stage& stage) {
   const std::size_t tets = tetCount();
-  keys_.resize(blockCount(tets, kSweepBlock));
-  parallelBlocks(stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t b) {
-    KeyFilter filter;
-    std::vector<SweptLine> scratch;
-    std::vector<SweptLine> clipped;
-    for (std::size_t i = begin; i < end; ++i) {
-      clipped.clear();
-      BoxedLines boxed(region_->boxesOf(i), 0);
-      for (const SweptLine& line : linesOf(tetAt(i), scratch)) {
-        for (const auto& [first, count] : boxed.of(line)) {
-          clipped.push_back(line);
-          clipped.back().first += static_cast<std::int32_t>(first);
-          clipped.back().count = count;
-        }
-      }
-      collectKeys(tetAt(i), clipped, filter, keys_[b]);
-    }
-  });
+  keys_.resize(blockCount(tets, sweep::kSweepBlock));
+  parallelBlocks(stage, tets, sweep::kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t b) {
+                   KeyFilter filter;
+                   std::vector<lattice::SweptLine> scratch;
+                   std::vector<lattice::SweptLine> clipped;
+                   for (std::size_t i = begin; i < end; ++i) {
+                     clipped.clear();
+                     BoxedLines boxed(region_->boxesOf(i), 0);
+                     for (const lattice::SweptLine& line : linesOf(tetAt(i), scratch)) {
+                       for (const auto& [first, count] : boxed.of(line)) {
+                         clipped.push_back(line);
+                         clipped.back().first += static_cast<std::int32_t>(first);
+                         clipped.back().count = count;
+                       }
+                     }
+                     collectKeys(tetAt(i), clipped, filter, keys_[b]);
+                   }
+                 });
 }
 
 /// Calls visit(ChartPoint) with the first point of each row of the tet's points in each brick.
 template <class Id>
 template <class Visit>
-void VertexGrid<Id>::forEachBrick(Index tet, std::span<const SweptLine> lines,
+void VertexGrid<Id>::forEachBrick(Index tet, std::span<const lattice::SweptLine> lines,
                                   const Visit& visit) const {
   if (lines.empty()) return;
   const SweepFrame frame(charts_.gauge(tet), lines.front().axes());
-  for (const SweptLine& line : lines) {
+  for (const lattice::SweptLine& line : lines) {
     const ChartRow row{charts_.chart[tet], frame(line.level, line.row, line.first), frame.along(2),
                        line.count};
-    row.forEachPart(
-        [&](const ChartPoint& c, std::uint32_t, std::uint32_t, std::ptrdiff_t) { visit(c); });
+    row.forEachPart([&](const lattice::ChartPoint& c, std::uint32_t, std::uint32_t,
+                        std::ptrdiff_t) { visit(c); });
   }
 }
 
 /// Lists the bricks that the tet's points are in.
 template <class Id>
-void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
-                                 std::vector<BrickKey>& keys) const {
-  forEachBrick(tet, lines, [&](const ChartPoint& c) {
+void VertexGrid<Id>::collectKeys(Index tet, std::span<const lattice::SweptLine> lines,
+                                 KeyFilter& filter, std::vector<BrickKey>& keys) const {
+  forEachBrick(tet, lines, [&](const lattice::ChartPoint& c) {
     const BrickKey key = brickKey(charts_.chart[tet], c);
     if (filter.isNew(key, c)) keys.push_back(key);
   });
@@ -137,20 +140,20 @@ void VertexGrid<Id>::collectKeys(Index tet, std::span<const SweptLine> lines, Ke
 
 template <class Id>
 template <class VisitRun, class VisitRow>
-void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const GridBox> boxes,
+void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const lattice::GridBox> boxes,
                                   const VisitRun& visitRun, const VisitRow& visitRow) const {
-  std::vector<SweptLine> scratch;
-  const std::span<const SweptLine> lines = linesOf(tet, scratch);
+  std::vector<lattice::SweptLine> scratch;
+  const std::span<const lattice::SweptLine> lines = linesOf(tet, scratch);
   if (lines.empty()) return;
-  const SweepAxes axes = lines.front().axes;
+  const lattice::SweepAxes axes = lines.front().axes;
   const SweepFrame frame(charts_.gauge(tet), axes());
   const Index chart = charts_.chart[tet];
   BoxedLines boxed(boxes, 0);
-  TetNumbering numbering(map_, numbers_, tet, axes);
-  numbering.run(lines, [&](const VertexRun& run) {
+  sweep::TetNumbering numbering(map_, numbers_, tet, axes);
+  numbering.run(lines, [&](const sweep::VertexRun& run) {
     visitRun(run);
     for (const auto& [first, count] : boxed.of(*run.line)) {
-      VertexRun part = run;
+      sweep::VertexRun part = run;
       part.offset = std::max(run.offset, first);
       const std::uint32_t end = std::min(run.offset + run.count, first + count);
       if (part.offset >= end) continue;
@@ -163,7 +166,7 @@ void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const GridBo
     if (((numbering.foreignFaces() >> face) & 1U) == 0) continue;
     // The owner enters the points of a glued face at the same places.
     if (faces == Faces::All ||
-        !charts_.isGlued(map_.topology, map_.exact.transitions, halfFaceOf(tet, face))) {
+        !charts_.isGlued(map_.topology, map_.exact.transitions, adjacency::halfFaceOf(tet, face))) {
       forEachForeignClaim(tet, face, visitRow);
     }
   }
@@ -173,27 +176,28 @@ void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const GridBo
 template <class Id>
 template <class VisitRow>
 void VertexGrid<Id>::forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const {
-  const HalfFace ownersHalfFace = map_.topology.mate[halfFaceOf(tet, face)];
-  const Index owner = tetOf(ownersHalfFace);
-  const Gauge gauge = charts_.gauge(tet) * map_.exact.transitions.across(ownersHalfFace);
-  std::vector<SweptLine> scratch;
-  const std::span<const SweptLine> lines = linesOf(owner, scratch);
-  const SweepAxes axes = lines.front().axes;
+  const adjacency::HalfFace ownersHalfFace = map_.topology.mate[adjacency::halfFaceOf(tet, face)];
+  const Index owner = adjacency::tetOf(ownersHalfFace);
+  const lattice::Gauge gauge = charts_.gauge(tet) * map_.exact.transitions.across(ownersHalfFace);
+  std::vector<lattice::SweptLine> scratch;
+  const std::span<const lattice::SweptLine> lines = linesOf(owner, scratch);
+  const lattice::SweepAxes axes = lines.front().axes;
   const SweepFrame frame(gauge, axes());
-  TetNumbering(map_, numbers_, owner, axes).run(lines, [&](const VertexRun& run) {
-    if (run.simplex != faceMask(localOf(ownersHalfFace))) return;
+  sweep::TetNumbering(map_, numbers_, owner, axes).run(lines, [&](const sweep::VertexRun& run) {
+    if (run.simplex != lattice::faceMask(adjacency::localOf(ownersHalfFace))) return;
     visitRow(rowOf(run, frame, charts_.chart[tet]), run.first);
   });
 }
 
 template <class Id>
-void VertexGrid<Id>::write(const VertexRun& run, Index tet, std::optional<TetPositions>& positions,
+void VertexGrid<Id>::write(const sweep::VertexRun& run, Index tet,
+                           std::optional<sweep::TetPositions>& positions,
                            const VertexArrays& arrays) const {
   if (!run.owned || arrays.points == nullptr) return;
-  const SweptLine& line = *run.line;
+  const lattice::SweptLine& line = *run.line;
   if (!positions) positions.emplace(map_, tet, line.axes);
   const std::size_t at = run.first - arrays.first;
-  if (run.simplex == kWholeTet) {
+  if (run.simplex == lattice::kWholeTet) {
     positions->alongLine(line.level, line.row, line.first + static_cast<std::int32_t>(run.offset),
                          run.count, arrays.points + at);
   } else {
@@ -213,7 +217,7 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
                              BrickCache<Id>& cache) {
     bool overlapsHere = false;
     const auto enter = [&](const ChartRow& row, std::uint64_t first) {
-      row.forEachPart([&](const ChartPoint& c, std::uint32_t offset, std::uint32_t count,
+      row.forEachPart([&](const lattice::ChartPoint& c, std::uint32_t offset, std::uint32_t count,
                           std::ptrdiff_t stride) {
         Bricks* const brick = cache.find(row.chart, c);
         if (brick == nullptr) return;  // beyond the region
@@ -224,57 +228,58 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
     for (std::size_t i = begin; i < end; ++i) {
       const Index tet = tetAt(i);
       if (stored_ && stored_->areEmpty(tet)) continue;
-      std::optional<TetPositions> positions;
+      std::optional<sweep::TetPositions> positions;
       forEachClaim(
           tet, Faces::OwnedAndCut, boxesAt(i),
-          [&](const VertexRun& run) { write(run, tet, positions, arrays); }, enter);
+          [&](const sweep::VertexRun& run) { write(run, tet, positions, arrays); }, enter);
     }
     if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
   };
   parallelBlocksWith(
-      stage, tetCount(), kSweepBlock, [this] { return BrickCache<Id>(grid_); }, fillBlock);
+      stage, tetCount(), sweep::kSweepBlock, [this] { return BrickCache<Id>(grid_); }, fillBlock);
   overlaps_ = overlaps.load();
 }
 
 template <class Id>
 void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
-  std::optional<TetPositions> positions;
+  std::optional<sweep::TetPositions> positions;
   forEachClaim(
-      tet, Faces::Owned, {}, [&](const VertexRun& run) { write(run, tet, positions, arrays); },
+      tet, Faces::Owned, {},
+      [&](const sweep::VertexRun& run) { write(run, tet, positions, arrays); },
       [](const ChartRow&, std::uint64_t) {});
 }
 
 template <class Id>
 std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   if (!overlaps_) return 0;
-  const auto isNearContested = [&](Index tet, std::vector<SweptLine>& scratch,
+  const auto isNearContested = [&](Index tet, std::vector<lattice::SweptLine>& scratch,
                                    BrickCache<Id>& cache) {
     bool isNear = false;
-    forEachBrick(tet, linesOf(tet, scratch), [&](const ChartPoint& c) {
+    forEachBrick(tet, linesOf(tet, scratch), [&](const lattice::ChartPoint& c) {
       isNear = isNear || cache.at(charts_.chart[tet], c).contested != 0;
     });
     return isNear;
   };
   const auto listTets = [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& list) {
-    const std::vector<BrickKey>& keys = keys_[begin / kSweepBlock];
+    const std::vector<BrickKey>& keys = keys_[begin / sweep::kSweepBlock];
     if (std::none_of(keys.begin(), keys.end(),
                      [this](BrickKey key) { return grid_.find(key)->contested != 0; })) {
       return;
     }
     BrickCache<Id> cache(grid_);
-    std::vector<SweptLine> scratch;
+    std::vector<lattice::SweptLine> scratch;
     for (std::size_t i = begin; i < end; ++i) {
       if (isNearContested(tetAt(i), scratch, cache)) list.push_back(i);
     }
   };
-  const auto tets = collectFromBlocks<std::size_t>(stage, tetCount(), kSweepBlock, listTets);
+  const auto tets = collectFromBlocks<std::size_t>(stage, tetCount(), sweep::kSweepBlock, listTets);
   // Listed once, as finding the owners of vertices takes longer than all that follows.
   std::vector<TetClaims> claims(tets.size());
   constexpr std::size_t kFewTets = 64;
   const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {
     scratch.clear();
     forEachClaim(
-        tetAt(tets[i]), Faces::All, boxesAt(tets[i]), [](const VertexRun&) {},
+        tetAt(tets[i]), Faces::All, boxesAt(tets[i]), [](const sweep::VertexRun&) {},
         [&](const ChartRow& row, std::uint64_t first) {
           scratch.push_back({row, first});
         });
@@ -282,11 +287,11 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   };
   parallelForWith(
       stage, tets.size(), kFewTets, [] { return std::vector<Claim>(); }, list);
-  return hexhex::resolveOverlaps(map_, claims, charts_, grid_, stage);
+  return atlas::resolveOverlaps(map_, claims, charts_, grid_, stage);
 }
 
 template <class Id>
-Id VertexGrid<Id>::vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const {
+Id VertexGrid<Id>::vertexAt(Index tet, const lattice::GridPoint& z, BrickCache<Id>& cache) const {
   if (charts_.chart[tet] != Charts::kNoChart) {
     const Id id = cache.idAt(charts_.chart[tet], charts_.gauge(tet)(z));
     if (Bricks::isVertex(id)) return id;
@@ -295,14 +300,14 @@ Id VertexGrid<Id>::vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache
 }
 
 template <class Id>
-std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
-  std::vector<SweptLine> scratch;
-  const std::span<const SweptLine> lines = linesOf(tet, scratch);
-  const SweepAxes order = lines.empty() ? SweepAxes{} : lines.front().axes;
+std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const lattice::GridPoint& z) const {
+  std::vector<lattice::SweptLine> scratch;
+  const std::span<const lattice::SweptLine> lines = linesOf(tet, scratch);
+  const lattice::SweepAxes order = lines.empty() ? lattice::SweepAxes{} : lines.front().axes;
   const std::array<std::uint8_t, 3>& axes = order();
   std::optional<std::uint64_t> found;
-  TetNumbering numbering(map_, numbers_, tet, order);
-  numbering.run(lines, [&](const VertexRun& run) {
+  sweep::TetNumbering numbering(map_, numbers_, tet, order);
+  numbering.run(lines, [&](const sweep::VertexRun& run) {
     if (run.line->level != z[axes[0]] || run.line->row != z[axes[1]]) return;
     const auto offset = static_cast<std::uint32_t>(z[axes[2]] - run.line->first) - run.offset;
     if (offset < run.count) found = run.first + offset;
@@ -310,9 +315,10 @@ std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
   if (found) return *found;
   for (int face = 0; face < 4; ++face) {
     if (((numbering.foreignFaces() >> face) & 1U) == 0) continue;
-    const HalfFace halfFace = halfFaceOf(tet, face);
-    const Index owner = tetOf(map_.topology.mate[halfFace]);
-    if (simplexOf(map_.exact.corners[tet], z, map_.exact.unit) != faceMask(face)) continue;
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, face);
+    const Index owner = adjacency::tetOf(map_.topology.mate[halfFace]);
+    if (lattice::simplexOf(map_.exact.corners[tet], z, map_.exact.unit) != lattice::faceMask(face))
+      continue;
     return exactNumber(owner, map_.exact.transitions.across(halfFace)(z));
   }
   throw Error(ErrorCode::Internal,
@@ -324,4 +330,4 @@ std::uint64_t VertexGrid<Id>::exactNumber(Index tet, const GridPoint& z) const {
 template class VertexGrid<std::uint32_t>;
 template class VertexGrid<std::uint64_t>;
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

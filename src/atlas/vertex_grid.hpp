@@ -16,13 +16,13 @@
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
+namespace hexhex::atlas {
 
 /// Recognizes most keys that it has seen before.
 class KeyFilter {
  public:
   KeyFilter() { seen_.fill(kNoBrick); }
-  [[nodiscard]] bool isNew(BrickKey key, const ChartPoint& c) noexcept {
+  [[nodiscard]] bool isNew(BrickKey key, const lattice::ChartPoint& c) noexcept {
     BrickKey& entry = seen_[recentBrick(c)];
     if (entry == key) return false;
     entry = key;
@@ -55,13 +55,14 @@ class VertexGrid {
   /// @param charts     may receive further charts
   /// @param numbers    of all vertices of the map, which sweep() fills
   /// @param keepLines  whether to store lines between the steps or to sweep again
-  VertexGrid(const PreparedMap& map, Charts& charts, VertexNumbers& numbers, bool keepLines)
+  VertexGrid(const igm::PreparedMap& map, Charts& charts, sweep::VertexNumbers& numbers,
+             bool keepLines)
       : map_(map), charts_(charts), numbers_(numbers) {
     if (keepLines) stored_.emplace(map.topology.tetCount());
   }
   /// Of a part of the map, in place of sweep().
   /// @param charts  a chart for each tet of the region, and none for others
-  VertexGrid(const PreparedMap& map, Charts& charts, VertexNumbers& numbers,
+  VertexGrid(const igm::PreparedMap& map, Charts& charts, sweep::VertexNumbers& numbers,
              const GridRegion& region, Stage& stage)
       : map_(map), charts_(charts), numbers_(numbers), region_(&region) {
     collectRegion(stage);
@@ -70,7 +71,7 @@ class VertexGrid {
   /// Sweeps all tets, for vertices and for cells, and numbers both.
   /// @param observer   sees every tet, if there is one
   /// @param fewPoints  as in EngineSwitches
-  void sweep(CellCenters& cells, Stage& stage, SweepObserver* observer = nullptr,
+  void sweep(sweep::CellCenters& cells, Stage& stage, sweep::SweepObserver* observer = nullptr,
              bool fewPoints = true);
   /// Makes the grid, enters all vertices, and writes them to `arrays`.
   void fill(const VertexArrays& arrays, Stage& stage);
@@ -80,7 +81,7 @@ class VertexGrid {
   /// Frees what only the steps above need.
   void dropLines() noexcept { stored_.reset(); }
   /// Takes away what there is of vertices besides the grid, if lines were kept.
-  [[nodiscard]] SweptVertices takeVertices() noexcept {
+  [[nodiscard]] sweep::SweptVertices takeVertices() noexcept {
     return {std::move(*stored_), std::move(numbers_)};
   }
 
@@ -88,12 +89,12 @@ class VertexGrid {
   void describe(Index tet, const VertexArrays& arrays) const;
 
   /// The hex vertex at a grid point of a closed tet.
-  [[nodiscard]] Id vertexAt(Index tet, const GridPoint& z, BrickCache<Id>& cache) const;
+  [[nodiscard]] Id vertexAt(Index tet, const lattice::GridPoint& z, BrickCache<Id>& cache) const;
 
   /// The same without the grid: slow, but right for tets without a chart, too.
-  [[nodiscard]] std::uint64_t exactNumber(Index tet, const GridPoint& z) const;
+  [[nodiscard]] std::uint64_t exactNumber(Index tet, const lattice::GridPoint& z) const;
 
-  [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] const sweep::VertexNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] BrickGrid<Id>& grid() noexcept { return grid_; }
   [[nodiscard]] const BrickGrid<Id>& grid() const noexcept { return grid_; }
   [[nodiscard]] const Charts& charts() const noexcept { return charts_; }
@@ -104,8 +105,8 @@ class VertexGrid {
 
   /// Of a block of tets.
   struct SweptLines {
-    BlockLines vertices;
-    BlockLines centers;
+    sweep::BlockLines vertices;
+    sweep::BlockLines centers;
   };
 
   void collectRegion(Stage& stage);
@@ -115,30 +116,30 @@ class VertexGrid {
   [[nodiscard]] Index tetAt(std::size_t i) const noexcept {
     return region_ != nullptr ? region_->tets[i] : static_cast<Index>(i);
   }
-  [[nodiscard]] std::span<const GridBox> boxesAt(std::size_t i) const noexcept {
-    return region_ != nullptr ? region_->boxesOf(i) : std::span<const GridBox>();
+  [[nodiscard]] std::span<const lattice::GridBox> boxesAt(std::size_t i) const noexcept {
+    return region_ != nullptr ? region_->boxesOf(i) : std::span<const lattice::GridBox>();
   }
   template <class Visit>
-  void forEachBrick(Index tet, std::span<const SweptLine> lines, const Visit& visit) const;
-  void collectKeys(Index tet, std::span<const SweptLine> lines, KeyFilter& filter,
+  void forEachBrick(Index tet, std::span<const lattice::SweptLine> lines, const Visit& visit) const;
+  void collectKeys(Index tet, std::span<const lattice::SweptLine> lines, KeyFilter& filter,
                    std::vector<BrickKey>& keys) const;
-  [[nodiscard]] std::span<const SweptLine> linesOf(Index tet,
-                                                   std::vector<SweptLine>& scratch) const;
+  [[nodiscard]] std::span<const lattice::SweptLine> linesOf(
+      Index tet, std::vector<lattice::SweptLine>& scratch) const;
 
   template <class VisitRun, class VisitRow>
-  void forEachClaim(Index tet, Faces faces, std::span<const GridBox> boxes,
+  void forEachClaim(Index tet, Faces faces, std::span<const lattice::GridBox> boxes,
                     const VisitRun& visitRun, const VisitRow& visitRow) const;
   template <class VisitRow>
   void forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const;
 
-  void write(const VertexRun& run, Index tet, std::optional<TetPositions>& positions,
+  void write(const sweep::VertexRun& run, Index tet, std::optional<sweep::TetPositions>& positions,
              const VertexArrays& arrays) const;
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   Charts& charts_;
-  VertexNumbers& numbers_;
+  sweep::VertexNumbers& numbers_;
   const GridRegion* region_ = nullptr;  ///< null: all tets
-  std::optional<TetLines> stored_;
+  std::optional<sweep::TetLines> stored_;
   std::vector<std::vector<BrickKey>> keys_;  ///< bricks with points of each block of tets
   BrickGrid<Id> grid_;
   bool overlaps_ = false;  ///< some point was claimed by two vertices
@@ -147,4 +148,4 @@ class VertexGrid {
 extern template class VertexGrid<std::uint32_t>;
 extern template class VertexGrid<std::uint64_t>;
 
-}  // namespace hexhex
+}  // namespace hexhex::atlas

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <hexhex/types.hpp>
 
@@ -16,6 +18,23 @@ namespace hexhex {
 
 [[nodiscard]] constexpr Vec3 plus(const Vec3& a, const Vec3& b) noexcept {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+/// Exact ones: points of lattices, far from where they would overflow.
+using IntegerVector = std::array<std::int64_t, 3>;
+
+[[nodiscard]] constexpr IntegerVector operator+(const IntegerVector& a,
+                                                const IntegerVector& b) noexcept {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+[[nodiscard]] constexpr IntegerVector operator-(const IntegerVector& a,
+                                                const IntegerVector& b) noexcept {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+[[nodiscard]] constexpr IntegerVector operator-(const IntegerVector& a) noexcept {
+  return {-a[0], -a[1], -a[2]};
 }
 
 [[nodiscard]] constexpr double dot(const Vec3& a, const Vec3& b) noexcept {

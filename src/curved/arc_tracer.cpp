@@ -5,22 +5,23 @@
 #include <curved/arc_tracer.hpp>
 #include <curved/crossings.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
 /// The simplex of a tet into which the first axis leads from an inner point of another one, or
 /// kNoSimplex: holder() where only one direction matters. (Algorithm 4)
-CornerMask holderAhead(const LatticeTet& seen, CornerMask at) {
-  CornerMask simplex = kWholeTet;
+lattice::CornerMask holderAhead(const lattice::LatticeTet& seen, lattice::CornerMask at) {
+  lattice::CornerMask simplex = lattice::kWholeTet;
   for (int face = 0; face < 4; ++face) {
-    if (contains(at, face)) continue;
-    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
-    const LatticePoint& origin = seen[static_cast<std::size_t>(f[0])];
-    const Int128 ahead = crossComponent(seen[static_cast<std::size_t>(f[1])] - origin,
-                                        seen[static_cast<std::size_t>(f[2])] - origin, 0);
-    if (ahead < 0) return kNoSimplex;
-    if (ahead == 0) simplex = static_cast<CornerMask>(simplex & faceMask(face));
+    if (lattice::contains(at, face)) continue;
+    const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
+    const lattice::LatticePoint& origin = seen[static_cast<std::size_t>(f[0])];
+    const lattice::Int128 ahead =
+        lattice::crossComponent(seen[static_cast<std::size_t>(f[1])] - origin,
+                                seen[static_cast<std::size_t>(f[2])] - origin, 0);
+    if (ahead < 0) return lattice::kNoSimplex;
+    if (ahead == 0) simplex = static_cast<lattice::CornerMask>(simplex & lattice::faceMask(face));
   }
   return simplex;
 }
@@ -37,14 +38,15 @@ void ArcTracer::fail(Index tet, const char* what) {
 void ArcTracer::trace(const SimplexInTet& middle) {
   const std::size_t firstPoint = pieces_.points();
   const Found from = vertices_.find(middle.tet, middle.frame.origin);
-  const Found to = vertices_.find(middle.tet, step(middle.frame.origin, middle.frame.axes[0]));
+  const Found to =
+      vertices_.find(middle.tet, lattice::step(middle.frame.origin, middle.frame.axes[0]));
   Ends ends = {from.vertex, to.vertex};
   if (from.vertex != kNone && to.vertex != kNone) {
     // By convexity, all between lies in the smallest simplex that contains both ends.
-    addSegment({middle.tet, static_cast<CornerMask>(from.simplex | to.simplex), {}});
+    addSegment({middle.tet, static_cast<lattice::CornerMask>(from.simplex | to.simplex), {}});
   } else {
-    ends = middle.simplex == kWholeTet ? traceFromInside(middle, from, to)
-                                       : traceFromBoundary(middle, from);
+    ends = middle.simplex == lattice::kWholeTet ? traceFromInside(middle, from, to)
+                                                : traceFromBoundary(middle, from);
   }
   pieces_.addArc(ends, firstPoint);
   // Exact parameters are in (0, 1) and ascend; rounding may not change that.
@@ -59,11 +61,11 @@ void ArcTracer::trace(const SimplexInTet& middle) {
 /// @param from, to  what the tet has of the edge's ends
 ArcTracer::Ends ArcTracer::traceFromInside(const SimplexInTet& middle, const Found& from,
                                            const Found& to) {
-  const LatticeTet seen = see(middle);
+  const lattice::LatticeTet seen = see(middle);
   const EdgeSides sides(seen);
   Ends ends = {from.vertex, to.vertex};
   if (from.vertex == kNone) {
-    const SimplexInTet back{middle.tet, kWholeTet, middle.frame.reversed()};
+    const SimplexInTet back{middle.tet, lattice::kWholeTet, middle.frame.reversed()};
     const bool walking = walk_.start(back, seen, sides, Heading::Backward);
     ends[0] = traceBack(back, [&] { return followBeyond(back, walking); });
   } else {
@@ -78,7 +80,7 @@ ArcTracer::Ends ArcTracer::traceFromInside(const SimplexInTet& middle, const Fou
 /// From a midpoint on the boundary of tets: back to the beginning, then on from where it was.
 /// @param from  what the tet has of the beginning
 ArcTracer::Ends ArcTracer::traceFromBoundary(const SimplexInTet& middle, const Found& from) {
-  SimplexInTet carrier{middle.tet, static_cast<CornerMask>(middle.simplex | from.simplex),
+  SimplexInTet carrier{middle.tet, static_cast<lattice::CornerMask>(middle.simplex | from.simplex),
                        middle.frame};
   Index first = from.vertex;
   if (first == kNone) {
@@ -123,7 +125,7 @@ Index ArcTracer::followBeyond(SimplexInTet at, bool walking) {
       const Index vertex = walkOn(at);
       if (vertex != kNone) return vertex;
     }
-    const LatticeTet seen = see(at);
+    const lattice::LatticeTet seen = see(at);
     const SimplexPoint exit = exitPoint(seen, at.simplex, 0);
     const HandOver next = leave(at, exit.simplex());
     pieces_.addPoint(exitAt(next.exit, at, seen, exit));
@@ -139,8 +141,8 @@ Index ArcTracer::followBeyond(SimplexInTet at, bool walking) {
 
 /// Whether a walk through the interiors of faces begins in a part's carrier.
 bool ArcTracer::startWalk(const SimplexInTet& at) {
-  if (at.simplex != kWholeTet) return false;
-  const LatticeTet seen = see(at);
+  if (at.simplex != lattice::kWholeTet) return false;
+  const lattice::LatticeTet seen = see(at);
   return walk_.start(at, seen, EdgeSides(seen), Heading::Forward);
 }
 
@@ -155,8 +157,8 @@ Index ArcTracer::walkOn(SimplexInTet& at) {
       owner = at;
       face = walk_.face();
     }
-    pieces_.addPoint(exitThrough(map_, {owner.tet, faceMask(face)}, owner.frame.edge()));
-    pieces_.addSegment({at.tet, kWholeTet});
+    pieces_.addPoint(exitThrough(map_, {owner.tet, lattice::faceMask(face)}, owner.frame.edge()));
+    pieces_.addSegment({at.tet, lattice::kWholeTet});
     // To look for the end takes less than to leave the tet, so it is done first.
     const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
     if (vertex != kNone || !walk_.leave(at)) return vertex;
@@ -166,12 +168,12 @@ Index ArcTracer::walkOn(SimplexInTet& at) {
 
 /// @param at    the carrier of the part that ends
 /// @param exit  where, in the same tet
-ArcTracer::HandOver ArcTracer::leave(const SimplexInTet& at, CornerMask exit) {
-  if (exit == kNoSimplex) fail(at.tet, "a hex edge leaves a tet nowhere");
-  if (dimension(exit) == 1 && dimension(at.simplex) == 2 &&
-      topology_.isBoundary(halfFaceOf(at.tet, oppositeCorner(at.simplex)))) {
+ArcTracer::HandOver ArcTracer::leave(const SimplexInTet& at, lattice::CornerMask exit) {
+  if (exit == lattice::kNoSimplex) fail(at.tet, "a hex edge leaves a tet nowhere");
+  if (lattice::dimension(exit) == 1 && lattice::dimension(at.simplex) == 2 &&
+      topology_.isBoundary(adjacency::halfFaceOf(at.tet, lattice::oppositeCorner(at.simplex)))) {
     const HandOver next = leaveAlongBoundary(at, exit);
-    if (next.carrier.simplex != kNoSimplex) return next;
+    if (next.carrier.simplex != lattice::kNoSimplex) return next;
   }
   return {ownedBy(topology_, at.tet, exit), carrierBehind({at.tet, exit, at.frame})};
 }
@@ -179,8 +181,10 @@ ArcTracer::HandOver ArcTracer::leave(const SimplexInTet& at, CornerMask exit) {
 /// From a triangle on the boundary through one of its edges: usually to the next triangle on the
 /// boundary, and to go there takes one walk around the edge, which comes by its owner as well.
 /// @return a carrier without a simplex if the tet of that triangle does not have the next part
-ArcTracer::HandOver ArcTracer::leaveAlongBoundary(const SimplexInTet& at, CornerMask edge) const {
-  EdgeTurn turn(topology_, at.tet, edge, otherFaceAtEdge(edge, oppositeCorner(at.simplex)));
+ArcTracer::HandOver ArcTracer::leaveAlongBoundary(const SimplexInTet& at,
+                                                  lattice::CornerMask edge) const {
+  adjacency::EdgeTurn turn(topology_, at.tet, edge,
+                           adjacency::otherFaceAtEdge(edge, lattice::oppositeCorner(at.simplex)));
   HandOver next{{at.tet, edge}, at};
   while (turn.next() != kNone) {
     next.carrier.frame.cross(exact_.transitions, turn.out());
@@ -197,9 +201,9 @@ SimplexInTet ArcTracer::carrierBehind(const SimplexInTet& point) {
   SimplexInTet carrier;
   const bool leads = star_.visit(point, [&](const SimplexInTet& here) {
     carrier = here;
-    if (here.simplex == kWholeTet) return true;
+    if (here.simplex == lattice::kWholeTet) return true;
     carrier.simplex = holderAhead(see(here), here.simplex);
-    return carrier.simplex != kNoSimplex;
+    return carrier.simplex != lattice::kNoSimplex;
   });
   if (!leads) fail(point.tet, "a hex edge leaves the mesh");
   return carrier;
@@ -209,12 +213,12 @@ SimplexInTet ArcTracer::carrierBehind(const SimplexInTet& point) {
 /// @param generator  what holds it, by its owner
 /// @param seen       the carrier's tet
 ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
-                          const LatticeTet& seen, const SimplexPoint& point) const {
-  const CornerMask at = point.simplex();
-  if (dimension(at) == 2) {
-    return exitThrough(map_, carrier.tet, oppositeCorner(at), carrier.frame.edge());
+                          const lattice::LatticeTet& seen, const SimplexPoint& point) const {
+  const lattice::CornerMask at = point.simplex();
+  if (lattice::dimension(at) == 2) {
+    return exitThrough(map_, carrier.tet, lattice::oppositeCorner(at), carrier.frame.edge());
   }
   return exitAtCorners(map_, generator, carrier.tet, at, seen);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

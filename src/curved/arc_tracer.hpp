@@ -10,7 +10,7 @@
 #include <igm/prepare.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// Traces hex edges from their midpoints to both ends. One per thread. Frames have the edge along
 /// their first axis.
@@ -20,7 +20,7 @@ namespace hexhex {
 class ArcTracer {
  public:
   /// @param pieces  receives the arcs
-  ArcTracer(const PreparedMap& map, const VertexTables& vertices, ArcPieces& pieces)
+  ArcTracer(const igm::PreparedMap& map, const sweep::VertexTables& vertices, ArcPieces& pieces)
       : map_(map),
         exact_(map.exact),
         topology_(map.topology),
@@ -34,7 +34,7 @@ class ArcTracer {
   void trace(const SimplexInTet& middle);
 
  private:
-  using Found = VertexTables::Found;
+  using Found = sweep::VertexTables::Found;
   using Ends = std::array<Index, 2>;
 
   [[nodiscard]] Ends traceFromInside(const SimplexInTet& middle, const Found& from,
@@ -53,17 +53,17 @@ class ArcTracer {
     OwnedSimplex exit;
     SimplexInTet carrier;
   };
-  [[nodiscard]] HandOver leave(const SimplexInTet& at, CornerMask exit);
-  [[nodiscard]] HandOver leaveAlongBoundary(const SimplexInTet& at, CornerMask edge) const;
+  [[nodiscard]] HandOver leave(const SimplexInTet& at, lattice::CornerMask exit);
+  [[nodiscard]] HandOver leaveAlongBoundary(const SimplexInTet& at, lattice::CornerMask edge) const;
   [[nodiscard]] SimplexInTet carrierBehind(const SimplexInTet& point);
   [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
-                               const LatticeTet& seen, const SimplexPoint& point) const;
+                               const lattice::LatticeTet& seen, const SimplexPoint& point) const;
 
   /// The hex vertex at the end of the edge, if the closed tet has it.
   [[nodiscard]] Index vertexIn(const SimplexInTet& at) const {
-    return vertices_.find(at.tet, step(at.frame.origin, at.frame.axes[0])).vertex;
+    return vertices_.find(at.tet, lattice::step(at.frame.origin, at.frame.axes[0])).vertex;
   }
-  [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
+  [[nodiscard]] lattice::LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);
   }
   void addSegment(const SimplexInTet& carrier) {
@@ -71,13 +71,13 @@ class ArcTracer {
   }
   [[noreturn]] static void fail(Index tet, const char* what);
 
-  const PreparedMap& map_;
-  const ExactMap& exact_;
-  const TetTopology& topology_;
-  const VertexTables& vertices_;
+  const igm::PreparedMap& map_;
+  const igm::ExactMap& exact_;
+  const adjacency::TetTopology& topology_;
+  const sweep::VertexTables& vertices_;
   ArcPieces& pieces_;
   FaceWalk walk_;
   SimplexStar star_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -4,13 +4,14 @@
 #include <curved/arc_tracer.hpp>
 #include <curved/arcs.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
 /// Traces the edges that some tets own.
-void traceEdges(const PreparedMap& map, const VertexTables& vertices, const ElementNumbers& edges,
-                std::size_t begin, std::size_t end, ArcPieces& pieces) {
+void traceEdges(const igm::PreparedMap& map, const sweep::VertexTables& vertices,
+                const ElementNumbers& edges, std::size_t begin, std::size_t end,
+                ArcPieces& pieces) {
   pieces.clear();
   ArcTracer tracer(map, vertices, pieces);
   for (std::size_t t = begin; t < end; ++t) {
@@ -23,8 +24,8 @@ void traceEdges(const PreparedMap& map, const VertexTables& vertices, const Elem
 
 }  // namespace
 
-Arcs traceArcs(const PreparedMap& map, const VertexTables& vertices, const ElementNumbers& edges,
-               Stage& stage) {
+Arcs traceArcs(const igm::PreparedMap& map, const sweep::VertexTables& vertices,
+               const ElementNumbers& edges, Stage& stage) {
   Arcs arcs;
   arcs.ends.resize(edges.count());
   arcs.pointBegin.resize(edges.count() + 1);
@@ -48,4 +49,4 @@ Arcs traceArcs(const PreparedMap& map, const VertexTables& vertices, const Eleme
   return arcs;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -13,10 +13,10 @@
 #include <curved/element_numbers.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// Traces every hex edge once. Generators are in terms of the tets in the map, not of the caller's.
-[[nodiscard]] Arcs traceArcs(const PreparedMap& map, const VertexTables& vertices,
+[[nodiscard]] Arcs traceArcs(const igm::PreparedMap& map, const sweep::VertexTables& vertices,
                              const ElementNumbers& edges, Stage& stage);
 
 /// Inner points and segments of consecutive arcs while they are being traced. Keeps its memory.
@@ -92,4 +92,4 @@ inline void lengthenForPieces(Arcs& arcs, std::uint64_t points, std::uint64_t do
   lengthen(arcs.segmentCorners, points + done, share);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -13,7 +13,7 @@
 
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// How many blocks of a loop are to be in memory at the same time: enough for all threads to be
 /// busy, few enough to stay in their caches until they are copied. A thread alone waits for nobody.
@@ -80,4 +80,4 @@ void lengthen(Array<T>& array, std::size_t size, double share) {
   array.resize(size);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -18,7 +18,7 @@
 #include <igm/prepare.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// A point at which a hex edge leaves a simplex.
 struct ArcExit {
@@ -30,10 +30,10 @@ struct ArcExit {
 /// A face in the chart of its owner.
 class OwnersFace {
  public:
-  OwnersFace(const LatticeTet& ofOwner, int face) noexcept
-      : corners_(ofOwner), indices_(kFaceCorners[static_cast<std::size_t>(face)]) {}
+  OwnersFace(const lattice::LatticeTet& ofOwner, int face) noexcept
+      : corners_(ofOwner), indices_(lattice::kFaceCorners[static_cast<std::size_t>(face)]) {}
 
-  [[nodiscard]] const LatticePoint& corner(std::size_t i) const noexcept {
+  [[nodiscard]] const lattice::LatticePoint& corner(std::size_t i) const noexcept {
     return corners_[static_cast<std::size_t>(indices_[i])];
   }
   /// Coordinate k of its second corner, relative to the first,
@@ -46,7 +46,7 @@ class OwnersFace {
   }
 
  private:
-  const LatticeTet& corners_;
+  const lattice::LatticeTet& corners_;
   const std::array<int, 3>& indices_;
 };
 
@@ -61,13 +61,13 @@ struct FaceShares {
 /// @return outside if it does not cross the interior of the face
 [[nodiscard]] inline FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge,
                                              std::int64_t unit) noexcept {
-  LatticePoint line;
+  lattice::LatticePoint line;
   for (std::size_t k = 0; k < 3; ++k) line[k] = edge.z[k] * unit;
-  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   const auto weight = [&](std::size_t i, std::size_t j) {
-    return crossComponent(face.corner(i) - line, face.corner(j) - line, axis);
+    return lattice::crossComponent(face.corner(i) - line, face.corner(j) - line, axis);
   };
-  const std::array<Int128, 3> weights = {weight(1, 2), weight(2, 0), weight(0, 1)};
+  const std::array<lattice::Int128, 3> weights = {weight(1, 2), weight(2, 0), weight(0, 1)};
   unsigned positive = 0;
   unsigned negative = 0;
   double sum = 0;
@@ -75,7 +75,7 @@ struct FaceShares {
   for (std::size_t i = 0; i < 3; ++i) {
     positive += weights[i] > 0 ? 1 : 0;
     negative += weights[i] < 0 ? 1 : 0;
-    shares.of[i] = signedToDouble(weights[i]);
+    shares.of[i] = lattice::signedToDouble(weights[i]);
     sum += shares.of[i];
   }
   shares.inside = positive == 3 || negative == 3;
@@ -95,7 +95,7 @@ struct FaceShares {
 /// @return outside if it is not certain, or not known so well
 [[nodiscard]] inline FaceShares shareRoughly(const OwnersFace& face, const ChartEdge& edge,
                                              std::int64_t unit) noexcept {
-  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   const std::size_t m = (axis + 1) % 3;
   const std::size_t n = (axis + 2) % 3;
   const auto p = static_cast<double>(edge.z[m] * unit - face.corner(0)[m]);
@@ -128,8 +128,8 @@ struct FaceCrossing {
   FaceShares shares = shareRoughly(face, edge, unit);
   if (!shares.inside) shares = shareExactly(face, edge, unit);
   // Along the axis, in whichever direction the edge runs.
-  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
-  const bool backward = signOf(edge.along) < 0;
+  const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
+  const bool backward = lattice::signOf(edge.along) < 0;
   const std::int64_t begin = std::int64_t{edge.z[axis]} - (backward ? 1 : 0);
   const auto first = static_cast<double>(face.corner(0)[axis] - begin * unit);
   const double beyond = shares.of[1] * face.second(axis) + shares.of[2] * face.third(axis);
@@ -141,12 +141,12 @@ struct FaceCrossing {
 /// The point inside a face at which an edge crosses it.
 /// @param face  by its owner
 /// @param edge  in the chart of the owner
-[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, const OwnedSimplex& face,
+[[nodiscard]] inline ArcExit exitThrough(const igm::PreparedMap& map, const OwnedSimplex& face,
                                          const ChartEdge& edge) noexcept {
-  const int local = oppositeCorner(face.corners);
+  const int local = lattice::oppositeCorner(face.corners);
   const FaceCrossing crossing =
       crossFace(OwnersFace(map.exact.corners[face.tet], local), edge, map.exact.unit);
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(local)];
+  const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(local)];
   const auto corner = [&](std::size_t i) -> const Vec3& {
     return map.input.view.points[map.topology.tets[face.tet][static_cast<std::size_t>(f[i])]];
   };
@@ -160,11 +160,12 @@ struct FaceCrossing {
 
 /// The same from any tet of the face.
 /// @param edge  in the chart of that tet
-[[nodiscard]] inline ArcExit exitThrough(const PreparedMap& map, Index tet, int face,
+[[nodiscard]] inline ArcExit exitThrough(const igm::PreparedMap& map, Index tet, int face,
                                          const ChartEdge& edge) noexcept {
   const OwnedSimplex owned = ownedFace(map.topology, tet, face);
   if (owned.tet == tet) return exitThrough(map, owned, edge);
-  return exitThrough(map, owned, edge.across(map.exact.transitions, halfFaceOf(tet, face)));
+  return exitThrough(map, owned,
+                     edge.across(map.exact.transitions, adjacency::halfFaceOf(tet, face)));
 }
 
 /// The point inside an edge of the tets at which a hex edge crosses it.
@@ -176,8 +177,9 @@ struct EdgeCrossing {
 /// @param a, b   the corners, seen from where the hex edge begins
 /// @param axis   along which the hex edge ascends; its line passes between the corners
 /// @param unit   its length
-[[nodiscard]] inline EdgeCrossing crossTetEdge(const LatticePoint& a, const LatticePoint& b,
-                                               std::size_t axis, std::int64_t unit) noexcept {
+[[nodiscard]] inline EdgeCrossing crossTetEdge(const lattice::LatticePoint& a,
+                                               const lattice::LatticePoint& b, std::size_t axis,
+                                               std::int64_t unit) noexcept {
   // Both corners and the line are in one plane, so any distance across the axis will do; this one
   // is exact, and the same in all charts.
   const std::size_t p = (axis + 1) % 3;
@@ -200,11 +202,12 @@ struct EdgeCrossing {
 /// @param generator  the edge or vertex
 /// @param tet, at    the same in a tet
 /// @param seen       that tet, seen from where the hex edge begins, which ascends along axis 0
-[[nodiscard]] inline ArcExit exitAtCorners(const PreparedMap& map, const OwnedSimplex& generator,
-                                           Index tet, CornerMask at,
-                                           const LatticeTet& seen) noexcept {
-  const std::size_t i = firstCorner(at);
-  const std::size_t j = lastCorner(at);
+[[nodiscard]] inline ArcExit exitAtCorners(const igm::PreparedMap& map,
+                                           const OwnedSimplex& generator, Index tet,
+                                           lattice::CornerMask at,
+                                           const lattice::LatticeTet& seen) noexcept {
+  const std::size_t i = lattice::firstCorner(at);
+  const std::size_t j = lattice::lastCorner(at);
   const Tet& vertices = map.topology.tets[tet];
   const Vec3& first = map.input.view.points[vertices[i]];
   const Vec3& last = map.input.view.points[vertices[j]];
@@ -220,4 +223,4 @@ struct EdgeCrossing {
   return {generator, point, crossing.parameter};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

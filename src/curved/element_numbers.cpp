@@ -4,7 +4,7 @@
 #include <curved/element_numbers.hpp>
 #include <sweep/cell_centers.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 void requireNumbers(std::uint64_t elements) {
   if (elements < kNone) return;
@@ -13,22 +13,22 @@ void requireNumbers(std::uint64_t elements) {
                                        "32-bit indices can number. Lower the scale.");
 }
 
-ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind)
+ElementNumbers::ElementNumbers(const igm::PreparedMap& map, ElementKind kind)
     : topology_(map.topology), kind_(kind) {
   const std::size_t tets = map.topology.tetCount();
   begin_.resize(tets + 1);
   begin_[tets] = 0;
-  blocks_.resize(blockCount(tets, kSweepBlock));
+  blocks_.resize(blockCount(tets, sweep::kSweepBlock));
   lineBegin_.resize(3 * tets + 1);
   lineBegin_[3 * tets] = 0;
 }
 
-ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage)
+ElementNumbers::ElementNumbers(const igm::PreparedMap& map, ElementKind kind, Stage& stage)
     : ElementNumbers(map, kind) {
-  parallelBlocks(stage, topology_.tetCount(), kSweepBlock,
+  parallelBlocks(stage, topology_.tetCount(), sweep::kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (std::size_t t = begin; t < end; ++t) {
-                     TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit);
+                     lattice::TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit);
                      add(block, static_cast<Index>(t), rasterizer);
                    }
                  });
@@ -36,13 +36,13 @@ ElementNumbers::ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& 
 }
 
 /// Appends the lines with elements that a tet owns, and counts both.
-void ElementNumbers::add(std::size_t block, Index tet, TetRasterizer& rasterizer) {
+void ElementNumbers::add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer) {
   begin_[tet] = 0;
   Array<Line>& lines = blocks_[block];
-  CenterOwner owner(topology_, tet);
+  sweep::CenterOwner owner(topology_, tet);
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t before = lines.size();
-    rasterizer.sweep(midpointsOf(kind_, axis), [&](const SweptLine& line) {
+    rasterizer.sweep(midpointsOf(kind_, axis), [&](const lattice::SweptLine& line) {
       const auto [first, count] = owner.owned(line);
       if (count == 0) return;
       lines.push_back({line, first, count, kNone});
@@ -51,7 +51,7 @@ void ElementNumbers::add(std::size_t block, Index tet, TetRasterizer& rasterizer
     lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
   }
   // Lines stay where they are, so what was reserved too much would stay as well.
-  const bool isLast = (tet + 1) % kSweepBlock == 0;
+  const bool isLast = (tet + 1) % sweep::kSweepBlock == 0;
   if (isLast) lines.shrink_to_fit();
 }
 
@@ -60,7 +60,7 @@ void ElementNumbers::finish(Stage& stage) {
   requireNumbers(count());
   exclusiveScan(std::span(lineBegin_));
   parallelFor(stage, blocks_.size(), 1, [&](std::size_t block) {
-    auto number = static_cast<Index>(begin_[block * kSweepBlock]);
+    auto number = static_cast<Index>(begin_[block * sweep::kSweepBlock]);
     for (Line& line : blocks_[block]) {
       line.number = number;
       number += line.ownedCount;
@@ -68,9 +68,10 @@ void ElementNumbers::finish(Stage& stage) {
   });
 }
 
-Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, std::size_t& hint) const {
+Index ElementNumbers::find(Index owner, int axis, const lattice::GridPoint& z,
+                           std::size_t& hint) const {
   const std::span<const Line> lines = linesOf(owner, axis);
-  const Line* const line = findLine(lines, z, hint);
+  const Line* const line = sweep::findLine(lines, z, hint);
   if (line != nullptr) {
     hint = static_cast<std::size_t>(line - lines.data());
     const std::uint32_t i = line->swept.indexOf(z) - line->ownedFirst;
@@ -84,13 +85,13 @@ Index ElementNumbers::find(Index owner, int axis, const GridPoint& z, std::size_
 
 GridNumbers EdgeObserver::finish(Stage& stage) {
   edges_.finish(stage);
-  return {VertexTables(map_, std::move(*vertices_), stage), std::move(edges_)};
+  return {sweep::VertexTables(map_, std::move(*vertices_), stage), std::move(edges_)};
 }
 
-GridNumbers numberVerticesAndEdges(const PreparedMap& map, Stage& stage) {
+GridNumbers numberVerticesAndEdges(const igm::PreparedMap& map, Stage& stage) {
   EdgeObserver observer(map);
-  observer.take(sweepVertices(map, stage, &observer));
+  observer.take(sweep::sweepVertices(map, stage, &observer));
   return observer.finish(stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -16,22 +16,22 @@
 #include <lattice/tet_rasterizer.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 enum class ElementKind : std::uint8_t { Edges, Faces };
 
 /// One element as seen from the owner of its midpoint.
 struct Element {
   std::uint64_t number;
-  int axis;            ///< of the owner's chart: along an edge, across a face
-  GridPoint z;         ///< smallest corner
-  CornerMask simplex;  ///< of the owner, that holds the midpoint
+  int axis;                     ///< of the owner's chart: along an edge, across a face
+  lattice::GridPoint z;         ///< smallest corner
+  lattice::CornerMask simplex;  ///< of the owner, that holds the midpoint
 };
 
 class ElementNumbers {
  private:
   struct Line {
-    SweptLine swept;
+    lattice::SweptLine swept;
     std::uint32_t ownedFirst;
     std::uint32_t ownedCount;
     Index number;  ///< of the first that is owned
@@ -39,19 +39,20 @@ class ElementNumbers {
 
  public:
   /// @throws Error TooLarge for more elements than an Index can number
-  ElementNumbers(const PreparedMap& map, ElementKind kind, Stage& stage);
+  ElementNumbers(const igm::PreparedMap& map, ElementKind kind, Stage& stage);
   /// Without elements: for add() and finish().
-  ElementNumbers(const PreparedMap& map, ElementKind kind);
+  ElementNumbers(const igm::PreparedMap& map, ElementKind kind);
 
   /// The grid of midpoints of edges along an axis, or of faces across it.
-  [[nodiscard]] static constexpr HalfGrid midpointsOf(ElementKind kind, int axis) noexcept {
+  [[nodiscard]] static constexpr lattice::HalfGrid midpointsOf(ElementKind kind,
+                                                               int axis) noexcept {
     const int along = 1 << axis;
-    return static_cast<HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
+    return static_cast<lattice::HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
   }
 
   // While others sweep the same tets:
   /// Tets of a block of kSweepBlock in order, blocks in any order and in parallel.
-  void add(std::size_t block, Index tet, TetRasterizer& rasterizer);
+  void add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer);
   /// When all have been added.
   /// @throws Error TooLarge for more elements than an Index can number
   void finish(Stage& stage);
@@ -77,7 +78,8 @@ class ElementNumbers {
   /// The number of an element, by its owner.
   /// @param hint  moves along: one for each of several searches that go side by side
   /// @throws Error Internal if the tet does not own it
-  [[nodiscard]] Index find(Index owner, int axis, const GridPoint& z, std::size_t& hint) const;
+  [[nodiscard]] Index find(Index owner, int axis, const lattice::GridPoint& z,
+                           std::size_t& hint) const;
 
  private:
   [[nodiscard]] static std::size_t gridOf(Index tet, int axis) noexcept {
@@ -85,12 +87,12 @@ class ElementNumbers {
   }
   [[nodiscard]] std::span<const Line> linesOf(Index tet, int axis) const noexcept {
     const std::size_t grid = gridOf(tet, axis);
-    const std::size_t block = tet / kSweepBlock;
-    const Index blockBegin = lineBegin_[3 * kSweepBlock * block];
+    const std::size_t block = tet / sweep::kSweepBlock;
+    const Index blockBegin = lineBegin_[3 * sweep::kSweepBlock * block];
     return std::span(blocks_[block])
         .subspan(lineBegin_[grid] - blockBegin, lineBegin_[grid + 1] - lineBegin_[grid]);
   }
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   ElementKind kind_;
   Array<std::uint64_t> begin_;  ///< per tet (+1)
   Array<Index> lineBegin_;      ///< per tet and axis (+1); there are no more lines than elements
@@ -102,32 +104,32 @@ void requireNumbers(std::uint64_t elements);
 
 /// Vertices and edges, numbered in one sweep of the tets.
 struct GridNumbers {
-  VertexTables vertices;
+  sweep::VertexTables vertices;
   ElementNumbers edges;
 };
 
 /// Numbers edges while the atlas engine sweeps the tets for vertices and cells.
-class EdgeObserver final : public SweepObserver {
+class EdgeObserver final : public sweep::SweepObserver {
  public:
-  explicit EdgeObserver(const PreparedMap& map) : map_(map), edges_(map, ElementKind::Edges) {}
+  explicit EdgeObserver(const igm::PreparedMap& map) : map_(map), edges_(map, ElementKind::Edges) {}
 
-  void add(std::size_t block, Index tet, TetRasterizer& rasterizer) override {
+  void add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer) override {
     edges_.add(block, tet, rasterizer);
   }
-  void take(SweptVertices vertices) override { vertices_ = std::move(vertices); }
+  void take(sweep::SweptVertices vertices) override { vertices_ = std::move(vertices); }
 
   /// Once, when the engine is done.
   /// @throws Error TooLarge for more than an Index can number
   [[nodiscard]] GridNumbers finish(Stage& stage);
 
  private:
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   ElementNumbers edges_;
-  std::optional<SweptVertices> vertices_;
+  std::optional<sweep::SweptVertices> vertices_;
 };
 
 /// The same without an engine.
 /// @throws Error TooLarge for more than an Index can number
-[[nodiscard]] GridNumbers numberVerticesAndEdges(const PreparedMap& map, Stage& stage);
+[[nodiscard]] GridNumbers numberVerticesAndEdges(const igm::PreparedMap& map, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -15,14 +15,14 @@
 #include <extract/prepared_extractor.hpp>
 #include <extract/steps.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
 constexpr std::size_t kGrain = 1 << 16;
 
 /// From the tets as the library orders their corners to the caller's.
-void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage& stage) {
+void toCallersCorners(const igm::OrientedMap& input, Array<CornerSet>& corners, Stage& stage) {
   if (!input.cornersReversed) return;
   parallelFor(stage, corners.size(), kGrain,
               [&](std::size_t i) { corners[i] = input.callersCorners(corners[i]); });
@@ -32,8 +32,8 @@ void toCallersCorners(const OrientedMap& input, Array<CornerSet>& corners, Stage
 /// @param map      scaled
 /// @param extract  extract(SweepObserver*) gives the mesh, of the atlas engine if it is observed
 template <class Extract>
-PiecewiseLinearMesh withParts(const PreparedMap& map, PiecewiseLinearParts parts, Engine engine,
-                              Context& context, const Extract& extract) {
+PiecewiseLinearMesh withParts(const igm::PreparedMap& map, PiecewiseLinearParts parts,
+                              Engine engine, Context& context, const Extract& extract) {
   PiecewiseLinearMesh result;
   std::optional<EdgeObserver> observer;
   if (engine == Engine::Atlas) observer.emplace(map);
@@ -63,7 +63,7 @@ void requireOrder(int order) {
 }
 
 /// @param map  scaled for the mesh; receives the scale of the nodes
-LagrangeMesh withNodes(HexMesh mesh, PreparedMap& map, int order, Context& context) {
+LagrangeMesh withNodes(HexMesh mesh, igm::PreparedMap& map, int order, Context& context) {
   LagrangeMesh result = groupNodes(mesh, map, order, context);
   result.features = std::move(mesh.features);
   result.regions = std::move(mesh.regions);
@@ -72,30 +72,37 @@ LagrangeMesh withNodes(HexMesh mesh, PreparedMap& map, int order, Context& conte
 
 }  // namespace
 
+}  // namespace hexhex::curved
+
+namespace hexhex {
+
 PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinearParts parts,
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics) {
-  checkOptions(options);
+  extraction::checkOptions(options);
   PiecewiseLinearMesh result;
-  const ReportedCall call{"extractPiecewiseLinear", kPiecewiseSteps};
-  runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
-    ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
-    result = withParts(scaled.map, parts, options.engine, context, [&](SweepObserver* observer) {
-      return extractScaled(scaled, options, context, filled, observer);
-    });
+  const extraction::ReportedCall call{"extractPiecewiseLinear", extraction::kPiecewiseSteps};
+  extraction::runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
+    extraction::ScaledMap scaled = extraction::prepareScaled(map, options, {}, context, filled);
+    result = curved::withParts(
+        scaled.map, parts, options.engine, context, [&](sweep::SweepObserver* observer) {
+          return extraction::extractScaled(scaled, options, context, filled, observer);
+        });
   });
   return result;
 }
 
 LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOptions& options,
                              Context& context, ExtractStatistics* statistics) {
-  requireOrder(order);
-  checkOptions(options);
+  curved::requireOrder(order);
+  extraction::checkOptions(options);
   LagrangeMesh result;
-  const ReportedCall call{"extractLagrange", kLagrangeSteps};
-  runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
-    ScaledMap scaled = prepareScaled(map, options, {order}, context, filled);
-    result = withNodes(extractScaled(scaled, options, context, filled), scaled.map, order, context);
+  const extraction::ReportedCall call{"extractLagrange", extraction::kLagrangeSteps};
+  extraction::runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
+    extraction::ScaledMap scaled =
+        extraction::prepareScaled(map, options, {order}, context, filled);
+    result = curved::withNodes(extraction::extractScaled(scaled, options, context, filled),
+                               scaled.map, order, context);
   });
   return result;
 }
@@ -105,25 +112,26 @@ PiecewiseLinearMesh Extractor::extractPiecewiseLinear(PiecewiseLinearParts parts
                                                       Context& context,
                                                       ExtractStatistics* statistics) {
   PiecewiseLinearMesh result;
-  prepared_->run({"Extractor::extractPiecewiseLinear", kPiecewiseSteps}, options, {}, context,
-                 statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
-                   result = withParts(prepared_->map(), parts, options.engine, context,
-                                      [&](SweepObserver* observer) {
-                                        return prepared_->mesh(cells, options, context, filled,
-                                                               observer);
-                                      });
+  prepared_->run({"Extractor::extractPiecewiseLinear", extraction::kPiecewiseSteps}, options, {},
+                 context, statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
+                   result = curved::withParts(prepared_->map(), parts, options.engine, context,
+                                              [&](sweep::SweepObserver* observer) {
+                                                return prepared_->mesh(cells, options, context,
+                                                                       filled, observer);
+                                              });
                  });
   return result;
 }
 
 LagrangeMesh Extractor::extractLagrange(int order, const ExtractOptions& options, Context& context,
                                         ExtractStatistics* statistics) {
-  requireOrder(order);
+  curved::requireOrder(order);
   LagrangeMesh result;
-  prepared_->run({"Extractor::extractLagrange", kLagrangeSteps}, options, {order}, context,
-                 statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
+  prepared_->run({"Extractor::extractLagrange", extraction::kLagrangeSteps}, options, {order},
+                 context, statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
                    HexMesh mesh = prepared_->mesh(cells, options, context, filled);
-                   result = withNodes(std::move(mesh), prepared_->mapToScale(), order, context);
+                   result =
+                       curved::withNodes(std::move(mesh), prepared_->mapToScale(), order, context);
                  });
   return result;
 }

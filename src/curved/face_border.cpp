@@ -6,7 +6,7 @@
 #include <curved/face_border.hpp>
 #include <curved/simplex_point.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 void failToCut(Index tet, const char* what) {
   throw Error(ErrorCode::Internal,
@@ -18,18 +18,18 @@ void failToCut(Index tet, const char* what) {
 namespace {
 
 /// The ends of an edge, the smaller first; a vertex twice.
-std::pair<Index, Index> endsOf(const Tet& tet, CornerMask simplex) noexcept {
-  return std::minmax({tet[firstCorner(simplex)], tet[lastCorner(simplex)]});
+std::pair<Index, Index> endsOf(const Tet& tet, lattice::CornerMask simplex) noexcept {
+  return std::minmax({tet[lattice::firstCorner(simplex)], tet[lattice::lastCorner(simplex)]});
 }
 
 /// Tells a simplex of less than four corners from others that are given by their owners.
 class SimplexMatcher {
  public:
-  SimplexMatcher(const TetTopology& topology, Index tet, CornerMask simplex)
-      : topology_(topology), dimension_(dimension(simplex)) {
+  SimplexMatcher(const adjacency::TetTopology& topology, Index tet, lattice::CornerMask simplex)
+      : topology_(topology), dimension_(lattice::dimension(simplex)) {
     // The owner of an edge is found by a walk around it only, so edges are known by their ends.
     if (dimension_ == 2) {
-      face_ = ownedFace(topology, tet, oppositeCorner(simplex));
+      face_ = ownedFace(topology, tet, lattice::oppositeCorner(simplex));
     } else {
       ends_ = endsOf(topology.tets[tet], simplex);
     }
@@ -37,35 +37,36 @@ class SimplexMatcher {
 
   [[nodiscard]] bool operator()(const OwnedSimplex& other) const {
     if (dimension_ == 2) return other.tet == face_.tet && other.corners == face_.corners;
-    return dimension(other.corners) == dimension_ &&
+    return lattice::dimension(other.corners) == dimension_ &&
            endsOf(topology_.tets[other.tet], other.corners) == ends_;
   }
 
  private:
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   int dimension_;
   OwnedSimplex face_{};
   std::pair<Index, Index> ends_{};
 };
 
 /// Corners of the square, counter-clockwise.
-constexpr std::array<GridPoint, 4> kSquareCorners = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+constexpr std::array<lattice::GridPoint, 4> kSquareCorners = {
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
 
 /// Rounded coordinate along a side of the square of a corner of a slice on it.
-double placeOnSide(const LatticeTet& seen, const SliceCorner& corner, std::size_t side,
+double placeOnSide(const lattice::LatticeTet& seen, const SliceCorner& corner, std::size_t side,
                    std::int64_t unit) {
   const std::size_t across = axisAcross(side);
   const std::size_t along = 1 - across;
-  LatticeTet moved = seen;
+  lattice::LatticeTet moved = seen;
   if (boundsAtOne(side)) {
-    for (LatticePoint& p : moved) p[across] -= unit;
+    for (lattice::LatticePoint& p : moved) p[across] -= unit;
   }
-  SimplexPoint point = SimplexPoint::corner(firstCorner(corner.simplex));
-  if (dimension(corner.simplex) == 2) {
-    point = crossingOfFace(moved, oppositeCorner(corner.simplex), along);
-  } else if (dimension(corner.simplex) == 1) {
-    const std::size_t i = firstCorner(corner.simplex);
-    const std::size_t j = lastCorner(corner.simplex);
+  SimplexPoint point = SimplexPoint::corner(lattice::firstCorner(corner.simplex));
+  if (lattice::dimension(corner.simplex) == 2) {
+    point = crossingOfFace(moved, lattice::oppositeCorner(corner.simplex), along);
+  } else if (lattice::dimension(corner.simplex) == 1) {
+    const std::size_t i = lattice::firstCorner(corner.simplex);
+    const std::size_t j = lattice::lastCorner(corner.simplex);
     const std::size_t axis = moved[i][across] != moved[j][across] ? across : 2;
     point = SimplexPoint::between(i, j, moved[i][axis], moved[j][axis]);
   }
@@ -73,7 +74,7 @@ double placeOnSide(const LatticeTet& seen, const SliceCorner& corner, std::size_
 }
 
 /// The simplex of a tet that holds the origin, or kNoSimplex.
-CornerMask simplexOfOrigin(const LatticeTet& corners) {
+lattice::CornerMask simplexOfOrigin(const lattice::LatticeTet& corners) {
   std::array<std::array<double, 3>, 4> c;
   std::array<double, 3> reach{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -85,9 +86,9 @@ CornerMask simplexOfOrigin(const LatticeTet& corners) {
   // Each volume is a sum of six products with at most eight roundings each: an error below
   // 6 * 8.1 * 2^-53 < 2^-47 times the largest product. 2^-46 leaves a factor of two.
   const double error = 0x1p-46 * reach[0] * reach[1] * reach[2];
-  CornerMask simplex = kNoSimplex;
+  lattice::CornerMask simplex = lattice::kNoSimplex;
   for (int face = 0; face < 4; ++face) {
-    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
     const auto i = static_cast<std::size_t>(f[0]);
     const auto j = static_cast<std::size_t>(f[1]);
     const auto k = static_cast<std::size_t>(f[2]);
@@ -96,9 +97,9 @@ CornerMask simplexOfOrigin(const LatticeTet& corners) {
                            c[k][2] * (c[i][0] * c[j][1] - c[i][1] * c[j][0]);
     const int side = std::abs(outside) > error
                          ? (outside < 0 ? 1 : -1)
-                         : sideOfFace(corners, static_cast<std::size_t>(face), {0, 0, 0});
-    if (side < 0) return kNoSimplex;
-    if (side > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(face));
+                         : lattice::sideOfFace(corners, static_cast<std::size_t>(face), {0, 0, 0});
+    if (side < 0) return lattice::kNoSimplex;
+    if (side > 0) simplex = static_cast<lattice::CornerMask>(simplex | lattice::cornerBit(face));
   }
   return simplex;
 }
@@ -118,19 +119,19 @@ bool FaceBorder::mayContainAll(const SeenTet& seen, std::int64_t unit) noexcept 
   return true;
 }
 
-CornerMask FaceBorder::setInsideOneTet(Index tet, const Frame& frame) {
-  std::array<CornerMask, 4> simplices{};
-  CornerMask carrier = kNoSimplex;
+lattice::CornerMask FaceBorder::setInsideOneTet(Index tet, const Frame& frame) {
+  std::array<lattice::CornerMask, 4> simplices{};
+  lattice::CornerMask carrier = lattice::kNoSimplex;
   for (std::size_t i = 0; i < 4; ++i) {
-    const VertexTables::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
-    if (found.vertex == kNone) return kNoSimplex;
+    const sweep::VertexTables::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
+    if (found.vertex == kNone) return lattice::kNoSimplex;
     vertices_[i] = found.vertex;
     simplices[i] = found.simplex;
-    carrier = static_cast<CornerMask>(carrier | found.simplex);
+    carrier = static_cast<lattice::CornerMask>(carrier | found.simplex);
   }
   for (std::size_t i = 0; i < 4; ++i) {
     if (((found_ >> i) & 1U) != 0) continue;
-    const auto middle = static_cast<CornerMask>(simplices[i] | simplices[(i + 1) % 4]);
+    const auto middle = static_cast<lattice::CornerMask>(simplices[i] | simplices[(i + 1) % 4]);
     setArc(i, {tet, middle, frame});
   }
   return carrier;
@@ -142,27 +143,28 @@ void FaceBorder::findArcs(const SimplexInTet& carrier, const SeenTet& seen, cons
   }
   for (unsigned open = slice.possibleMidpoints & ~found_; open != 0; open &= open - 1) {
     const auto side = static_cast<std::size_t>(std::countr_zero(open));
-    const CornerMask simplex = simplexOfMidpoint(seen.corners, side);
-    if (simplex != kNoSimplex) setArc(side, {carrier.tet, simplex, carrier.frame});
+    const lattice::CornerMask simplex = simplexOfMidpoint(seen.corners, side);
+    if (simplex != lattice::kNoSimplex) setArc(side, {carrier.tet, simplex, carrier.frame});
   }
 }
 
 /// The simplex of a tet that holds the midpoint of a side, or kNoSimplex.
-CornerMask FaceBorder::simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const {
+lattice::CornerMask FaceBorder::simplexOfMidpoint(const lattice::LatticeTet& corners,
+                                                  std::size_t side) const {
   const std::int64_t unit = exact_.unit;
-  const std::array<LatticePoint, 4> midpoints = {
+  const std::array<lattice::LatticePoint, 4> midpoints = {
       {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
-  LatticeTet around = corners;
-  for (LatticePoint& corner : around) corner = corner - midpoints[side];
+  lattice::LatticeTet around = corners;
+  for (lattice::LatticePoint& corner : around) corner = corner - midpoints[side];
   // Most tets at a side are elsewhere along it.
   const std::size_t along = side % 2;
   bool before = true;
   bool behind = true;
-  for (const LatticePoint& corner : around) {
+  for (const lattice::LatticePoint& corner : around) {
     before = before && corner[along] < 0;
     behind = behind && corner[along] > 0;
   }
-  if (before || behind) return kNoSimplex;
+  if (before || behind) return lattice::kNoSimplex;
   return simplexOfOrigin(around);
 }
 
@@ -171,7 +173,8 @@ CornerMask FaceBorder::simplexOfMidpoint(const LatticeTet& corners, std::size_t 
 void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
   Index owner = midpoint.tet;
   Frame frame = midpoint.frame;
-  if (midpoint.simplex != kWholeTet) owner = ownerTet(topology_, midpoint.tet, midpoint.simplex);
+  if (midpoint.simplex != lattice::kWholeTet)
+    owner = adjacency::ownerTet(topology_, midpoint.tet, midpoint.simplex);
   if (owner != midpoint.tet) {
     const bool found = star_.visit(midpoint, [&](const SimplexInTet& here) {
       frame = here.frame;
@@ -180,12 +183,12 @@ void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
     if (!found) failToCut(midpoint.tet, "the owner of an edge was not found");
   }
   // Sides 1 and 2 are one step from the origin; sides 2 and 3 run backward.
-  const Direction along = frame.axes[side % 2];
-  const bool backward = signOf(along) < 0;
-  GridPoint smaller = frame.origin;
-  if (boundsAtOne(side)) smaller = step(smaller, frame.axes[axisAcross(side)]);
-  if (backward) smaller = step(smaller, along);
-  const int axis = axisOf(along);
+  const lattice::Direction along = frame.axes[side % 2];
+  const bool backward = lattice::signOf(along) < 0;
+  lattice::GridPoint smaller = frame.origin;
+  if (boundsAtOne(side)) smaller = lattice::step(smaller, frame.axes[axisAcross(side)]);
+  if (backward) smaller = lattice::step(smaller, along);
+  const int axis = lattice::axisOf(along);
   arcs_[side] = input_.edges.find(owner, axis, smaller, lineHints_[side]);
   reversed_ = static_cast<std::uint8_t>(reversed_ | (unsigned{backward == (side < 2)} << side));
   found_ |= 1U << side;
@@ -277,4 +280,4 @@ PatchPoint FaceBorder::pointAt(Index tet, const SeenTet& seen, const SliceCorner
   return arcPoint(side, best);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -8,7 +8,7 @@
 #include <curved/simplex_star.hpp>
 #include <curved/square_slice.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// A corner of a polygon: its number, and (u, v).
 struct PatchPoint {
@@ -36,7 +36,7 @@ class FaceBorder {
   [[nodiscard]] static bool mayContainAll(const SeenTet& seen, std::int64_t unit) noexcept;
   /// Takes the four vertices if they are all in one closed tet, and the arcs between them.
   /// @return the smallest simplex of the tet that contains them, or kNoSimplex
-  [[nodiscard]] CornerMask setInsideOneTet(Index tet, const Frame& frame);
+  [[nodiscard]] lattice::CornerMask setInsideOneTet(Index tet, const Frame& frame);
 
   /// Looks for the midpoints of sides along a slice, and takes the arcs of those that it finds.
   /// @param carrier  the simplex that was sliced, with the face's frame
@@ -76,14 +76,15 @@ class FaceBorder {
   /// of all arcs; kNoPart if there are several.
   [[nodiscard]] std::uint64_t partIn(const SimplexInTet& carrier, std::size_t side) const noexcept;
   [[nodiscard]] PatchPoint arcPoint(std::size_t side, std::uint64_t point) const noexcept;
-  [[nodiscard]] CornerMask simplexOfMidpoint(const LatticeTet& corners, std::size_t side) const;
+  [[nodiscard]] lattice::CornerMask simplexOfMidpoint(const lattice::LatticeTet& corners,
+                                                      std::size_t side) const;
   void setArc(std::size_t side, const SimplexInTet& midpoint);
 
   static constexpr std::uint64_t kNoPart = ~std::uint64_t{0};
 
   const PatchInput& input_;
-  const TetTopology& topology_;
-  const ExactMap& exact_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
   SimplexStar star_;
   std::uint64_t vertexCount_;
   std::array<std::size_t, 4> lineHints_{};  ///< by side: where its arc was found the last time
@@ -98,4 +99,4 @@ class FaceBorder {
 /// @throws Error Internal, always
 [[noreturn]] void failToCut(Index tet, const char* what);
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

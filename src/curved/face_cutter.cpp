@@ -2,7 +2,7 @@
 
 #include <curved/face_cutter.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 std::size_t FaceCutter::cut(Index tet, const Element& face) {
   // The face's axis is its normal.
@@ -10,8 +10,8 @@ std::size_t FaceCutter::cut(Index tet, const Element& face) {
   const SeenTet seen = see(center);
   border_.begin();
   if (FaceBorder::mayContainAll(seen, exact_.unit)) {
-    const CornerMask carrier = border_.setInsideOneTet(tet, center.frame);
-    if (carrier != kNoSimplex) {
+    const lattice::CornerMask carrier = border_.setInsideOneTet(tet, center.frame);
+    if (carrier != lattice::kNoSimplex) {
       cutInsideOneTet(tet, carrier);
       return 1;
     }
@@ -28,7 +28,7 @@ std::size_t FaceCutter::cut(Index tet, const Element& face) {
 }
 
 /// A face with all corners in one closed tet is one polygon.
-void FaceCutter::cutInsideOneTet(Index tet, CornerMask carrier) {
+void FaceCutter::cutInsideOneTet(Index tet, lattice::CornerMask carrier) {
   Index* const corners = out_.corners.extend(4);
   std::array<double, 2>* const parameters = out_.parameters.extend(4);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -43,11 +43,11 @@ void FaceCutter::cutInsideOneTet(Index tet, CornerMask carrier) {
 /// A tet or triangle of the plane whose closure contains the centre meets the open square.
 /// @param seen  the centre's tet
 void FaceCutter::addFirstPiece(const SimplexInTet& center, const SeenTet& seen) {
-  if (center.simplex == kWholeTet) return addPiece(center, seen);
+  if (center.simplex == lattice::kWholeTet) return addPiece(center, seen);
   const bool found = star_.visit(center, [&](const SimplexInTet& here) {
     const SeenTet seenHere = see(here);
-    const CornerMask carrier = seenHere.carrier();
-    if (carrier == kNoSimplex) return false;
+    const lattice::CornerMask carrier = seenHere.carrier();
+    if (carrier == lattice::kNoSimplex) return false;
     const SimplexInTet owned = ownedCarrier({here.tet, carrier, here.frame});
     addPiece(owned, owned.tet == here.tet ? seenHere : see(owned));
     return true;
@@ -57,10 +57,10 @@ void FaceCutter::addFirstPiece(const SimplexInTet& center, const SeenTet& seen) 
 
 /// A triangle has two tets: the smaller one stands for both.
 SimplexInTet FaceCutter::ownedCarrier(const SimplexInTet& carrier) const {
-  if (carrier.simplex == kWholeTet) return carrier;
-  const int face = oppositeCorner(carrier.simplex);
-  const HalfFace mate = topology_.mate[halfFaceOf(carrier.tet, face)];
-  if (mate == kNone || tetOf(mate) > carrier.tet) return carrier;
+  if (carrier.simplex == lattice::kWholeTet) return carrier;
+  const int face = lattice::oppositeCorner(carrier.simplex);
+  const adjacency::HalfFace mate = topology_.mate[adjacency::halfFaceOf(carrier.tet, face)];
+  if (mate == kNone || adjacency::tetOf(mate) > carrier.tet) return carrier;
   return crossed(topology_, exact_, carrier, face);
 }
 
@@ -94,10 +94,10 @@ void FaceCutter::addPiece(const SimplexInTet& carrier, const SeenTet& seen) {
 /// @param from  the piece on this side
 /// @param side  its side in the face
 void FaceCutter::addPieceBehind(std::size_t from, std::size_t side, int face) {
-  const HalfFace halfFace = halfFaceOf(pieces_[from].carrier.tet, face);
-  const HalfFace mate = topology_.mate[halfFace];
+  const adjacency::HalfFace halfFace = adjacency::halfFaceOf(pieces_[from].carrier.tet, face);
+  const adjacency::HalfFace mate = topology_.mate[halfFace];
   if (mate == kNone) failToCut(pieces_[from].carrier.tet, "a face leaves the mesh");
-  SimplexInTet carrier{tetOf(mate), kWholeTet, pieces_[from].carrier.frame};
+  SimplexInTet carrier{adjacency::tetOf(mate), lattice::kWholeTet, pieces_[from].carrier.frame};
   carrier.frame.cross(exact_.transitions, halfFace);
   std::size_t& first = piecesOfTet_[carrier.tet];
   if (isKnown(carrier, first)) return;
@@ -105,18 +105,18 @@ void FaceCutter::addPieceBehind(std::size_t from, std::size_t side, int face) {
   const Piece& here = pieces_[from];
   // Three corners are known; they have the same coordinates.
   const Tet& tet = topology_.tets[here.carrier.tet];
-  const auto apex = static_cast<std::size_t>(localOf(mate));
+  const auto apex = static_cast<std::size_t>(adjacency::localOf(mate));
   unsigned below = 0;
   unsigned inPlane = 0;
-  for (const int i : kFaceCorners[static_cast<std::size_t>(face)]) {
+  for (const int i : lattice::kFaceCorners[static_cast<std::size_t>(face)]) {
     const auto old = static_cast<std::size_t>(i);
     const auto corner = static_cast<std::size_t>(topology_.localCorner(carrier.tet, tet[old]));
     piece.seen.corners[corner] = here.seen.corners[old];
     below |= ((unsigned{here.seen.below} >> i) & 1U) << corner;
     inPlane |= ((unsigned{here.seen.inPlane} >> i) & 1U) << corner;
   }
-  piece.seen.below = static_cast<CornerMask>(below);
-  piece.seen.inPlane = static_cast<CornerMask>(inPlane);
+  piece.seen.below = static_cast<lattice::CornerMask>(below);
+  piece.seen.inPlane = static_cast<lattice::CornerMask>(inPlane);
   piece.seen.reach = here.seen.reach;
   piece.seen.add(apex, carrier.frame.see(exact_.corners[carrier.tet][apex], exact_.unit));
   piece.from = from;
@@ -124,13 +124,14 @@ void FaceCutter::addPieceBehind(std::size_t from, std::size_t side, int face) {
   const std::size_t sectionSide = here.slice[side].side;
   KnownCut known;
   if (piece.seen.inPlane == 0) {
-    piece.section = sectionBehind(piece.seen, localOf(mate), here.section, sectionSide, exact_.unit,
-                                  piece.entry);
+    piece.section = sectionBehind(piece.seen, adjacency::localOf(mate), here.section, sectionSide,
+                                  exact_.unit, piece.entry);
     if (here.cuts.areKnown) known = {piece.entry, here.cuts.sides[sectionSide].reversed()};
   } else {
-    piece.section = sectionOf(piece.seen, kWholeTet, exact_.unit);
+    piece.section = sectionOf(piece.seen, lattice::kWholeTet, exact_.unit);
     piece.entry = 0;
-    while (piece.section.sideSimplex(piece.entry) != faceMask(localOf(mate))) ++piece.entry;
+    while (piece.section.sideSimplex(piece.entry) != lattice::faceMask(adjacency::localOf(mate)))
+      ++piece.entry;
   }
   slice(piece, known);
 }
@@ -164,9 +165,10 @@ void FaceCutter::addNeighbours(std::size_t piece) {
   for (; open != 0; open &= open - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(open));
     // Pieces move when one is added.
-    const CornerMask simplex = pieces_[piece].section.sideSimplex(pieces_[piece].slice[i].side);
-    if (dimension(simplex) == 2) {
-      addPieceBehind(piece, i, oppositeCorner(simplex));
+    const lattice::CornerMask simplex =
+        pieces_[piece].section.sideSimplex(pieces_[piece].slice[i].side);
+    if (lattice::dimension(simplex) == 2) {
+      addPieceBehind(piece, i, lattice::oppositeCorner(simplex));
     } else {
       addPieceAround(piece, i, simplex);
     }
@@ -174,18 +176,18 @@ void FaceCutter::addNeighbours(std::size_t piece) {
 }
 
 /// Two pieces meet in an edge of the plane, somewhere around it.
-void FaceCutter::addPieceAround(std::size_t from, std::size_t side, CornerMask edge) {
+void FaceCutter::addPieceAround(std::size_t from, std::size_t side, lattice::CornerMask edge) {
   const Piece& here = pieces_[from];
   const SimplexInTet at{here.carrier.tet, edge, here.carrier.frame};
   // Away from the plane, on either side of the edge; from a triangle in the plane there is one side
   // in this tet, and one in the tet behind the triangle.
   for (int face = 0; face < 4; ++face) {
-    if (contains(edge, face) || here.carrier.simplex == faceMask(face)) continue;
-    const auto other = static_cast<std::size_t>(otherFaceAtEdge(edge, face));
+    if (lattice::contains(edge, face) || here.carrier.simplex == lattice::faceMask(face)) continue;
+    const auto other = static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge, face));
     if (addPieceAround(from, side, at, face, here.seen.corners[other][2])) return;
   }
-  if (here.carrier.simplex != kWholeTet &&
-      addPieceAround(from, side, at, oppositeCorner(here.carrier.simplex), 0)) {
+  if (here.carrier.simplex != lattice::kWholeTet &&
+      addPieceAround(from, side, at, lattice::oppositeCorner(here.carrier.simplex), 0)) {
     return;
   }
   failToCut(at.tet, "an edge leaves the mesh");
@@ -198,28 +200,29 @@ void FaceCutter::addPieceAround(std::size_t from, std::size_t side, CornerMask e
 bool FaceCutter::addPieceAround(std::size_t from, std::size_t side, SimplexInTet edge, int face,
                                 std::int64_t height) {
   for (;;) {
-    const HalfFace mate = topology_.mate[halfFaceOf(edge.tet, face)];
+    const adjacency::HalfFace mate = topology_.mate[adjacency::halfFaceOf(edge.tet, face)];
     if (mate == kNone) return false;
     edge = crossed(topology_, exact_, edge, face);
-    const int apex = localOf(mate);
-    const LatticePoint& corner = exact_.corners[edge.tet][static_cast<std::size_t>(apex)];
+    const int apex = adjacency::localOf(mate);
+    const lattice::LatticePoint& corner = exact_.corners[edge.tet][static_cast<std::size_t>(apex)];
     const std::int64_t next = edge.frame.see(corner, exact_.unit)[2];
     if (next == 0) {
-      const auto triangle = static_cast<CornerMask>(edge.simplex | cornerBit(apex));
+      const auto triangle =
+          static_cast<lattice::CornerMask>(edge.simplex | lattice::cornerBit(apex));
       addPieceAtEdge(from, side, edge, triangle);
       return true;
     }
     if (height != 0 && (height < 0) != (next < 0)) {
-      addPieceAtEdge(from, side, edge, kWholeTet);
+      addPieceAtEdge(from, side, edge, lattice::kWholeTet);
       return true;
     }
     height = next;
-    face = otherFaceAtEdge(edge.simplex, apex);
+    face = adjacency::otherFaceAtEdge(edge.simplex, apex);
   }
 }
 
 void FaceCutter::addPieceAtEdge(std::size_t from, std::size_t side, SimplexInTet edge,
-                                CornerMask carrier) {
+                                lattice::CornerMask carrier) {
   const SimplexInTet owned = ownedCarrier({edge.tet, carrier, edge.frame});
   std::size_t& first = piecesOfTet_[owned.tet];
   if (isKnown(owned, first)) return;
@@ -304,10 +307,10 @@ PatchPoint FaceCutter::pointAt(const Piece& piece, const SliceCorner& corner) {
 /// edge that crosses a face twice comes back through a periodic domain.)
 PatchPoint FaceCutter::innerPoint(const Piece& piece, const SliceCorner& corner) {
   const Tet& tet = topology_.tets[piece.carrier.tet];
-  std::size_t i = firstCorner(corner.simplex);
-  std::size_t j = lastCorner(corner.simplex);
+  std::size_t i = lattice::firstCorner(corner.simplex);
+  std::size_t j = lattice::lastCorner(corner.simplex);
   if (tet[j] < tet[i]) std::swap(i, j);
-  const LatticeTet& seen = piece.seen.corners;
+  const lattice::LatticeTet& seen = piece.seen.corners;
   std::size_t& first = innerAtEdge_[tet[i] ^ (tet[j] * 0x85ebca6bU)];
   for (std::size_t k = first; k != kLast; k = inner_[k].next) {
     const InnerPoint& known = inner_[k];
@@ -328,16 +331,16 @@ PatchPoint FaceCutter::innerPoint(const Piece& piece, const SliceCorner& corner)
 void FaceCutter::ownInnerPoint(const Piece& piece, const SliceCorner& corner, Index number) {
   if (number < firstInnerPoint_) return;
   OwnedSimplex& generator = out_.generators[number - firstInnerPoint_];
-  if (piece.carrier.tet < generator.tet && dimension(corner.simplex) == 1) {
+  if (piece.carrier.tet < generator.tet && lattice::dimension(corner.simplex) == 1) {
     generator = {piece.carrier.tet, corner.simplex};
   }
 }
 
 PatchPoint FaceCutter::newInnerPoint(const Piece& piece, const SliceCorner& corner) {
   const Tet& tet = topology_.tets[piece.carrier.tet];
-  const std::size_t i = firstCorner(corner.simplex);
-  const std::size_t j = lastCorner(corner.simplex);
-  const LatticeTet& seen = piece.seen.corners;
+  const std::size_t i = lattice::firstCorner(corner.simplex);
+  const std::size_t j = lattice::lastCorner(corner.simplex);
+  const lattice::LatticeTet& seen = piece.seen.corners;
   const std::array<double, 2> shares =
       i == j ? std::array<double, 2>{1, 0} : sharesOfCrossing(seen[i][2], seen[j][2]);
   const auto& points = input_.map.input.view.points;
@@ -355,4 +358,4 @@ PatchPoint FaceCutter::newInnerPoint(const Piece& piece, const SliceCorner& corn
           {std::clamp(at[0] / unit_, 0.0, 1.0), std::clamp(at[1] / unit_, 0.0, 1.0)}};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -10,7 +10,7 @@
 #include <curved/simplex_star.hpp>
 #include <curved/square_slice.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// Cuts one face after the other. One per thread.
 ///
@@ -52,14 +52,14 @@ class FaceCutter {
     std::size_t entry;        ///< and the piece's own side there, of its section, then of its slice
   };
   struct InnerPoint {
-    std::array<Index, 2> vertices;     ///< of the edge, ascending; a vertex twice
-    std::array<LatticePoint, 2> seen;  ///< both in the square's frame
+    std::array<Index, 2> vertices;              ///< of the edge, ascending; a vertex twice
+    std::array<lattice::LatticePoint, 2> seen;  ///< both in the square's frame
     PatchPoint point;
     std::size_t next;  ///< of those with the same key, or kLast
   };
   /// A list per key, by the number of a KeyTable.
   struct Lists {
-    KeyTable keys;
+    adjacency::KeyTable keys;
     std::vector<std::size_t> first;
 
     void clear() {
@@ -75,14 +75,15 @@ class FaceCutter {
   };
   static constexpr std::size_t kLast = ~std::size_t{0};
 
-  void cutInsideOneTet(Index tet, CornerMask carrier);
+  void cutInsideOneTet(Index tet, lattice::CornerMask carrier);
   void addFirstPiece(const SimplexInTet& center, const SeenTet& seen);
   [[nodiscard]] SimplexInTet ownedCarrier(const SimplexInTet& carrier) const;
   void addPiece(const SimplexInTet& carrier, const SeenTet& seen);
-  void addPieceAround(std::size_t from, std::size_t side, CornerMask edge);
+  void addPieceAround(std::size_t from, std::size_t side, lattice::CornerMask edge);
   [[nodiscard]] bool addPieceAround(std::size_t from, std::size_t side, SimplexInTet edge, int face,
                                     std::int64_t height);
-  void addPieceAtEdge(std::size_t from, std::size_t side, SimplexInTet edge, CornerMask carrier);
+  void addPieceAtEdge(std::size_t from, std::size_t side, SimplexInTet edge,
+                      lattice::CornerMask carrier);
   void addPieceBehind(std::size_t from, std::size_t side, int face);
   [[nodiscard]] bool isKnown(const SimplexInTet& carrier, std::size_t first) const;
   [[nodiscard]] Piece& newPiece(const SimplexInTet& carrier, std::size_t& first);
@@ -99,8 +100,8 @@ class FaceCutter {
   [[nodiscard]] PatchPoint newInnerPoint(const Piece& piece, const SliceCorner& corner);
 
   const PatchInput& input_;
-  const TetTopology& topology_;
-  const ExactMap& exact_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
   double unit_;
   SimplexStar star_;
   FaceBorder border_;
@@ -115,4 +116,4 @@ class FaceCutter {
   Lists innerAtEdge_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

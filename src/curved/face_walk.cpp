@@ -1,7 +1,7 @@
 #include <base/low_level.hpp>
 #include <curved/face_walk.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
@@ -25,8 +25,8 @@ struct SeenFace {
 constexpr std::array<SeenFace, 4> makeFaces() noexcept {
   std::array<SeenFace, 4> faces;
   for (std::size_t face = 0; face < 4; ++face) {
-    const std::array<int, 3> f = {kFaceCorners[face][0], kFaceCorners[face][2],
-                                  kFaceCorners[face][1]};
+    const std::array<int, 3> f = {lattice::kFaceCorners[face][0], lattice::kFaceCorners[face][2],
+                                  lattice::kFaceCorners[face][1]};
     for (std::size_t i = 0; i < 3; ++i) {
       faces[face].corners[i] = static_cast<std::uint8_t>(f[i]);
       faces[face].sides[i] = static_cast<std::uint8_t>(edgeOf(f[(i + 1) % 3], f[(i + 2) % 3]));
@@ -58,16 +58,17 @@ constexpr std::array<std::uint8_t, 64> kExits = makeExits();
 
 }  // namespace
 
-EdgeSides::EdgeSides(const LatticeTet& seen) noexcept {
+EdgeSides::EdgeSides(const lattice::LatticeTet& seen) noexcept {
   for (std::size_t e = 0; e < 6; ++e) {
-    const Int128 product = crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
+    const lattice::Int128 product =
+        lattice::crossComponent(seen[kEdges[e][0]], seen[kEdges[e][1]], 0);
     if (product > 0) left |= 1U << e;
     if (product == 0) touches = true;
   }
 }
 
-bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides,
-                     Heading heading) {
+bool FaceWalk::start(const SimplexInTet& at, const lattice::LatticeTet& seen,
+                     const EdgeSides& sides, Heading heading) {
   // Looking back, left is right.
   const bool back = heading == Heading::Backward;
   const int face = kExits[back ? ~sides.left & 63U : sides.left];
@@ -75,9 +76,9 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
   leaveThrough(at.tet, face);
   const SeenFace& f = kFaces[static_cast<std::size_t>(face_)];
   for (std::size_t i = 0; i < 3; ++i) {
-    const LatticePoint& p = seen[f.corners[i]];
+    const lattice::LatticePoint& p = seen[f.corners[i]];
     vertices_[i] = topology_.tets[at.tet][f.corners[i]];
-    seen_[i] = back ? LatticePoint{exact_.unit - p[0], -p[1], p[2]} : p;
+    seen_[i] = back ? lattice::LatticePoint{exact_.unit - p[0], -p[1], p[2]} : p;
   }
   return true;
 }
@@ -86,31 +87,32 @@ bool FaceWalk::start(const SimplexInTet& at, const LatticeTet& seen, const EdgeS
 /// smaller than cells, and a whole extraction with them 3 %.
 void FaceWalk::leaveThrough(Index tet, int face) noexcept {
   face_ = face;
-  mate_ = topology_.mate[halfFaceOf(tet, face)];
+  mate_ = topology_.mate[adjacency::halfFaceOf(tet, face)];
   if (mate_ == kNone) return;
-  const Index next = tetOf(mate_);
+  const Index next = adjacency::tetOf(mate_);
   prefetch(exact_.corners[next].front().data());
   prefetch(&exact_.corners[next].back().back());
   prefetch(topology_.tets[next].data());
-  prefetch(&topology_.mate[halfFaceOf(next, 0)]);
+  prefetch(&topology_.mate[adjacency::halfFaceOf(next, 0)]);
 }
 
 bool FaceWalk::cross(SimplexInTet& at) {
-  const HalfFace halfFace = halfFaceOf(at.tet, face_);
+  const adjacency::HalfFace halfFace = adjacency::halfFaceOf(at.tet, face_);
   if (mate_ == kNone) return false;
-  at.tet = tetOf(mate_);
+  at.tet = adjacency::tetOf(mate_);
   at.frame.cross(exact_.transitions, halfFace);
-  face_ = localOf(mate_);
+  face_ = adjacency::localOf(mate_);
   return true;
 }
 
 bool FaceWalk::leave(const SimplexInTet& at) {
   const auto apex = static_cast<std::size_t>(face_);
-  const LatticePoint seen = at.frame.see(exact_.corners[at.tet][apex], exact_.unit);
+  const lattice::LatticePoint seen = at.frame.see(exact_.corners[at.tet][apex], exact_.unit);
   // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
   // to the right of the first and to the left of the second.
   std::array<int, 3> side{};
-  for (std::size_t i = 0; i < 3; ++i) side[i] = sign(crossComponent(seen_[i], seen, 0));
+  for (std::size_t i = 0; i < 3; ++i)
+    side[i] = lattice::sign(lattice::crossComponent(seen_[i], seen, 0));
   for (std::size_t first = 0; first < 3; ++first) {
     const std::size_t second = (first + 1) % 3;
     if (side[first] >= 0 || side[second] <= 0) continue;
@@ -123,4 +125,4 @@ bool FaceWalk::leave(const SimplexInTet& at) {
   return false;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -8,12 +8,12 @@
 #include <curved/simplex_star.hpp>
 #include <igm/prepare.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// On which side of the edges of a tet a hex edge passes, looking along it.
 struct EdgeSides {
   /// @param seen  the tet in a frame that has the hex edge along its first axis
-  explicit EdgeSides(const LatticeTet& seen) noexcept;
+  explicit EdgeSides(const lattice::LatticeTet& seen) noexcept;
 
   /// Bit e (of kEdges in face_walk.cpp): the second corner is to the left of the first.
   unsigned left = 0;
@@ -30,7 +30,7 @@ enum class Heading : std::uint8_t { Forward, Backward };
 /// corner that the next face lacks, and the others stay where they are.
 class FaceWalk {
  public:
-  explicit FaceWalk(const PreparedMap& map) : topology_(map.topology), exact_(map.exact) {}
+  explicit FaceWalk(const igm::PreparedMap& map) : topology_(map.topology), exact_(map.exact) {}
 
   /// Leaves a tet.
   /// @param at       the tet, whose interior meets the edge
@@ -39,8 +39,8 @@ class FaceWalk {
   /// @param heading  in that frame
   /// @return false if the edge does not leave through the interior of a face, or touches the line
   ///         of an edge of the tet elsewhere
-  [[nodiscard]] bool start(const SimplexInTet& at, const LatticeTet& seen, const EdgeSides& sides,
-                           Heading heading);
+  [[nodiscard]] bool start(const SimplexInTet& at, const lattice::LatticeTet& seen,
+                           const EdgeSides& sides, Heading heading);
 
   /// The face of the tet that the edge leaves it through; after cross(), that it came through.
   [[nodiscard]] int face() const noexcept { return face_; }
@@ -57,13 +57,13 @@ class FaceWalk {
  private:
   void leaveThrough(Index tet, int face) noexcept;
 
-  const TetTopology& topology_;
-  const ExactMap& exact_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
   int face_ = 0;
-  HalfFace mate_ = kNone;  ///< on the other side of the face
+  adjacency::HalfFace mate_ = kNone;  ///< on the other side of the face
   // Per corner of the face:
   std::array<Index, 3> vertices_{};
-  std::array<LatticePoint, 3> seen_{};  ///< as the frame shows them
+  std::array<lattice::LatticePoint, 3> seen_{};  ///< as the frame shows them
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -6,14 +6,14 @@
 #include <curved/simplex_star.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
 constexpr std::size_t kGrain = 4096;
 constexpr std::size_t kCellGrain = 256;
 
-using Triangle = std::array<LatticePoint, 3>;
+using Triangle = std::array<lattice::LatticePoint, 3>;
 
 bool separatedByCube(const Triangle& t, std::int64_t unit) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -24,33 +24,33 @@ bool separatedByCube(const Triangle& t, std::int64_t unit) noexcept {
 }
 
 /// Along the cross product of cube edge k and a triangle edge d.
-bool separatedByEdges(const Triangle& t, const LatticePoint& d, std::size_t k,
+bool separatedByEdges(const Triangle& t, const lattice::LatticePoint& d, std::size_t k,
                       std::int64_t unit) noexcept {
   const std::size_t i = (k + 1) % 3;
   const std::size_t j = (k + 2) % 3;
   if (d[i] == 0 && d[j] == 0) return false;  // parallel edges have no cross product
   // The function d_i x_j - d_j x_i of a point x.
-  const auto at = [&](const LatticePoint& x) {
-    return static_cast<Int128>(d[i]) * x[j] - static_cast<Int128>(d[j]) * x[i];
+  const auto at = [&](const lattice::LatticePoint& x) {
+    return static_cast<lattice::Int128>(d[i]) * x[j] - static_cast<lattice::Int128>(d[j]) * x[i];
   };
   const auto [low, high] = std::minmax({at(t[0]), at(t[1]), at(t[2])});
-  const Int128 alongJ = static_cast<Int128>(d[i]) * unit;
-  const Int128 alongI = -static_cast<Int128>(d[j]) * unit;
-  const Int128 zero = 0;
-  const Int128 cubeLow = std::min(alongI, zero) + std::min(alongJ, zero);
-  const Int128 cubeHigh = std::max(alongI, zero) + std::max(alongJ, zero);
+  const lattice::Int128 alongJ = static_cast<lattice::Int128>(d[i]) * unit;
+  const lattice::Int128 alongI = -static_cast<lattice::Int128>(d[j]) * unit;
+  const lattice::Int128 zero = 0;
+  const lattice::Int128 cubeLow = std::min(alongI, zero) + std::min(alongJ, zero);
+  const lattice::Int128 cubeHigh = std::max(alongI, zero) + std::max(alongJ, zero);
   return low >= cubeHigh || high <= cubeLow;
 }
 
 bool separatedByTriangle(const Triangle& t, std::int64_t unit) noexcept {
-  const LatticePoint u = t[1] - t[0];
-  const LatticePoint v = t[2] - t[0];
+  const lattice::LatticePoint u = t[1] - t[0];
+  const lattice::LatticePoint v = t[2] - t[0];
   // The normal's product with (corner of the cube) - (corner of the triangle): the cube is on one
   // side if its two extreme corners are.
-  Int192 lowest;
-  Int192 highest;
+  lattice::Int192 lowest;
+  lattice::Int192 highest;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Int128 normal = crossComponent(u, v, k);
+    const lattice::Int128 normal = lattice::crossComponent(u, v, k);
     lowest.addProduct(normal, (normal < 0 ? unit : 0) - t[0][k]);
     highest.addProduct(normal, (normal > 0 ? unit : 0) - t[0][k]);
   }
@@ -60,23 +60,24 @@ bool separatedByTriangle(const Triangle& t, std::int64_t unit) noexcept {
 /// A cell at the tet that owns its centre.
 struct CellSeed {
   Index tet;
-  GridPoint z;  ///< smallest corner
+  lattice::GridPoint z;  ///< smallest corner
 };
 
 /// All cells in their canonical order.
-Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
-  const CellCenters centers = findCells(map, stage);
+Array<CellSeed> listCells(const igm::PreparedMap& map, Stage& stage) {
+  const sweep::CellCenters centers = sweep::findCells(map, stage);
   Array<CellSeed> cells(centers.count());
-  parallelBlocks(stage, map.topology.tetCount(), kSweepBlock,
+  parallelBlocks(stage, map.topology.tetCount(), sweep::kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t) {
-                   std::vector<SweptLine> scratch;
+                   std::vector<lattice::SweptLine> scratch;
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto tet = static_cast<Index>(t);
                      std::uint64_t at = centers.begin[t];
-                     forEachOwnedCenter(map.topology, tet, centers.linesOf(map.exact, tet, scratch),
-                                        [&](const SweptLine& line, std::uint32_t i) {
-                                          cells[at++] = {tet, line.point(i)};
-                                        });
+                     sweep::forEachOwnedCenter(
+                         map.topology, tet, centers.linesOf(map.exact, tet, scratch),
+                         [&](const lattice::SweptLine& line, std::uint32_t i) {
+                           cells[at++] = {tet, line.point(i)};
+                         });
                    }
                  });
   return cells;
@@ -86,7 +87,7 @@ Array<CellSeed> listCells(const PreparedMap& map, Stage& stage) {
 class NodeCollector {
  public:
   /// @param map  scaled for the nodes
-  NodeCollector(const PreparedMap& map, const VertexTables& numbers, int order)
+  NodeCollector(const igm::PreparedMap& map, const sweep::VertexTables& numbers, int order)
       : map_(map), numbers_(numbers), order_(order) {}
 
   /// Numbers of the nodes in the refined grid.
@@ -95,7 +96,7 @@ class NodeCollector {
     missing_ = nodes.size();
     Frame frame = Frame::along(cell.z, 0);
     for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
-    queue_.assign(1, {cell.tet, kWholeTet, frame});
+    queue_.assign(1, {cell.tet, lattice::kWholeTet, frame});
     // NOLINTNEXTLINE(modernize-loop-convert): the queue grows meanwhile.
     for (std::size_t head = 0; head < queue_.size(); ++head) {
       const SimplexInTet here = queue_[head];
@@ -112,8 +113,8 @@ class NodeCollector {
  private:
   /// Takes the nodes in a closed tet.
   void take(const SimplexInTet& here, std::span<Index> nodes) {
-    const LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
-    std::array<GridRange, 3> range;
+    const lattice::LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
+    std::array<lattice::GridRange, 3> range;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax({seen[0][k], seen[1][k], seen[2][k], seen[3][k]});
       const auto clamped = [&](std::int64_t x) {
@@ -139,10 +140,10 @@ class NodeCollector {
   /// Goes on through the faces that meet the open cube: there, the map is one to one, and it does
   /// not matter through which of them a tet is reached.
   void addNeighbours(const SimplexInTet& here) {
-    const LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
+    const lattice::LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
     for (int face = 0; face < 4; ++face) {
       if (!cubeMeetsFace(seen, face, order_ * map_.exact.unit)) continue;
-      if (map_.topology.isBoundary(halfFaceOf(here.tet, face))) continue;
+      if (map_.topology.isBoundary(adjacency::halfFaceOf(here.tet, face))) continue;
       const SimplexInTet next = crossed(map_.topology, map_.exact, here, face);
       const bool known = std::any_of(queue_.begin(), queue_.end(), [&](const SimplexInTet& other) {
         return other.tet == next.tet && other.frame == next.frame;
@@ -151,8 +152,8 @@ class NodeCollector {
     }
   }
 
-  const PreparedMap& map_;
-  const VertexTables& numbers_;
+  const igm::PreparedMap& map_;
+  const sweep::VertexTables& numbers_;
   int order_;
   std::size_t missing_ = 0;
   std::vector<SimplexInTet> queue_;
@@ -186,8 +187,8 @@ Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint
 }
 
 /// Positions and generators of all nodes.
-void describeNodes(const VertexTables& numbers, const HexMesh& mesh, const Array<Index>& number,
-                   LagrangeMesh& result, Stage& stage) {
+void describeNodes(const sweep::VertexTables& numbers, const HexMesh& mesh,
+                   const Array<Index>& number, LagrangeMesh& result, Stage& stage) {
   Array<Vec3> points(number.size());
   Array<Index> tets(number.size());
   Array<CornerSet> corners(number.size());
@@ -206,14 +207,15 @@ void describeNodes(const VertexTables& numbers, const HexMesh& mesh, const Array
 
 }  // namespace
 
-bool cubeMeetsFace(const LatticeTet& corners, int face, std::int64_t unit) noexcept {
+bool cubeMeetsFace(const lattice::LatticeTet& corners, int face, std::int64_t unit) noexcept {
   Triangle t{};
   for (std::size_t i = 0; i < 3; ++i) {
-    t[i] = corners[static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i])];
+    t[i] =
+        corners[static_cast<std::size_t>(lattice::kFaceCorners[static_cast<std::size_t>(face)][i])];
   }
   if (separatedByCube(t, unit)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
-    const LatticePoint d = t[(i + 1) % 3] - t[i];
+    const lattice::LatticePoint d = t[(i + 1) % 3] - t[i];
     for (std::size_t k = 0; k < 3; ++k) {
       if (separatedByEdges(t, d, k, unit)) return false;
     }
@@ -221,7 +223,7 @@ bool cubeMeetsFace(const LatticeTet& corners, int face, std::int64_t unit) noexc
   return !separatedByTriangle(t, unit);
 }
 
-LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Context& context) {
+LagrangeMesh groupNodes(const HexMesh& mesh, igm::PreparedMap& map, int order, Context& context) {
   LagrangeMesh result;
   result.order = order;
   result.vertexCount = mesh.points.size();
@@ -229,10 +231,10 @@ LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Contex
   {
     Stage stage(context, "cell centres");
     cells = listCells(map, stage);
-    scaleMap(map.exact, order, stage);
+    igm::scaleMap(map.exact, order, stage);
   }
   Stage stage(context, "nodes");
-  const VertexTables numbers(map, stage);
+  const sweep::VertexTables numbers(map, stage);
   const std::size_t perCell = result.nodesPerCell();
   result.nodes.resize(cells.size() * perCell);
   parallelBlocks(
@@ -249,4 +251,4 @@ LagrangeMesh groupNodes(const HexMesh& mesh, PreparedMap& map, int order, Contex
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

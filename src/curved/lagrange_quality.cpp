@@ -14,7 +14,7 @@
 #include <mesh/certificates.hpp>
 #include <mesh/lagrange_check.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
@@ -110,11 +110,11 @@ LagrangeColumns::LagrangeColumns(int order, const std::vector<double>& places)
 
 void LagrangeColumns::evaluate(const std::vector<Vec3>& nodes, Values& result) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    Bezier<Vec3>& column = result.columns[axis];
+    mesh::Bezier<Vec3>& column = result.columns[axis];
     column.size.fill(value.columns);
     column.values = nodes;
     for (std::size_t a = 0; a < 3; ++a) {
-      apply(a == axis ? derivative : value, a, column, result.scratch);
+      mesh::apply(a == axis ? derivative : value, a, column, result.scratch);
     }
   }
 }
@@ -130,42 +130,46 @@ double LagrangeQuality::smallest(const std::vector<Vec3>& nodes,
   return std::min(least, smallestOf(values));
 }
 
+}  // namespace hexhex::curved
+
+namespace hexhex {
+
 Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
-  requireConsistent(mesh);
+  mesh::requireConsistent(mesh);
   return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
     Array<double> result(mesh.cellCount());
     withThreads(context.threads(), [&] {
-      forCells(mesh, stage,
-               [&](std::size_t cell, const auto&, double scaled, std::size_t /*block*/) {
-                 result[cell] = scaled;
-               });
+      curved::forCells(mesh, stage,
+                       [&](std::size_t cell, const auto&, double scaled, std::size_t /*block*/) {
+                         result[cell] = scaled;
+                       });
     });
     return result;
   });
 }
 
 Certificate certify(const LagrangeMesh& mesh, Context& context) {
-  requireConsistent(mesh);
+  mesh::requireConsistent(mesh);
   Certificate certificate;
   const std::size_t n = mesh.cellCount();
   if (n == 0) return certificate;
   inStage(context, "certify", "quality", [&](Stage& stage) {
     certificate.scaledJacobians.resize(n);
     certificate.validity.resize(n);
-    const CellValidity cells(mesh.order);
+    const mesh::CellValidity cells(mesh.order);
     withThreads(context.threads(), [&] {
-      std::vector<BlockFindings> blocks(blockCount(n, kGrain));
-      forCells(mesh, stage,
-               [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
-                 const CellCertificate known = cells.examine(nodes);
-                 certificate.scaledJacobians[cell] = scaled;
-                 certificate.validity[cell] = known.validity;
-                 blocks[block].add(cell, scaled, known);
-               });
-      BlockFindings::finish(
+      std::vector<mesh::BlockFindings> blocks(blockCount(n, curved::kGrain));
+      curved::forCells(mesh, stage,
+                       [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
+                         const CellCertificate known = cells.examine(nodes);
+                         certificate.scaledJacobians[cell] = scaled;
+                         certificate.validity[cell] = known.validity;
+                         blocks[block].add(cell, scaled, known);
+                       });
+      mesh::BlockFindings::finish(
           blocks, cells,
-          [&](std::uint64_t cell, std::vector<Vec3>& nodes) { nodesOf(mesh, cell, nodes); }, stage,
-          certificate);
+          [&](std::uint64_t cell, std::vector<Vec3>& nodes) { curved::nodesOf(mesh, cell, nodes); },
+          stage, certificate);
     });
     certificate.quality = summarize(certificate.scaledJacobians);
   });
@@ -173,7 +177,7 @@ Certificate certify(const LagrangeMesh& mesh, Context& context) {
 }
 
 HexMesh straightMesh(const LagrangeMesh& mesh) {
-  requireConsistent(mesh);
+  mesh::requireConsistent(mesh);
   HexMesh straight;
   straight.features = mesh.features;
   straight.regions = mesh.regions;
@@ -188,7 +192,8 @@ HexMesh straightMesh(const LagrangeMesh& mesh) {
   const std::size_t perCell = mesh.nodesPerCell();
   for (std::size_t c = 0; c < straight.cells.size(); ++c) {
     for (std::size_t corner = 0; corner < 8; ++corner) {
-      straight.cells[c][corner] = mesh.nodes[c * perCell + nodeOfCorner(corner, mesh.order)];
+      straight.cells[c][corner] =
+          mesh.nodes[c * perCell + curved::nodeOfCorner(corner, mesh.order)];
     }
   }
   return straight;

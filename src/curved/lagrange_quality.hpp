@@ -8,19 +8,19 @@
 
 #include <mesh/bezier.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// The columns of the Jacobian matrices of cells of one order, at one grid of places.
 struct LagrangeColumns {
   /// One per thread.
   struct Values {
-    std::array<Bezier<Vec3>, 3> columns;
+    std::array<mesh::Bezier<Vec3>, 3> columns;
     std::vector<Vec3> scratch;
   };
 
   // Of the Lagrange polynomials: a row per place, a column per polynomial.
-  Matrix<double> value;
-  Matrix<double> derivative;
+  mesh::Matrix<double> value;
+  mesh::Matrix<double> derivative;
 
   /// @param places  in [0, 1], along each axis
   LagrangeColumns(int order, const std::vector<double>& places);
@@ -45,4 +45,4 @@ class LagrangeQuality {
   LagrangeColumns atGauss_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -6,7 +6,7 @@
 #include <curved/face_cutter.hpp>
 #include <curved/patches.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
@@ -122,4 +122,4 @@ Patches cutPatches(const PatchInput& input, Stage& stage) {
   return patches;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -12,12 +12,12 @@
 #include <curved/simplex_star.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// What patches are made from.
 struct PatchInput {
-  const PreparedMap& map;
-  const VertexTables& vertices;
+  const igm::PreparedMap& map;
+  const sweep::VertexTables& vertices;
   const ElementNumbers& edges;
   const ElementNumbers& faces;
   const Arcs& arcs;  ///< of the edges
@@ -77,4 +77,4 @@ struct PatchPieces {
   }
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -3,7 +3,7 @@
 
 #include <curved/plane_section.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
@@ -57,7 +57,7 @@ constexpr Outline makeOutline(unsigned belowMask) noexcept {
     const std::size_t alone = aboveCount == 1 ? above[0] : below[0];
     for (std::size_t n = 0; n < 3; ++n) {
       const auto other =
-          static_cast<std::size_t>(kFaceCorners[alone][belowCount == 1 ? (3 - n) % 3 : n]);
+          static_cast<std::size_t>(lattice::kFaceCorners[alone][belowCount == 1 ? (3 - n) % 3 : n]);
       if (belowCount == 1) {
         outline.add(other, alone);
       } else {
@@ -79,22 +79,22 @@ constexpr std::array<Outline, 16> kOutlines = makeOutlines();
 int signOfDifference(std::int64_t a, std::int64_t b) noexcept { return int{a > b} - int{a < b}; }
 
 /// Flags of one coordinate of the point between two corners.
-BorderFlags exactBorders(const LatticePoint& i, const LatticePoint& j, std::size_t axis,
-                         std::int64_t unit) noexcept {
+BorderFlags exactBorders(const lattice::LatticePoint& i, const lattice::LatticePoint& j,
+                         std::size_t axis, std::int64_t unit) noexcept {
   const std::int64_t weightI = j[2] < 0 ? -j[2] : j[2];
   const std::int64_t weightJ = i[2] < 0 ? -i[2] : i[2];
   // All products fit 124 bits.
-  const Int128 sum =
-      static_cast<Int128>(weightI) * i[axis] + static_cast<Int128>(weightJ) * j[axis];
-  const Int128 one = static_cast<Int128>(weightI + weightJ) * unit;
-  return bordersBySigns(axis, sign(sum), sign(sum - one));
+  const lattice::Int128 sum = static_cast<lattice::Int128>(weightI) * i[axis] +
+                              static_cast<lattice::Int128>(weightJ) * j[axis];
+  const lattice::Int128 one = static_cast<lattice::Int128>(weightI + weightJ) * unit;
+  return bordersBySigns(axis, lattice::sign(sum), lattice::sign(sum - one));
 }
 
 /// The point where the plane crosses an edge between a corner above it and one below.
-SectionPoint crossing(const SeenTet& tet, std::size_t i, std::size_t j, CornerMask simplex,
+SectionPoint crossing(const SeenTet& tet, std::size_t i, std::size_t j, lattice::CornerMask simplex,
                       std::int64_t unit) noexcept {
-  const LatticePoint& a = tet.corners[i];
-  const LatticePoint& b = tet.corners[j];
+  const lattice::LatticePoint& a = tet.corners[i];
+  const lattice::LatticePoint& b = tet.corners[j];
   const auto [shareA, shareB] = sharesOfCrossing(a[2], b[2]);
   const double u = shareA * static_cast<double>(a[0]) + shareB * static_cast<double>(b[0]);
   const double v = shareA * static_cast<double>(a[1]) + shareB * static_cast<double>(b[1]);
@@ -113,9 +113,10 @@ SectionPoint crossing(const SeenTet& tet, std::size_t i, std::size_t j, CornerMa
 }
 
 SectionPoint corner(const SeenTet& tet, std::size_t i, std::int64_t unit) noexcept {
-  const LatticePoint& p = tet.corners[i];
-  SectionPoint point{
-      {static_cast<double>(p[0]), static_cast<double>(p[1])}, cornerBit(static_cast<int>(i)), 0};
+  const lattice::LatticePoint& p = tet.corners[i];
+  SectionPoint point{{static_cast<double>(p[0]), static_cast<double>(p[1])},
+                     lattice::cornerBit(static_cast<int>(i)),
+                     0};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     point.borders |=
         bordersBySigns(axis, signOfDifference(p[axis], 0), signOfDifference(p[axis], unit));
@@ -123,9 +124,9 @@ SectionPoint corner(const SeenTet& tet, std::size_t i, std::int64_t unit) noexce
   return point;
 }
 
-Section sectionOfFace(const SeenTet& tet, CornerMask face, std::int64_t unit) noexcept {
-  const auto opposite = static_cast<std::size_t>(oppositeCorner(face));
-  std::array<int, 3> f = kFaceCorners[opposite];
+Section sectionOfFace(const SeenTet& tet, lattice::CornerMask face, std::int64_t unit) noexcept {
+  const auto opposite = static_cast<std::size_t>(lattice::oppositeCorner(face));
+  std::array<int, 3> f = lattice::kFaceCorners[opposite];
   // The face's normal points to the opposite corner.
   if (tet.corners[opposite][2] < 0) std::swap(f[1], f[2]);
   Section section;
@@ -137,38 +138,38 @@ Section sectionOfFace(const SeenTet& tet, CornerMask face, std::int64_t unit) no
 
 }  // namespace
 
-SeenTet::SeenTet(const LatticeTet& seen, double unit) noexcept
+SeenTet::SeenTet(const lattice::LatticeTet& seen, double unit) noexcept
     : corners(), below(0), inPlane(0), reach(unit) {
   for (std::size_t i = 0; i < 4; ++i) add(i, seen[i]);
 }
 
-void SeenTet::add(std::size_t corner, const LatticePoint& seen) noexcept {
+void SeenTet::add(std::size_t corner, const lattice::LatticePoint& seen) noexcept {
   corners[corner] = seen;
-  below = static_cast<CornerMask>(below | (unsigned{seen[2] < 0} << corner));
-  inPlane = static_cast<CornerMask>(inPlane | (unsigned{seen[2] == 0} << corner));
+  below = static_cast<lattice::CornerMask>(below | (unsigned{seen[2] < 0} << corner));
+  inPlane = static_cast<lattice::CornerMask>(inPlane | (unsigned{seen[2] == 0} << corner));
   reach = std::max(reach, std::max(std::abs(static_cast<double>(seen[0])),
                                    std::abs(static_cast<double>(seen[1]))));
 }
 
-CornerMask SeenTet::carrier() const noexcept {
-  if (below != 0 && (below | inPlane) != kWholeTet) return kWholeTet;
-  return dimension(inPlane) == 2 ? inPlane : kNoSimplex;
+lattice::CornerMask SeenTet::carrier() const noexcept {
+  if (below != 0 && (below | inPlane) != lattice::kWholeTet) return lattice::kWholeTet;
+  return lattice::dimension(inPlane) == 2 ? inPlane : lattice::kNoSimplex;
 }
 
-Section sectionOf(const SeenTet& tet, CornerMask carrier, std::int64_t unit) noexcept {
-  if (carrier != kWholeTet) return sectionOfFace(tet, carrier, unit);
+Section sectionOf(const SeenTet& tet, lattice::CornerMask carrier, std::int64_t unit) noexcept {
+  if (carrier != lattice::kWholeTet) return sectionOfFace(tet, carrier, unit);
   // Corners in the plane count as above it; crossings of their edges are the corners themselves.
   const Outline& outline = kOutlines[tet.below];
   Section section;
-  CornerMask known = kNoSimplex;
+  lattice::CornerMask known = lattice::kNoSimplex;
   for (std::size_t k = 0; k < outline.size; ++k) {
     const std::size_t above = outline.above[k];
-    if (!contains(tet.inPlane, outline.above[k])) {
+    if (!lattice::contains(tet.inPlane, outline.above[k])) {
       section.points[section.size++] =
           crossing(tet, above, outline.below[k], outline.simplex[k], unit);
-    } else if (!contains(known, outline.above[k])) {
+    } else if (!lattice::contains(known, outline.above[k])) {
       // A corner of the tet ends several edges that the plane crosses.
-      known = static_cast<CornerMask>(known | cornerBit(outline.above[k]));
+      known = static_cast<lattice::CornerMask>(known | lattice::cornerBit(outline.above[k]));
       section.points[section.size++] = corner(tet, above, unit);
     }
   }
@@ -194,4 +195,4 @@ Section sectionBehind(const SeenTet& tet, int entered, const Section& from, std:
   return section;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

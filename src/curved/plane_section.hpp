@@ -9,7 +9,7 @@
 
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// How a point lies to the lines along the sides of the square. Side i runs from its corner i to
 /// corner i + 1, counter-clockwise. Bit i: beyond the line along side i; bit 4 + i: on it.
@@ -43,27 +43,27 @@ using BorderFlags = std::uint8_t;
 
 /// A tet in the frame of a face.
 struct SeenTet {
-  LatticeTet corners;
-  CornerMask below;    ///< corners below the plane
-  CornerMask inPlane;  ///< corners in it
+  lattice::LatticeTet corners;
+  lattice::CornerMask below;    ///< corners below the plane
+  lattice::CornerMask inPlane;  ///< corners in it
   /// At least the unit, and the magnitudes of coordinates 0 and 1 of corners.
   double reach;
 
   SeenTet() = default;
-  SeenTet(const LatticeTet& seen, double unit) noexcept;
+  SeenTet(const lattice::LatticeTet& seen, double unit) noexcept;
   /// Adds a corner that the others are in place for.
-  void add(std::size_t corner, const LatticePoint& seen) noexcept;
+  void add(std::size_t corner, const lattice::LatticePoint& seen) noexcept;
 
   /// The simplex whose interior the plane meets in an area: the tet itself, a face that lies in the
   /// plane, or none.
-  [[nodiscard]] CornerMask carrier() const noexcept;
+  [[nodiscard]] lattice::CornerMask carrier() const noexcept;
 };
 
 struct SectionPoint {
   /// Coordinates, rounded: within kPointError times the reach of the tet.
   std::array<double, 2> at;
-  CornerMask simplex;   ///< an edge that the plane crosses, or a vertex in it
-  BorderFlags borders;  ///< exact
+  lattice::CornerMask simplex;  ///< an edge that the plane crosses, or a vertex in it
+  BorderFlags borders;          ///< exact
 };
 
 // In units of 2^-53, with R for the reach: heights have an error of 1 of their value, their sum 2,
@@ -89,13 +89,14 @@ struct Section {
 
   [[nodiscard]] std::size_t next(std::size_t k) const noexcept { return k + 1 < size ? k + 1 : 0; }
   /// The simplex that a side runs in.
-  [[nodiscard]] CornerMask sideSimplex(std::size_t k) const noexcept {
-    return static_cast<CornerMask>(points[k].simplex | points[next(k)].simplex);
+  [[nodiscard]] lattice::CornerMask sideSimplex(std::size_t k) const noexcept {
+    return static_cast<lattice::CornerMask>(points[k].simplex | points[next(k)].simplex);
   }
 };
 
 /// The section of a tet's carrier.
-[[nodiscard]] Section sectionOf(const SeenTet& tet, CornerMask carrier, std::int64_t unit) noexcept;
+[[nodiscard]] Section sectionOf(const SeenTet& tet, lattice::CornerMask carrier,
+                                std::int64_t unit) noexcept;
 
 /// The same of a tet without corners in the plane that is entered through a face: what its section
 /// shares with the one on the other side of the face is taken from there.
@@ -107,4 +108,4 @@ struct Section {
                                     std::size_t fromSide, std::int64_t unit,
                                     std::size_t& side) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -1,22 +1,23 @@
 #include <curved/simplex_point.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
 /// The last point of a face in whose plane the line runs. Seen in the plane of the line and a
 /// coordinate r across it, the face is a triangle; the line leaves it through a side that rises in
 /// r when the triangle is walked around counter-clockwise.
-SimplexPoint exitOfFace(const LatticeTet& corners, int face, std::size_t along) noexcept {
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+SimplexPoint exitOfFace(const lattice::LatticeTet& corners, int face, std::size_t along) noexcept {
+  const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
   const std::size_t p = (along + 1) % 3;
   bool flatInP = true;
   for (const int i : f) flatInP = flatInP && corners[static_cast<std::size_t>(i)][p] == 0;
   const std::size_t r = flatInP ? (along + 2) % 3 : p;
-  const LatticePoint& a = corners[static_cast<std::size_t>(f[0])];
-  const LatticePoint u = corners[static_cast<std::size_t>(f[1])] - a;
-  const LatticePoint v = corners[static_cast<std::size_t>(f[2])] - a;
-  const Int128 area = static_cast<Int128>(u[along]) * v[r] - static_cast<Int128>(u[r]) * v[along];
+  const lattice::LatticePoint& a = corners[static_cast<std::size_t>(f[0])];
+  const lattice::LatticePoint u = corners[static_cast<std::size_t>(f[1])] - a;
+  const lattice::LatticePoint v = corners[static_cast<std::size_t>(f[2])] - a;
+  const lattice::Int128 area =
+      static_cast<lattice::Int128>(u[along]) * v[r] - static_cast<lattice::Int128>(u[r]) * v[along];
   for (std::size_t i = 0; i < 3; ++i) {
     auto from = static_cast<std::size_t>(f[i]);
     auto to = static_cast<std::size_t>(f[(i + 1) % 3]);
@@ -30,15 +31,16 @@ SimplexPoint exitOfFace(const LatticeTet& corners, int face, std::size_t along) 
 
 }  // namespace
 
-SimplexPoint crossingOfFace(const LatticeTet& corners, int face, std::size_t along) noexcept {
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+SimplexPoint crossingOfFace(const lattice::LatticeTet& corners, int face,
+                            std::size_t along) noexcept {
+  const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
   SimplexPoint point;
   bool positive = false;
   bool negative = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(f[(i + 1) % 3]);
     const auto b = static_cast<std::size_t>(f[(i + 2) % 3]);
-    const Int128 area = crossComponent(corners[a], corners[b], along);
+    const lattice::Int128 area = lattice::crossComponent(corners[a], corners[b], along);
     positive = positive || area > 0;
     negative = negative || area < 0;
     point.weights[static_cast<std::size_t>(f[i])] = area < 0 ? -area : area;
@@ -47,28 +49,30 @@ SimplexPoint crossingOfFace(const LatticeTet& corners, int face, std::size_t alo
   return point;
 }
 
-SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex, std::size_t along) noexcept {
-  if (dimension(simplex) == 2) return exitOfFace(corners, oppositeCorner(simplex), along);
-  if (dimension(simplex) == 1) {
-    const std::size_t a = firstCorner(simplex);
-    const std::size_t b = lastCorner(simplex);
+SimplexPoint exitPoint(const lattice::LatticeTet& corners, lattice::CornerMask simplex,
+                       std::size_t along) noexcept {
+  if (lattice::dimension(simplex) == 2)
+    return exitOfFace(corners, lattice::oppositeCorner(simplex), along);
+  if (lattice::dimension(simplex) == 1) {
+    const std::size_t a = lattice::firstCorner(simplex);
+    const std::size_t b = lattice::lastCorner(simplex);
     return SimplexPoint::corner(corners[a][along] > corners[b][along] ? a : b);
   }
   for (int face = 0; face < 4; ++face) {
     // Through an exit face, whose inward normal looks back, all sides are negative or zero.
-    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
     SimplexPoint point;
     bool exit = true;
     for (std::size_t i = 0; i < 3 && exit; ++i) {
       const auto a = static_cast<std::size_t>(f[(i + 1) % 3]);
       const auto b = static_cast<std::size_t>(f[(i + 2) % 3]);
-      const Int128 area = crossComponent(corners[a], corners[b], along);
+      const lattice::Int128 area = lattice::crossComponent(corners[a], corners[b], along);
       exit = area <= 0;
       point.weights[static_cast<std::size_t>(f[i])] = -area;
     }
-    if (exit && point.simplex() != kNoSimplex) return point;
+    if (exit && point.simplex() != lattice::kNoSimplex) return point;
   }
   return {};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -8,19 +8,19 @@
 
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// A point of a tet: weights of the corners, not negative, up to a common factor. At most 124 bits
 /// each (minors of coordinates), so that products with coordinates fit 192 bits.
 struct SimplexPoint {
-  std::array<Int128, 4> weights{};
+  std::array<lattice::Int128, 4> weights{};
 
   /// The simplex whose interior holds the point.
-  [[nodiscard]] constexpr CornerMask simplex() const noexcept {
-    CornerMask mask = kNoSimplex;
+  [[nodiscard]] constexpr lattice::CornerMask simplex() const noexcept {
+    lattice::CornerMask mask = lattice::kNoSimplex;
     for (int i = 0; i < 4; ++i) {
       if (weights[static_cast<std::size_t>(i)] != 0) {
-        mask = static_cast<CornerMask>(mask | cornerBit(i));
+        mask = static_cast<lattice::CornerMask>(mask | lattice::cornerBit(i));
       }
     }
     return mask;
@@ -36,13 +36,15 @@ struct SimplexPoint {
   [[nodiscard]] static constexpr SimplexPoint between(std::size_t i, std::size_t j,
                                                       std::int64_t atI, std::int64_t atJ) noexcept {
     SimplexPoint point;
-    point.weights[i] = atJ < 0 ? -static_cast<Int128>(atJ) : static_cast<Int128>(atJ);
-    point.weights[j] = atI < 0 ? -static_cast<Int128>(atI) : static_cast<Int128>(atI);
+    point.weights[i] =
+        atJ < 0 ? -static_cast<lattice::Int128>(atJ) : static_cast<lattice::Int128>(atJ);
+    point.weights[j] =
+        atI < 0 ? -static_cast<lattice::Int128>(atI) : static_cast<lattice::Int128>(atI);
     return point;
   }
 
   /// Sign of (coordinate `axis` of the point) - target.
-  [[nodiscard]] int compare(const LatticeTet& corners, std::size_t axis,
+  [[nodiscard]] int compare(const lattice::LatticeTet& corners, std::size_t axis,
                             std::int64_t target) const noexcept {
     // Weights carry two roundings and differences one; products and three sums of up to four terms
     // add at most five more: 8 * 2^-53 = 2^-50 of the sum of magnitudes, which itself is as good.
@@ -51,12 +53,13 @@ struct SimplexPoint {
     double sum = 0;
     double magnitude = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const double term = toDouble(weights[i]) * static_cast<double>(corners[i][axis] - target);
+      const double term =
+          lattice::toDouble(weights[i]) * static_cast<double>(corners[i][axis] - target);
       sum += term;
       magnitude += std::abs(term);
     }
     if (std::abs(sum) > kRelativeError * magnitude) return sum > 0 ? 1 : -1;
-    Int192 exact;
+    lattice::Int192 exact;
     for (std::size_t i = 0; i < 4; ++i) exact.addProduct(weights[i], corners[i][axis] - target);
     return exact.sign();
   }
@@ -65,7 +68,7 @@ struct SimplexPoint {
   [[nodiscard]] std::array<double, 4> normalized() const noexcept {
     std::array<double, 4> shares{};
     double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += shares[i] = toDouble(weights[i]);
+    for (std::size_t i = 0; i < 4; ++i) sum += shares[i] = lattice::toDouble(weights[i]);
     for (double& share : shares) share /= sum;
     return shares;
   }
@@ -73,7 +76,8 @@ struct SimplexPoint {
 
 /// A coordinate of a point given by normalized weights.
 [[nodiscard]] inline double coordinate(const std::array<double, 4>& shares,
-                                       const LatticeTet& corners, std::size_t axis) noexcept {
+                                       const lattice::LatticeTet& corners,
+                                       std::size_t axis) noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     if (shares[i] != 0) sum += shares[i] * static_cast<double>(corners[i][axis]);
@@ -84,12 +88,12 @@ struct SimplexPoint {
 /// Where a line that is parallel to axis `along` leaves the interior of a simplex of a tet, in
 /// positive direction. The line passes through coordinates 0 of the other axes, and through the
 /// interior of the simplex. All corners of the simplex are seen from there.
-[[nodiscard]] SimplexPoint exitPoint(const LatticeTet& corners, CornerMask simplex,
-                                     std::size_t along) noexcept;
+[[nodiscard]] SimplexPoint exitPoint(const lattice::LatticeTet& corners,
+                                     lattice::CornerMask simplex, std::size_t along) noexcept;
 
 /// Where such a line crosses a face that it is not parallel to.
 /// @return no weights at all if it does not meet the closed face
-[[nodiscard]] SimplexPoint crossingOfFace(const LatticeTet& corners, int face,
+[[nodiscard]] SimplexPoint crossingOfFace(const lattice::LatticeTet& corners, int face,
                                           std::size_t along) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -4,7 +4,7 @@
 #include <curved/simplex_point.hpp>
 #include <curved/square_slice.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 namespace {
 
@@ -51,20 +51,21 @@ class Crossings {
 
  private:
   /// Of the point where a face, or an edge in the plane, crosses the line.
-  [[nodiscard]] BorderFlags exactBorders(CornerMask simplex, std::size_t border) const noexcept {
+  [[nodiscard]] BorderFlags exactBorders(lattice::CornerMask simplex,
+                                         std::size_t border) const noexcept {
     const std::size_t across = axisAcross(border);
     const std::size_t along = 1 - across;
-    LatticeTet moved = tet_.corners;
+    lattice::LatticeTet moved = tet_.corners;
     if (boundsAtOne(border)) {
-      for (LatticePoint& corner : moved) corner[across] -= unit_;
+      for (lattice::LatticePoint& corner : moved) corner[across] -= unit_;
     }
     SimplexPoint point;
-    if (dimension(simplex) == 1) {
-      const std::size_t i = firstCorner(simplex);
-      const std::size_t j = lastCorner(simplex);
+    if (lattice::dimension(simplex) == 1) {
+      const std::size_t i = lattice::firstCorner(simplex);
+      const std::size_t j = lattice::lastCorner(simplex);
       point = SimplexPoint::between(i, j, moved[i][across], moved[j][across]);
     } else {
-      point = crossingOfFace(moved, oppositeCorner(simplex), along);
+      point = crossingOfFace(moved, lattice::oppositeCorner(simplex), along);
     }
     return static_cast<BorderFlags>(
         onBorder(border) |
@@ -127,7 +128,7 @@ class Clipper {
     if (side >= kSquareSide) {  // a corner of the square
       const auto borders =
           static_cast<BorderFlags>(onBorder(border) | onBorder(side - kSquareSide));
-      return {kNoPoint, kNoSimplex, borders, side};
+      return {kNoPoint, lattice::kNoSimplex, borders, side};
     }
     return {kNoPoint, section_.sideSimplex(side), crossings_(side, border).borders, side};
   }
@@ -185,7 +186,7 @@ void addCorners(Slice& slice, std::size_t fromSide, std::size_t toSide) noexcept
     const unsigned bit = 1U << slice.size();
     slice.borderSides = static_cast<std::uint8_t>(slice.borderSides | bit);
     slice.squareCorners = static_cast<std::uint8_t>(slice.squareCorners | bit);
-    slice.add({kNoPoint, kNoSimplex,
+    slice.add({kNoPoint, lattice::kNoSimplex,
                static_cast<BorderFlags>(onBorder(fromSide) | onBorder((fromSide + 3) % 4)),
                static_cast<std::uint8_t>(kSquareSide + fromSide)});
   }
@@ -335,4 +336,4 @@ void sliceSquare(const SeenTet& tet, const Section& section, std::int64_t unit,
   if (!cuts.areKnown) slice = clipSquare(tet, section, unit);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

@@ -6,7 +6,7 @@
 
 #include <curved/plane_section.hpp>
 
-namespace hexhex {
+namespace hexhex::curved {
 
 /// Labels of sides of a slice: sides of its section, then sides of the square.
 inline constexpr std::uint8_t kSquareSide = 4;
@@ -17,7 +17,7 @@ inline constexpr std::uint8_t kNoPoint = 4;
 struct alignas(4) SliceCorner {
   std::uint8_t point;  ///< of the section, or kNoPoint: where the square's border cuts it
   /// The simplex of the tet that holds the corner; of no meaning at corners of the square.
-  CornerMask simplex;
+  lattice::CornerMask simplex;
   BorderFlags borders;
   /// What the side from here to the next corner runs along: side k of the section, or kSquareSide +
   /// i, side i of the square.
@@ -115,4 +115,4 @@ void sliceSquare(const SeenTet& tet, const Section& section, std::int64_t unit,
 [[nodiscard]] Slice clipSquare(const SeenTet& tet, const Section& section,
                                std::int64_t unit) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::curved

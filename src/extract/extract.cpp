@@ -17,7 +17,7 @@
 #include <propeller/pipeline.hpp>
 #include <repair/repair_map.hpp>
 
-namespace hexhex {
+namespace hexhex::extraction {
 
 void checkOptions(const ExtractOptions& options) {
   if (!(options.epsilon >= 0)) {
@@ -31,7 +31,7 @@ namespace {
 /// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and
 /// flat tets, and for what they may have caused, as they falsify angles around edges and thereby
 /// singularities. Other defects are repaired only if rounding was asked for.
-bool isToBeRepaired(const DefectCollector& defects, const ExtractOptions& options) {
+bool isToBeRepaired(const igm::DefectCollector& defects, const ExtractOptions& options) {
   if (options.repair == RepairMode::Off) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };
   return options.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
@@ -57,18 +57,19 @@ TetMap ownedCopy(const TetMapView& map) {
 ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOptions& options,
                          Context& context, RepairReport& report) {
   {
-    DefectCollector defects;
-    PreparedMap prepared = prepareMap(map, options.tolerance, maxScale, context, defects,
-                                      ChartChoice::Unfolded, options.switches);
+    igm::DefectCollector defects;
+    igm::PreparedMap prepared = igm::prepareMap(map, options.tolerance, maxScale, context, defects,
+                                                igm::ChartChoice::Unfolded, options.switches);
     if (defects.empty()) return {std::move(prepared), nullptr};
     if (!isToBeRepaired(defects, options)) defects.throwIfAny();
   }
   const RepairOptions repair{options.tolerance, maxScale, options.round, true};
-  auto repaired =
-      std::make_shared<const TetMap>(repairInArena(ownedCopy(map), repair, context, report));
-  DefectCollector defects;
-  PreparedMap prepared = prepareMap(*repaired, options.tolerance, maxScale, context, defects,
-                                    ChartChoice::Unfolded, options.switches);
+  auto repaired = std::make_shared<const TetMap>(
+      repairs::repairInArena(ownedCopy(map), repair, context, report));
+  igm::DefectCollector defects;
+  igm::PreparedMap prepared =
+      igm::prepareMap(*repaired, options.tolerance, maxScale, context, defects,
+                      igm::ChartChoice::Unfolded, options.switches);
   defects.throwIfAny();
   return {std::move(prepared), std::move(repaired)};
 }
@@ -79,7 +80,7 @@ ValidMap prepareValid(const TetMapView& map, int maxScale, const EngineOptions& 
                       Context& context, ExtractStatistics& statistics) {
   requireValidTags(map);
   ValidMap valid = prepareOrRepair(map, maxScale, options, context, statistics.repair);
-  const PreparedMap& prepared = valid.prepared;
+  const igm::PreparedMap& prepared = valid.prepared;
   statistics.repairedMap = valid.repaired;
   statistics.mirrored = prepared.input.mirrored;
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
@@ -101,17 +102,17 @@ constexpr std::array<WorkStep, 5> kPropellerSteps = {{{"stars", 0.1},
 
 }  // namespace
 
-HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells, const EngineOptions& options,
-                  Context& context, ExtractStatistics& statistics, SweepObserver* observer) {
+HexMesh runEngine(igm::PreparedMap& map, std::uint64_t expectedCells, const EngineOptions& options,
+                  Context& context, ExtractStatistics& statistics, sweep::SweepObserver* observer) {
   if (options.engine == Engine::Atlas) {
-    return runAtlas(map, expectedCells, context, statistics, options.switches, observer);
+    return atlas::runAtlas(map, expectedCells, context, statistics, options.switches, observer);
   }
   const WorkSteps steps(context, "engine", kPropellerSteps);
   {
     Stage stage(context, "stars");
-    addStars(map.topology, stage);
+    adjacency::addStars(map.topology, stage);
   }
-  return runPipeline(map, expectedCells, options.epsilon, context, statistics);
+  return propeller::runPipeline(map, expectedCells, options.epsilon, context, statistics);
 }
 
 void throwOutOfMemory() {
@@ -131,14 +132,15 @@ ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
   const TetMapView source = valid.repaired ? TetMapView(*valid.repaired) : map;
   ScaledMap scaled{std::move(valid.prepared), source, std::move(valid.repaired)};
   Stage stage(context, "scaling");
-  ExactMap& exact = scaled.map.exact;
-  scaled.expectedCells = scaledCells(parametricVolume(exact), options.scale, limits.cells);
-  scaleMap(exact, options.scale, stage);
+  igm::ExactMap& exact = scaled.map.exact;
+  scaled.expectedCells =
+      igm::scaledCells(igm::parametricVolume(exact), options.scale, limits.cells);
+  igm::scaleMap(exact, options.scale, stage);
   return scaled;
 }
 
 HexMesh extractScaled(ScaledMap& scaled, const EngineOptions& options, Context& context,
-                      ExtractStatistics& statistics, SweepObserver* observer) {
+                      ExtractStatistics& statistics, sweep::SweepObserver* observer) {
   HexMesh mesh =
       runEngine(scaled.map, scaled.expectedCells, options, context, statistics, observer);
   carryTags(scaled.source, scaled.map, mesh, context);
@@ -156,17 +158,22 @@ HexMesh extractWith(const TetMapView& map, const EngineOptions& options, Context
   return mesh;
 }
 
+}  // namespace hexhex::extraction
+
+namespace hexhex {
+
 HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& context,
                 ExtractStatistics* statistics) {
-  return extractWith(map, options, context, statistics);
+  return extraction::extractWith(map, options, context, statistics);
 }
 
 void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& options,
                Context& context, ExtractStatistics* statistics) {
-  checkOptions(options);
-  runExtraction({"extractTo"}, {}, context, statistics, [&](ExtractStatistics& filled) {
-    const ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
-    streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
+  extraction::checkOptions(options);
+  extraction::runExtraction({"extractTo"}, {}, context, statistics, [&](ExtractStatistics& filled) {
+    const extraction::ScaledMap scaled = extraction::prepareScaled(
+        map, options, {1, extraction::kMaxStreamedCells}, context, filled);
+    atlas::streamAtlas(scaled.map, scaled.expectedCells, sink, context, filled);
   });
 }
 

@@ -38,9 +38,9 @@ HexMesh Extractor::extract(int scale) {
 
 void Extractor::extractTo(MeshSink& sink, const ExtractOptions& options, Context& context,
                           ExtractStatistics* statistics) {
-  prepared_->run({"Extractor::extractTo"}, options, {1, kMaxStreamedCells}, context, statistics,
-                 [&](std::uint64_t cells, ExtractStatistics& filled) {
-                   streamAtlas(prepared_->map(), cells, sink, context, filled);
+  prepared_->run({"Extractor::extractTo"}, options, {1, extraction::kMaxStreamedCells}, context,
+                 statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
+                   atlas::streamAtlas(prepared_->map(), cells, sink, context, filled);
                  });
 }
 

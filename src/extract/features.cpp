@@ -7,7 +7,7 @@
 #include <sweep/cell_centers.hpp>
 #include <sweep/cell_tracer.hpp>
 
-namespace hexhex {
+namespace hexhex::extraction {
 
 namespace {
 
@@ -30,12 +30,12 @@ class TagTable {
   }
 
   /// The tag of the simplex of a tet, 0 if it has none or has another number of corners.
-  [[nodiscard]] std::int32_t find(const Tet& tet, CornerMask simplex) const {
-    if (dimension(simplex) != static_cast<int>(n) - 1) return 0;
+  [[nodiscard]] std::int32_t find(const Tet& tet, lattice::CornerMask simplex) const {
+    if (lattice::dimension(simplex) != static_cast<int>(n) - 1) return 0;
     Simplex wanted{};
     std::size_t k = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (contains(simplex, static_cast<int>(i))) wanted[k++] = tet[i];
+      if (lattice::contains(simplex, static_cast<int>(i))) wanted[k++] = tet[i];
     }
     wanted = sorted(wanted);
     const auto found = std::lower_bound(
@@ -90,8 +90,9 @@ class Marks {
     for (const FeatureFace& face : given.features.faces) mark(face.vertices, face.tag, kAtFaces);
     parallelFor(stage, mesh.points.size(), kGrain, [&](std::size_t v) {
       const CornerSet corners = mesh.generatorCorners[v];
-      ofVertex_[v] =
-          corners == kWholeTet ? Mark{0} : common(given.tets[mesh.generatorTet[v]], corners);
+      ofVertex_[v] = corners == lattice::kWholeTet
+                         ? Mark{0}
+                         : common(given.tets[mesh.generatorTet[v]], corners);
     });
   }
 
@@ -106,7 +107,7 @@ class Marks {
   [[nodiscard]] Mark common(const Tet& tet, CornerSet corners) const noexcept {
     Mark common = kAtEdges | kAtFaces;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (contains(corners, static_cast<int>(i))) {
+      if (lattice::contains(corners, static_cast<int>(i))) {
         common = static_cast<Mark>(common & ofPoint_[tet[i]]);
       }
     }
@@ -132,13 +133,13 @@ struct Seen {
 /// Position of the corner at an offset in kCellCorners: its inverse.
 constexpr std::array<std::uint8_t, 8> kCornerAt = {0, 1, 3, 2, 4, 5, 7, 6};
 
-constexpr std::size_t cornerAt(const GridPoint& offset) noexcept {
+constexpr std::size_t cornerAt(const lattice::GridPoint& offset) noexcept {
   const std::int32_t code = offset[0] + 2 * offset[1] + 4 * offset[2];
   return kCornerAt[static_cast<std::size_t>(code)];
 }
 
 constexpr std::size_t neighbour(std::size_t corner, std::size_t axis) noexcept {
-  GridPoint offset = kCellCorners[corner];
+  lattice::GridPoint offset = lattice::kCellCorners[corner];
   offset[axis] = 1 - offset[axis];
   return cornerAt(offset);
 }
@@ -146,7 +147,7 @@ constexpr std::size_t neighbour(std::size_t corner, std::size_t axis) noexcept {
 /// Looks at one cell after the other. One per thread.
 class CellViewer {
  public:
-  CellViewer(const TetMapView& given, const PreparedMap& prepared, const HexMesh& mesh,
+  CellViewer(const TetMapView& given, const igm::PreparedMap& prepared, const HexMesh& mesh,
              const TagTable<2>& edgeTags, const TagTable<3>& faceTags, const Marks& marks)
       : given_(given),
         prepared_(prepared),
@@ -157,7 +158,8 @@ class CellViewer {
         tracer_(prepared) {}
 
   /// @param tet, z, generator  as for CellTracer::enter()
-  void view(const Hex& cell, Index tet, const GridPoint& z, CornerMask generator, Seen& seen) {
+  void view(const Hex& cell, Index tet, const lattice::GridPoint& z, lattice::CornerMask generator,
+            Seen& seen) {
     Mark any = 0;
     for (const Index vertex : cell) any = static_cast<Mark>(any | marks_[vertex]);
     if (any == 0) return;
@@ -186,13 +188,14 @@ class CellViewer {
     const auto second = static_cast<std::uint8_t>((axis + 1) % 3);
     const auto third = static_cast<std::uint8_t>((axis + 2) % 3);
     const Beginning at = begin(cell, corner, {axis, second, third});
-    return edgeTags_.find(prepared_.topology.tets[at.tet], holder(at.signs, at.simplex, at.first));
+    return edgeTags_.find(prepared_.topology.tets[at.tet],
+                          lattice::holder(at.signs, at.simplex, at.first));
   }
 
   void viewFaces(const Hex& cell, Seen& seen) {
     for (std::uint8_t axis = 0; axis < 3; ++axis) {
       for (std::int32_t side = 0; side < 2; ++side) {
-        GridPoint offset{};
+        lattice::GridPoint offset{};
         offset[axis] = side;
         viewFace(cell, axis, cornerAt(offset), seen);
       }
@@ -223,49 +226,49 @@ class CellViewer {
   }
 
   /// The tag of the face across the third axis, seen from a corner beside the first.
-  std::int32_t faceTag(const Hex& cell, std::size_t corner, const TiltOrder& axes) {
+  std::int32_t faceTag(const Hex& cell, std::size_t corner, const sweep::TiltOrder& axes) {
     const Beginning at = begin(cell, corner, axes);
     return faceTags_.find(prepared_.topology.tets[at.tet],
-                          casing(at.signs, at.simplex, at.first, at.second));
+                          lattice::casing(at.signs, at.simplex, at.first, at.second));
   }
 
   /// Where an edge and a face of the cell begin, as seen in a tet that holds their beginnings.
   struct Beginning {
     Index tet;
-    NormalSigns signs;
-    CornerMask simplex;  ///< generator of the hex vertex
-    Direction first;
-    Direction second;
+    lattice::NormalSigns signs;
+    lattice::CornerMask simplex;  ///< generator of the hex vertex
+    lattice::Direction first;
+    lattice::Direction second;
   };
 
-  Beginning begin(const Hex& cell, std::size_t corner, const TiltOrder& axes) {
-    const GridPoint& offset = kCellCorners[corner];
-    const CornerPlace place = tracer_.trace(offset, axes);
+  Beginning begin(const Hex& cell, std::size_t corner, const sweep::TiltOrder& axes) {
+    const lattice::GridPoint& offset = lattice::kCellCorners[corner];
+    const sweep::CornerPlace place = tracer_.trace(offset, axes);
     const auto into = [&](std::uint8_t axis) {
-      return place.rotation(direction(axis, 1 - 2 * offset[axis]));
+      return place.rotation(lattice::direction(axis, 1 - 2 * offset[axis]));
     };
-    return {place.tet, NormalSigns(prepared_.exact.corners[place.tet]),
+    return {place.tet, lattice::NormalSigns(prepared_.exact.corners[place.tet]),
             generatorIn(place.tet, cell[corner]), into(axes[0]), into(axes[1])};
   }
 
-  [[nodiscard]] CornerMask generatorIn(Index tet, Index vertex) const {
+  [[nodiscard]] lattice::CornerMask generatorIn(Index tet, Index vertex) const {
     const Tet& owner = given_.tets[mesh_.generatorTet[vertex]];
-    CornerMask simplex = kNoSimplex;
+    lattice::CornerMask simplex = lattice::kNoSimplex;
     for (std::size_t i = 0; i < 4; ++i) {
-      if (!contains(mesh_.generatorCorners[vertex], static_cast<int>(i))) continue;
-      simplex = static_cast<CornerMask>(simplex |
-                                        cornerBit(prepared_.topology.localCorner(tet, owner[i])));
+      if (!lattice::contains(mesh_.generatorCorners[vertex], static_cast<int>(i))) continue;
+      simplex = static_cast<lattice::CornerMask>(
+          simplex | lattice::cornerBit(prepared_.topology.localCorner(tet, owner[i])));
     }
     return simplex;
   }
 
   const TetMapView& given_;
-  const PreparedMap& prepared_;
+  const igm::PreparedMap& prepared_;
   const HexMesh& mesh_;
   const TagTable<2>& edgeTags_;
   const TagTable<3>& faceTags_;
   const Marks& marks_;
-  CellTracer tracer_;
+  sweep::CellTracer tracer_;
 };
 
 std::vector<FeatureVertex> tagVertices(const TetMapView& given, const HexMesh& mesh, Stage& stage) {
@@ -278,9 +281,9 @@ std::vector<FeatureVertex> tagVertices(const TetMapView& given, const HexMesh& m
       [&](std::size_t begin, std::size_t end, std::vector<FeatureVertex>& tagged) {
         for (std::size_t v = begin; v < end; ++v) {
           const CornerSet corners = mesh.generatorCorners[v];
-          if (dimension(corners) != 0) continue;
+          if (lattice::dimension(corners) != 0) continue;
           const Tet& tet = given.tets[mesh.generatorTet[v]];
-          const std::int32_t tag = tagOf[tet[firstCorner(corners)]];
+          const std::int32_t tag = tagOf[tet[lattice::firstCorner(corners)]];
           if (tag != 0) tagged.push_back({static_cast<Index>(v), tag});
         }
       });
@@ -307,44 +310,46 @@ std::vector<FeatureQuad> uniqueQuads(std::vector<FeatureQuad> quads) {
   return quads;
 }
 
-void tagEdgesAndQuads(const TetMapView& given, const PreparedMap& prepared,
+void tagEdgesAndQuads(const TetMapView& given, const igm::PreparedMap& prepared,
                       const TaggedCells& cells, HexMesh& mesh, Stage& stage) {
   const TagTable<2> edgeTags(given.features.edges);
   const TagTable<3> faceTags(given.features.faces);
   const Marks marks(given, mesh, stage);
-  std::vector<std::vector<Seen::Edge>> edges(blockCount(cells.groups, kSweepBlock));
+  std::vector<std::vector<Seen::Edge>> edges(blockCount(cells.groups, sweep::kSweepBlock));
   std::vector<std::vector<FeatureQuad>> quads(edges.size());
-  parallelBlocks(
-      stage, cells.groups, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
-        Seen seen;
-        for (std::size_t group = begin; group < end; ++group) {
-          cells.forEach(group,
-                        [&](std::uint64_t cell, Index tet, const GridPoint& z, CornerMask simplex) {
-                          viewer.view(mesh.cells[cell], tet, z, simplex, seen);
-                        });
-        }
-        edges[block] = std::move(seen.edges);
-        quads[block] = std::move(seen.quads);
-      });
+  parallelBlocks(stage, cells.groups, sweep::kSweepBlock,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   CellViewer viewer(given, prepared, mesh, edgeTags, faceTags, marks);
+                   Seen seen;
+                   for (std::size_t group = begin; group < end; ++group) {
+                     cells.forEach(group,
+                                   [&](std::uint64_t cell, Index tet, const lattice::GridPoint& z,
+                                       lattice::CornerMask simplex) {
+                                     viewer.view(mesh.cells[cell], tet, z, simplex, seen);
+                                   });
+                   }
+                   edges[block] = std::move(seen.edges);
+                   quads[block] = std::move(seen.quads);
+                 });
   mesh.features.edges = uniqueEdges(joined<Seen::Edge>(edges));
   mesh.features.quads = uniqueQuads(joined<FeatureQuad>(quads));
 }
 
 /// All cells, by tet.
-TaggedCells allCells(const PreparedMap& prepared, const CellCenters& centers) {
+TaggedCells allCells(const igm::PreparedMap& prepared, const sweep::CellCenters& centers) {
   return {prepared.topology.tetCount(), [&](std::size_t t, const TaggedCells::Visit& visit) {
             const auto tet = static_cast<Index>(t);
             std::uint64_t cell = centers.begin[t];
             if (cell == centers.begin[t + 1]) return;
-            forEachOwnedCenter(prepared.topology, tet, centers.lines->of(tet),
-                               [&](const SweptLine& line, std::uint32_t i) {
-                                 visit(cell++, tet, line.point(i), line.simplex(i));
-                               });
+            sweep::forEachOwnedCenter(prepared.topology, tet, centers.lines->of(tet),
+                                      [&](const lattice::SweptLine& line, std::uint32_t i) {
+                                        visit(cell++, tet, line.point(i), line.simplex(i));
+                                      });
           }};
 }
 
-void fillRegions(const TetMapView& given, const CellCenters& centers, HexMesh& mesh, Stage& stage) {
+void fillRegions(const TetMapView& given, const sweep::CellCenters& centers, HexMesh& mesh,
+                 Stage& stage) {
   mesh.regions.resize(mesh.cells.size());
   parallelFor(stage, given.tets.size(), kGrain, [&](std::size_t t) {
     std::fill(mesh.regions.begin() + static_cast<std::ptrdiff_t>(centers.begin[t]),
@@ -380,23 +385,23 @@ void requireValidTags(const TetMapView& map) {
   TagTable<3>(map.features.faces).requireOne();
 }
 
-void carryTags(const TetMapView& given, const PreparedMap& prepared, HexMesh& mesh,
+void carryTags(const TetMapView& given, const igm::PreparedMap& prepared, HexMesh& mesh,
                Context& context) {
   const bool byCells = !given.features.edges.empty() || !given.features.faces.empty();
   if (given.features.empty() && given.regions.empty()) return;
   Stage stage(context, "features");
   if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
   if (!byCells && given.regions.empty()) return;
-  const CellCenters centers = findCells(prepared, stage);
+  const sweep::CellCenters centers = sweep::findCells(prepared, stage);
   if (byCells) tagEdgesAndQuads(given, prepared, allCells(prepared, centers), mesh, stage);
   if (!given.regions.empty()) fillRegions(given, centers, mesh, stage);
 }
 
-void carryFeatures(const TetMapView& given, const PreparedMap& prepared, const TaggedCells& cells,
-                   HexMesh& mesh, Stage& stage) {
+void carryFeatures(const TetMapView& given, const igm::PreparedMap& prepared,
+                   const TaggedCells& cells, HexMesh& mesh, Stage& stage) {
   if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
   if (given.features.edges.empty() && given.features.faces.empty()) return;
   tagEdgesAndQuads(given, prepared, cells, mesh, stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::extraction

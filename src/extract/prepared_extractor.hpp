@@ -18,22 +18,22 @@ class Extractor::Prepared {
  public:
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
       : given_(map), maxScale_(options.maxScale) {
-    runExtraction({"Extractor"}, {}, context, &known_, [&](ExtractStatistics& filled) {
+    extraction::runExtraction({"Extractor"}, {}, context, &known_, [&](ExtractStatistics& filled) {
       ExtractOptions prepare;
       prepare.tolerance = options.tolerance;
       prepare.repair = options.repair;
       prepare.round = options.round;
-      map_ = prepareValid(map, options.maxScale, prepare, context, filled).prepared;
+      map_ = extraction::prepareValid(map, options.maxScale, prepare, context, filled).prepared;
       if (filled.repairedMap) given_ = *filled.repairedMap;
-      volume_ = parametricVolume(map_.exact);
+      volume_ = igm::parametricVolume(map_.exact);
     });
   }
 
   /// Scales the map, and runs work(number of cells, statistics).
   template <class Work>
-  void run(const ReportedCall& call, const ExtractOptions& options, const ScaleLimits& limits,
+  void run(const extraction::ReportedCall& call, const ExtractOptions& options, const extraction::ScaleLimits& limits,
            Context& context, ExtractStatistics* statistics, const Work& work) {
-    checkOptions(options);
+    extraction::checkOptions(options);
     if (options.scale < 1 || options.scale > maxScale_ / limits.furtherScale) {
       const bool curved = limits.furtherScale > 1;
       throw Error(ErrorCode::InvalidArgument,
@@ -42,8 +42,8 @@ class Extractor::Prepared {
                       ". Choose it from 1" + (curved ? ", and its product with the order up" : "") +
                       " to " + std::to_string(maxScale_) + ", which the extractor was made for.");
     }
-    runExtraction(call, known_, context, statistics, [&](ExtractStatistics& filled) {
-      const std::uint64_t cells = scaledCells(volume_, options.scale, limits.cells);
+    extraction::runExtraction(call, known_, context, statistics, [&](ExtractStatistics& filled) {
+      const std::uint64_t cells = igm::scaledCells(volume_, options.scale, limits.cells);
       setScale(options.scale, context);
       work(cells, filled);
     });
@@ -51,16 +51,17 @@ class Extractor::Prepared {
 
   /// The mesh of the scaled map, with its tags.
   [[nodiscard]] HexMesh mesh(std::uint64_t cells, const ExtractOptions& options, Context& context,
-                             ExtractStatistics& statistics, SweepObserver* observer = nullptr) {
-    HexMesh result = runEngine(map_, cells, options, context, statistics, observer);
-    carryTags(given_, map_, result, context);
+                             ExtractStatistics& statistics,
+                             sweep::SweepObserver* observer = nullptr) {
+    HexMesh result = extraction::runEngine(map_, cells, options, context, statistics, observer);
+    extraction::carryTags(given_, map_, result, context);
     return result;
   }
 
   /// Not to be scaled; stages may add to its topology.
-  [[nodiscard]] PreparedMap& map() noexcept { return map_; }
+  [[nodiscard]] igm::PreparedMap& map() noexcept { return map_; }
   /// To scale it further: the next call begins with the unscaled one again.
-  [[nodiscard]] PreparedMap& mapToScale() {
+  [[nodiscard]] igm::PreparedMap& mapToScale() {
     keepUnscaled();
     scale_ = 0;
     return map_;
@@ -72,7 +73,7 @@ class Extractor::Prepared {
   /// Copies what scaling changes, before the first time.
   void keepUnscaled() {
     if (!unscaledCorners_.empty()) return;
-    Array<Transition> transitions = map_.exact.transitions.table;
+    Array<lattice::Transition> transitions = map_.exact.transitions.table;
     unscaledCorners_ = map_.exact.corners;
     unscaledTransitions_ = std::move(transitions);
   }
@@ -89,7 +90,7 @@ class Extractor::Prepared {
     parallelFor(stage, unscaledCorners_.size(), kGrain,
                 [&](std::size_t t) { map_.exact.corners[t] = unscaledCorners_[t]; });
     map_.exact.scale = 1;
-    scaleMap(map_.exact, scale, stage);
+    igm::scaleMap(map_.exact, scale, stage);
     scale_ = scale;
   }
 
@@ -97,10 +98,10 @@ class Extractor::Prepared {
   int maxScale_;
   ExtractStatistics known_;  ///< owns the repaired map
   std::uint64_t volume_ = 0;
-  PreparedMap map_;
+  igm::PreparedMap map_;
   int scale_ = 1;  ///< of map_
-  Array<LatticeTet> unscaledCorners_;
-  Array<Transition> unscaledTransitions_;
+  Array<lattice::LatticeTet> unscaledCorners_;
+  Array<lattice::Transition> unscaledTransitions_;
 };
 
 }  // namespace hexhex

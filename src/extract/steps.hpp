@@ -17,11 +17,11 @@
 #include <igm/measures.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
+namespace hexhex::extraction {
 
 /// As many cells as 32-bit indices can number, and as pieces can.
 inline constexpr double kMaxCells = kNone;
-inline constexpr double kMaxStreamedCells = kMaxCountedCells;
+inline constexpr double kMaxStreamedCells = igm::kMaxCountedCells;
 
 /// @throws Error InvalidArgument for an epsilon out of range
 void checkOptions(const ExtractOptions& options);
@@ -36,7 +36,7 @@ struct EngineOptions : ExtractOptions {
 
 /// A map that has passed all checks.
 struct ValidMap {
-  PreparedMap prepared;
+  igm::PreparedMap prepared;
   std::shared_ptr<const TetMap> repaired;  ///< what it was prepared from if not the caller's map
 };
 
@@ -50,13 +50,14 @@ struct ValidMap {
 /// All stages behind the scaling. Adds to the map's topology what the engine needs.
 /// @param map       scaled
 /// @param observer  of the atlas engine; nullptr with the other one
-[[nodiscard]] HexMesh runEngine(PreparedMap& map, std::uint64_t expectedCells,
+[[nodiscard]] HexMesh runEngine(igm::PreparedMap& map, std::uint64_t expectedCells,
                                 const EngineOptions& options, Context& context,
-                                ExtractStatistics& statistics, SweepObserver* observer = nullptr);
+                                ExtractStatistics& statistics,
+                                sweep::SweepObserver* observer = nullptr);
 
 /// A map that is ready for either engine.
 struct ScaledMap {
-  PreparedMap map;
+  igm::PreparedMap map;
   TetMapView source;                       ///< what it was prepared from: with its tags
   std::shared_ptr<const TetMap> repaired;  ///< owns the source if it is not the caller's map
   std::uint64_t expectedCells = 0;
@@ -77,7 +78,7 @@ struct ScaleLimits {
 /// @param observer  as for runEngine()
 [[nodiscard]] HexMesh extractScaled(ScaledMap& scaled, const EngineOptions& options,
                                     Context& context, ExtractStatistics& statistics,
-                                    SweepObserver* observer = nullptr);
+                                    sweep::SweepObserver* observer = nullptr);
 
 /// extract() for tests and ablations.
 [[nodiscard]] HexMesh extractWith(const TetMapView& map, const EngineOptions& options,
@@ -138,4 +139,4 @@ void runExtraction(const ReportedCall& call, const ExtractStatistics& known, Con
   filled.seconds = seconds.count();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::extraction

@@ -8,12 +8,13 @@
 
 #include <igm/measures.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
-void countElements(const TetTopology& topology, CheckReport& report) {
-  for (const HalfFace mate : topology.mate) report.boundaryFaces += mate == kNone ? 1 : 0;
+void countElements(const adjacency::TetTopology& topology, CheckReport& report) {
+  for (const adjacency::HalfFace mate : topology.mate)
+    report.boundaryFaces += mate == kNone ? 1 : 0;
   report.innerFaces = (4 * topology.tetCount() - report.boundaryFaces) / 2;
   report.faces = report.innerFaces + report.boundaryFaces;
   for (Index v = 0; v < topology.pointCount; ++v) {
@@ -35,7 +36,7 @@ using RotationMatrix = std::array<std::array<std::int8_t, 3>, 3>;
 
 /// A rotation between charts of the pipeline, between those of the caller: all charts of the former
 /// have the first parameter negated if the map is mirrored.
-RotationMatrix matrixOf(const Rotation& rotation, bool mirrored) {
+RotationMatrix matrixOf(const lattice::Rotation& rotation, bool mirrored) {
   RotationMatrix matrix{};
   for (std::size_t column = 0; column < 3; ++column) {
     std::array<std::int8_t, 3> unit{};
@@ -79,15 +80,15 @@ bool isIdentity(const ChartJump& jump) {
 }
 
 void addChartJumps(const TetMapView& map, const PreparedMap& prepared, MapStructure& result) {
-  const TetTopology& topology = prepared.topology;
+  const adjacency::TetTopology& topology = prepared.topology;
   const Transitions& transitions = prepared.exact.transitions;
-  for (HalfFace face = 0; face < topology.mate.size(); ++face) {
-    const HalfFace mate = topology.mate[face];
-    if (mate == kNone || tetOf(mate) < tetOf(face)) continue;
+  for (adjacency::HalfFace face = 0; face < topology.mate.size(); ++face) {
+    const adjacency::HalfFace mate = topology.mate[face];
+    if (mate == kNone || adjacency::tetOf(mate) < adjacency::tetOf(face)) continue;
     ChartJump jump;
-    jump.tets = {tetOf(face), tetOf(mate)};
+    jump.tets = {adjacency::tetOf(face), adjacency::tetOf(mate)};
     std::size_t next = 0;
-    for (const Index vertex : map.tets[tetOf(face)]) {
+    for (const Index vertex : map.tets[adjacency::tetOf(face)]) {
       if (vertex != topology.vertex(face)) jump.vertices[next++] = vertex;
     }
     jump.rotation = matrixOf(transitions.across(face).rotation, prepared.input.mirrored);
@@ -98,6 +99,10 @@ void addChartJumps(const TetMapView& map, const PreparedMap& prepared, MapStruct
 
 }  // namespace
 
+}  // namespace hexhex::igm
+
+namespace hexhex {
+
 CheckReport check(const TetMapView& map, const CheckOptions& options, Context& context) {
   constexpr std::array<WorkStep, 2> kSteps = {{{"prepare", 3}, {"measures", 1}}};
   WorkSteps steps(context, "check", kSteps);
@@ -105,13 +110,14 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
   report.points = map.points.size();
   report.tets = map.tets.size();
   withThreads(context.threads(), [&] {
-    DefectCollector defects;
-    PreparedMap prepared = prepareMap(map, options.tolerance, options.scale, context, defects);
+    igm::DefectCollector defects;
+    igm::PreparedMap prepared =
+        igm::prepareMap(map, options.tolerance, options.scale, context, defects);
     Stage stage(context, "measures");
     if (defects.empty()) {
       const double cells =
-          static_cast<double>(parametricVolume(prepared.exact)) * std::pow(options.scale, 3);
-      if (cells >= kMaxCountedCells) defects.add(ErrorCode::TooLarge, {}, cells);
+          static_cast<double>(igm::parametricVolume(prepared.exact)) * std::pow(options.scale, 3);
+      if (cells >= igm::kMaxCountedCells) defects.add(ErrorCode::TooLarge, {}, cells);
     }
     report.defects = defects.defects();
     report.mirrored = prepared.input.mirrored;
@@ -119,15 +125,16 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     report.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
     // What a defect kept from being computed stays empty, and is counted as nothing.
     if (!prepared.singularities.areKnown()) return;
-    addStars(prepared.topology, stage);
-    report.edges = countEdges(prepared.topology, stage);
-    countElements(prepared.topology, report);
+    adjacency::addStars(prepared.topology, stage);
+    report.edges = adjacency::countEdges(prepared.topology, stage);
+    igm::countElements(prepared.topology, report);
     report.chartJumps = prepared.exact.transitions.nonTrivial;
     report.maxTransitionResidual = prepared.exact.transitions.maxResidual;
     report.maxDisplacement = prepared.exact.maxDisplacement;
-    countSingularities(prepared.singularities, report);
-    report.boundaryGenus = boundaryGenus(prepared.topology);
-    if (report.valid()) report.expected = computeExpectation(prepared, report.edges, options.scale);
+    igm::countSingularities(prepared.singularities, report);
+    report.boundaryGenus = igm::boundaryGenus(prepared.topology);
+    if (report.valid())
+      report.expected = igm::computeExpectation(prepared, report.edges, options.scale);
   });
   steps.finish();
   return report;
@@ -143,14 +150,14 @@ MapStructure findMapStructure(const TetMapView& map, double tolerance, Context& 
   WorkSteps steps(context, "findMapStructure", kSteps);
   MapStructure result;
   withThreads(context.threads(), [&] {
-    DefectCollector defects;
-    const PreparedMap prepared = prepareMap(map, tolerance, 1, context, defects);
+    igm::DefectCollector defects;
+    const igm::PreparedMap prepared = igm::prepareMap(map, tolerance, 1, context, defects);
     result.defects = defects.defects();
     const Stage stage(context, "map structure");
-    for (const SingularEdge& edge : prepared.singularities.edges) {
+    for (const igm::SingularEdge& edge : prepared.singularities.edges) {
       result.singularEdges.push_back({edge.vertex0, edge.vertex1, edge.valence, edge.boundary});
     }
-    if (!prepared.exact.transitions.ofFace.empty()) addChartJumps(map, prepared, result);
+    if (!prepared.exact.transitions.ofFace.empty()) igm::addChartJumps(map, prepared, result);
   });
   steps.finish();
   return result;

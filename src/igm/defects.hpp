@@ -11,7 +11,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// Collects violated conditions from parallel loops: all are counted, the ten worst of each kind
 /// are kept, and the outcome does not depend on the order in which they arrive.
@@ -50,13 +50,14 @@ class DefectCollector {
 /// used. Faces are checked here (non-manifold, inconsistent orientation); that edges and vertices
 /// are manifold is for computeSingularities() to find out.
 /// @param map  has passed checkInput()
-[[nodiscard]] TetTopology buildTopology(const TetMapView& map, Stage& stage,
-                                        DefectCollector& defects);
+[[nodiscard]] adjacency::TetTopology buildTopology(const TetMapView& map, Stage& stage,
+                                                   DefectCollector& defects);
 
 /// Goes through all faces, edges and vertices and names those that keep the mesh from being an
 /// oriented manifold with boundary. Slow and simple: for meshes of which faster checks have found
 /// that something is wrong.
 /// @param topology  needs `tets` and `pointCount`; receives `mate` and the stars
-void collectTopologyDefects(TetTopology& topology, Stage& stage, DefectCollector& defects);
+void collectTopologyDefects(adjacency::TetTopology& topology, Stage& stage,
+                            DefectCollector& defects);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

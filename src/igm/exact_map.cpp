@@ -10,7 +10,7 @@
 #include <igm/map_conditions.hpp>
 #include <igm/measures.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -41,7 +41,7 @@ int fractionBits(double largest, int maxScale, DefectCollector& defects) {
 class Grains {
  public:
   explicit Grains(double unit) {
-    for (AxisSet fixed = 0; fixed <= kAllAxes; ++fixed) {
+    for (lattice::AxisSet fixed = 0; fixed <= lattice::kAllAxes; ++fixed) {
       for (std::size_t k = 0; k < 3; ++k) {
         large_[fixed][k] = (fixed >> k & 1U) != 0 ? 0x1p52 * unit : 0x1p52;
       }
@@ -49,9 +49,9 @@ class Grains {
   }
   /// 2^52 times the multiples in units of the lattice, by axis; 0 if a star decides.
   /// @param fixed  axes along which there are to be integers, or a Rounding
-  [[nodiscard]] const Vec3& at(AxisSet fixed) const noexcept { return large_[fixed]; }
+  [[nodiscard]] const Vec3& at(lattice::AxisSet fixed) const noexcept { return large_[fixed]; }
   [[nodiscard]] const Vec3& at(Rounding rounding) const noexcept {
-    return large_[static_cast<AxisSet>(rounding)];
+    return large_[static_cast<lattice::AxisSet>(rounding)];
   }
 
  private:
@@ -60,7 +60,7 @@ class Grains {
 
 /// The point of the lattice nearest to parameters.
 /// @param large  by Grains
-LatticePoint nearestPoint(const Vec3& u, const Vec3& large, double unit) {
+lattice::LatticePoint nearestPoint(const Vec3& u, const Vec3& large, double unit) {
   const Pair xy = nearestMultiples(loadPair(&u[0]) * unit, loadPair(&large[0]));
   const Pair z = nearestMultiples(Pair{u[2], u[2]} * unit, Pair{large[2], large[2]});
   return {static_cast<std::int64_t>(xy[0]), static_cast<std::int64_t>(xy[1]),
@@ -69,7 +69,7 @@ LatticePoint nearestPoint(const Vec3& u, const Vec3& large, double unit) {
 
 /// What is rounded, onto which lattice, and where the results go.
 struct Sanitization {
-  const TetTopology& topology;
+  const adjacency::TetTopology& topology;
   const LocalParameters& parameters;
   double tolerance;
   DefectCollector& defects;
@@ -84,9 +84,9 @@ class CornerRounder {
   explicit CornerRounder(const Sanitization& in) : in_(in) {}
 
   /// @param rounding  other than by the star
-  void run(CornerIndex index, Rounding rounding) {
-    const Vec3 u = in_.parameters(tetOf(index), localOf(index));
-    LatticePoint& corner = in_.map.corners[index / 4][index % 4];
+  void run(adjacency::CornerIndex index, Rounding rounding) {
+    const Vec3 u = in_.parameters(adjacency::tetOf(index), adjacency::localOf(index));
+    lattice::LatticePoint& corner = in_.map.corners[index / 4][index % 4];
     corner = nearestPoint(u, in_.grains.at(rounding), in_.unit);
     const double displacement = displacementOf(u, corner, in_.unit);
     maxDisplacement_ = std::max(maxDisplacement_, displacement);
@@ -96,10 +96,10 @@ class CornerRounder {
   [[nodiscard]] double maxDisplacement() const noexcept { return maxDisplacement_; }
 
  private:
-  void report(CornerIndex index, Rounding rounding, double displacement) {
+  void report(adjacency::CornerIndex index, Rounding rounding, double displacement) {
     const Index vertex = in_.topology.vertex(index);
     // The same at all corners of the vertex, and to be reported once.
-    if (in_.topology.vertexTet[vertex] != tetOf(index)) return;
+    if (in_.topology.vertexTet[vertex] != adjacency::tetOf(index)) return;
     in_.defects.add(
         rounding != Rounding::Free ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
         {PlaceKind::Vertex, vertex}, displacement);
@@ -111,7 +111,7 @@ class CornerRounder {
 
 /// Far more than in any star whose transitions do not contradict each other, and far less than what
 /// another transition could make an overflow.
-bool outOfRange(const LatticePoint& value) {
+bool outOfRange(const lattice::LatticePoint& value) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 58;
   return std::any_of(value.begin(), value.end(),
                      [](std::int64_t x) { return x > kLimit || x < -kLimit; });
@@ -126,19 +126,20 @@ class StarSanitizer {
       : in_(in), singularities_(singularities) {}
 
   /// @param planes  of the boundary faces, in the chart of the star's first member
-  void run(Index v, Star star, AxisSet planes) {
-    const CornerIndex representative = star[0].corner;
+  void run(Index v, Star star, lattice::AxisSet planes) {
+    const adjacency::CornerIndex representative = star[0].corner;
     if (values_.size() <= star.size()) values_.resize(2 * star.size());
-    values_[0] = nearestPoint(in_.parameters(tetOf(representative), localOf(representative)),
-                              in_.grains.at(fixedAxes(v, star, planes)), in_.unit);
+    values_[0] = nearestPoint(
+        in_.parameters(adjacency::tetOf(representative), adjacency::localOf(representative)),
+        in_.grains.at(fixedAxes(v, star, planes)), in_.unit);
     if (!spread(star)) {
       in_.defects.add(ErrorCode::HalfIntegerFixedPoint, {PlaceKind::Vertex, v}, 0);
     }
     double displacement = 0;
     for (std::size_t i = 0; i < star.size(); ++i) {
-      const CornerIndex corner = star[i].corner;
+      const adjacency::CornerIndex corner = star[i].corner;
       in_.map.corners[corner / 4][corner % 4] = values_[i];
-      const Vec3 before = in_.parameters(tetOf(corner), localOf(corner));
+      const Vec3 before = in_.parameters(adjacency::tetOf(corner), adjacency::localOf(corner));
       displacement = std::max(displacement, displacementOf(before, values_[i], in_.unit));
     }
     maxDisplacement_ = std::max(maxDisplacement_, displacement);
@@ -151,16 +152,16 @@ class StarSanitizer {
 
  private:
   /// All constraints of the star, in the chart of its first member, the representative.
-  [[nodiscard]] AxisSet fixedAxes(Index v, Star star, AxisSet planes) const {
-    if (singularities_.isNode(v)) return kAllAxes;
-    AxisSet fixed = planes;
+  [[nodiscard]] lattice::AxisSet fixedAxes(Index v, Star star, lattice::AxisSet planes) const {
+    if (singularities_.isNode(v)) return lattice::kAllAxes;
+    lattice::AxisSet fixed = planes;
     for (const Index e : singularities_.at(v)) {
       const SingularEdge& edge = singularities_.edges[e];
-      const AxisSet across = kAllAxes & ~(1U << edgeAxis(in_.parameters, edge));
+      const lattice::AxisSet across = lattice::kAllAxes & ~(1U << edgeAxis(in_.parameters, edge));
       const auto member =
           std::find_if(star.begin(), star.end(),
                        [&edge](const VertexStar::Member& m) { return m.tet() == edge.tet; });
-      fixed |= imageOf(across, member->rotation.inverse());
+      fixed |= lattice::imageOf(across, member->rotation.inverse());
     }
     return fixed;
   }
@@ -172,7 +173,7 @@ class StarSanitizer {
     std::size_t reached = 1;
     const auto cross = [&](std::size_t i, std::size_t k) {
       const VertexStar::Member& member = star[i];
-      const LatticePoint image = carried(values_[i], member.halfFace(k));
+      const lattice::LatticePoint image = carried(values_[i], member.halfFace(k));
       // At the boundary, a member is behind itself.
       const std::size_t behind = member.neighbour[k] == kNone ? i : member.neighbour[k];
       values_[reached] = image;  // in vain if the one behind is not new
@@ -190,14 +191,15 @@ class StarSanitizer {
     return difference == 0;
   }
 
-  [[nodiscard]] LatticePoint carried(const LatticePoint& value, HalfFace halfFace) const {
+  [[nodiscard]] lattice::LatticePoint carried(const lattice::LatticePoint& value,
+                                              adjacency::HalfFace halfFace) const {
     if (!in_.map.transitions.isNonTrivial(halfFace)) return value;
-    const LatticePoint image = in_.map.transitions.across(halfFace)(value, in_.map.unit);
+    const lattice::LatticePoint image = in_.map.transitions.across(halfFace)(value, in_.map.unit);
     return outOfRange(image) ? value : image;
   }
 
   /// The condition that a vertex which had to move too far violates.
-  [[nodiscard]] ErrorCode causeOfDisplacement(Index v, AxisSet planes) const {
+  [[nodiscard]] ErrorCode causeOfDisplacement(Index v, lattice::AxisSet planes) const {
     if (singularities_.degree(v) > 0) return ErrorCode::SingularityOffLattice;
     return planes != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
   }
@@ -205,7 +207,7 @@ class StarSanitizer {
   const Sanitization& in_;
   const Singularities& singularities_;
   double maxDisplacement_ = 0;
-  std::vector<LatticePoint> values_;  ///< per member of a star
+  std::vector<lattice::LatticePoint> values_;  ///< per member of a star
 };
 
 void noteDisplacements(std::span<const double> displacements, ExactMap& map) {
@@ -251,7 +253,7 @@ class TetRounder {
       rounded[i] = nearestMultiples(given[i] * in_.unit, large[i]);
       displacement_ = larger(displacement_, magnitudeOf(rounded[i] * resolution - given[i]));
     }
-    LatticeTet& corners = in_.map.corners[t];
+    lattice::LatticeTet& corners = in_.map.corners[t];
     for (std::size_t i = 0; i < 12; ++i) {
       corners[i / 3][i % 3] = static_cast<std::int64_t>(rounded[i / 2][i % 2]);
     }
@@ -288,7 +290,7 @@ std::vector<std::vector<Index>> roundTets(const Sanitization& in,
   std::vector<double> displacements(unfinished.size());
   const auto report = [&](Index begin, Index end) {
     CornerRounder rounder(in);
-    for (CornerIndex corner = 4 * begin; corner < 4 * end; ++corner) {
+    for (adjacency::CornerIndex corner = 4 * begin; corner < 4 * end; ++corner) {
       const Rounding how = rounding[in.topology.vertex(corner)];
       if (how != Rounding::ByStar) rounder.run(corner, how);
     }
@@ -329,7 +331,8 @@ void sanitizeStars(const Sanitization& in, std::span<const StarBlock> stars,
 
 }  // namespace
 
-double displacementOf(const Vec3& before, const LatticePoint& after, double unit) noexcept {
+double displacementOf(const Vec3& before, const lattice::LatticePoint& after,
+                      double unit) noexcept {
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     largest = std::max(largest, std::abs(static_cast<double>(after[k]) / unit - before[k]));
@@ -337,7 +340,7 @@ double displacementOf(const Vec3& before, const LatticePoint& after, double unit
   return largest;
 }
 
-ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
+ExactMap sanitize(const adjacency::TetTopology& topology, const LocalParameters& parameters,
                   Transitions transitions, const RegularVertices& survey,
                   const VertexKinds& vertices, const Singularities& singularities, double tolerance,
                   int maxScale, Stage& stage, DefectCollector& defects) {
@@ -362,14 +365,14 @@ ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters
 void scaleMap(ExactMap& map, int scale, Stage& stage) {
   if (scale == 1) return;
   parallelFor(stage, map.corners.size(), kGrain, [&](std::size_t t) {
-    for (LatticePoint& corner : map.corners[t]) {
+    for (lattice::LatticePoint& corner : map.corners[t]) {
       for (std::int64_t& coordinate : corner) coordinate *= scale;
     }
   });
-  for (Transition& transition : map.transitions.table) {
+  for (lattice::Transition& transition : map.transitions.table) {
     for (std::int32_t& component : transition.translation) component *= scale;
   }
   map.scale *= scale;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -8,19 +8,19 @@
 #include <igm/singularities.hpp>
 #include <igm/transitions.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// Maps have fewer cells: so many can be counted, and their faces and edges, in 64 bits.
 inline constexpr double kMaxCountedCells = 0x1p60;
 
 /// Parameters as integers, in units of 1 / unit. Transitions carry corners over exactly.
 struct ExactMap {
-  Array<LatticeTet> corners;  ///< per tet
-  std::int64_t unit = 1;      ///< a power of two
-  int scale = 1;              ///< by what scaleMap() has multiplied corners and translations
+  Array<lattice::LatticeTet> corners;  ///< per tet
+  std::int64_t unit = 1;               ///< a power of two
+  int scale = 1;  ///< by what scaleMap() has multiplied corners and translations
   Transitions transitions;
-  Int192 sixfoldVolume;        ///< of all tets of a valid map, before scaling, times unit^3
-  double maxDisplacement = 0;  ///< largest change of a coordinate, in parameter units
+  lattice::Int192 sixfoldVolume;  ///< of all tets of a valid map, before scaling, times unit^3
+  double maxDisplacement = 0;     ///< largest change of a coordinate, in parameter units
 };
 
 /// Makes conditions (IGM1) to (IGM3) hold exactly, and collects tets that are not positive then
@@ -34,18 +34,18 @@ struct ExactMap {
 /// @param vertices  by classifyVertices()
 /// @param tolerance  larger displacements are defects
 /// @param maxScale   the map is going to be scaled by at most this
-[[nodiscard]] ExactMap sanitize(const TetTopology& topology, const LocalParameters& parameters,
-                                Transitions transitions, const RegularVertices& survey,
-                                const VertexKinds& vertices, const Singularities& singularities,
-                                double tolerance, int maxScale, Stage& stage,
-                                DefectCollector& defects);
+[[nodiscard]] ExactMap sanitize(const adjacency::TetTopology& topology,
+                                const LocalParameters& parameters, Transitions transitions,
+                                const RegularVertices& survey, const VertexKinds& vertices,
+                                const Singularities& singularities, double tolerance, int maxScale,
+                                Stage& stage, DefectCollector& defects);
 
 /// How far sanitization moved a parameter, along any axis.
 /// @param unit  of the lattice
-[[nodiscard]] double displacementOf(const Vec3& before, const LatticePoint& after,
+[[nodiscard]] double displacementOf(const Vec3& before, const lattice::LatticePoint& after,
                                     double unit) noexcept;
 
 /// Multiplies all parameters by an integer, exactly.
 void scaleMap(ExactMap& map, int scale, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

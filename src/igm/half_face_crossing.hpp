@@ -9,7 +9,7 @@
 
 #include <lattice/rotation.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// Either the rotation into the neighbour's chart (the translation follows from the parameters), or
 /// the boundary, across an axis. A byte, so that all of them fit a cache.
@@ -19,7 +19,8 @@ class HalfFaceCrossing {
   constexpr HalfFaceCrossing() = default;
 
   /// @param isExact  whether a transition carries the parameters over without rounding
-  [[nodiscard]] static constexpr HalfFaceCrossing inner(Rotation rotation, bool isExact) noexcept {
+  [[nodiscard]] static constexpr HalfFaceCrossing inner(lattice::Rotation rotation,
+                                                        bool isExact) noexcept {
     return {static_cast<unsigned>(rotation.index()), isExact};
   }
   /// @param axis  along which the triangle is constant, or nearly so
@@ -35,9 +36,13 @@ class HalfFaceCrossing {
   [[nodiscard]] constexpr bool isBoundary() const noexcept { return code_ >= kBoundary; }
 
   /// Into the neighbour's chart; the identity at the boundary.
-  [[nodiscard]] constexpr Rotation rotation() const noexcept { return Rotation(code_ % kInexact); }
+  [[nodiscard]] constexpr lattice::Rotation rotation() const noexcept {
+    return lattice::Rotation(code_ % kInexact);
+  }
   /// The axis across a boundary half-face; none of an inner one.
-  [[nodiscard]] constexpr AxisSet plane() const noexcept { return (1U << code_ / kBoundary) >> 1; }
+  [[nodiscard]] constexpr lattice::AxisSet plane() const noexcept {
+    return (1U << code_ / kBoundary) >> 1;
+  }
 
  private:
   // The bits of the byte: five for the rotation, one, and two for the axis plus one.
@@ -50,7 +55,7 @@ class HalfFaceCrossing {
   std::uint8_t code_ = 0;
 };
 
-template <>
-inline constexpr bool kLeftUninitialized<HalfFaceCrossing> = true;
+}  // namespace hexhex::igm
 
-}  // namespace hexhex
+template <>
+inline constexpr bool hexhex::kLeftUninitialized<hexhex::igm::HalfFaceCrossing> = true;

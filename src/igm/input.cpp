@@ -6,7 +6,7 @@
 #include <base/vector3.hpp>
 #include <igm/input.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -244,4 +244,4 @@ const TetParameters& LocalParameters::copyTo(TetParameters& scratch, Index tet) 
   return scratch;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -14,7 +14,7 @@
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// More tets than this cannot be indexed by corner in 32 bits.
 inline constexpr std::size_t kMaxTets = (std::size_t{1} << 30) - 1;
@@ -136,4 +136,4 @@ class LocalParameters {
   bool tooLarge_ = false;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -6,7 +6,7 @@
 #include <base/workspaces.hpp>
 #include <igm/irregular_vertices.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -33,7 +33,7 @@ bool reachesOctant(const TetParameters& u, std::size_t corner, const Ray& ray) {
 /// Looks at one star after the other.
 class StarClassifier {
  public:
-  StarClassifier(const TetTopology& topology, const LocalParameters& parameters,
+  StarClassifier(const adjacency::TetTopology& topology, const LocalParameters& parameters,
                  const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
                  bool flatAllowed, VertexKinds& result)
       : topology_(topology),
@@ -60,22 +60,23 @@ class StarClassifier {
     if (planes_ == 0) return;
     for (const VertexStar::Member& member : star) {
       block.planeCorners.push_back(
-          {member.corner, static_cast<Rounding>(imageOf(planes_, member.rotation))});
+          {member.corner, static_cast<Rounding>(lattice::imageOf(planes_, member.rotation))});
     }
   }
 
  private:
   /// The axis across the boundary plane, in the chart to which a rotation leads.
-  [[nodiscard]] std::size_t planeAxis(Rotation rotation) const {
-    return static_cast<std::size_t>(std::countr_zero(imageOf(planes_, rotation)));
+  [[nodiscard]] std::size_t planeAxis(lattice::Rotation rotation) const {
+    return static_cast<std::size_t>(std::countr_zero(lattice::imageOf(planes_, rotation)));
   }
 
   /// Whether all boundary faces are in one plane, and it is certain to which one the vertex snaps.
   [[nodiscard]] bool isInOnePlane(std::span<const VertexStar::Member> star) const {
     if (planes_ == 0) return true;
-    const CornerIndex first = star.front().corner;
+    const adjacency::CornerIndex first = star.front().corner;
     return hasOneBit(planes_) &&
-           !isBetweenIntegers(parameters_(tetOf(first), localOf(first))[planeAxis({})]);
+           !isBetweenIntegers(
+               parameters_(adjacency::tetOf(first), adjacency::localOf(first))[planeAxis({})]);
   }
 
   [[nodiscard]] bool coversDirectionOnce(std::span<const VertexStar::Member> star) {
@@ -85,9 +86,10 @@ class StarClassifier {
       const auto& [first, rayOfFirst] = rays_[i];
       const auto& [second, rayOfSecond] = rays_[isLast ? i : i + 1];
       std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
-      const auto sides = sidesOf(parameters_.see(tetOf(first), scratch[0]), rayOfFirst->direction,
-                                 parameters_.see(tetOf(second), scratch[1]), rayOfSecond->direction,
-                                 rayOfFirst->axis, rayOfSecond->axis);
+      const auto sides =
+          sidesOf(parameters_.see(adjacency::tetOf(first), scratch[0]), rayOfFirst->direction,
+                  parameters_.see(adjacency::tetOf(second), scratch[1]), rayOfSecond->direction,
+                  rayOfFirst->axis, rayOfSecond->axis);
       if (sides[0] == kUncertainSides || sides[1] == kUncertainSides) return false;
       cones += coneCorner(sides[0]) == first % 4 ? 1 : 0;
       cones += !isLast && coneCorner(sides[1]) == second % 4 ? 1 : 0;
@@ -102,7 +104,7 @@ class StarClassifier {
     if (rays_.size() <= 2 * star.size()) rays_.resize(4 * star.size());
     std::size_t count = 0;
     // Neither where charts are rotated nor which octants are reached can be predicted.
-    const auto add = [&](CornerIndex corner, const Ray& ray, bool isWanted) {
+    const auto add = [&](adjacency::CornerIndex corner, const Ray& ray, bool isWanted) {
       rays_[count] = {corner, &ray};
       count += isWanted ? 1 : 0;
     };
@@ -119,29 +121,29 @@ class StarClassifier {
     count = 0;
     for (const auto& [corner, ray] : listed) {
       TetParameters scratch;
-      const TetParameters& u = parameters_.see(tetOf(corner), scratch);
+      const TetParameters& u = parameters_.see(adjacency::tetOf(corner), scratch);
       add(corner, *ray, reachesOctant(u, corner % 4, *ray));
     }
     rayCount_ = count;
     return cones;
   }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const LocalParameters& parameters_;
   const RegularVertices& survey_;
   std::span<const HalfFaceCrossing> crossings_;
   bool flatAllowed_;
   VertexKinds& result_;
   VertexStar star_;
-  AxisSet planes_ = 0;  ///< of boundary faces, in the chart of the first member
-  std::vector<std::pair<CornerIndex, const Ray*>> rays_;  ///< more than are in use
+  lattice::AxisSet planes_ = 0;  ///< of boundary faces, in the chart of the first member
+  std::vector<std::pair<adjacency::CornerIndex, const Ray*>> rays_;  ///< more than are in use
   std::size_t rayCount_ = 0;
 };
 
 }  // namespace
 
-VertexKinds classifyVertices(const TetTopology& topology, const LocalParameters& parameters,
-                             const RegularVertices& survey,
+VertexKinds classifyVertices(const adjacency::TetTopology& topology,
+                             const LocalParameters& parameters, const RegularVertices& survey,
                              std::span<const HalfFaceCrossing> crossings,
                              std::span<const EdgeValence> known, bool findFlat, Stage& stage) {
   Array<std::uint8_t> isIrregular = survey.isIrregular;
@@ -176,4 +178,4 @@ VertexKinds classifyVertices(const TetTopology& topology, const LocalParameters&
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -8,7 +8,7 @@
 #include <igm/regular_vertices.hpp>
 #include <igm/vertex_star.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 enum class VertexKind : std::uint8_t {
   Regular,   ///< as RegularVertices finds it, or isolated
@@ -29,13 +29,13 @@ enum class Rounding : std::uint8_t {
 struct StarBlock {
   std::vector<Index> vertices;
   /// Per vertex: the axes across its boundary faces in the chart of its first member.
-  std::vector<AxisSet> planes;
+  std::vector<lattice::AxisSet> planes;
   std::vector<std::size_t> ends;  ///< per vertex: where its members end
   Array<VertexStar::Member> members;
 
   /// A corner at a flat vertex of the boundary, and how it is rounded in its chart.
   struct PlaneCorner {
-    CornerIndex corner;
+    adjacency::CornerIndex corner;
     Rounding rounding;
   };
   std::vector<PlaneCorner> planeCorners;
@@ -48,7 +48,7 @@ struct StarBlock {
     planes.reserve(count);
     ends.reserve(count);
   }
-  void add(Index vertex, std::span<const VertexStar::Member> star, AxisSet planesOfStar) {
+  void add(Index vertex, std::span<const VertexStar::Member> star, lattice::AxisSet planesOfStar) {
     vertices.push_back(vertex);
     planes.push_back(planesOfStar);
     members.insert(members.end(), star.begin(), star.end());
@@ -78,11 +78,11 @@ struct VertexKinds {
 ///
 /// @param known  valence offsets that the caller gave, or empty; their vertices become irregular
 /// @param findFlat  otherwise flat stars count as irregular
-[[nodiscard]] VertexKinds classifyVertices(const TetTopology& topology,
+[[nodiscard]] VertexKinds classifyVertices(const adjacency::TetTopology& topology,
                                            const LocalParameters& parameters,
                                            const RegularVertices& survey,
                                            std::span<const HalfFaceCrossing> crossings,
                                            std::span<const EdgeValence> known, bool findFlat,
                                            Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -6,12 +6,12 @@
 #include <base/vector3.hpp>
 #include <igm/map_conditions.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
 /// Without rounding: coordinates are below 2^52.
-TetParameters exactDoubles(const LatticeTet& corners) {
+TetParameters exactDoubles(const lattice::LatticeTet& corners) {
   TetParameters doubles{};
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t k = 0; k < 3; ++k) doubles[i][k] = static_cast<double>(corners[i][k]);
@@ -31,17 +31,17 @@ void checkBoundary(const RegularVertices& survey, const LocalParameters& paramet
   parallelFor(stage, survey.boundaryFaces.size(), 1, [&](std::size_t block) {
     for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
       const std::size_t axis = face.axis;
-      const HalfFace halfFace = face.halfFace;
+      const adjacency::HalfFace halfFace = face.halfFace;
       std::array<double, 3> x{};
       for (std::size_t k = 0; k < 3; ++k) {
-        x[k] = parameters(tetOf(halfFace), kFaceCorners[halfFace % 4][k])[axis];
+        x[k] = parameters(adjacency::tetOf(halfFace), lattice::kFaceCorners[halfFace % 4][k])[axis];
       }
       const double plane = nearestInteger((x[0] + x[1] + x[2]) / 3);
       const double off = std::max(std::max(std::abs(x[0] - plane), std::abs(x[1] - plane)),
                                   std::abs(x[2] - plane));
       if (off > tolerance) {
-        defects.add(ErrorCode::BoundaryOffLattice, {PlaceKind::Face, tetOf(halfFace), halfFace % 4},
-                    off);
+        defects.add(ErrorCode::BoundaryOffLattice,
+                    {PlaceKind::Face, adjacency::tetOf(halfFace), halfFace % 4}, off);
       }
     }
   });
@@ -80,13 +80,14 @@ void checkOrientations(std::span<const std::vector<Index>> tets, const LocalPara
                                                    : std::numeric_limits<double>::infinity();
   parallelFor(stage, tets.size(), 1, [&](std::size_t block) {
     for (const Index t : tets[block]) {
-      const LatticeTet& c = map.corners[t];
-      if (isPositive(exactDoubles(c), enough) || orientation(c[0], c[1], c[2], c[3]) > 0) continue;
-      const double amount =
-          orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
+      const lattice::LatticeTet& c = map.corners[t];
+      if (isPositive(exactDoubles(c), enough) || lattice::orientation(c[0], c[1], c[2], c[3]) > 0)
+        continue;
+      const double amount = lattice::orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() /
+                            (6 * unit * unit * unit);
       defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, amount < 0 ? -amount : 0.0);
     }
   });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -5,7 +5,7 @@
 #include <base/vector3.hpp>
 #include <igm/exact_map.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// The axis along which a singular edge runs, in the chart of its tet.
 [[nodiscard]] std::size_t edgeAxis(const LocalParameters& parameters,
@@ -37,4 +37,4 @@ void checkSingularities(const Singularities& singularities, const LocalParameter
 void checkOrientations(std::span<const std::vector<Index>> tets, const LocalParameters& parameters,
                        Stage& stage, DefectCollector& defects, const ExactMap& map);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -9,16 +9,17 @@
 #include <base/disjoint_sets.hpp>
 #include <igm/measures.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
 int unitBits(const ExactMap& map) { return std::countr_zero(static_cast<std::uint64_t>(map.unit)); }
 
 /// sum / (divisor * 2^shift) as an integer.
-std::uint64_t exactQuotient(const Int192& sum, int shift, unsigned divisor, const char* what) {
+std::uint64_t exactQuotient(const lattice::Int192& sum, int shift, unsigned divisor,
+                            const char* what) {
   bool exact = true;
-  const UInt128 quotient = sum.shiftedRight(shift, exact);
+  const lattice::UInt128 quotient = sum.shiftedRight(shift, exact);
   if (!exact || quotient % divisor != 0) {
     throw Error(ErrorCode::Internal, std::string("The parametric ") + what +
                                          " of the sanitized map is not an integer. This is a bug; "
@@ -29,28 +30,30 @@ std::uint64_t exactQuotient(const Int192& sum, int shift, unsigned divisor, cons
 
 /// A face of a tet in its chart.
 struct LatticeTriangle {
-  LatticePoint origin;
-  LatticePoint a;  ///< edges from there
-  LatticePoint b;
+  lattice::LatticePoint origin;
+  lattice::LatticePoint a;  ///< edges from there
+  lattice::LatticePoint b;
 
-  LatticeTriangle(const ExactMap& map, HalfFace halfFace) {
-    const LatticeTet& corners = map.corners[tetOf(halfFace)];
+  LatticeTriangle(const ExactMap& map, adjacency::HalfFace halfFace) {
+    const lattice::LatticeTet& corners = map.corners[adjacency::tetOf(halfFace)];
     const auto corner = [&](std::size_t k) {
-      return corners[static_cast<std::size_t>(kFaceCorners[halfFace % 4][k])];
+      return corners[static_cast<std::size_t>(lattice::kFaceCorners[halfFace % 4][k])];
     };
     origin = corner(0);
     a = corner(1) - origin;
     b = corner(2) - origin;
   }
   /// A component of the normal, which leads into the tet.
-  [[nodiscard]] Int128 normal(std::size_t axis) const noexcept {
-    return crossComponent(a, b, axis);
+  [[nodiscard]] lattice::Int128 normal(std::size_t axis) const noexcept {
+    return lattice::crossComponent(a, b, axis);
   }
 };
 
 /// The boundary half-face across an edge of a boundary half-face, around the tets between them.
-HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, CornerMask edge) {
-  EdgeTurn turn(topology, tetOf(halfFace), edge, otherFaceAtEdge(edge, localOf(halfFace)));
+adjacency::HalfFace acrossBoundaryEdge(const adjacency::TetTopology& topology,
+                                       adjacency::HalfFace halfFace, lattice::CornerMask edge) {
+  adjacency::EdgeTurn turn(topology, adjacency::tetOf(halfFace), edge,
+                           adjacency::otherFaceAtEdge(edge, adjacency::localOf(halfFace)));
   while (turn.next() != kNone) turn.step();
   return turn.out();
 }
@@ -60,19 +63,19 @@ HalfFace acrossBoundaryEdge(const TetTopology& topology, HalfFace halfFace, Corn
 /// The volume of a tet is the sum of those between its faces and the origin. They cancel at inner
 /// faces, but for what the transition makes of it: if it is a translation by t after a rotation,
 /// then the scalar product of t with the triangle's normal is left.
-Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map, Stage& stage) {
+lattice::Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map, Stage& stage) {
   const Transitions& transitions = map.transitions;
-  std::vector<Int192> sums(survey.boundaryFaces.size());
+  std::vector<lattice::Int192> sums(survey.boundaryFaces.size());
   parallelFor(stage, sums.size(), 1, [&](std::size_t block) {
-    Int192 sum;
+    lattice::Int192 sum;
     for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
       const LatticeTriangle triangle(map, face.halfFace);
       // Its plane is axis-parallel, and so is the normal.
       sum.addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
     }
-    for (const HalfFace halfFace : survey.unequalFaces[block]) {
+    for (const adjacency::HalfFace halfFace : survey.unequalFaces[block]) {
       const Index back = Transitions::inverse(transitions.ofFace[halfFace]);
-      const GridPoint& translation = transitions.table[back].translation;
+      const lattice::GridPoint& translation = transitions.table[back].translation;
       const LatticeTriangle triangle(map, halfFace);
       for (std::size_t k = 0; k < 3; ++k) {
         sum.addProduct(triangle.normal(k), -translation[k] * map.unit);
@@ -80,8 +83,8 @@ Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map, Stage& 
     }
     sums[block] = sum;
   });
-  Int192 volume;
-  for (const Int192& sum : sums) volume += sum;
+  lattice::Int192 volume;
+  for (const lattice::Int192& sum : sums) volume += sum;
   return volume;
 }
 
@@ -89,23 +92,23 @@ std::uint64_t parametricVolume(const ExactMap& map) {
   return exactQuotient(map.sixfoldVolume, 3 * unitBits(map), 6, "volume");
 }
 
-std::uint64_t boundaryArea(const TetTopology& topology, const ExactMap& map) {
-  Int192 sum;
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+std::uint64_t boundaryArea(const adjacency::TetTopology& topology, const ExactMap& map) {
+  lattice::Int192 sum;
+  for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
     if (!topology.isBoundary(halfFace)) continue;
     const LatticeTriangle triangle(map, halfFace);
     // It lies in a grid plane: one component of its normal is not zero.
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Int128 component = triangle.normal(axis);
-      sum += Int192(component < 0 ? -component : component);
+      const lattice::Int128 component = triangle.normal(axis);
+      sum += lattice::Int192(component < 0 ? -component : component);
     }
   }
   return exactQuotient(sum, 2 * unitBits(map), 2, "boundary area");
 }
 
 std::int64_t latticeLength(const SingularEdge& edge, const ExactMap& map) {
-  const LatticeTet& c = map.corners[edge.tet];
-  const LatticePoint e = c[edge.corner1] - c[edge.corner0];
+  const lattice::LatticeTet& c = map.corners[edge.tet];
+  const lattice::LatticePoint e = c[edge.corner1] - c[edge.corner0];
   return std::abs(e[0]) + std::abs(e[1]) + std::abs(e[2]);
 }
 
@@ -124,35 +127,38 @@ std::uint64_t scaledCells(std::uint64_t volume, int scale, double limit) {
   return volume * s * s * s;
 }
 
-std::uint64_t componentCount(const TetTopology& topology) {
+std::uint64_t componentCount(const adjacency::TetTopology& topology) {
   DisjointSets sets(topology.tetCount());
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
-    const HalfFace mate = topology.mate[halfFace];
-    if (mate != kNone && mate > halfFace) sets.unite(tetOf(halfFace), tetOf(mate));
+  for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+    const adjacency::HalfFace mate = topology.mate[halfFace];
+    if (mate != kNone && mate > halfFace)
+      sets.unite(adjacency::tetOf(halfFace), adjacency::tetOf(mate));
   }
   return sets.count();
 }
 
-std::vector<std::int64_t> boundaryGenus(const TetTopology& topology) {
+std::vector<std::int64_t> boundaryGenus(const adjacency::TetTopology& topology) {
   // Boundary faces as elements named by half-face; vertices and edges are counted at their
   // component's root.
   DisjointSets sets(topology.mate.size());
-  std::vector<HalfFace> faceAtVertex(topology.pointCount, kNone);
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+  std::vector<adjacency::HalfFace> faceAtVertex(topology.pointCount, kNone);
+  for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
     if (!topology.isBoundary(halfFace)) continue;
     for (int corner = 0; corner < 4; ++corner) {
-      if (corner == localOf(halfFace)) continue;
-      faceAtVertex[topology.vertex(4 * tetOf(halfFace) + static_cast<Index>(corner))] = halfFace;
-      const auto edge = static_cast<CornerMask>(faceMask(localOf(halfFace)) & ~cornerBit(corner));
+      if (corner == adjacency::localOf(halfFace)) continue;
+      faceAtVertex[topology.vertex(4 * adjacency::tetOf(halfFace) + static_cast<Index>(corner))] =
+          halfFace;
+      const auto edge = static_cast<lattice::CornerMask>(
+          lattice::faceMask(adjacency::localOf(halfFace)) & ~lattice::cornerBit(corner));
       sets.unite(halfFace, acrossBoundaryEdge(topology, halfFace, edge));
     }
   }
   std::vector<std::int64_t> faces(topology.mate.size(), 0);
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+  for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
     if (topology.isBoundary(halfFace)) ++faces[sets.find(halfFace)];
   }
   std::vector<std::int64_t> vertices(topology.mate.size(), 0);
-  for (const HalfFace halfFace : faceAtVertex) {
+  for (const adjacency::HalfFace halfFace : faceAtVertex) {
     if (halfFace != kNone) ++vertices[sets.find(halfFace)];
   }
   std::vector<std::int64_t> genus;
@@ -171,8 +177,8 @@ Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int 
   expected.cells = scaledCells(parametricVolume(map.exact), scale);
   expected.boundaryQuads = boundaryArea(map.topology, map.exact) * s * s;
   // One length is below 2^54, but there may be 2^32 of them.
-  std::map<int, Int128> inner;
-  std::map<int, Int128> boundary;
+  std::map<int, lattice::Int128> inner;
+  std::map<int, lattice::Int128> boundary;
   for (const SingularEdge& edge : map.singularities.edges) {
     (edge.boundary ? boundary : inner)[edge.valence] += latticeLength(edge, map.exact);
   }
@@ -186,7 +192,7 @@ Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int 
   std::int64_t used = 0;
   for (Index v = 0; v < map.topology.pointCount; ++v) used += map.topology.isIsolated(v) ? 0 : 1;
   std::int64_t boundaryFaces = 0;
-  for (const HalfFace mate : map.topology.mate) boundaryFaces += mate == kNone ? 1 : 0;
+  for (const adjacency::HalfFace mate : map.topology.mate) boundaryFaces += mate == kNone ? 1 : 0;
   const auto tets = static_cast<std::int64_t>(map.topology.tetCount());
   const std::int64_t faces = (4 * tets + boundaryFaces) / 2;
   expected.eulerCharacteristic = used - static_cast<std::int64_t>(edges) + faces - tets;
@@ -195,4 +201,4 @@ Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int 
   return expected;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -10,19 +10,20 @@
 #include <igm/prepare.hpp>
 #include <igm/regular_vertices.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// ExactMap::sixfoldVolume of a map without defects, before it is scaled.
 /// @param survey  knows the boundary, and where tets differ
-[[nodiscard]] Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map,
-                                   Stage& stage);
+[[nodiscard]] lattice::Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map,
+                                            Stage& stage);
 
 /// Parametric volume in unit cubes before scaling: the number of cells of the mesh at scale 1.
 /// @throws Error Internal if it is not an integer, which a valid map excludes
 [[nodiscard]] std::uint64_t parametricVolume(const ExactMap& map);
 
 /// Parametric area of the boundary in unit squares.
-[[nodiscard]] std::uint64_t boundaryArea(const TetTopology& topology, const ExactMap& map);
+[[nodiscard]] std::uint64_t boundaryArea(const adjacency::TetTopology& topology,
+                                         const ExactMap& map);
 
 /// Parametric length of a singular edge in unit lengths times map.unit.
 [[nodiscard]] std::int64_t latticeLength(const SingularEdge& edge, const ExactMap& map);
@@ -34,10 +35,10 @@ namespace hexhex {
                                         double limit = kMaxCountedCells);
 
 /// Number of connected components of the tet mesh (through faces).
-[[nodiscard]] std::uint64_t componentCount(const TetTopology& topology);
+[[nodiscard]] std::uint64_t componentCount(const adjacency::TetTopology& topology);
 
 /// The genus of each boundary component, in descending order.
-[[nodiscard]] std::vector<std::int64_t> boundaryGenus(const TetTopology& topology);
+[[nodiscard]] std::vector<std::int64_t> boundaryGenus(const adjacency::TetTopology& topology);
 
 /// Everything that follows from a valid map about its mesh.
 /// @param edges  of its tets
@@ -46,4 +47,4 @@ namespace hexhex {
 [[nodiscard]] Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges,
                                              int scale);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

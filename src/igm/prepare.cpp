@@ -10,7 +10,7 @@
 #include <igm/regular_vertices.hpp>
 #include <igm/unfold_charts.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -35,7 +35,7 @@ void checkArguments(double tolerance, int scale) {
 }
 
 /// As RegularVertices::isIrregular, if no vertex were certain to be regular.
-Array<std::uint8_t> usedVertices(const TetTopology& topology) {
+Array<std::uint8_t> usedVertices(const adjacency::TetTopology& topology) {
   Array<std::uint8_t> used(topology.pointCount);
   for (Index v = 0; v < topology.pointCount; ++v) used[v] = topology.isIsolated(v) ? 0 : 1;
   return used;
@@ -64,7 +64,7 @@ class Preparation {
 
   [[nodiscard]] PreparedMap run(ChartChoice charts) {
     if (!read()) return std::move(prepared_);
-    Array<Gauge> unfolding;
+    Array<lattice::Gauge> unfolding;
     if (charts == ChartChoice::Unfolded && needsUnfolding(prepared_.topology, prepared_.input)) {
       Stage stage(context_, "unfolding");
       unfolding = unfoldCharts(prepared_.topology, prepared_.input, stage);
@@ -105,7 +105,7 @@ class Preparation {
   }
 
   [[nodiscard]] Transitions findTransitions(const LocalParameters& parameters,
-                                            const Array<Gauge>& unfolding,
+                                            const Array<lattice::Gauge>& unfolding,
                                             const RegularVertices& survey) {
     Stage stage(context_, "transitions");
     Transitions transitions = computeTransitions(prepared_.topology, parameters, survey,
@@ -170,4 +170,4 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
       .run(ChartChoice::AsGiven);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

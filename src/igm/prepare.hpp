@@ -12,12 +12,12 @@
 #include <igm/input.hpp>
 #include <igm/singularities.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// Everything that the stages behind need to know about a map. Refers to the caller's arrays.
 struct PreparedMap {
   OrientedMap input;
-  TetTopology topology;
+  adjacency::TetTopology topology;
   Singularities singularities;
   bool isUnfolded = false;       ///< whether `input` has other charts than the caller's
   std::uint64_t chartJumps = 0;  ///< between the caller's charts
@@ -40,4 +40,4 @@ enum class ChartChoice : std::uint8_t {
                                      ChartChoice charts = ChartChoice::AsGiven,
                                      const EngineSwitches& switches = {});
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

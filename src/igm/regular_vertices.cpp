@@ -5,7 +5,7 @@
 #include <igm/regular_vertices.hpp>
 #include <igm/transition_fit.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -57,10 +57,11 @@ void forEachPart(std::size_t begin, std::size_t end, const F& f) {
   for (; begin < end; begin += kPart) f(begin, std::min(begin + kPart, end));
 }
 
-RegularVertices::BoundaryFace boundaryFace(const LocalParameters& parameters, HalfFace halfFace) {
+RegularVertices::BoundaryFace boundaryFace(const LocalParameters& parameters,
+                                           adjacency::HalfFace halfFace) {
   TetParameters scratch;  // NOLINT: written before it is read
-  const TetParameters& u = parameters.see(tetOf(halfFace), scratch);
-  const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+  const TetParameters& u = parameters.see(adjacency::tetOf(halfFace), scratch);
+  const std::array<int, 3>& corners = lattice::kFaceCorners[halfFace % 4];
   const Vec3& p = u[static_cast<std::size_t>(corners[0])];
   const Vec3& q = u[static_cast<std::size_t>(corners[1])];
   const Vec3& r = u[static_cast<std::size_t>(corners[2])];
@@ -76,7 +77,7 @@ RegularVertices::BoundaryFace boundaryFace(const LocalParameters& parameters, Ha
 /// Goes through boundary faces, then through tets and inner faces.
 class Survey {
  public:
-  Survey(const TetTopology& topology, const LocalParameters& parameters)
+  Survey(const adjacency::TetTopology& topology, const LocalParameters& parameters)
       : topology_(topology),
         parameters_(parameters),
         planes_(topology.pointCount),
@@ -124,16 +125,16 @@ class Survey {
   void listBoundary(std::size_t begin, std::size_t end,
                     Array<RegularVertices::BoundaryFace>& faces) const {
     PartList list;
-    for (auto h = static_cast<HalfFace>(4 * begin); h < 4 * end; ++h) {
+    for (auto h = static_cast<adjacency::HalfFace>(4 * begin); h < 4 * end; ++h) {
       list.add(h, topology_.isBoundary(h));
     }
-    for (const HalfFace h : list.get()) faces.push_back(boundaryFace(parameters_, h));
+    for (const adjacency::HalfFace h : list.get()) faces.push_back(boundaryFace(parameters_, h));
   }
 
   /// Notes the plane of a boundary face at its corners; without a plane, these are irregular.
   void notePlane(const RegularVertices::BoundaryFace& face) {
     if (face.constantAxes == 0) markFace(face.halfFace);
-    for (const int corner : kFaceCorners[face.halfFace % 4]) {
+    for (const int corner : lattice::kFaceCorners[face.halfFace % 4]) {
       Planes& planes = planes_[vertexOf(face.halfFace, corner)];
       planes.all = static_cast<std::uint8_t>(planes.all | face.constantAxes);
       if (!face.isAbove) planes.below = static_cast<std::uint8_t>(planes.below | face.constantAxes);
@@ -194,21 +195,21 @@ class Survey {
   [[nodiscard]] std::array<TetSides, 2> sidesOf(Index t, const Vec3& direction, Index next,
                                                 const Vec3& directionOfNext) const {
     std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
-    return hexhex::sidesOf(parameters_.see(t, scratch[0]), direction,
+    return igm::sidesOf(parameters_.see(t, scratch[0]), direction,
                            parameters_.see(next, scratch[1]), directionOfNext);
   }
 
   /// Compares parameters of at most kPart tets with those of neighbours, from the larger half-face:
   /// the other tet has then been looked at not long ago.
-  void compareNeighbours(std::size_t begin, std::size_t end, Array<HalfFace>& unequal) {
+  void compareNeighbours(std::size_t begin, std::size_t end, Array<adjacency::HalfFace>& unequal) {
     PartList inner;
-    for (auto h = static_cast<HalfFace>(4 * begin); h < 4 * end; ++h) {
+    for (auto h = static_cast<adjacency::HalfFace>(4 * begin); h < 4 * end; ++h) {
       inner.add(h, topology_.mate[h] < h);
     }
-    const std::span<const HalfFace> faces = inner.get();
+    const std::span<const adjacency::HalfFace> faces = inner.get();
     for (std::size_t i = 0; i < faces.size(); ++i) {
       const std::size_t ahead = std::min(i + kPrefetchDistance, faces.size() - 1);
-      parameters_.prefetch(tetOf(topology_.mate[faces[ahead]]));
+      parameters_.prefetch(adjacency::tetOf(topology_.mate[faces[ahead]]));
       if (haveSameBits(faces[i]) || agree(topology_, parameters_, faces[i])) continue;
       markFace(faces[i]);
       unequal.push_back(faces[i]);
@@ -217,12 +218,14 @@ class Survey {
 
   /// Whether the corners of an inner face do in both tets, as nearly always: the same as agree(),
   /// if true, and sooner said.
-  [[nodiscard]] bool haveSameBits(HalfFace halfFace) const {
-    const HalfFace mate = topology_.mate[halfFace];
-    const TetParameters& u = parameters_.given(tetOf(halfFace));
-    const TetParameters& v = parameters_.given(tetOf(mate));
-    const auto& here = kAscendingFaceCorners[topology_.order[tetOf(halfFace)]][halfFace % 4];
-    const auto& there = kAscendingFaceCorners[topology_.order[tetOf(mate)]][mate % 4];
+  [[nodiscard]] bool haveSameBits(adjacency::HalfFace halfFace) const {
+    const adjacency::HalfFace mate = topology_.mate[halfFace];
+    const TetParameters& u = parameters_.given(adjacency::tetOf(halfFace));
+    const TetParameters& v = parameters_.given(adjacency::tetOf(mate));
+    const auto& here =
+        adjacency::kAscendingFaceCorners[topology_.order[adjacency::tetOf(halfFace)]][halfFace % 4];
+    const auto& there =
+        adjacency::kAscendingFaceCorners[topology_.order[adjacency::tetOf(mate)]][mate % 4];
     const auto bits = [](const double* x) { return bitsAs<PairMask>(loadPair(x)); };
     PairMask difference = {0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -233,8 +236,8 @@ class Survey {
     return !parameters_.moved() && (difference[0] | difference[1]) == 0;
   }
 
-  [[nodiscard]] Index vertexOf(HalfFace halfFace, int corner) const noexcept {
-    return topology_.tets[tetOf(halfFace)][static_cast<std::size_t>(corner)];
+  [[nodiscard]] Index vertexOf(adjacency::HalfFace halfFace, int corner) const noexcept {
+    return topology_.tets[adjacency::tetOf(halfFace)][static_cast<std::size_t>(corner)];
   }
   /// Several threads may mark a vertex.
   void mark(Index v) {
@@ -243,11 +246,11 @@ class Survey {
   void markTet(const Tet& tet) {
     for (const Index v : tet) mark(v);
   }
-  void markFace(HalfFace halfFace) {
-    for (const int corner : kFaceCorners[halfFace % 4]) mark(vertexOf(halfFace, corner));
+  void markFace(adjacency::HalfFace halfFace) {
+    for (const int corner : lattice::kFaceCorners[halfFace % 4]) mark(vertexOf(halfFace, corner));
   }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const LocalParameters& parameters_;
   Array<Planes> planes_;  ///< per vertex
   Array<Index> cones_;    ///< per vertex: tets in one and the same direction from it
@@ -256,9 +259,9 @@ class Survey {
 
 }  // namespace
 
-RegularVertices findRegularVertices(const TetTopology& topology, const LocalParameters& parameters,
-                                    Stage& stage) {
+RegularVertices findRegularVertices(const adjacency::TetTopology& topology,
+                                    const LocalParameters& parameters, Stage& stage) {
   return Survey(topology, parameters).run(stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

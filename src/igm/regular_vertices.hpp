@@ -12,7 +12,7 @@
 #include <igm/input.hpp>
 #include <igm/tet_sides.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// A vertex is regular if its star is embedded in one chart, and is cut off by one axis-parallel
 /// plane if it is on the boundary. That is: its tets agree on the parameters of their common
@@ -39,12 +39,12 @@ struct RegularVertices {
 
   /// Inner triangles on whose corners' parameters their tets do not agree, by the larger half-face,
   /// ascending; in one list per block of kBlock tets.
-  std::vector<Array<HalfFace>> unequalFaces;
+  std::vector<Array<adjacency::HalfFace>> unequalFaces;
   std::uint64_t innerFaces = 0;
 
   /// A boundary face, and the axis along which it is constant, or nearly so.
   struct BoundaryFace {
-    HalfFace halfFace;
+    adjacency::HalfFace halfFace;
     std::uint16_t axis;
     std::uint8_t constantAxes;  ///< along which it is exactly constant: bit k for axis k
     bool isAbove;               ///< whether the tet is on the larger side of it along the axis
@@ -59,7 +59,7 @@ struct RegularVertices {
 };
 
 /// All decisions are safe: a vertex where rounding could matter counts as irregular.
-[[nodiscard]] RegularVertices findRegularVertices(const TetTopology& topology,
+[[nodiscard]] RegularVertices findRegularVertices(const adjacency::TetTopology& topology,
                                                   const LocalParameters& parameters, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -10,7 +10,7 @@
 #include <base/workspaces.hpp>
 #include <igm/singularities.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -71,7 +71,7 @@ class KnownOffsets {
 
 /// What is shared by all vertices.
 struct Surroundings {
-  const TetTopology& topology;
+  const adjacency::TetTopology& topology;
   const LocalParameters& parameters;
   const RegularVertices& survey;
   std::span<const HalfFaceCrossing> crossings;
@@ -104,8 +104,8 @@ class VertexEdges {
 
   /// A tet at an edge.
   struct Wedge {
-    CornerIndex corner;  ///< at the vertex
-    std::size_t k;       ///< the edge leads to corner kOthers[corner % 4][k]
+    adjacency::CornerIndex corner;  ///< at the vertex
+    std::size_t k;                  ///< the edge leads to corner kOthers[corner % 4][k]
   };
 
   /// Faces and edges are counted without branches, which could not be predicted.
@@ -113,7 +113,7 @@ class VertexEdges {
     others_.clear();
     others_.makeRoom(3 * star_.size());
     if (edges_.size() <= 3 * star_.size()) edges_.resize(2 * (3 * star_.size()));
-    const KeyTable::Numberer number = others_.numberer();
+    const adjacency::KeyTable::Numberer number = others_.numberer();
     numbers_.resize(star_.size());
     Index count = 0;
     std::int64_t boundaryFaces = 0;
@@ -156,7 +156,7 @@ class VertexEdges {
     const auto [corner, k] = wedge;
     const std::array<std::uint8_t, 3>& others = kOthers[corner % 4];
     TetParameters scratch;
-    const TetParameters& u = in_.parameters.see(tetOf(corner), scratch);
+    const TetParameters& u = in_.parameters.see(adjacency::tetOf(corner), scratch);
     const Vec3 edge = minus(u[others[k]], u[corner % 4]);
     const Vec3 a = minus(u[others[(k + 1) % 3]], u[corner % 4]);
     const Vec3 b = minus(u[others[(k + 2) % 3]], u[corner % 4]);
@@ -224,7 +224,7 @@ class VertexEdges {
     const Edge& edge = edges_[number];
     return {vertex,
             edge.other,
-            tetOf(first.corner),
+            adjacency::tetOf(first.corner),
             static_cast<std::uint8_t>(first.corner % 4),
             kOthers[first.corner % 4][first.k],
             edge.boundaryFaces > 0,
@@ -246,8 +246,8 @@ class VertexEdges {
 
   Surroundings in_;
   std::span<const VertexStar::Member> star_;
-  KeyTable others_;          ///< numbers the edges by their other vertices
-  std::vector<Edge> edges_;  ///< more than are in use
+  adjacency::KeyTable others_;  ///< numbers the edges by their other vertices
+  std::vector<Edge> edges_;     ///< more than are in use
   Index edgeCount_ = 0;
   std::vector<Index> candidates_;              ///< for being singular; more than are in use
   std::vector<Wedge> wedges_;                  ///< more than are in use
@@ -256,7 +256,8 @@ class VertexEdges {
 };
 
 /// Number of corners at vertices that are not certainly regular.
-std::uint64_t countCorners(const TetTopology& topology, const VertexKinds& vertices, Stage& stage) {
+std::uint64_t countCorners(const adjacency::TetTopology& topology, const VertexKinds& vertices,
+                           Stage& stage) {
   std::atomic<std::uint64_t> total = 0;
   parallelBlocks(stage, topology.tetCount(), kTetGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
@@ -293,9 +294,9 @@ void indexByVertex(Singularities& singularities, std::size_t pointCount) {
 }  // namespace
 
 std::optional<Singularities> computeSingularities(
-    const TetTopology& topology, const LocalParameters& parameters, const RegularVertices& survey,
-    std::span<const HalfFaceCrossing> crossings, const VertexKinds& vertices,
-    std::span<const EdgeValence> known, Stage& stage) {
+    const adjacency::TetTopology& topology, const LocalParameters& parameters,
+    const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
+    const VertexKinds& vertices, std::span<const EdgeValence> known, Stage& stage) {
   const KnownOffsets offsets(known);
   const Surroundings in{topology, parameters, survey, crossings, vertices, offsets};
   std::vector<std::vector<SingularEdge>> singular(vertices.blocks.size());
@@ -318,4 +319,4 @@ std::optional<Singularities> computeSingularities(
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

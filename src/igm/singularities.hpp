@@ -13,7 +13,7 @@
 
 #include <igm/irregular_vertices.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// A tet edge with another number of hexahedra around it than 4 (inside) or 2 (on the boundary).
 struct SingularEdge {
@@ -53,8 +53,8 @@ struct Singularities {
 /// @param vertices  by classifyVertices()
 /// @param known  valence offsets that the caller gave, or empty
 [[nodiscard]] std::optional<Singularities> computeSingularities(
-    const TetTopology& topology, const LocalParameters& parameters, const RegularVertices& survey,
-    std::span<const HalfFaceCrossing> crossings, const VertexKinds& vertices,
-    std::span<const EdgeValence> known, Stage& stage);
+    const adjacency::TetTopology& topology, const LocalParameters& parameters,
+    const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
+    const VertexKinds& vertices, std::span<const EdgeValence> known, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -11,7 +11,7 @@
 #include <lattice/rotation.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// On which side of the faces of a tet a certain direction leads, as seen from anywhere: bit f if
 /// it leads inward from face f.
@@ -30,7 +30,7 @@ namespace detail {
 inline constexpr auto kConeCorners = [] {
   std::array<std::uint8_t, 16> corners{};
   corners.fill(4);
-  for (std::uint8_t corner = 0; corner < 4; ++corner) corners[faceMask(corner)] = corner;
+  for (std::uint8_t corner = 0; corner < 4; ++corner) corners[lattice::faceMask(corner)] = corner;
   return corners;
 }();
 
@@ -63,12 +63,13 @@ inline constexpr std::size_t kNoReflection = 3;
 
 /// By rotation, and by the axis of reflection or kNoReflection.
 inline constexpr auto kRays = [] {
-  std::array<std::array<Ray, 4>, Rotation::kCount> rays{};
-  for (int r = 0; r < Rotation::kCount; ++r) {
+  std::array<std::array<Ray, 4>, lattice::Rotation::kCount> rays{};
+  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
     for (std::size_t reflection = 0; reflection < 4; ++reflection) {
       Ray& ray = rays[static_cast<std::size_t>(r)][reflection];
-      ray.direction = Rotation(r)(kGeneralDirection);
-      ray.axis = static_cast<std::size_t>(axisOf(Rotation(r)(direction(0, 1))));
+      ray.direction = lattice::Rotation(r)(kGeneralDirection);
+      ray.axis =
+          static_cast<std::size_t>(lattice::axisOf(lattice::Rotation(r)(lattice::direction(0, 1))));
       if (reflection != kNoReflection) ray.direction = mirrored(ray.direction, reflection);
       for (std::size_t k = 0; k < 3; ++k) ray.signs[k] = ray.direction[k] > 0 ? 1 : -1;
     }
@@ -127,7 +128,8 @@ inline constexpr auto kRays = [] {
                            signBits(cross3) << 3;  // as seen along the axis
   const auto sides = [&](std::size_t i) {
     if (isCertain[i] == 0) return kUncertainSides;
-    return static_cast<TetSides>(direction[0][i] < 0 ? outward[i] : outward[i] ^ kWholeTet);
+    return static_cast<TetSides>(direction[0][i] < 0 ? outward[i]
+                                                     : outward[i] ^ lattice::kWholeTet);
   };
   return {sides(0), sides(1)};
 }
@@ -137,4 +139,4 @@ inline constexpr auto kRays = [] {
   return sidesOf(u, ray.direction, u, ray.direction, ray.axis, ray.axis)[0];
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -5,22 +5,22 @@
 
 #include <igm/transition_fit.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
 double squaredNorm(const Vec3& a) { return dot(a, a); }
 
 /// How far a rotation is from carrying the vectors over.
-double residual(Rotation rotation, const VectorPair& vectors, const VectorPair& images) {
+double residual(lattice::Rotation rotation, const VectorPair& vectors, const VectorPair& images) {
   return squaredNorm(minus(images[0], rotation(vectors[0]))) +
          squaredNorm(minus(images[1], rotation(vectors[1])));
 }
 
 /// How well each of the rotations carries the vectors over: the sum of scalar products of rotated
 /// vectors with the images wanted.
-std::array<double, Rotation::kCount> agreements(const VectorPair& vectors,
-                                                const VectorPair& images) {
+std::array<double, lattice::Rotation::kCount> agreements(const VectorPair& vectors,
+                                                         const VectorPair& images) {
   // What sending axis `from` to axis `to` adds to the sum; to the opposite direction subtracts it.
   std::array<Vec3, 3> sums{};
   for (std::size_t to = 0; to < 3; ++to) {
@@ -28,12 +28,14 @@ std::array<double, Rotation::kCount> agreements(const VectorPair& vectors,
       sums[to][from] = images[0][to] * vectors[0][from] + images[1][to] * vectors[1][from];
     }
   }
-  std::array<double, Rotation::kCount> agreement{};
+  std::array<double, lattice::Rotation::kCount> agreement{};
   for (std::size_t r = 0; r < agreement.size(); ++r) {
     for (int from = 0; from < 3; ++from) {
-      const Direction to = Rotation(static_cast<int>(r))(direction(from, 1));
+      const lattice::Direction to =
+          lattice::Rotation(static_cast<int>(r))(lattice::direction(from, 1));
       agreement[r] +=
-          signOf(to) * sums[static_cast<std::size_t>(axisOf(to))][static_cast<std::size_t>(from)];
+          lattice::signOf(to) *
+          sums[static_cast<std::size_t>(lattice::axisOf(to))][static_cast<std::size_t>(from)];
     }
   }
   return agreement;
@@ -42,25 +44,27 @@ std::array<double, Rotation::kCount> agreements(const VectorPair& vectors,
 /// The rotation that carries both vectors over without rounding, if the first one tells which it
 /// is: its components differ in magnitude, and none is zero, so that all others do worse.
 /// (5 % of a whole extraction with a chart per tet.)
-std::optional<Rotation> exactRotation(const VectorPair& vectors, const VectorPair& images) {
+std::optional<lattice::Rotation> exactRotation(const VectorPair& vectors,
+                                               const VectorPair& images) {
   const Vec3 a = {std::abs(vectors[0][0]), std::abs(vectors[0][1]), std::abs(vectors[0][2])};
   if (!(a[0] > 0 && a[1] > 0 && a[2] > 0)) return std::nullopt;
   if (a[0] == a[1] || a[1] == a[2] || a[2] == a[0]) return std::nullopt;
-  std::array<Direction, 2> source{};  // of the first two axes: what the rotation sends there
+  std::array<lattice::Direction, 2>
+      source{};  // of the first two axes: what the rotation sends there
   for (std::size_t to = 0; to < 2; ++to) {
     const double b = std::abs(images[0][to]);
     const int axis = (b == a[1] ? 1 : 0) + (b == a[2] ? 2 : 0);
     const bool isReversed =
         std::signbit(images[0][to]) != std::signbit(vectors[0][static_cast<std::size_t>(axis)]);
-    source[to] = direction(axis, isReversed ? -1 : 1);
+    source[to] = lattice::direction(axis, isReversed ? -1 : 1);
   }
-  if (axisOf(source[0]) == axisOf(source[1])) return std::nullopt;
-  const Rotation rotation = Rotation::fromAxes(source[0], source[1]).inverse();
+  if (lattice::axisOf(source[0]) == lattice::axisOf(source[1])) return std::nullopt;
+  const lattice::Rotation rotation = lattice::Rotation::fromAxes(source[0], source[1]).inverse();
   if (rotation(vectors[0]) != images[0] || rotation(vectors[1]) != images[1]) return std::nullopt;
   return rotation;
 }
 
-Rotation rotationOf(const SharedTriangle& triangle) {
+lattice::Rotation rotationOf(const SharedTriangle& triangle) {
   return bestRotation(
       {minus(triangle.here[1], triangle.here[0]), minus(triangle.here[2], triangle.here[0])},
       {minus(triangle.there[1], triangle.there[0]), minus(triangle.there[2], triangle.there[0])});
@@ -104,17 +108,17 @@ bool isExact(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
 
 /// The squared error is a constant minus twice the agreement; as the agreement is rounded, it only
 /// tells which rotations need a closer look.
-Rotation bestRotationOfAll(const VectorPair& vectors, const VectorPair& images) noexcept {
-  const std::array<double, Rotation::kCount> agreement = agreements(vectors, images);
+lattice::Rotation bestRotationOfAll(const VectorPair& vectors, const VectorPair& images) noexcept {
+  const std::array<double, lattice::Rotation::kCount> agreement = agreements(vectors, images);
   const double size = squaredNorm(vectors[0]) + squaredNorm(vectors[1]) + squaredNorm(images[0]) +
                       squaredNorm(images[1]);
   // Far above rounding (a few 2^-53), far below what tells rotations apart.
   const double enough = *std::max_element(agreement.begin(), agreement.end()) - 0x1p-40 * size;
-  Rotation best;
+  lattice::Rotation best;
   double bestResidual = std::numeric_limits<double>::infinity();
   for (std::size_t index = 0; index < agreement.size(); ++index) {
     if (agreement[index] < enough) continue;
-    const Rotation rotation(static_cast<int>(index));
+    const lattice::Rotation rotation(static_cast<int>(index));
     const double error = residual(rotation, vectors, images);
     if (error < bestResidual) {
       bestResidual = error;
@@ -124,23 +128,24 @@ Rotation bestRotationOfAll(const VectorPair& vectors, const VectorPair& images) 
   return best;
 }
 
-Rotation bestRotation(const VectorPair& vectors, const VectorPair& images) noexcept {
-  const std::optional<Rotation> exact = exactRotation(vectors, images);
+lattice::Rotation bestRotation(const VectorPair& vectors, const VectorPair& images) noexcept {
+  const std::optional<lattice::Rotation> exact = exactRotation(vectors, images);
   return exact ? *exact : bestRotationOfAll(vectors, images);
 }
 
-SharedTriangle::SharedTriangle(const TetTopology& topology, const LocalParameters& parameters,
-                               HalfFace halfFace) noexcept {
-  const HalfFace mate = topology.mate[halfFace];
-  const SharedFace face(topology, halfFace, mate);
+SharedTriangle::SharedTriangle(const adjacency::TetTopology& topology,
+                               const LocalParameters& parameters,
+                               adjacency::HalfFace halfFace) noexcept {
+  const adjacency::HalfFace mate = topology.mate[halfFace];
+  const adjacency::SharedFace face(topology, halfFace, mate);
   for (std::size_t k = 0; k < 3; ++k) {
-    here[k] = parameters.at(tetOf(halfFace), face.here(k));
-    there[k] = parameters.at(tetOf(mate), face.there(k));
+    here[k] = parameters.at(adjacency::tetOf(halfFace), face.here(k));
+    there[k] = parameters.at(adjacency::tetOf(mate), face.there(k));
   }
 }
 
-bool agree(const TetTopology& topology, const LocalParameters& parameters,
-           HalfFace halfFace) noexcept {
+bool agree(const adjacency::TetTopology& topology, const LocalParameters& parameters,
+           adjacency::HalfFace halfFace) noexcept {
   const SharedTriangle triangle(topology, parameters, halfFace);
   return triangle.here == triangle.there;
 }
@@ -149,7 +154,8 @@ FittedTransition fitTransition(const SharedTriangle& triangle) noexcept {
   return fitTransition(triangle, rotationOf(triangle));
 }
 
-FittedTransition fitTransition(const SharedTriangle& triangle, Rotation rotation) noexcept {
+FittedTransition fitTransition(const SharedTriangle& triangle,
+                               lattice::Rotation rotation) noexcept {
   std::array<Vec3, 3> images{};
   for (std::size_t i = 0; i < 3; ++i) images[i] = rotation(triangle.here[i]);
   Vec3 translation = minus(triangle.there[0], images[0]);
@@ -171,12 +177,13 @@ FittedTransition fitTransition(const SharedTriangle& triangle, Rotation rotation
 
 std::vector<FittedTransition> fitAllTransitions(const SharedTriangle& triangle) {
   std::vector<FittedTransition> fits;
-  fits.reserve(Rotation::kCount);
-  for (int r = 0; r < Rotation::kCount; ++r) fits.push_back(fitTransition(triangle, Rotation(r)));
+  fits.reserve(lattice::Rotation::kCount);
+  for (int r = 0; r < lattice::Rotation::kCount; ++r)
+    fits.push_back(fitTransition(triangle, lattice::Rotation(r)));
   std::stable_sort(
       fits.begin(), fits.end(),
       [](const FittedTransition& a, const FittedTransition& b) { return a.residual < b.residual; });
   return fits;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -12,35 +12,36 @@
 #include <igm/input.hpp>
 #include <lattice/transition.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// Two edges of a triangle, in the chart of one tet or the other.
 using VectorPair = std::array<Vec3, 2>;
 
 /// argmin over the rotations R of |images[0] - R vectors[0]|^2 + |images[1] - R vectors[1]|^2, as
 /// far as rounding can tell; the first of several.
-[[nodiscard]] Rotation bestRotation(const VectorPair& vectors, const VectorPair& images) noexcept;
+[[nodiscard]] lattice::Rotation bestRotation(const VectorPair& vectors,
+                                             const VectorPair& images) noexcept;
 
 /// The same by comparing all rotations, for tests.
-[[nodiscard]] Rotation bestRotationOfAll(const VectorPair& vectors,
-                                         const VectorPair& images) noexcept;
+[[nodiscard]] lattice::Rotation bestRotationOfAll(const VectorPair& vectors,
+                                                  const VectorPair& images) noexcept;
 
 /// The three corners of an inner triangle in the charts of both its tets.
 struct SharedTriangle {
   std::array<Vec3, 3> here;
   std::array<Vec3, 3> there;
 
-  SharedTriangle(const TetTopology& topology, const LocalParameters& parameters,
-                 HalfFace halfFace) noexcept;
+  SharedTriangle(const adjacency::TetTopology& topology, const LocalParameters& parameters,
+                 adjacency::HalfFace halfFace) noexcept;
 };
 
 /// Whether two tets agree on the parameters of the corners of their common face.
-[[nodiscard]] bool agree(const TetTopology& topology, const LocalParameters& parameters,
-                         HalfFace halfFace) noexcept;
+[[nodiscard]] bool agree(const adjacency::TetTopology& topology, const LocalParameters& parameters,
+                         adjacency::HalfFace halfFace) noexcept;
 
 /// A transition, and how well it does.
 struct FittedTransition {
-  Transition transition;
+  lattice::Transition transition;
   double residual = 0;   ///< largest violation of (IGM1), in parameter units
   bool isExact = false;  ///< whether it carries the corners over without rounding
 };
@@ -51,9 +52,9 @@ struct FittedTransition {
 
 /// The same with a rotation that is known.
 [[nodiscard]] FittedTransition fitTransition(const SharedTriangle& triangle,
-                                             Rotation rotation) noexcept;
+                                             lattice::Rotation rotation) noexcept;
 
 /// With each of the rotations, smallest residual first.
 [[nodiscard]] std::vector<FittedTransition> fitAllTransitions(const SharedTriangle& triangle);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -3,16 +3,16 @@
 #include <igm/transition_fit.hpp>
 #include <igm/transitions.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
 /// What fitting transitions to a block of triangles gives.
 struct BlockResult {
   struct NonTrivial {
-    HalfFace here;  ///< the smaller half-face
+    adjacency::HalfFace here;  ///< the smaller half-face
     bool isExact;
-    Transition transition;
+    lattice::Transition transition;
   };
   std::vector<NonTrivial> nonTrivial;
   std::vector<Transitions::Misfit> misfits;
@@ -22,17 +22,17 @@ struct BlockResult {
 /// Fits transitions to the triangles on which tets do not agree.
 class TransitionFitter {
  public:
-  TransitionFitter(const TetTopology& topology, const LocalParameters& parameters,
+  TransitionFitter(const adjacency::TetTopology& topology, const LocalParameters& parameters,
                    std::span<const std::array<std::int8_t, 4>> rotations, double tolerance)
       : topology_(topology),
         parameters_(parameters),
         rotations_(rotations),
         tolerance_(tolerance) {}
 
-  [[nodiscard]] BlockResult run(std::span<const HalfFace> halfFaces) const {
+  [[nodiscard]] BlockResult run(std::span<const adjacency::HalfFace> halfFaces) const {
     BlockResult block;
-    for (const HalfFace there : halfFaces) {
-      const HalfFace here = topology_.mate[there];
+    for (const adjacency::HalfFace there : halfFaces) {
+      const adjacency::HalfFace here = topology_.mate[there];
       const FittedTransition fitted = fit(here);
       block.maxResidual = std::max(block.maxResidual, fitted.residual);
       if (fitted.residual > tolerance_) block.misfits.push_back({here, fitted.residual});
@@ -43,22 +43,22 @@ class TransitionFitter {
   }
 
  private:
-  [[nodiscard]] FittedTransition fit(HalfFace here) const {
+  [[nodiscard]] FittedTransition fit(adjacency::HalfFace here) const {
     const SharedTriangle triangle(topology_, parameters_, here);
-    const int known = rotations_.empty() ? -1 : rotations_[tetOf(here)][here % 4];
-    return known >= 0 && known < Rotation::kCount
-               ? fitTransition(triangle, rotationFromAlgoHex(known))
+    const int known = rotations_.empty() ? -1 : rotations_[adjacency::tetOf(here)][here % 4];
+    return known >= 0 && known < lattice::Rotation::kCount
+               ? fitTransition(triangle, lattice::rotationFromAlgoHex(known))
                : fitTransition(triangle);
   }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const LocalParameters& parameters_;
   std::span<const std::array<std::int8_t, 4>> rotations_;
   double tolerance_;
 };
 
-void enter(Index index, HalfFace halfFace, const Transition& transition, bool isExact,
-           Transitions& result) {
+void enter(Index index, adjacency::HalfFace halfFace, const lattice::Transition& transition,
+           bool isExact, Transitions& result) {
   result.ofFace[halfFace] = index;
   result.table[index] = transition;
   result.halfFaces[index] = halfFace;
@@ -67,8 +67,8 @@ void enter(Index index, HalfFace halfFace, const Transition& transition, bool is
 
 }  // namespace
 
-Transitions computeTransitions(const TetTopology& topology, const LocalParameters& parameters,
-                               const RegularVertices& survey,
+Transitions computeTransitions(const adjacency::TetTopology& topology,
+                               const LocalParameters& parameters, const RegularVertices& survey,
                                std::span<const std::array<std::int8_t, 4>> rotations,
                                double tolerance, Stage& stage) {
   const TransitionFitter fitter(topology, parameters, rotations, tolerance);
@@ -106,18 +106,21 @@ Transitions computeTransitions(const TetTopology& topology, const LocalParameter
   return result;
 }
 
-Array<HalfFaceCrossing> findCrossings(const TetTopology& topology, const RegularVertices& survey,
-                                      const Transitions& transitions, Stage& stage) {
+Array<HalfFaceCrossing> findCrossings(const adjacency::TetTopology& topology,
+                                      const RegularVertices& survey, const Transitions& transitions,
+                                      Stage& stage) {
   Array<HalfFaceCrossing> crossings(topology.mate.size());
-  const auto isCertain = [&](HalfFace h) { return survey.sides[tetOf(h)] != kUncertainSides; };
+  const auto isCertain = [&](adjacency::HalfFace h) {
+    return survey.sides[adjacency::tetOf(h)] != kUncertainSides;
+  };
   parallelBlocks(stage, topology.tetCount(), RegularVertices::kBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::fill(&crossings[4 * begin], &crossings[4 * begin] + 4 * (end - begin),
                              HalfFaceCrossing());
                    for (auto t = static_cast<Index>(begin); t < end; ++t) {
                      if (survey.sides[t] != kUncertainSides) continue;
-                     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-                       crossings[h] = HalfFaceCrossing::inner(Rotation(), false);
+                     for (adjacency::HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+                       crossings[h] = HalfFaceCrossing::inner(lattice::Rotation(), false);
                      }
                    }
                    for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
@@ -127,10 +130,10 @@ Array<HalfFaceCrossing> findCrossings(const TetTopology& topology, const Regular
                    }
                  });
   parallelFor(stage, survey.unequalFaces.size(), 1, [&](std::size_t block) {
-    for (const HalfFace halfFace : survey.unequalFaces[block]) {
-      for (const HalfFace h : {halfFace, topology.mate[halfFace]}) {
+    for (const adjacency::HalfFace halfFace : survey.unequalFaces[block]) {
+      for (const adjacency::HalfFace h : {halfFace, topology.mate[halfFace]}) {
         if (transitions.ofFace.empty()) {
-          crossings[h] = HalfFaceCrossing::inner(Rotation(), false);
+          crossings[h] = HalfFaceCrossing::inner(lattice::Rotation(), false);
           continue;
         }
         const Index index = transitions.ofFace[h];
@@ -145,8 +148,9 @@ Array<HalfFaceCrossing> findCrossings(const TetTopology& topology, const Regular
 void collectMisfits(const Transitions& transitions, DefectCollector& defects) {
   for (const Transitions::Misfit& misfit : transitions.misfits) {
     defects.add(ErrorCode::TransitionResidual,
-                {PlaceKind::Face, tetOf(misfit.halfFace), misfit.halfFace % 4}, misfit.residual);
+                {PlaceKind::Face, adjacency::tetOf(misfit.halfFace), misfit.halfFace % 4},
+                misfit.residual);
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

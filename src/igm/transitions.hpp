@@ -13,15 +13,15 @@
 #include <igm/regular_vertices.hpp>
 #include <lattice/transition.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 struct Transitions {
   /// Per half-face: index in `table` of the transition into the neighbour's chart; 0, the identity,
   /// is by far the most frequent.
   Array<Index> ofFace;
-  Array<Transition> table;
+  Array<lattice::Transition> table;
   /// Per entry of the table: the half-face that it belongs to. kNone for the identity.
-  Array<HalfFace> halfFaces;
+  Array<adjacency::HalfFace> halfFaces;
   /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
   /// the identity, for the sake of triangles that it fits only best.
   Array<std::uint8_t> isExact;
@@ -31,20 +31,20 @@ struct Transitions {
 
   /// Triangles whose residual is above the tolerance.
   struct Misfit {
-    HalfFace halfFace;
+    adjacency::HalfFace halfFace;
     double residual;
   };
   std::vector<Misfit> misfits;
 
   /// From the chart of the half-face's tet to that of its mate.
-  [[nodiscard]] const Transition& across(HalfFace halfFace) const noexcept {
+  [[nodiscard]] const lattice::Transition& across(adjacency::HalfFace halfFace) const noexcept {
     return table[ofFace[halfFace]];
   }
   /// The index in `table` of the inverse: both are neighbours there.
   [[nodiscard]] static constexpr Index inverse(Index index) noexcept {
     return index == 0 ? 0 : ((index - 1) ^ 1U) + 1;
   }
-  [[nodiscard]] bool isNonTrivial(HalfFace halfFace) const noexcept {
+  [[nodiscard]] bool isNonTrivial(adjacency::HalfFace halfFace) const noexcept {
     return ofFace[halfFace] != 0;
   }
 };
@@ -52,7 +52,7 @@ struct Transitions {
 /// @param survey  knows where tets differ
 /// @param rotations  what the caller knows, as in TetMapView; may be empty
 /// @param tolerance  residuals above it make misfits
-[[nodiscard]] Transitions computeTransitions(const TetTopology& topology,
+[[nodiscard]] Transitions computeTransitions(const adjacency::TetTopology& topology,
                                              const LocalParameters& parameters,
                                              const RegularVertices& survey,
                                              std::span<const std::array<std::int8_t, 4>> rotations,
@@ -61,7 +61,7 @@ struct Transitions {
 /// Per half-face. Inexact are all of a tet with uncertain sides, and where tets do not agree unless
 /// a transition fits exactly.
 /// @param transitions  may be empty: if parameters are too large, they are not known
-[[nodiscard]] Array<HalfFaceCrossing> findCrossings(const TetTopology& topology,
+[[nodiscard]] Array<HalfFaceCrossing> findCrossings(const adjacency::TetTopology& topology,
                                                     const RegularVertices& survey,
                                                     const Transitions& transitions, Stage& stage);
 
@@ -69,4 +69,4 @@ struct Transitions {
 /// manifold.
 void collectMisfits(const Transitions& transitions, DefectCollector& defects);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

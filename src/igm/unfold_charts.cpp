@@ -11,7 +11,7 @@
 #include <igm/transition_fit.hpp>
 #include <igm/unfold_charts.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 namespace {
 
@@ -23,28 +23,30 @@ constexpr Index kAhead = 8;
 /// Tets that are connected within a block of consecutive tets are a *piece*. Pieces are numbered
 /// from 0 in each block, and then block by block.
 struct Block {
-  std::vector<HalfFace> exits;    ///< half-faces of other blocks whose mates are in this one
+  std::vector<adjacency::HalfFace>
+      exits;                      ///< half-faces of other blocks whose mates are in this one
   std::vector<std::size_t> ends;  ///< per piece: where its exits end
 };
 
 /// Searches the dual graph: blocks of tets, then the graph of their pieces.
 class GaugeSearch {
  public:
-  GaugeSearch(const TetTopology& topology, const LocalParameters& parameters, std::size_t blockSize)
+  GaugeSearch(const adjacency::TetTopology& topology, const LocalParameters& parameters,
+              std::size_t blockSize)
       : topology_(topology),
         parameters_(parameters),
         blockSize_(blockSize),
         gauges_(topology.tetCount()),
         pieces_(topology.tetCount(), kNone) {}
 
-  Array<Gauge> run(Stage& stage) {
+  Array<lattice::Gauge> run(Stage& stage) {
     const std::size_t tets = topology_.tetCount();
     std::vector<Block> blocks(blockCount(tets, blockSize_));
     parallelBlocks(stage, tets, blockSize_,
                    [&](std::size_t begin, std::size_t end, std::size_t block) {
                      searchBlock(static_cast<Index>(begin), static_cast<Index>(end), blocks[block]);
                    });
-    const std::vector<Gauge> gaugesOfPieces = joinPieces(blocks);
+    const std::vector<lattice::Gauge> gaugesOfPieces = joinPieces(blocks);
     parallelFor(stage, tets, kGrain, [&](std::size_t t) {
       gauges_[t] = gaugesOfPieces[pieceOf(static_cast<Index>(t))] * gauges_[t];
     });
@@ -56,8 +58,8 @@ class GaugeSearch {
   /// first, then transitions, tet by tet, as they need far more memory. (With branches and without
   /// prefetching, extractions of cylinder_random_low take 5 % longer.)
   void searchBlock(Index begin, Index end, Block& block) {
-    Array<HalfFace> entry(end - begin, kNone);  // per tet: through which it was found
-    std::vector<Index> queue(end - begin + 1);  // tets in the order of the search
+    Array<adjacency::HalfFace> entry(end - begin, kNone);  // per tet: through which it was found
+    std::vector<Index> queue(end - begin + 1);             // tets in the order of the search
     std::size_t count = 0;
     for (Index root = begin; root < end; ++root) {
       if (pieces_[root] != kNone) continue;
@@ -66,16 +68,16 @@ class GaugeSearch {
       std::size_t head = count;
       queue[count++] = root;
       for (; head < count; ++head) {
-        for (const HalfFace mate : sortedMates(queue[head])) {
+        for (const adjacency::HalfFace mate : sortedMates(queue[head])) {
           if (mate == kNone) continue;
-          const Index neighbour = tetOf(mate);
+          const Index neighbour = adjacency::tetOf(mate);
           if (neighbour < begin || neighbour >= end) {
             block.exits.push_back(mate);
             continue;
           }
           const bool isNew = pieces_[neighbour] == kNone;
           pieces_[neighbour] = piece;
-          HalfFace& entryThere = entry[neighbour - begin];
+          adjacency::HalfFace& entryThere = entry[neighbour - begin];
           entryThere = isNew ? mate : entryThere;
           queue[count] = neighbour;  // in vain unless it is new, which cannot be predicted
           count += static_cast<std::size_t>(isNew);
@@ -88,23 +90,25 @@ class GaugeSearch {
 
   /// @param entry  per tet: the half-face through which the search has found it, or kNone
   /// @param order  of the search
-  void composeInBlock(Index begin, Index end, std::span<const HalfFace> entry,
+  void composeInBlock(Index begin, Index end, std::span<const adjacency::HalfFace> entry,
                       std::span<const Index> order) {
     for (Index t = begin; t < end; ++t) {
-      const HalfFace ahead = entry[std::min(t + kAhead, end - 1) - begin];
-      if (ahead != kNone) parameters_.prefetch(tetOf(topology_.mate[ahead]));
-      const HalfFace halfFace = entry[t - begin];
-      gauges_[t] = halfFace == kNone ? Gauge{} : Gauge{} * transitionAcross(halfFace);
+      const adjacency::HalfFace ahead = entry[std::min(t + kAhead, end - 1) - begin];
+      if (ahead != kNone) parameters_.prefetch(adjacency::tetOf(topology_.mate[ahead]));
+      const adjacency::HalfFace halfFace = entry[t - begin];
+      gauges_[t] =
+          halfFace == kNone ? lattice::Gauge{} : lattice::Gauge{} * transitionAcross(halfFace);
     }
     for (const Index t : order) {
-      const HalfFace halfFace = entry[t - begin];
-      if (halfFace != kNone) gauges_[t] = gauges_[tetOf(topology_.mate[halfFace])] * gauges_[t];
+      const adjacency::HalfFace halfFace = entry[t - begin];
+      if (halfFace != kNone)
+        gauges_[t] = gauges_[adjacency::tetOf(topology_.mate[halfFace])] * gauges_[t];
     }
   }
 
   /// In ascending order, which makes cuts smoother.
-  [[nodiscard]] std::array<HalfFace, 4> sortedMates(Index tet) const {
-    const HalfFace* m = &topology_.mate[4 * tet];
+  [[nodiscard]] std::array<adjacency::HalfFace, 4> sortedMates(Index tet) const {
+    const adjacency::HalfFace* m = &topology_.mate[4 * tet];
     const auto [low0, high0] = std::minmax(m[0], m[1]);
     const auto [low1, high1] = std::minmax(m[2], m[3]);
     const auto [middle0, middle1] = std::minmax(std::max(low0, low1), std::min(high0, high1));
@@ -112,8 +116,8 @@ class GaugeSearch {
   }
 
   /// @return per piece: the gauge of its first tet
-  std::vector<Gauge> joinPieces(const std::vector<Block>& blocks) {
-    std::vector<HalfFace> exits;
+  std::vector<lattice::Gauge> joinPieces(const std::vector<Block>& blocks) {
+    std::vector<adjacency::HalfFace> exits;
     std::vector<std::size_t> begin = {0};  // per piece (+1): in `exits`
     for (const Block& block : blocks) {
       firstPiece_.push_back(static_cast<Index>(begin.size() - 1));
@@ -121,7 +125,7 @@ class GaugeSearch {
       exits.insert(exits.end(), block.exits.begin(), block.exits.end());
     }
     const auto count = static_cast<Index>(begin.size() - 1);
-    std::vector<Gauge> gauges(count);
+    std::vector<lattice::Gauge> gauges(count);
     std::vector<bool> reached(count, false);
     std::vector<Index> queue;
     for (Index root = 0; root < count; ++root) {
@@ -131,11 +135,11 @@ class GaugeSearch {
       for (std::size_t head = 0; head < queue.size(); ++head) {
         const Index piece = queue[head];
         for (std::size_t i = begin[piece]; i < begin[piece + 1]; ++i) {
-          const Index there = tetOf(exits[i]);
+          const Index there = adjacency::tetOf(exits[i]);
           const Index neighbour = pieceOf(there);
           if (reached[neighbour]) continue;
           reached[neighbour] = true;
-          const Gauge& here = gauges_[tetOf(topology_.mate[exits[i]])];
+          const lattice::Gauge& here = gauges_[adjacency::tetOf(topology_.mate[exits[i]])];
           gauges[neighbour] = gauges[piece] * (here * transitionAcross(exits[i])) / gauges_[there];
           queue.push_back(neighbour);
         }
@@ -144,22 +148,22 @@ class GaugeSearch {
     return gauges;
   }
 
-  [[nodiscard]] Transition transitionAcross(HalfFace halfFace) const {
+  [[nodiscard]] lattice::Transition transitionAcross(adjacency::HalfFace halfFace) const {
     return fitTransition(SharedTriangle(topology_, parameters_, halfFace)).transition;
   }
   [[nodiscard]] Index pieceOf(Index tet) const noexcept {
     return firstPiece_[tet / blockSize_] + pieces_[tet];
   }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const LocalParameters& parameters_;
   std::size_t blockSize_;
-  Array<Gauge> gauges_;
+  Array<lattice::Gauge> gauges_;
   Array<Index> pieces_;            ///< per tet: its piece, by number in the block
   std::vector<Index> firstPiece_;  ///< per block
 };
 
-Vec3 translationOf(const Gauge& gauge) {
+Vec3 translationOf(const lattice::Gauge& gauge) {
   Vec3 translation{};
   for (std::size_t k = 0; k < 3; ++k) {
     translation[k] = static_cast<std::int32_t>(gauge.translation[k]);
@@ -182,9 +186,9 @@ bool translateExactly(const TetParameters& rotated, const Vec3& by, TetParameter
 
 /// The parameters of a tet in the chart of its gauge, moved to the origin as LocalParameters would
 /// move it. If that rounds, they stay as they are, and the gauge becomes the identity.
-TetParameters rewritten(const LocalParameters& given, Index t, Gauge& gauge) {
+TetParameters rewritten(const LocalParameters& given, Index t, lattice::Gauge& gauge) {
   const TetParameters u = given(t);
-  const Rotation rotation = gauge.rotation;
+  const lattice::Rotation rotation = gauge.rotation;
   const TetParameters rotated = {rotation(u[0]), rotation(u[1]), rotation(u[2]), rotation(u[3])};
   const Vec3 by = translationOf(gauge);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -207,12 +211,13 @@ double largestMagnitude(const TetParameters& u) {
 
 }  // namespace
 
-Array<Gauge> computeGauges(const TetTopology& topology, const LocalParameters& parameters,
-                           Stage& stage, std::size_t blockSize) {
+Array<lattice::Gauge> computeGauges(const adjacency::TetTopology& topology,
+                                    const LocalParameters& parameters, Stage& stage,
+                                    std::size_t blockSize) {
   return GaugeSearch(topology, parameters, blockSize).run(stage);
 }
 
-bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
+bool needsUnfolding(const adjacency::TetTopology& topology, const OrientedMap& map) {
   const LocalParameters given(map);
   if (!map.view.rotations.empty() || given.tooLarge()) return false;
   constexpr std::size_t kSample = 32;  // tets
@@ -223,7 +228,7 @@ bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
   std::size_t nonTrivial = 0;
   for (std::size_t t = 0; t < topology.tetCount(); t += step) {
     for (int f = 0; f < 4; ++f) {
-      const HalfFace here = halfFaceOf(static_cast<Index>(t), f);
+      const adjacency::HalfFace here = adjacency::halfFaceOf(static_cast<Index>(t), f);
       if (topology.isBoundary(here)) continue;
       ++faces;
       if (agree(topology, given, here)) continue;
@@ -234,9 +239,10 @@ bool needsUnfolding(const TetTopology& topology, const OrientedMap& map) {
   return kBreakEven * nonTrivial > faces;
 }
 
-Array<Gauge> unfoldCharts(const TetTopology& topology, OrientedMap& map, Stage& stage) {
+Array<lattice::Gauge> unfoldCharts(const adjacency::TetTopology& topology, OrientedMap& map,
+                                   Stage& stage) {
   const LocalParameters given(map);
-  Array<Gauge> gauges = computeGauges(topology, given, stage);
+  Array<lattice::Gauge> gauges = computeGauges(topology, given, stage);
   const std::size_t tets = topology.tetCount();
   if (map.parameters.empty()) map.parameters.resize(tets);
   std::vector<double> largest(blockCount(tets, kGrain), 0);
@@ -251,24 +257,25 @@ Array<Gauge> unfoldCharts(const TetTopology& topology, OrientedMap& map, Stage& 
   return gauges;
 }
 
-std::uint64_t countGivenTransitions(const TetTopology& topology, const Transitions& transitions,
-                                    const Array<Gauge>& gauges, Stage& stage) {
+std::uint64_t countGivenTransitions(const adjacency::TetTopology& topology,
+                                    const Transitions& transitions,
+                                    const Array<lattice::Gauge>& gauges, Stage& stage) {
   if (gauges.empty()) return transitions.nonTrivial;
   const std::size_t halfFaces = topology.mate.size();
   std::vector<std::uint64_t> blocks(blockCount(halfFaces, kGrain), 0);
   parallelBlocks(stage, halfFaces, kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (auto here = static_cast<HalfFace>(begin); here < end; ++here) {
-                     const HalfFace there = topology.mate[here];
+                   for (auto here = static_cast<adjacency::HalfFace>(begin); here < end; ++here) {
+                     const adjacency::HalfFace there = topology.mate[here];
                      if (there == kNone || there < here) continue;
-                     Gauge image = gauges[tetOf(here)];
+                     lattice::Gauge image = gauges[adjacency::tetOf(here)];
                      if (transitions.isNonTrivial(here)) {
-                       image = Gauge{} * transitions.across(here) * image;
+                       image = lattice::Gauge{} * transitions.across(here) * image;
                      }
-                     blocks[block] += image == gauges[tetOf(there)] ? 0 : 1;
+                     blocks[block] += image == gauges[adjacency::tetOf(there)] ? 0 : 1;
                    }
                  });
   return std::accumulate(blocks.begin(), blocks.end(), std::uint64_t{0});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -14,12 +14,12 @@
 #include <igm/transitions.hpp>
 #include <lattice/gauge.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// Whether, by a sample, so many triangles have exact transitions that are not the identity that
 /// unfolding is worth its time. Not for maps that come with rotations, which are between given
 /// charts.
-[[nodiscard]] bool needsUnfolding(const TetTopology& topology, const OrientedMap& map);
+[[nodiscard]] bool needsUnfolding(const adjacency::TetTopology& topology, const OrientedMap& map);
 
 /// Rewrites the parameters of a map in charts that extend along a tree of tets. All stages behind
 /// then have as little to do as if the map had been given that way: transitions, cuts and closer
@@ -27,14 +27,15 @@ namespace hexhex {
 /// and the signs of coordinates, and where a sum would be rounded, a tet keeps its chart; so it is
 /// the same map to the last bit.
 /// @return per tet: from the given chart (as LocalParameters moved it) into the one that is used
-[[nodiscard]] Array<Gauge> unfoldCharts(const TetTopology& topology, OrientedMap& map,
-                                        Stage& stage);
+[[nodiscard]] Array<lattice::Gauge> unfoldCharts(const adjacency::TetTopology& topology,
+                                                 OrientedMap& map, Stage& stage);
 
 /// How many inner faces have another transition than the identity between given charts.
 /// @param gauges  by unfoldCharts(), or empty: no chart differs
-[[nodiscard]] std::uint64_t countGivenTransitions(const TetTopology& topology,
+[[nodiscard]] std::uint64_t countGivenTransitions(const adjacency::TetTopology& topology,
                                                   const Transitions& transitions,
-                                                  const Array<Gauge>& gauges, Stage& stage);
+                                                  const Array<lattice::Gauge>& gauges,
+                                                  Stage& stage);
 
 /// Tets in a block: what they need is to stay in a cache of one or two MB. Smaller blocks are
 /// faster, but cuts are as few as those of one search only inside of blocks.
@@ -45,8 +46,8 @@ inline constexpr std::size_t kGaugeBlock = std::size_t{1} << 14;
 ///
 /// The tree is one of breadth-first searches: within blocks of consecutive tets, in parallel, and
 /// then from block to block. It does not depend on threads.
-[[nodiscard]] Array<Gauge> computeGauges(const TetTopology& topology,
-                                         const LocalParameters& parameters, Stage& stage,
-                                         std::size_t blockSize = kGaugeBlock);
+[[nodiscard]] Array<lattice::Gauge> computeGauges(const adjacency::TetTopology& topology,
+                                                  const LocalParameters& parameters, Stage& stage,
+                                                  std::size_t blockSize = kGaugeBlock);
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

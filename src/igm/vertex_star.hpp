@@ -11,7 +11,7 @@
 #include <base/low_level.hpp>
 #include <igm/half_face_crossing.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 
 /// The three faces at a corner of a tet, and the three corners other than this one.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers = {
@@ -25,17 +25,17 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 4> kPlaceOfFace = {
 class VertexStar {
  public:
   struct Member {
-    CornerIndex corner = 0;  ///< at the vertex
+    adjacency::CornerIndex corner = 0;  ///< at the vertex
     /// Which member is behind the face opposite corner kOthers[corner % 4][k]; kNone at the
     /// boundary.
     std::array<Index, 3> neighbour{};
     /// From the chart of the first member into this one's, along the walk.
-    Rotation rotation;
+    lattice::Rotation rotation;
     std::uint8_t entry =
         0;  ///< through which of its three faces it was found; not of the first one
 
     [[nodiscard]] Index tet() const noexcept { return corner / 4; }
-    [[nodiscard]] HalfFace halfFace(std::size_t k) const noexcept {
+    [[nodiscard]] adjacency::HalfFace halfFace(std::size_t k) const noexcept {
       return 4 * tet() + kOthers[corner % 4][k];
     }
   };
@@ -44,31 +44,31 @@ class VertexStar {
   /// is found: everything, in a manifold.
   /// @param vertex  not isolated
   /// @param crossings  per half-face; without them, nothing is known of charts
-  void collect(const TetTopology& topology, Index vertex,
+  void collect(const adjacency::TetTopology& topology, Index vertex,
                std::span<const HalfFaceCrossing> crossings = {}) {
     numbers_.clear();
-    KeyTable::Numberer number = numbers_.numberer();
+    adjacency::KeyTable::Numberer number = numbers_.numberer();
     Member* members = members_.data();
     const Index first = topology.vertexTet[vertex];
-    members[0].corner = 4 * first + localCorner(topology.tets[first], vertex);
-    members[0].rotation = Rotation();
+    members[0].corner = 4 * first + adjacency::localCorner(topology.tets[first], vertex);
+    members[0].rotation = lattice::Rotation();
     Index count = 1 + number(first, 0);
     unsigned misfits = 0;
-    AxisSet planes = 0;
+    lattice::AxisSet planes = 0;
     // Looks through face k of a member, without branches: neither whether the member behind is new
     // nor where the boundary is can be predicted. At the boundary, a member is behind itself.
     const auto cross = [&](Index head, std::size_t k) {
       const Member here = members[head];
-      const HalfFace halfFace = here.halfFace(k);
+      const adjacency::HalfFace halfFace = here.halfFace(k);
       const HalfFaceCrossing crossing =
           crossings.empty() ? HalfFaceCrossing() : crossings[halfFace];
-      const HalfFace mate = topology.mate[halfFace];
+      const adjacency::HalfFace mate = topology.mate[halfFace];
       const bool isBoundary = mate == kNone;
-      const Index tet = tetOf(isBoundary ? halfFace : mate);
+      const Index tet = adjacency::tetOf(isBoundary ? halfFace : mate);
       prefetch(&topology.mate[4 * tet]);
       const Index j = number(tet, count);
       Member& behind = members[count];  // in vain if it is not new
-      const Index corner = localCorner(topology.tets[tet], vertex);
+      const Index corner = adjacency::localCorner(topology.tets[tet], vertex);
       behind.corner = 4 * tet + corner;
       behind.entry = kPlaceOfFace[corner][mate % 4];
       behind.neighbour[behind.entry] = head;
@@ -76,7 +76,7 @@ class VertexStar {
       members[head].neighbour[k] = isBoundary ? kNone : j;
       misfits |= behind.rotation == members[j].rotation ? 0U : 1U;
       misfits |= crossing.isInexact() ? 1U : 0U;
-      planes |= imageOf(crossing.plane(), here.rotation.inverse());
+      planes |= lattice::imageOf(crossing.plane(), here.rotation.inverse());
       count += j == count ? 1 : 0;
     };
     for (std::size_t k = 0; k < 3; ++k) cross(0, k);
@@ -102,16 +102,16 @@ class VertexStar {
     return {members_.data(), count_};
   }
   /// Across boundary faces, in the chart of the first member.
-  [[nodiscard]] AxisSet planes() const noexcept { return planes_; }
+  [[nodiscard]] lattice::AxisSet planes() const noexcept { return planes_; }
   /// Whether transitions are exact, and all paths through the star lead to the same charts.
   [[nodiscard]] bool chartsFit() const noexcept { return fits_; }
 
  private:
-  KeyTable numbers_;  ///< of tets
+  adjacency::KeyTable numbers_;  ///< of tets
   Index count_ = 0;
-  AxisSet planes_ = 0;
+  lattice::AxisSet planes_ = 0;
   bool fits_ = true;
   std::vector<Member> members_ = std::vector<Member>(64);
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::igm

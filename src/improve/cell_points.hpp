@@ -8,12 +8,12 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 struct CellPoints {
   std::span<const Index> all;  ///< those of cell 0, of cell 1, and so on
   std::size_t perCell = 8;
-  const VertexCells& around;  ///< the cells at each point
+  const adjacency::VertexCells& around;  ///< the cells at each point
   std::size_t pointCount = 0;
 
   [[nodiscard]] std::size_t cellCount() const noexcept { return all.size() / perCell; }
@@ -22,4 +22,4 @@ struct CellPoints {
   }
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -10,7 +10,7 @@
 #include <improve/curved_cells.hpp>
 #include <mesh/cell_measures.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// Calls use(cell, CellState) for the cells of a list.
 /// @param curved  in place of the cells of the mesh, or null
@@ -21,11 +21,11 @@ void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
     for (const Index cell : list) use(cell, curved->stateOf(mesh.points, cell, scratch));
     return;
   }
-  static const MeasureCells measure = measuresOfCells().back();
-  CellMeasures measures;
-  std::array<Hex, CellMeasures::kMost> cells;
-  for (std::size_t begin = 0; begin < list.size(); begin += CellMeasures::kMost) {
-    const std::size_t n = std::min(CellMeasures::kMost, list.size() - begin);
+  static const mesh::MeasureCells measure = mesh::measuresOfCells().back();
+  mesh::CellMeasures measures;
+  std::array<Hex, mesh::CellMeasures::kMost> cells;
+  for (std::size_t begin = 0; begin < list.size(); begin += mesh::CellMeasures::kMost) {
+    const std::size_t n = std::min(mesh::CellMeasures::kMost, list.size() - begin);
     for (std::size_t i = 0; i < n; ++i) cells[i] = mesh.cells[list[begin + i]];
     measure(mesh.points.data(), std::span(cells).first(n), measures);
     for (std::size_t i = 0; i < n; ++i) {
@@ -43,4 +43,4 @@ void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
 }
 [[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -5,7 +5,7 @@
 #include <improve/chord_error.hpp>
 #include <improve/vertex_energy.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 double ChordError::at(Index vertex) const {
   const ReferenceSurface& surface = places.surface;
@@ -14,9 +14,9 @@ double ChordError::at(Index vertex) const {
     error = std::max(error, length(minus(point, nearest.point)));
   };
   for (const Index cell : around(vertex)) {
-    for (std::size_t face = 0; face < kHexFaces.size(); ++face) {
+    for (std::size_t face = 0; face < adjacency::kHexFaces.size(); ++face) {
       if ((boundary[cell] >> face & 1U) == 0) continue;
-      const Quad quad = faceVertices(mesh.cells[cell], face);
+      const Quad quad = adjacency::faceVertices(mesh.cells[cell], face);
       const auto at =
           static_cast<std::size_t>(std::find(quad.begin(), quad.end(), vertex) - quad.begin());
       if (at == quad.size()) continue;
@@ -39,4 +39,4 @@ double ChordError::at(Index vertex) const {
   return error;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -9,13 +9,13 @@
 
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// All of it outlives this.
 struct ChordError {
   const HexMesh& mesh;
   const VertexPlaces& places;
-  const VertexCells& around;
+  const adjacency::VertexCells& around;
   const Array<std::uint8_t>& boundary;  ///< per cell: as of HexFaces
   double chord;  ///< so far may quads be from the surface, if they are not farther anyway
 
@@ -23,4 +23,4 @@ struct ChordError {
   [[nodiscard]] double at(Index vertex) const;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -2,7 +2,7 @@
 
 #include <improve/colours.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 Colours::Colours(const CellPoints& mesh) : colourOf_(mesh.pointCount) {
   // Each vertex gets the first colour that none before it has around.
@@ -36,4 +36,4 @@ Colours::Groups Colours::groupsOf(std::span<const Index> vertices) const {
   return groups;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

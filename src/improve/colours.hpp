@@ -10,7 +10,7 @@
 
 #include <improve/cell_points.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 class Colours {
  public:
@@ -29,4 +29,4 @@ class Colours {
   std::size_t count_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -1,6 +1,6 @@
 #include <improve/creases.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 LooseVertices::LooseVertices(VertexPlaces& places, std::span<const Index> vertices,
                              const Array<Vec3>& points)
@@ -30,4 +30,4 @@ std::vector<Index> LooseVertices::holdUnmoved(const Array<Vec3>& points) {
   return moved;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

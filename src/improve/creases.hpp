@@ -12,7 +12,7 @@
 
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 class LooseVertices {
  public:
@@ -38,4 +38,4 @@ class LooseVertices {
   std::vector<Held> held_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

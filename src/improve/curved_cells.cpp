@@ -5,7 +5,7 @@
 #include <curved/lagrange.hpp>
 #include <improve/curved_cells.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -18,8 +18,8 @@ constexpr int placesOf(int order) { return 3 * order; }
 
 CurvedCells::CurvedCells(const LagrangeMesh& mesh)
     : mesh_(mesh),
-      columns_(mesh.order, equidistant(placesOf(mesh.order) - 1)),
-      toBezier_(nodeMatrices<double>(columns_.value.rows - 1).values),
+      columns_(mesh.order, curved::equidistant(placesOf(mesh.order) - 1)),
+      toBezier_(mesh::nodeMatrices<double>(columns_.value.rows - 1).values),
       quality_(mesh.order),
       validity_(mesh.order) {}
 
@@ -27,12 +27,12 @@ std::span<const Index> CurvedCells::nodesOf(std::size_t cell) const {
   return std::span(mesh_.nodes).subspan(cell * mesh_.nodesPerCell(), mesh_.nodesPerCell());
 }
 
-CellPoints CurvedCells::points(const VertexCells& around) const {
+CellPoints CurvedCells::points(const adjacency::VertexCells& around) const {
   return {mesh_.nodes, mesh_.nodesPerCell(), around, mesh_.points.size()};
 }
 
-VertexCells CurvedCells::cellsAroundNodes(Stage& stage) const {
-  return VertexCells(mesh_.points.size(), stage, [&](const auto& add) {
+adjacency::VertexCells CurvedCells::cellsAroundNodes(Stage& stage) const {
+  return adjacency::VertexCells(mesh_.points.size(), stage, [&](const auto& add) {
     parallelFor(stage, mesh_.cellCount(), kGrain, [&](std::size_t c) {
       for (const Index node : nodesOf(c)) add(node, static_cast<Index>(c));
     });
@@ -41,7 +41,8 @@ VertexCells CurvedCells::cellsAroundNodes(Stage& stage) const {
 
 Hex CurvedCells::cornersOf(std::size_t cell) const {
   Hex corners{};
-  for (std::size_t i = 0; i < 8; ++i) corners[i] = nodesOf(cell)[nodeOfCorner(i, mesh_.order)];
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = nodesOf(cell)[curved::nodeOfCorner(i, mesh_.order)];
   return corners;
 }
 
@@ -80,7 +81,7 @@ void CurvedCells::addTerms(const Array<Vec3>& points, std::size_t cell, Index mo
       edges[axis] = times(scale, scratch.values.columns[axis].values[at]);
       weights[axis] = scale;
       for (std::size_t a = 0; a < 3; ++a) {
-        const Matrix<double>& matrix = a == axis ? columns_.derivative : columns_.value;
+        const mesh::Matrix<double>& matrix = a == axis ? columns_.derivative : columns_.value;
         weights[axis] *= matrix.entries[row[a] * n + place[a]];
       }
     }
@@ -94,8 +95,8 @@ void CurvedCells::addTerms(const Array<Vec3>& points, std::size_t cell, Index mo
 
 /// From the determinants at places to Bezier coefficients.
 void CurvedCells::toBezier(Scratch& scratch) const {
-  Bezier<double>& determinants = scratch.determinants;
-  Bezier<Vec3>& normals = scratch.normals;
+  mesh::Bezier<double>& determinants = scratch.determinants;
+  mesh::Bezier<Vec3>& normals = scratch.normals;
   determinants.size.fill(toBezier_.columns);
   normals.size.fill(toBezier_.columns);
   determinants.values.clear();
@@ -105,8 +106,8 @@ void CurvedCells::toBezier(Scratch& scratch) const {
     normals.values.push_back(term.normal);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    apply(toBezier_, axis, determinants, scratch.numbers);
-    apply(toBezier_, axis, normals, scratch.values.scratch);
+    mesh::apply(toBezier_, axis, determinants, scratch.numbers);
+    mesh::apply(toBezier_, axis, normals, scratch.values.scratch);
   }
   for (std::size_t i = 0; i < scratch.terms.size(); ++i) {
     scratch.terms[i].determinant = determinants.values[i];
@@ -162,17 +163,19 @@ class NodeGrid {
   NodeGrid(const LagrangeMesh& mesh, std::size_t cell)
       : order_(mesh.order), nodes_(mesh.nodes.data() + cell * mesh.nodesPerCell()) {}
 
-  [[nodiscard]] Index at(const GridPoint& place) const {
+  [[nodiscard]] Index at(const lattice::GridPoint& place) const {
     const auto n = order_ + 1;
     return nodes_[place[0] + n * (place[1] + n * place[2])];
   }
   [[nodiscard]] Index corner(std::size_t c) const { return at(between(c, c, 0, c, 0)); }
   /// From corner a so far towards corners b and c.
-  [[nodiscard]] GridPoint between(std::size_t a, std::size_t b, int s, std::size_t c, int t) const {
-    GridPoint place{};
+  [[nodiscard]] lattice::GridPoint between(std::size_t a, std::size_t b, int s, std::size_t c,
+                                           int t) const {
+    lattice::GridPoint place{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const int from = kCellCorners[a][k];
-      place[k] = order_ * from + s * (kCellCorners[b][k] - from) + t * (kCellCorners[c][k] - from);
+      const int from = lattice::kCellCorners[a][k];
+      place[k] = order_ * from + s * (lattice::kCellCorners[b][k] - from) +
+                 t * (lattice::kCellCorners[c][k] - from);
     }
     return place;
   }
@@ -189,7 +192,7 @@ void refineFeatures(const LagrangeMesh& mesh, HexFeatures& refined) {
   if (edges.empty() && quads.empty()) return;
   for (std::size_t cell = 0; cell < mesh.cellCount(); ++cell) {
     const NodeGrid grid(mesh, cell);
-    for (const auto& [a, b] : kHexEdges) {
+    for (const auto& [a, b] : adjacency::kHexEdges) {
       for (const std::int32_t tag : edges.take({grid.corner(a), grid.corner(b)})) {
         for (int s = 0; s < mesh.order; ++s) {
           refined.edges.push_back(
@@ -198,7 +201,7 @@ void refineFeatures(const LagrangeMesh& mesh, HexFeatures& refined) {
         }
       }
     }
-    for (const auto& face : kHexFaces) {
+    for (const auto& face : adjacency::kHexFaces) {
       const auto at = [&](int s, int t) {
         return grid.at(grid.between(face[0], face[1], s, face[3], t));
       };
@@ -234,7 +237,7 @@ HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage) {
     for (std::size_t part = 0; part < parts; ++part) {
       const int i = static_cast<int>(part);
       for (std::size_t corner = 0; corner < 8; ++corner) {
-        const GridPoint& offset = kCellCorners[corner];
+        const lattice::GridPoint& offset = lattice::kCellCorners[corner];
         refined.cells[parts * cell + part][corner] =
             grid.at({i % p + offset[0], i / p % p + offset[1], i / p / p + offset[2]});
       }
@@ -243,4 +246,4 @@ HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage) {
   return refined;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

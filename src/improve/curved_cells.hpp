@@ -14,7 +14,7 @@
 #include <improve/vertex_energy.hpp>
 #include <mesh/cell_validity.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// What a cell, or the worst of some, is like.
 struct CellState {
@@ -29,9 +29,9 @@ class CurvedCells {
   /// One per thread.
   struct Scratch {
     std::vector<Vec3> nodes;
-    LagrangeColumns::Values values;
-    Bezier<double> determinants;
-    Bezier<Vec3> normals;
+    curved::LagrangeColumns::Values values;
+    mesh::Bezier<double> determinants;
+    mesh::Bezier<Vec3> normals;
     std::vector<double> numbers;
     std::vector<EnergyTerm> terms;
     std::vector<EnergyTerm> found;  ///< of all cells around a node
@@ -40,8 +40,8 @@ class CurvedCells {
   /// @param mesh  of an order up to kMaxOrder; outlives this
   explicit CurvedCells(const LagrangeMesh& mesh);
 
-  [[nodiscard]] CellPoints points(const VertexCells& around) const;
-  [[nodiscard]] VertexCells cellsAroundNodes(Stage& stage) const;
+  [[nodiscard]] CellPoints points(const adjacency::VertexCells& around) const;
+  [[nodiscard]] adjacency::VertexCells cellsAroundNodes(Stage& stage) const;
   [[nodiscard]] Hex cornersOf(std::size_t cell) const;
 
   /// @param points  of nodes; those of the mesh itself are not looked at
@@ -59,14 +59,14 @@ class CurvedCells {
   void toBezier(Scratch& scratch) const;
 
   const LagrangeMesh& mesh_;
-  LagrangeColumns columns_;
-  Matrix<double> toBezier_;  ///< of the determinant, along an axis
-  LagrangeQuality quality_;
-  CellValidity validity_;
+  curved::LagrangeColumns columns_;
+  mesh::Matrix<double> toBezier_;  ///< of the determinant, along an axis
+  curved::LagrangeQuality quality_;
+  mesh::CellValidity validity_;
 };
 
 /// Straight cells between neighbouring nodes, p^3 per cell, with the generators and tags of all
 /// nodes: their boundary is what has to be near the surface.
 [[nodiscard]] HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

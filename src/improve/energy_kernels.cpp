@@ -13,12 +13,14 @@
 #define HEXHEX_INLINE inline
 #endif
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
 using Number = TermLanes::Number;
-using Vector = LaneVector<Number>;
+using Vector = mesh::LaneVector<Number>;
+using mesh::operator+;
+using mesh::operator-;
 constexpr std::size_t kLanes = TermLanes::kCount;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -171,8 +173,8 @@ HEXHEX_INLINE LaneCells laneCells(std::span<const MovingCell> cells) noexcept {
 }
 
 /// Edges in units of the ideal box.
-HEXHEX_INLINE CellEdges<Number> edgesOf(const LaneCells& cells) noexcept {
-  CellEdges<Number> edges(cells.at);
+HEXHEX_INLINE mesh::CellEdges<Number> edgesOf(const LaneCells& cells) noexcept {
+  mesh::CellEdges<Number> edges(cells.at);
   for (std::size_t i = 0; i < 4; ++i) {
     edges.u[i] = scaled(cells.scale[0], edges.u[i]);
     edges.v[i] = scaled(cells.scale[1], edges.v[i]);
@@ -184,27 +186,27 @@ HEXHEX_INLINE CellEdges<Number> edgesOf(const LaneCells& cells) noexcept {
 /// At a corner next to the one that moves, across `edge`.
 HEXHEX_INLINE void besideTerm(const Number& scale, const Vector& edge, const Vector& b,
                               const Vector& c, TermLanes& term) noexcept {
-  const Vector cofactor = cross(b, c);
-  term.square = dot(edge, edge) + dot(b, b) + dot(c, c);
+  const Vector cofactor = mesh::cross(b, c);
+  term.square = mesh::dot(edge, edge) + mesh::dot(b, b) + mesh::dot(c, c);
   term.slope = scaled(-scale, edge);
   term.growth = scale * scale;
-  term.determinant = dot(edge, cofactor);
+  term.determinant = mesh::dot(edge, cofactor);
   term.normal = scaled(-scale, cofactor);
 }
 
 HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* terms) noexcept {
   const LaneCells cells = laneCells(list);
-  const CellEdges<Number> edges = edgesOf(cells);
+  const mesh::CellEdges<Number> edges = edgesOf(cells);
   const auto& [u, v, w] = edges;
   const Vector& s = cells.scale;
-  const Vector vw = cross(v[0], w[0]);
+  const Vector vw = mesh::cross(v[0], w[0]);
   TermLanes& at = terms[0];
-  at.square = dot(u[0], u[0]) + dot(v[0], v[0]) + dot(w[0], w[0]);
+  at.square = mesh::dot(u[0], u[0]) + mesh::dot(v[0], v[0]) + mesh::dot(w[0], w[0]);
   at.slope = Vector{} - scaled(s[0], u[0]) - scaled(s[1], v[0]) - scaled(s[2], w[0]);
-  at.growth = dot(s, s);
-  at.determinant = dot(u[0], vw);
-  at.normal = Vector{} - scaled(s[0], vw) - scaled(s[1], cross(w[0], u[0])) -
-              scaled(s[2], cross(u[0], v[0]));
+  at.growth = mesh::dot(s, s);
+  at.determinant = mesh::dot(u[0], vw);
+  at.normal = Vector{} - scaled(s[0], vw) - scaled(s[1], mesh::cross(w[0], u[0])) -
+              scaled(s[2], mesh::cross(u[0], v[0]));
   besideTerm(s[0], u[0], v[1], w[1], terms[1]);
   besideTerm(s[1], v[0], w[2], u[1], terms[2]);
   besideTerm(s[2], w[0], u[2], v[2], terms[3]);
@@ -229,8 +231,8 @@ constexpr std::array<std::array<std::size_t, 3>, kBezierTerms> kPlaces = {
      {1, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}, {0, 2, 0}, {1, 2, 0},
      {0, 2, 1}, {1, 2, 1}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {1, 1, 2}}};
 
-HEXHEX_INLINE ByPlace<Number> determinantsOf(const CellEdges<Number>& edges) noexcept {
-  const JacobianCoefficients<Number> all(edges);
+HEXHEX_INLINE ByPlace<Number> determinantsOf(const mesh::CellEdges<Number>& edges) noexcept {
+  const mesh::JacobianCoefficients<Number> all(edges);
   const std::array<Number, 4> upright = all.upright();
   const std::array<Number, 2> lying = all.lying();
   ByPlace<Number> b;
@@ -261,27 +263,29 @@ HEXHEX_INLINE ByPlace<Number> determinantsOf(const CellEdges<Number>& edges) noe
 /// coefficient is a sum of products of three edges (jacobian_lanes.hpp); those of the first edges
 /// of the three axes depend on the corner. On faces and in the middle, the same sums hold as of the
 /// coefficients themselves.
-HEXHEX_INLINE ByPlace<Vector> normalsOf(const CellEdges<Number>& edges, const Vector& s) noexcept {
+HEXHEX_INLINE ByPlace<Vector> normalsOf(const mesh::CellEdges<Number>& edges,
+                                        const Vector& s) noexcept {
   const auto& [u, v, w] = edges;
-  const Vector corner0 = scaled(s[0], cross(v[0], w[0])) + scaled(s[1], cross(w[0], u[0])) +
-                         scaled(s[2], cross(u[0], v[0]));
-  const Vector corner1 = scaled(s[0], cross(v[1], w[1]));
-  const Vector corner2 = scaled(s[1], cross(w[2], u[1]));
-  const Vector corner4 = scaled(s[2], cross(u[2], v[2]));
+  const Vector corner0 = scaled(s[0], mesh::cross(v[0], w[0])) +
+                         scaled(s[1], mesh::cross(w[0], u[0])) +
+                         scaled(s[2], mesh::cross(u[0], v[0]));
+  const Vector corner1 = scaled(s[0], mesh::cross(v[1], w[1]));
+  const Vector corner2 = scaled(s[1], mesh::cross(w[2], u[1]));
+  const Vector corner4 = scaled(s[2], mesh::cross(u[2], v[2]));
   // Twice those on edges.
-  const Vector u0 = scaled(s[0], cross(v[0], w[1]) + cross(v[1], w[0])) +
-                    scaled(s[1], cross(w[1], u[0])) + scaled(s[2], cross(u[0], v[1]));
-  const Vector v0 = scaled(s[0], cross(v[0], w[2])) +
-                    scaled(s[1], cross(w[2], u[0]) + cross(w[0], u[1])) +
-                    scaled(s[2], cross(u[1], v[0]));
-  const Vector w0 = scaled(s[0], cross(v[2], w[0])) + scaled(s[1], cross(w[0], u[2])) +
-                    scaled(s[2], cross(u[0], v[2]) + cross(u[2], v[0]));
-  const Vector u1 = scaled(s[1], cross(w[3], u[1]));
-  const Vector u2 = scaled(s[2], cross(u[2], v[3]));
-  const Vector v1 = scaled(s[0], cross(v[1], w[3]));
-  const Vector v2 = scaled(s[2], cross(u[3], v[2]));
-  const Vector w1 = scaled(s[0], cross(v[3], w[1]));
-  const Vector w2 = scaled(s[1], cross(w[2], u[3]));
+  const Vector u0 = scaled(s[0], mesh::cross(v[0], w[1]) + mesh::cross(v[1], w[0])) +
+                    scaled(s[1], mesh::cross(w[1], u[0])) + scaled(s[2], mesh::cross(u[0], v[1]));
+  const Vector v0 = scaled(s[0], mesh::cross(v[0], w[2])) +
+                    scaled(s[1], mesh::cross(w[2], u[0]) + mesh::cross(w[0], u[1])) +
+                    scaled(s[2], mesh::cross(u[1], v[0]));
+  const Vector w0 = scaled(s[0], mesh::cross(v[2], w[0])) + scaled(s[1], mesh::cross(w[0], u[2])) +
+                    scaled(s[2], mesh::cross(u[0], v[2]) + mesh::cross(u[2], v[0]));
+  const Vector u1 = scaled(s[1], mesh::cross(w[3], u[1]));
+  const Vector u2 = scaled(s[2], mesh::cross(u[2], v[3]));
+  const Vector v1 = scaled(s[0], mesh::cross(v[1], w[3]));
+  const Vector v2 = scaled(s[2], mesh::cross(u[3], v[2]));
+  const Vector w1 = scaled(s[0], mesh::cross(v[3], w[1]));
+  const Vector w2 = scaled(s[1], mesh::cross(w[2], u[3]));
   // Four times those on faces.
   const Vector front = u0 + u2 + w0 + w1 - corner0 - corner1 - corner4;
   const Vector back = u1 + w2 - corner2;
@@ -333,7 +337,7 @@ struct alignas(TermLanes) Column {
     constexpr std::array<double, 3> kWeights = {1, 0.5, 0};
     for (std::size_t i = 0; i < 9; ++i) {
       const Number weight = kWeights[i % 3] * kWeights[i / 3] * scale;
-      square[i] = dot(at[i], at[i]);
+      square[i] = mesh::dot(at[i], at[i]);
       slope[i] = scaled(weight, at[i]);
       growth[i] = weight * weight;
     }
@@ -342,7 +346,7 @@ struct alignas(TermLanes) Column {
 
 HEXHEX_INLINE void bezierTermsOf(std::span<const MovingCell> list, TermLanes* terms) noexcept {
   const LaneCells cells = laneCells(list);
-  const CellEdges<Number> edges = edgesOf(cells);
+  const mesh::CellEdges<Number> edges = edgesOf(cells);
   const ByPlace<Number> determinants = determinantsOf(edges);
   const ByPlace<Vector> normals = normalsOf(edges, cells.scale);
   const Column u(edges.u, cells.scale[0]);
@@ -401,4 +405,4 @@ std::span<const EnergyKernels> energyKernels() noexcept {
 #endif
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

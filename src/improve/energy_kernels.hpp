@@ -8,7 +8,7 @@
 #include <base/lanes.hpp>
 #include <improve/vertex_energy.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 struct EnergyKernels {
   /// The 4 terms of corners, or the 20 of coefficients, of one to four cells.
@@ -27,4 +27,4 @@ inline constexpr std::size_t kBezierTerms = 20;
 /// bit.
 [[nodiscard]] std::span<const EnergyKernels> energyKernels() noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -24,7 +24,7 @@
 #include <improve/vertex_places.hpp>
 #include <mesh/lagrange_check.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -71,7 +71,7 @@ void requireCells(const HexMesh& mesh, Context& context) {
   if (mesh.cells.empty()) {
     throw Error(ErrorCode::EmptyMesh, "The mesh has no cells. There is nothing to improve.");
   }
-  requireCornersInRange(mesh, stage);
+  adjacency::requireCornersInRange(mesh, stage);
   requirePositions(mesh.points, "the mesh", stage);
 }
 
@@ -256,8 +256,8 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
     report.before = subject.certifyNow(context);
     Stage stage(context, "moving");
     Boundary boundary;
-    boundary.faces = boundaryPlaces(mesh, stage);
-    boundary.quads = quadsAt(mesh, boundary.faces);
+    boundary.faces = adjacency::boundaryPlaces(mesh, stage);
+    boundary.quads = adjacency::quadsAt(mesh, boundary.faces);
     VertexPlaces places = placesOf(mesh, stage);
     report.taggedVertices = places.tagged;
     if (options.fixBoundary) report.boundaryVertices = fixBoundary(places);
@@ -321,7 +321,7 @@ ImproveReport improveStraight(HexMesh& mesh, const ImproveOptions& options, Cont
 }
 
 void requireImprovable(const LagrangeMesh& mesh) {
-  requireConsistent(mesh);
+  mesh::requireConsistent(mesh);
   if (mesh.order <= CurvedCells::kMaxOrder) return;
   throw Error(ErrorCode::InvalidArgument, "Cells of order " + std::to_string(mesh.order) +
                                               " are not improved, only those of orders 1 to " +
@@ -347,22 +347,28 @@ ImproveReport improveCurved(LagrangeMesh& mesh, const ImproveOptions& options, C
 
 }  // namespace
 
+}  // namespace hexhex::improvement
+
+namespace hexhex {
+
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context) {
-  return improveStraight(mesh, options, context, onMap(map, options, context));
+  return improvement::improveStraight(mesh, options, context,
+                                      improvement::onMap(map, options, context));
 }
 
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context) {
-  return improveStraight(mesh, options, context, onItself(options));
+  return improvement::improveStraight(mesh, options, context, improvement::onItself(options));
 }
 
 ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context) {
-  return improveCurved(mesh, options, context, onMap(map, options, context));
+  return improvement::improveCurved(mesh, options, context,
+                                    improvement::onMap(map, options, context));
 }
 
 ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context) {
-  return improveCurved(mesh, options, context, onItself(options));
+  return improvement::improveCurved(mesh, options, context, improvement::onItself(options));
 }
 
 }  // namespace hexhex

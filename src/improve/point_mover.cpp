@@ -3,7 +3,7 @@
 #include <base/vector3.hpp>
 #include <improve/point_mover.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -79,4 +79,4 @@ void PointMover::take(Index point, const SurfacePlace& place) {
   places_.simplex[point] = place.simplex;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

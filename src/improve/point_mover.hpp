@@ -12,7 +12,7 @@
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 class PointMover {
  public:
@@ -94,4 +94,4 @@ class PointMover {
   double slack_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -8,7 +8,7 @@
 #include <base/vector3.hpp>
 #include <improve/reference_surface.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -31,8 +31,9 @@ double cosineBetween(const Vec3& a, const Vec3& b) {
 }
 
 template <std::size_t n>
-VertexLists<Index> listAt(std::size_t points, const std::vector<std::array<Index, n>>& simplices,
-                          Stage& stage) {
+adjacency::VertexLists<Index> listAt(std::size_t points,
+                                     const std::vector<std::array<Index, n>>& simplices,
+                                     Stage& stage) {
   return {points, stage, [&](const auto& add) {
             for (std::size_t s = 0; s < simplices.size(); ++s) {
               for (const Index v : simplices[s]) add(v, static_cast<Index>(s));
@@ -52,8 +53,9 @@ double squaredDistance(const Vec3& a, const Vec3& b) {
 /// From simplex to simplex as long as one of those at the corners is nearer.
 template <std::size_t n, class Corners, class Allowed>
 SurfacePlace walk(const Vec3& point, Index start,
-                  const std::vector<std::array<Index, n>>& simplices, const VertexLists<Index>& at,
-                  const Corners& cornersOf, const Allowed& isAllowed) {
+                  const std::vector<std::array<Index, n>>& simplices,
+                  const adjacency::VertexLists<Index>& at, const Corners& cornersOf,
+                  const Allowed& isAllowed) {
   SurfacePlace best{nearestOf(cornersOf(start), point), start};
   double distance = squaredDistance(best.point, point);
   for (bool moved = true; moved && distance > 0;) {
@@ -293,4 +295,4 @@ SurfacePlace ReferenceSurface::onCurve(const Vec3& point, Index segment) const {
       Allowed{corners_});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -16,7 +16,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// What a surface is made of.
 struct SurfaceParts {
@@ -95,12 +95,12 @@ class ReferenceSurface {
   std::vector<bool> creases_;         ///< per segment
   std::vector<Index> corners_;        ///< points, ascending
   std::vector<Index> taggedCorners_;  ///< of these
-  VertexLists<Index> trianglesAt_;
-  VertexLists<Index> segmentsAt_;
+  adjacency::VertexLists<Index> trianglesAt_;
+  adjacency::VertexLists<Index> segmentsAt_;
 };
 
 /// The nearest point of a triangle, or of a segment.
 [[nodiscard]] Vec3 nearestOf(const std::array<Vec3, 3>& triangle, const Vec3& point) noexcept;
 [[nodiscard]] Vec3 nearestOf(const std::array<Vec3, 2>& segment, const Vec3& point) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -13,7 +13,7 @@
 #include <base/vector3.hpp>
 #include <improve/sound_input.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -140,7 +140,7 @@ double offsetOf(const HexMesh& mesh, const TetMapView& map, Index vertex) {
 /// is long.
 bool isElsewhere(const HexMesh& mesh, const TetMapView& map, const Hex& cell) {
   double longest = 0;
-  for (const auto& edge : kHexEdges) {
+  for (const auto& edge : adjacency::kHexEdges) {
     const Vec3 along = minus(mesh.points[cell[edge[0]]], mesh.points[cell[edge[1]]]);
     longest = std::max(longest, length(along));
   }
@@ -199,4 +199,4 @@ void requireSameObject(const HexMesh& mesh, const TetMapView& map, Stage& stage)
               Place{PlaceKind::Vertex, worst});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -7,7 +7,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// @param mesh   with corners in range
 /// @param parts  cells of the mesh for each that errors count
@@ -22,4 +22,4 @@ void requireSoundCells(const HexMesh& mesh, std::size_t parts, Context& context)
 /// @throws Error InvalidArgument if more than a tenth of the cells are farther from them
 void requireSameObject(const HexMesh& mesh, const TetMapView& map, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -6,7 +6,7 @@
 #include <base/vector3.hpp>
 #include <improve/surface_distance.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -142,4 +142,4 @@ double innerDistance(const Array<Vec3>& points, std::span<const Quad> quads,
   return largestOf(distancesOf(points, quads, tree, diagonal, stage));
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

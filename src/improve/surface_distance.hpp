@@ -10,7 +10,7 @@
 #include <improve/reference_surface.hpp>
 #include <improve/triangle_tree.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// Of the bounding box.
 [[nodiscard]] double diagonalOf(const ReferenceSurface& surface);
@@ -44,4 +44,4 @@ struct BoundaryDistance {
 [[nodiscard]] double innerDistance(const Array<Vec3>& points, std::span<const Quad> quads,
                                    const ReferenceSurface& surface, double diagonal, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -8,7 +8,7 @@
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -41,8 +41,8 @@ constexpr double kChord = 3e-4;
 
 IdealBox boxOf(const Array<Vec3>& points, const Hex& cell) {
   Vec3 sums{};
-  for (std::size_t e = 0; e < kHexEdges.size(); ++e) {
-    const auto [a, b] = kHexEdges[e];
+  for (std::size_t e = 0; e < adjacency::kHexEdges.size(); ++e) {
+    const auto [a, b] = adjacency::kHexEdges[e];
     const std::size_t axis = e >= 8 ? 2 : e % 2;  // in VTK's order
     sums[axis] += length(minus(points[cell[a]], points[cell[b]])) / 4;
   }
@@ -59,9 +59,9 @@ Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, d
       curved_(curved),
       places_(places),
       stage_(stage),
-      meshAround_(cellsAroundVertices(mesh, stage)),
-      nodeAround_(curved != nullptr ? curved->cellsAroundNodes(stage) : VertexCells()),
-      boundary_(findFaces(mesh, meshAround_, stage).boundary),
+      meshAround_(adjacency::cellsAroundVertices(mesh, stage)),
+      nodeAround_(curved != nullptr ? curved->cellsAroundNodes(stage) : adjacency::VertexCells()),
+      boundary_(adjacency::findFaces(mesh, meshAround_, stage).boundary),
       chord_(kChord * diagonal) {
   boxes_.resize(cellPoints().cellCount());
   parallelFor(stage, boxes_.size(), kGrain, [&](std::size_t c) {
@@ -260,4 +260,4 @@ void Sweeps::moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
   });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

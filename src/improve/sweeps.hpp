@@ -19,7 +19,7 @@
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 class Sweeps {
  public:
@@ -81,13 +81,13 @@ class Sweeps {
   const CurvedCells* curved_;
   VertexPlaces& places_;
   Stage& stage_;
-  VertexCells meshAround_;
-  VertexCells nodeAround_;          ///< of curved cells
-  Array<IdealBox> boxes_;           ///< per cell
-  Array<double> qualities_;         ///< per cell: certifiedQuality(), of where points are
-  Array<std::uint8_t> boundary_;    ///< per cell of the mesh: as of HexFaces
-  double chord_;                    ///< as of ChordError
-  std::optional<Colours> colours_;  ///< once they are asked for
+  adjacency::VertexCells meshAround_;
+  adjacency::VertexCells nodeAround_;  ///< of curved cells
+  Array<IdealBox> boxes_;              ///< per cell
+  Array<double> qualities_;            ///< per cell: certifiedQuality(), of where points are
+  Array<std::uint8_t> boundary_;       ///< per cell of the mesh: as of HexFaces
+  double chord_;                       ///< as of ChordError
+  std::optional<Colours> colours_;     ///< once they are asked for
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

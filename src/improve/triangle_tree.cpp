@@ -6,7 +6,7 @@
 #include <improve/reference_surface.hpp>
 #include <improve/triangle_tree.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -95,4 +95,4 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
   return {std::sqrt(best), triangle};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -7,7 +7,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 class TriangleTree {
  public:
@@ -35,4 +35,4 @@ class TriangleTree {
   std::vector<Box> boxes_;           ///< of a complete binary tree: children 2 i + 1, 2 i + 2
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

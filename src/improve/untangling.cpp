@@ -3,7 +3,7 @@
 #include <base/disjoint_sets.hpp>
 #include <improve/untangling.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -100,4 +100,4 @@ void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<V
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

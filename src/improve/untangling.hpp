@@ -10,7 +10,7 @@
 #include <improve/cell_points.hpp>
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// What one kind of cells does with points.
 struct UntanglingMoves {
@@ -49,4 +49,4 @@ class Neighbourhoods {
 void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<Vec3>& before,
              const Array<Index>& placesBefore, Array<Vec3>& points, VertexPlaces& places);
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -7,7 +7,7 @@
 #include <improve/energy_kernels.hpp>
 #include <improve/vertex_energy.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -163,4 +163,4 @@ MovingCell movingCell(const std::array<const Vec3*, 8>& corners, std::size_t mov
   return cell;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

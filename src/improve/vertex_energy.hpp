@@ -17,7 +17,7 @@
 
 #include <base/lanes.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 [[nodiscard]] constexpr Vec3 times(double factor, const Vec3& a) noexcept {
   return {factor * a[0], factor * a[1], factor * a[2]};
@@ -120,4 +120,4 @@ struct EnergySlope {
 /// @return zero if there is none downhill
 [[nodiscard]] Vec3 newtonStep(const EnergySlope& slope, std::span<const Vec3> directions) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -7,7 +7,7 @@
 #include <improve/vertex_mover.hpp>
 #include <mesh/cell_measures.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 void VertexMover::collect(Index vertex, bool bezier) {
   terms_.clear();
@@ -36,7 +36,7 @@ MovingCell VertexMover::straightCell(Index vertex, Index cell) const {
   std::array<const Vec3*, 8> corners;
   std::size_t moving = 0;
   for (std::size_t place = 0; place < 8; ++place) {
-    const Index corner = all_.mesh.cells[cell][kVtkCorner[place]];
+    const Index corner = all_.mesh.cells[cell][mesh::kVtkCorner[place]];
     corners[place] = &all_.mesh.points[corner];
     if (corner == vertex) moving = place;
   }
@@ -112,4 +112,4 @@ void VertexMover::moveBack(Index vertex, const SurfacePlace& place, double floor
   if (mover_.moveBack(vertex, place, isGood)) keepMeasured();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

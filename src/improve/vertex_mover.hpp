@@ -13,7 +13,7 @@
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 /// What movers work on; all of it outlives them.
 struct MovingMesh {
@@ -76,4 +76,4 @@ class VertexMover {
   CurvedCells::Scratch scratch_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -16,7 +16,7 @@
 #include <improve/sound_input.hpp>
 #include <improve/vertex_places.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 namespace {
 
@@ -30,10 +30,10 @@ std::array<Index, n> sorted(std::array<Index, n> vertices) {
 
 /// Triangles of the boundary, then tagged ones inside and those between regions.
 void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
-  TetTopology topology;
+  adjacency::TetTopology topology;
   topology.tets = map.tets;
   topology.pointCount = map.points.size();
-  if (!matchFaces(topology, stage)) {
+  if (!adjacency::matchFaces(topology, stage)) {
     throw Error(ErrorCode::InvalidArgument,
                 "The tets of the map are no manifold: a triangle belongs to more than two of them, "
                 "or to two on the same side. `hexhex check` tells where.");
@@ -47,16 +47,17 @@ void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
   };
   std::sort(tagged.begin(), tagged.end(), byVertices);
   std::vector<FeatureFace> inner;
-  for (HalfFace face = 0; face < 4 * map.tets.size(); ++face) {
-    const HalfFace mate = topology.mate[face];
+  for (adjacency::HalfFace face = 0; face < 4 * map.tets.size(); ++face) {
+    const adjacency::HalfFace mate = topology.mate[face];
     if (mate != kNone && mate < face) continue;
     FeatureFace triangle;
-    const auto vertices = faceVertices(map.tets[tetOf(face)], face % 4);
+    const auto vertices = adjacency::faceVertices(map.tets[adjacency::tetOf(face)], face % 4);
     triangle.vertices = sorted(vertices);
     const auto found = std::lower_bound(tagged.begin(), tagged.end(), triangle, byVertices);
     if (found != tagged.end() && found->vertices == triangle.vertices) triangle.tag = found->tag;
-    const bool betweenRegions = mate != kNone && !map.regions.empty() &&
-                                map.regions[tetOf(face)] != map.regions[tetOf(mate)];
+    const bool betweenRegions =
+        mate != kNone && !map.regions.empty() &&
+        map.regions[adjacency::tetOf(face)] != map.regions[adjacency::tetOf(mate)];
     if (mate != kNone && triangle.tag == 0 && !betweenRegions) continue;
     triangle.vertices = {vertices[0], vertices[2], vertices[1]};  // facing outwards
     (mate == kNone ? parts.triangles : inner).push_back(triangle);
@@ -125,20 +126,21 @@ std::vector<Quad> innerQuads(const HexMesh& mesh, bool regionsCount, Stage& stag
   const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
   const bool byRegion = regionsCount && mesh.regions.size() == mesh.cells.size();
   if (tagged.empty() && !byRegion) return {};
-  const VertexCells around = cellsAroundVertices(mesh, stage);
+  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
   return collectFromBlocks<Quad>(
       stage, mesh.points.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<Quad>& quads) {
-        forEachFace(std::span<const Hex>(mesh.cells), begin, end, around, [&](const auto& sides) {
-          if (sides.size() < 2) return;
-          const Quad quad = faceVertices(mesh.cells[sides[0].cell], sides[0].face);
-          const bool betweenRegions =
-              byRegion && mesh.regions[sides[0].cell] != mesh.regions[sides[1].cell];
-          if (betweenRegions ||
-              std::binary_search(tagged.begin(), tagged.end(), FeatureQuad{quad, 1}, byVertices)) {
-            quads.push_back(quad);
-          }
-        });
+        adjacency::forEachFace(
+            std::span<const Hex>(mesh.cells), begin, end, around, [&](const auto& sides) {
+              if (sides.size() < 2) return;
+              const Quad quad = adjacency::faceVertices(mesh.cells[sides[0].cell], sides[0].face);
+              const bool betweenRegions =
+                  byRegion && mesh.regions[sides[0].cell] != mesh.regions[sides[1].cell];
+              if (betweenRegions || std::binary_search(tagged.begin(), tagged.end(),
+                                                       FeatureQuad{quad, 1}, byVertices)) {
+                quads.push_back(quad);
+              }
+            });
       });
 }
 
@@ -146,7 +148,7 @@ std::vector<Quad> innerQuads(const HexMesh& mesh, bool regionsCount, Stage& stag
 void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
   const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
   std::vector<bool> isAdded(tagged.size());
-  for (const Quad& quad : quadsAt(mesh, boundaryPlaces(mesh, stage))) {
+  for (const Quad& quad : adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage))) {
     const auto found =
         std::lower_bound(tagged.begin(), tagged.end(), FeatureQuad{quad, 1}, byVertices);
     const bool isTagged = found != tagged.end() && sorted(found->vertices) == sorted(quad);
@@ -210,7 +212,7 @@ void place(const Array<Vec3>& points, const Features& features, const GeneratorO
 VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle, Context& context,
                          Stage& stage) {
   requireGenerators(mesh, map, stage);
-  requireCornersInRange(map, stage);  // flipped tets do not matter
+  adjacency::requireCornersInRange(map, stage);  // flipped tets do not matter
   requireSameObject(mesh, map, stage);
   // Looks whether features are there, too.
   const MapStructure structure = findMapStructure(map, ExtractOptions{}.tolerance, context);
@@ -243,9 +245,11 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
   parts.angle = angle;
   parts.points = mesh.points;
   addQuads(mesh, stage, parts);
-  const VertexCells around = cellsAroundVertices(mesh, stage);
-  addCurves(mesh.features, findEdges(mesh, around, findFaces(mesh, around, stage), stage).singular,
-            parts);
+  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
+  addCurves(
+      mesh.features,
+      adjacency::findEdges(mesh, around, adjacency::findFaces(mesh, around, stage), stage).singular,
+      parts);
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
@@ -259,4 +263,4 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
   return places;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

@@ -9,7 +9,7 @@
 #include <base/stage.hpp>
 #include <improve/reference_surface.hpp>
 
-namespace hexhex {
+namespace hexhex::improvement {
 
 struct VertexPlaces {
   ReferenceSurface surface;
@@ -45,4 +45,4 @@ struct VertexPlaces {
 /// @throws Error InvalidArgument for features that are not in the mesh
 [[nodiscard]] VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::improvement

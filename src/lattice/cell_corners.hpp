@@ -7,7 +7,7 @@
 
 #include <lattice/rotation.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// Offsets of the corners of a cell from its smallest corner, in VTK order.
 inline constexpr std::array<GridPoint, 8> kCellCorners = {
@@ -71,4 +71,4 @@ inline constexpr TurnedCorners kTurnedCorners = makeTurnedCorners();
   return detail::kTurnedCorners.set[static_cast<std::size_t>(rotation.index())][corners];
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// A signed coordinate direction: 0 +x, 1 -x, 2 +y, 3 -y, 4 +z, 5 -z.
 using Direction = std::uint8_t;
@@ -36,4 +36,4 @@ using GridPoint = std::array<std::int32_t, 3>;
   return z;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -4,7 +4,7 @@
 #include <base/low_level.hpp>
 #include <lattice/few_points.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 namespace {
 
@@ -251,4 +251,4 @@ std::size_t FewPoints::findCandidates(const Points& points, const WeightsOf& wei
   return found;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

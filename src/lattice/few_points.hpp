@@ -12,7 +12,7 @@
 #include <base/pair.hpp>
 #include <lattice/swept_line.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// A tet in halves of grid units, and its bounding box in the grid of that width. All is exact if
 /// doubles hold the corners.
@@ -115,4 +115,4 @@ class FewPoints {
   double error_;  ///< bound of the error of weights in the box
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

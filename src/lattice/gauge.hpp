@@ -10,7 +10,7 @@
 
 #include <lattice/transition.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// Grid point of a common chart.
 using ChartPoint = std::array<std::uint32_t, 3>;
@@ -82,4 +82,4 @@ struct Gauge {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -1,6 +1,6 @@
 #include <lattice/rotation.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 namespace {
 
@@ -38,4 +38,4 @@ Rotation rotationFromAlgoHex(int index) {
   return Rotation::fromAxes(rotatedAxis(q, 0), rotatedAxis(q, 1)).inverse();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

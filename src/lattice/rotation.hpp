@@ -7,7 +7,7 @@
 
 #include <lattice/direction.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// One of the 24 orientation-preserving symmetries of the cube, as an index into constant tables.
 /// Rotation 0 is the identity.
@@ -162,4 +162,4 @@ inline constexpr auto kAxisImages = [] {
 /// `HalffaceTransiton`: the inverse of the rotation by its unit quaternion of that index.
 [[nodiscard]] Rotation rotationFromAlgoHex(int index);
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -7,7 +7,7 @@
 
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// The integer grid, moved by one half along some axes: bit k for axis k. Grid point z names the
 /// point that it is moved to: the centre of a cell is named by the cell's smallest corner.
@@ -91,4 +91,4 @@ struct SweptLine {
   [[nodiscard]] bool allInside() const noexcept { return left == kWholeTet && right == kWholeTet; }
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

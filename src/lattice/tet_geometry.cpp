@@ -2,7 +2,7 @@
 
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 Int192 orientationDeterminant(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                               const LatticePoint& d) noexcept {
@@ -164,4 +164,4 @@ int exitOfLine(const LatticeTet& corners, const NormalSigns& signs, const GridPo
   return kNoExit;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -13,10 +13,12 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/vector3.hpp>
+
 #include <lattice/direction.hpp>
 #include <lattice/wide_int.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// A parameter times `unit`.
 using LatticePoint = std::array<std::int64_t, 3>;
@@ -60,11 +62,6 @@ inline constexpr CornerMask kWholeTet = 15;
 /// corner f, i.e. into the (positive) tet.
 inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
     {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
-
-[[nodiscard]] constexpr LatticePoint operator-(const LatticePoint& a,
-                                               const LatticePoint& b) noexcept {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 
 /// Component `axis` of the cross product a x b, exact.
 [[nodiscard]] constexpr Int128 crossComponent(const LatticePoint& a, const LatticePoint& b,
@@ -201,4 +198,4 @@ inline constexpr int kNoExit = -2;
                              const GridPoint& z, std::int64_t unit, Direction d1, Direction d2,
                              int entered) noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

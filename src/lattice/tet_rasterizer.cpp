@@ -5,7 +5,7 @@
 #include <base/pair.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 namespace {
 
@@ -218,4 +218,4 @@ bool TetRasterizer::findExactly(const Search& search, const ByFace& values, std:
   return true;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

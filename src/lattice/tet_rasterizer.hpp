@@ -15,7 +15,7 @@
 
 #include <lattice/few_points.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// The bounding box of a tet on the lattice, by axis.
 struct TetBounds {
@@ -140,4 +140,4 @@ class TetRasterizer {
   bool isExact_;                        ///< so few digits that values have no error at all
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -8,7 +8,7 @@
 
 #include <lattice/rotation.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// u -> R u + t with one of the 24 rotations and an integer translation.
 struct Transition {
@@ -45,8 +45,8 @@ struct Transition {
   }
 };
 
+}  // namespace hexhex::lattice
+
 /// The table of a map's transitions is as large as the map where each tet has a chart of its own.
 template <>
-inline constexpr bool kLeftUninitialized<Transition> = true;
-
-}  // namespace hexhex
+inline constexpr bool hexhex::kLeftUninitialized<hexhex::lattice::Transition> = true;

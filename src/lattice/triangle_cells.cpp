@@ -7,7 +7,7 @@
 #include <base/pair.hpp>
 #include <lattice/triangle_cells.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 namespace {
 
@@ -134,4 +134,4 @@ CellCornerSet HalfDiagonalCuts::cutIn(const GridPoint& z) const noexcept {
   return cornersBehind(cutAtCenter(upward, error_), cutAtCenter(downward, error_));
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

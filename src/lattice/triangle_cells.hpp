@@ -8,7 +8,7 @@
 #include <lattice/tet_geometry.hpp>
 #include <lattice/triangle_columns.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// The half diagonals of cells that a triangle may cut, in floating point with a proven bound.
 class HalfDiagonalCuts {
@@ -103,4 +103,4 @@ class TriangleCells {
   HalfDiagonalCuts cuts_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -3,7 +3,7 @@
 
 #include <lattice/triangle_columns.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 TriangleColumns::TriangleColumns(const std::array<LatticePoint, 3>& corners,
                                  std::int64_t unit) noexcept {
@@ -106,4 +106,4 @@ TriangleColumns::Column TriangleColumns::columnAt(std::int32_t u, std::int32_t v
   return column;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -8,7 +8,7 @@
 #include <lattice/cell_corners.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 /// The first half cell of a bounding box that begins at `low`. Half cells are open at grid points,
 /// where cells border on each other, but contain the centre planes of cells, where octants do.
@@ -92,4 +92,4 @@ class TriangleColumns {
   double margin_;                           ///< bound of all rounding errors
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

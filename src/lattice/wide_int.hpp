@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace hexhex {
+namespace hexhex::lattice {
 
 __extension__ using Int128 = __int128;
 __extension__ using UInt128 = unsigned __int128;
@@ -84,4 +84,4 @@ class Int192 {
   UInt128 high_ = 0;  // upper 128 bits
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::lattice

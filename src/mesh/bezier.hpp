@@ -18,7 +18,7 @@
 #include <mesh/big_integer.hpp>
 #include <mesh/twofold.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// Numbers on a grid, the first axis fastest: of degree size - 1 along each axis.
 template <class T>
@@ -255,4 +255,4 @@ template <class T>
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

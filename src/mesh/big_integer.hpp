@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// Two's complement in 32-bit digits, least significant first; 0 has none.
 class BigInteger {
@@ -110,4 +110,4 @@ class BigInteger {
   std::vector<std::uint32_t> digits_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

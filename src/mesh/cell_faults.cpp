@@ -21,7 +21,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 namespace {
 
 constexpr std::size_t kFaultGrain = 2048;
@@ -37,7 +37,7 @@ double volumeOf(const HexMesh& mesh, const Hex& cell) {
   std::array<Vec3, 8> p{};
   for (std::size_t i = 0; i < 8; ++i) p[i] = minus(mesh.points[cell[i]], mesh.points[cell[0]]);
   double volume = 0;
-  for (const auto& [a, b, c, d] : kHexFaces) {
+  for (const auto& [a, b, c, d] : adjacency::kHexFaces) {
     volume += tripleProduct(p[a], p[b], p[c]) + tripleProduct(p[a], p[c], p[d]) +
               tripleProduct(p[b], p[c], p[d]) + tripleProduct(p[b], p[d], p[a]);
   }
@@ -49,11 +49,11 @@ struct Conflicts {
   std::uint64_t count = 0;
   FaceConflict first;
 
-  void add(const HexMesh& mesh, std::span<const CellFace<Hex>> halfFaces) {
+  void add(const HexMesh& mesh, std::span<const adjacency::CellFace<Hex>> halfFaces) {
     if (count++ > 0) return;
-    const CellFace<Hex>& face = halfFaces.front();
-    first = {faceVertices(mesh.cells[face.cell], face.face), face.cell, halfFaces[1].cell,
-             halfFaces.size()};
+    const adjacency::CellFace<Hex>& face = halfFaces.front();
+    first = {adjacency::faceVertices(mesh.cells[face.cell], face.face), face.cell,
+             halfFaces[1].cell, halfFaces.size()};
   }
   void add(const Conflicts& later) {
     if (count == 0) first = later.first;
@@ -70,24 +70,26 @@ struct FaceBlock {
 /// @param turns  element 2 * cell is a cell as it is, 2 * cell + 1 the cell turned
 FaceBlock joinCells(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepeated,
                     DisjointSets& turns, Stage& stage) {
-  const VertexCells around = cellsAroundVertices(mesh, stage);
+  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
   std::vector<FaceBlock> blocks(blockCount(mesh.points.size(), kFaultGrain));
   const auto isWanted = [&](Index cell, std::size_t /*face*/) { return isRepeated[cell] == 0; };
-  parallelBlocks(stage, mesh.points.size(), kFaultGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   const auto join = [&](std::span<const CellFace<Hex>> halfFaces) {
-                     if (halfFaces.size() == 1) return;
-                     if (halfFaces.size() > 2) return blocks[block].overfull.add(mesh, halfFaces);
-                     const auto& [a, b] = std::pair(halfFaces[0], halfFaces[1]);
-                     const bool isAlike = areOpposite(faceVertices(mesh.cells[a.cell], a.face),
-                                                      faceVertices(mesh.cells[b.cell], b.face));
-                     if (!isAlike) blocks[block].sameDirection.add(mesh, halfFaces);
-                     const Index turn = isAlike ? 0 : 1;
-                     turns.unite(2 * a.cell, 2 * b.cell + turn);
-                     turns.unite(2 * a.cell + 1, 2 * b.cell + 1 - turn);
-                   };
-                   forEachFace(std::span(mesh.cells), begin, end, around, isWanted, join);
-                 });
+  parallelBlocks(
+      stage, mesh.points.size(), kFaultGrain,
+      [&](std::size_t begin, std::size_t end, std::size_t block) {
+        const auto join = [&](std::span<const adjacency::CellFace<Hex>> halfFaces) {
+          if (halfFaces.size() == 1) return;
+          if (halfFaces.size() > 2) return blocks[block].overfull.add(mesh, halfFaces);
+          const auto& [a, b] = std::pair(halfFaces[0], halfFaces[1]);
+          const bool isAlike =
+              adjacency::areOpposite(adjacency::faceVertices(mesh.cells[a.cell], a.face),
+                                     adjacency::faceVertices(mesh.cells[b.cell], b.face));
+          if (!isAlike) blocks[block].sameDirection.add(mesh, halfFaces);
+          const Index turn = isAlike ? 0 : 1;
+          turns.unite(2 * a.cell, 2 * b.cell + turn);
+          turns.unite(2 * a.cell + 1, 2 * b.cell + 1 - turn);
+        };
+        adjacency::forEachFace(std::span(mesh.cells), begin, end, around, isWanted, join);
+      });
   FaceBlock sum;
   for (const FaceBlock& block : blocks) {
     sum.sameDirection.add(block.sameDirection);
@@ -102,7 +104,8 @@ FaceBlock joinCells(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepe
 bool joinSoundCells(const HexMesh& mesh, DisjointSets& turns, Stage& stage) {
   constexpr std::size_t kMost = kNone / 6;  // of matchHexFaces()
   if (mesh.cells.size() >= kMost) return false;
-  const std::optional<HexMates> found = matchHexFaces(mesh.points.size(), mesh.cells, stage);
+  const std::optional<adjacency::HexMates> found =
+      adjacency::matchHexFaces(mesh.points.size(), mesh.cells, stage);
   if (!found) return false;
   parallelFor(stage, mesh.cells.size(), kFaultGrain, [&](std::size_t c) {
     for (std::size_t i = 6 * c; i < 6 * c + 6; ++i) {
@@ -141,6 +144,10 @@ void listMirrored(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepeat
 
 }  // namespace
 
+}  // namespace hexhex::mesh
+
+namespace hexhex {
+
 CellFaults findCellFaults(const HexMesh& mesh, Context& context) {
   return inStage(context, "findCellFaults", "cell faults", [&](Stage& stage) {
     CellFaults faults;
@@ -152,20 +159,22 @@ CellFaults findCellFaults(const HexMesh& mesh, Context& context) {
     }
     withThreads(context.threads(), [&] {
       std::vector<std::uint8_t> isRepeated(n);
-      parallelFor(stage, n, kFaultGrain,
-                  [&](std::size_t c) { isRepeated[c] = namesAVertexTwice(mesh.cells[c]) ? 1 : 0; });
+      parallelFor(stage, n, mesh::kFaultGrain, [&](std::size_t c) {
+        isRepeated[c] = mesh::namesAVertexTwice(mesh.cells[c]) ? 1 : 0;
+      });
       for (std::size_t c = 0; c < n; ++c) {
         if (isRepeated[c] != 0) faults.repeated.push_back(c);
       }
-      requireCornersInRange(mesh, stage);
+      adjacency::requireCornersInRange(mesh, stage);
       DisjointSets turns(2 * n);
-      const bool areSound = faults.repeated.empty() && joinSoundCells(mesh, turns, stage);
-      const FaceBlock faces = areSound ? FaceBlock{} : joinCells(mesh, isRepeated, turns, stage);
+      const bool areSound = faults.repeated.empty() && mesh::joinSoundCells(mesh, turns, stage);
+      const mesh::FaceBlock faces =
+          areSound ? mesh::FaceBlock{} : mesh::joinCells(mesh, isRepeated, turns, stage);
       faults.sameDirectionFaces = faces.sameDirection.count;
       faults.firstSameDirection = faces.sameDirection.first;
       faults.overfullFaces = faces.overfull.count;
       faults.firstOverfull = faces.overfull.first;
-      listMirrored(mesh, isRepeated, turns, faults, stage);
+      mesh::listMirrored(mesh, isRepeated, turns, faults, stage);
     });
     return faults;
   });

@@ -13,7 +13,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-namespace hexhex {
+namespace hexhex::mesh {
 namespace {
 
 /// Numbers that are worked with at once. Each behaves as it would alone.
@@ -150,4 +150,4 @@ std::span<const MeasureCells> measuresOfCells() noexcept {
 #endif
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

@@ -9,7 +9,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// Corners in VTK order by their place (u, v, w): bit 0, 1, 2.
 inline constexpr std::array<std::size_t, 8> kVtkCorner = {0, 1, 3, 2, 4, 5, 7, 6};
@@ -42,4 +42,4 @@ using MeasureCells = void (*)(const Vec3* points, std::span<const Hex> cells,
 /// bit. (With two cells at once instead of four, quality takes 1.5 times as long.)
 [[nodiscard]] std::span<const MeasureCells> measuresOfCells() noexcept;
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

@@ -15,7 +15,7 @@
 #include <mesh/cell_validity.hpp>
 #include <mesh/jacobian_quotient.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 namespace {
 
 constexpr double kRounding = std::numeric_limits<double>::epsilon() / 2;
@@ -409,4 +409,4 @@ Vec3 CellValidity::pointAt(std::span<const Vec3> nodes, const Vec3& place) const
   return point;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

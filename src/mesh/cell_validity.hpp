@@ -8,7 +8,7 @@
 
 #include <mesh/bezier.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// Looks at cells of one order, one after the other; several threads may share it.
 class CellValidity {
@@ -56,4 +56,4 @@ class CellValidity {
                             ///< difference of nodes
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

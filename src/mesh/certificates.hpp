@@ -11,7 +11,7 @@
 #include <base/parallel.hpp>
 #include <mesh/cell_validity.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// Of one block of cells. What is left over for later are cells that may be worse than the worst
 /// value so far, and refuted ones.
@@ -101,4 +101,4 @@ class BlockFindings {
   std::vector<Entry> refuted_;  ///< by value
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

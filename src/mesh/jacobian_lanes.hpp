@@ -19,7 +19,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"  // all is inline
 #endif
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// @tparam V  Lanes of double: a number for each cell
 template <class V>
@@ -117,4 +117,4 @@ struct alignas(sizeof(V)) JacobianCoefficients {
 #pragma GCC diagnostic pop
 #endif
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

@@ -11,7 +11,7 @@
 
 #include <mesh/bezier.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// A part of the cell.
 struct CellPart {
@@ -108,4 +108,4 @@ struct JacobianQuotient {
   }
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

@@ -6,7 +6,7 @@
 
 #include <mesh/lagrange_check.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 namespace {
 
@@ -68,4 +68,4 @@ void requireConsistent(const LagrangeMesh& mesh) {
   for (std::size_t cell = 0; cell < cells; ++cell) requireCorners(mesh, cell);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

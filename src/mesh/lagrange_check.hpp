@@ -3,7 +3,7 @@
 
 #include <hexhex/curved.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// Before anything else looks at them.
 /// @throws Error InvalidArgument unless the order is legal, cells are complete and name nodes that
@@ -11,4 +11,4 @@ namespace hexhex {
 ///         node or none
 void requireConsistent(const LagrangeMesh& mesh);
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

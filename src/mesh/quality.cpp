@@ -15,7 +15,7 @@
 #include <mesh/cell_validity.hpp>
 #include <mesh/certificates.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 namespace {
 
 /// Cells per block: a block takes about a twentieth of a millisecond.
@@ -82,7 +82,7 @@ void forCells(const HexMesh& mesh, std::size_t begin, std::size_t end, Stage& st
     for (const Hex& cell : cells) {
       for (const Index corner : cell) largest = std::max(largest, corner);
     }
-    if (largest >= mesh.points.size()) requireCornersInRange(mesh, stage);
+    if (largest >= mesh.points.size()) adjacency::requireCornersInRange(mesh, stage);
     // Points of the next cells come meanwhile. (Without this, quality takes 5 % longer.)
     for (std::size_t next = c + n; next < std::min(c + 2 * n, end); ++next) {
       for (const Index corner : mesh.cells[next]) __builtin_prefetch(mesh.points.data() + corner);
@@ -136,24 +136,29 @@ CellCertificate certificateOf(const HexMesh& mesh, std::size_t cell, const CellM
 
 }  // namespace
 
+}  // namespace hexhex::mesh
+
+namespace hexhex {
+
 double scaledJacobian(const std::array<Vec3, 8>& corners) noexcept {
-  CellMeasures measures;
+  mesh::CellMeasures measures;
   const Hex cell = {0, 1, 2, 3, 4, 5, 6, 7};
-  measuresOfCells().back()(corners.data(), std::span(&cell, 1), measures);
-  return measures.inRange[0] != 0 ? measures.scaled[0] : scaledJacobianOfAnySize(byPlace(corners));
+  mesh::measuresOfCells().back()(corners.data(), std::span(&cell, 1), measures);
+  return measures.inRange[0] != 0 ? measures.scaled[0]
+                                  : mesh::scaledJacobianOfAnySize(mesh::byPlace(corners));
 }
 
 Array<double> scaledJacobians(const HexMesh& mesh, Context& context) {
   return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
     Array<double> result(mesh.cells.size());
     withThreads(context.threads(), [&] {
-      parallelBlocks(stage, mesh.cells.size(), kGrain,
+      parallelBlocks(stage, mesh.cells.size(), mesh::kGrain,
                      [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                       forCells(
-                           mesh, begin, end, stage,
-                           [&](std::size_t first, const CellMeasures& measures, std::size_t n) {
-                             std::copy_n(measures.scaled.begin(), n, &result[first]);
-                           });
+                       mesh::forCells(mesh, begin, end, stage,
+                                      [&](std::size_t first, const mesh::CellMeasures& measures,
+                                          std::size_t n) {
+                                        std::copy_n(measures.scaled.begin(), n, &result[first]);
+                                      });
                      });
     });
     return result;
@@ -164,13 +169,13 @@ QualitySummary summarize(const Array<double>& scaledJacobians) {
   QualitySummary summary;
   if (scaledJacobians.empty()) return summary;
   summary.minimum = scaledJacobians.front();
-  for (const double value : scaledJacobians) addTo(summary, value);
+  for (const double value : scaledJacobians) mesh::addTo(summary, value);
   summary.mean /= static_cast<double>(scaledJacobians.size());
   return summary;
 }
 
 CellCertificate certify(const std::array<Vec3, 8>& corners) {
-  return CellValidity(1).findLeast(byPlace(corners), 1);
+  return mesh::CellValidity(1).findLeast(mesh::byPlace(corners), 1);
 }
 
 Certificate certify(const HexMesh& mesh, Context& context) {
@@ -180,30 +185,32 @@ Certificate certify(const HexMesh& mesh, Context& context) {
   inStage(context, "certify", "quality", [&](Stage& stage) {
     certificate.scaledJacobians.resize(n);
     certificate.validity.resize(n);
-    const CellValidity cells(1);
+    const mesh::CellValidity cells(1);
     withThreads(context.threads(), [&] {
-      std::vector<BlockFindings> blocks(blockCount(n, kGrain));
+      std::vector<mesh::BlockFindings> blocks(blockCount(n, mesh::kGrain));
       std::vector<QualitySummary> summaries(blocks.size());
-      parallelBlocks(stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        summaries[block].minimum = 1;
-        forCells(mesh, begin, end, stage,
-                 [&](std::size_t first, const CellMeasures& measures, std::size_t count) {
-                   std::copy_n(measures.scaled.begin(), count, &certificate.scaledJacobians[first]);
-                   for (std::size_t i = 0; i < count; ++i)
-                     addTo(summaries[block], measures.scaled[i]);
-                   for (std::size_t i = 0; i < count; ++i) {
-                     const CellCertificate known =
-                         certificateOf(mesh, first + i, measures, i, cells);
-                     certificate.validity[first + i] = known.validity;
-                     blocks[block].add(first + i, measures.scaled[i], known);
-                   }
-                 });
-      });
-      certificate.quality = united(summaries, n);
-      BlockFindings::finish(
+      parallelBlocks(
+          stage, n, mesh::kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+            summaries[block].minimum = 1;
+            mesh::forCells(
+                mesh, begin, end, stage,
+                [&](std::size_t first, const mesh::CellMeasures& measures, std::size_t count) {
+                  std::copy_n(measures.scaled.begin(), count, &certificate.scaledJacobians[first]);
+                  for (std::size_t i = 0; i < count; ++i)
+                    mesh::addTo(summaries[block], measures.scaled[i]);
+                  for (std::size_t i = 0; i < count; ++i) {
+                    const CellCertificate known =
+                        mesh::certificateOf(mesh, first + i, measures, i, cells);
+                    certificate.validity[first + i] = known.validity;
+                    blocks[block].add(first + i, measures.scaled[i], known);
+                  }
+                });
+          });
+      certificate.quality = mesh::united(summaries, n);
+      mesh::BlockFindings::finish(
           blocks, cells,
           [&](std::uint64_t cell, std::vector<Vec3>& nodes) {
-            const Corners corners = cornersOf(mesh, cell);
+            const mesh::Corners corners = mesh::cornersOf(mesh, cell);
             nodes.assign(corners.begin(), corners.end());
           },
           stage, certificate);

@@ -17,7 +17,7 @@
 #include <base/vector3.hpp>
 #include <mesh/smooth_patches.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 namespace {
 
@@ -36,8 +36,10 @@ struct Side {
 };
 
 /// The edges of quads and the seams, by their smaller vertices.
-VertexLists<Side, std::uint64_t> listSides(std::size_t points, std::span<const Quad> quads,
-                                           std::span<const FeatureEdge> seams, Stage& stage) {
+adjacency::VertexLists<Side, std::uint64_t> listSides(std::size_t points,
+                                                      std::span<const Quad> quads,
+                                                      std::span<const FeatureEdge> seams,
+                                                      Stage& stage) {
   return {points, stage, [&](const auto& add) {
             parallelFor(stage, quads.size(), kGrain, [&](std::size_t q) {
               for (std::size_t i = 0; i < 4; ++i) {
@@ -94,7 +96,8 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
   }
   const double limit = std::cos(angle * std::numbers::pi / 180) - kCosineError;
   const Array<Vec3> normals = normalsOf(points, quads, stage);
-  const VertexLists<Side, std::uint64_t> sides = listSides(points.size(), quads, seams, stage);
+  const adjacency::VertexLists<Side, std::uint64_t> sides =
+      listSides(points.size(), quads, seams, stage);
   DisjointSets sets(quads.size());
   const auto isSameEdge = [](const Side& a, const Side& b) { return a.other == b.other; };
   const auto join = [&](std::span<const Side> atEdge) {
@@ -104,25 +107,29 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
     if (dot(normals[a], normals[b]) >= limit) sets.unite(a, b);
   };
   parallelFor(stage, points.size(), kGrain,
-              [&](std::size_t v) { forEachRun(sides(v), isSameEdge, join); });
+              [&](std::size_t v) { adjacency::forEachRun(sides(v), isSameEdge, join); });
   return numbered(sets, quads.size());
 }
 
+}  // namespace hexhex::mesh
+
+namespace hexhex {
+
 std::vector<FeatureQuad> boundaryPatches(const HexMesh& mesh, double angle, Context& context) {
-  requirePatchAngle(angle);
+  mesh::requirePatchAngle(angle);
   return inStage(context, "boundaryPatches", "patches", [&](Stage& stage) {
     std::vector<FeatureQuad> tagged;
     withThreads(context.threads(), [&] {
-      requireCornersInRange(mesh, stage);
+      adjacency::requireCornersInRange(mesh, stage);
       for (const FeatureEdge& edge : mesh.features.edges) {
         if (std::max(edge.vertices[0], edge.vertices[1]) < mesh.points.size()) continue;
         throw Error(ErrorCode::InvalidArgument,
                     "A feature edge names a vertex that is not one of the mesh.",
                     Place{PlaceKind::Edge, edge.vertices[0], edge.vertices[1]});
       }
-      const Array<Quad> quads = quadsAt(mesh, boundaryPlaces(mesh, stage));
-      const SmoothPatches patches =
-          findSmoothPatches(mesh.points, quads, angle, mesh.features.edges, stage);
+      const Array<Quad> quads = adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage));
+      const mesh::SmoothPatches patches =
+          mesh::findSmoothPatches(mesh.points, quads, angle, mesh.features.edges, stage);
       tagged.resize(quads.size());
       for (std::size_t q = 0; q < quads.size(); ++q) {
         tagged[q] = {quads[q], static_cast<std::int32_t>(patches.patchOf[q] + 1)};

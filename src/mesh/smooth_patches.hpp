@@ -8,7 +8,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 struct SmoothPatches {
   Array<Index> patchOf;  ///< per quad: from 0 on, in order of the patches' first quads
@@ -25,4 +25,4 @@ struct SmoothPatches {
 /// @throws Error InvalidArgument for an angle that is not from 0 to 180
 void requirePatchAngle(double angle);
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

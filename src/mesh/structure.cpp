@@ -11,16 +11,16 @@ MeshStructure findStructure(const HexMesh& mesh, Context& context) {
   return inStage(context, "findStructure", "structure", [&](Stage& stage) {
     MeshStructure result;
     withThreads(context.threads(), [&] {
-      const VertexCells around = cellsAroundVertices(mesh, stage);
-      const HexFaces faces = findFaces(mesh, around, stage);
-      HexEdges edges = findEdges(mesh, around, faces, stage);
+      const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
+      const adjacency::HexFaces faces = adjacency::findFaces(mesh, around, stage);
+      adjacency::HexEdges edges = adjacency::findEdges(mesh, around, faces, stage);
       result.singularEdges = std::move(edges.singular);
       result.faces = faces.count;
       result.edges = edges.count;
       result.boundaryQuads = faces.boundaryCount;
       result.components = faces.components;
       result.boundaryComponents = edges.boundaryComponents;
-      result.eulerCharacteristic = eulerCharacteristic(mesh, faces, edges);
+      result.eulerCharacteristic = adjacency::eulerCharacteristic(mesh, faces, edges);
     });
     return result;
   });

@@ -1,7 +1,7 @@
 // Numbers of twice the digits of a double, as a sum of two: for conversions that lose many.
 #pragma once
 
-namespace hexhex {
+namespace hexhex::mesh {
 
 /// high is the double nearest to the number. Sums of products of numbers around 1 are right to
 /// within 2^-98 of the sum of magnitudes per product.
@@ -40,4 +40,4 @@ inline void addProduct(Twofold& sum, const Twofold& a, const Twofold& b) noexcep
   sum = exactSum(high.high, low);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::mesh

@@ -8,7 +8,7 @@
 
 #include <parts/partition.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -71,7 +71,8 @@ void cut(std::span<PartitionElement> elements, std::span<std::uint32_t> partOf,
     return;
   }
   const std::uint32_t half = parts / 2;
-  const auto cells = static_cast<std::uint64_t>(UInt128{sumOfCells(elements)} * half / parts);
+  const auto cells =
+      static_cast<std::uint64_t>(lattice::UInt128{sumOfCells(elements)} * half / parts);
   const std::size_t front = bringToFront(elements, longestAxis(elements), cells);
   cut(elements.first(front), partOf.first(front), firstPart, half);
   cut(elements.subspan(front), partOf.subspan(front), firstPart + half, parts - half);
@@ -85,4 +86,4 @@ std::vector<std::uint32_t> bisect(std::vector<PartitionElement>& elements, std::
   return partOf;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -18,7 +18,7 @@
 
 #include <extract/steps.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -60,13 +60,13 @@ class Collector final : public PartSink {
 /// Makes parts, and proves them if that is wanted.
 class ProvenParts {
  public:
-  ProvenParts(ProcessTeam* team, ScaledMap& scaled, const PartOptions& options, Context& context,
-              ExtractStatistics& statistics)
+  ProvenParts(ProcessTeam* team, extraction::ScaledMap& scaled, const PartOptions& options,
+              Context& context, ExtractStatistics& statistics)
       : context_(context) {
     Expectation expected;
     if (options.verify) {
       Stage stage(context, "verification");
-      expected = expectationOf(scaled.map, stage);
+      expected = verification::expectationOf(scaled.map, stage);
     }
     maker_ = makePartMaker({scaled.map, scaled.source, scaled.expectedCells, team}, options,
                            context, statistics);
@@ -85,7 +85,7 @@ class ProvenParts {
  private:
   Context& context_;
   std::unique_ptr<PartMaker> maker_;
-  std::optional<PartProof> proof_;
+  std::optional<verification::PartProof> proof_;
 };
 
 /// Prepares a map, and calls make(maker): which parts are made is left to it.
@@ -94,13 +94,14 @@ template <class Make>
 void runParts(ProcessTeam* team, std::uint32_t sinkLayers, const TetMapView& map,
               const ExtractOptions& options, const PartOptions& parts, Context& context,
               ExtractStatistics* statistics, const Make& make) {
-  checkOptions(options);
+  extraction::checkOptions(options);
   checkOptions(parts);
   PartOptions needed = parts;
   needed.ghostLayers = std::max(needed.ghostLayers, sinkLayers);
-  runExtraction(
+  extraction::runExtraction(
       {"extractParts", kPartsSteps}, {}, context, statistics, [&](ExtractStatistics& filled) {
-        ScaledMap scaled = prepareScaled(map, options, {1, kMaxStreamedCells}, context, filled);
+        extraction::ScaledMap scaled = extraction::prepareScaled(
+            map, options, {1, extraction::kMaxStreamedCells}, context, filled);
         ProvenParts maker(team, scaled, needed, context, filled);
         PartsInfo info = maker.info();
         info.ghostLayers = parts.ghostLayers;
@@ -152,21 +153,25 @@ void requireSame(ProcessTeam& team, std::uint64_t hash) {
 
 }  // namespace
 
+}  // namespace hexhex::parts
+
+namespace hexhex {
+
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
                   const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
-  runParts(nullptr, sink.neededGhostLayers(), map, options, parts, context, statistics,
-           [&](ProvenParts& maker, const PartsInfo& info) {
-             sink.begin(info);
-             for (std::uint32_t p = 0; p < parts.parts; ++p) sink.part(maker.make(p));
-             sink.end();
-           });
+  parts::runParts(nullptr, sink.neededGhostLayers(), map, options, parts, context, statistics,
+                  [&](parts::ProvenParts& maker, const PartsInfo& info) {
+                    sink.begin(info);
+                    for (std::uint32_t p = 0; p < parts.parts; ++p) sink.part(maker.make(p));
+                    sink.end();
+                  });
 }
 
 std::vector<MeshPart> extractParts(const TetMapView& map, const ExtractOptions& options,
                                    const PartOptions& parts, Context& context,
                                    ExtractStatistics* statistics) {
   std::vector<MeshPart> all;
-  Collector collector(all);
+  parts::Collector collector(all);
   extractParts(collector, map, options, parts, context, statistics);
   return all;
 }
@@ -183,14 +188,14 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     }
     PartOptions all = parts;
     all.parts = team.size();
-    requireSame(team, hashOf(map, options, parts));
+    parts::requireSame(team, parts::hashOf(map, options, parts));
     PartSurvey survey(sink, &team);
-    runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
-             [&](ProvenParts& maker, const PartsInfo& info) {
-               survey.begin(info);
-               survey.part(maker.make(team.rank()));
-               survey.end();
-             });
+    parts::runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
+                    [&](parts::ProvenParts& maker, const PartsInfo& info) {
+                      survey.begin(info);
+                      survey.part(maker.make(team.rank()));
+                      survey.end();
+                    });
     if (summary != nullptr) *summary = survey.result();
   });
 }
@@ -198,7 +203,7 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
 MeshPart extractPart(ProcessTeam& team, const TetMapView& map, const ExtractOptions& options,
                      const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
   std::vector<MeshPart> own;
-  Collector collector(own);
+  parts::Collector collector(own);
   extractPart(team, collector, map, options, parts, context, statistics);
   return std::move(own.front());
 }

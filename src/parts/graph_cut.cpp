@@ -10,7 +10,7 @@
 #include <dlfcn.h>
 #endif
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -69,7 +69,7 @@ PartGraph load(const Library& library) { failToLoad(library, "this build loads n
 /// Collects which elements touch, and how much.
 class GraphMaker {
  public:
-  GraphMaker(const PreparedMap& map, const Partition& partition,
+  GraphMaker(const igm::PreparedMap& map, const Partition& partition,
              const std::vector<PartitionElement>& elements)
       : map_(map),
         partition_(partition),
@@ -89,8 +89,8 @@ class GraphMaker {
   [[nodiscard]] Graph make() {
     for (Index tet = 0; tet < map_.topology.tetCount(); ++tet) {
       for (int face = 0; face < 4; ++face) {
-        const HalfFace halfFace = halfFaceOf(tet, face);
-        const HalfFace mate = map_.topology.mate[halfFace];
+        const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, face);
+        const adjacency::HalfFace mate = map_.topology.mate[halfFace];
         if (mate != kNone && mate > halfFace) addFace(halfFace, mate);
       }
     }
@@ -112,11 +112,11 @@ class GraphMaker {
   }
 
   /// Corners of a half-face's triangle in grid units, then the corner opposite.
-  [[nodiscard]] std::array<Vec3, 4> cornersOf(HalfFace halfFace) const {
-    const LatticeTet& tet = map_.exact.corners[tetOf(halfFace)];
+  [[nodiscard]] std::array<Vec3, 4> cornersOf(adjacency::HalfFace halfFace) const {
+    const lattice::LatticeTet& tet = map_.exact.corners[adjacency::tetOf(halfFace)];
     std::array<Vec3, 4> corners{};
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto corner = i < 3 ? static_cast<std::size_t>(kFaceCorners[halfFace % 4][i])
+      const auto corner = i < 3 ? static_cast<std::size_t>(lattice::kFaceCorners[halfFace % 4][i])
                                 : static_cast<std::size_t>(halfFace % 4);
       for (std::size_t k = 0; k < 3; ++k) {
         corners[i][k] = static_cast<double>(tet[corner][k]) / static_cast<double>(map_.exact.unit);
@@ -140,7 +140,7 @@ class GraphMaker {
   [[nodiscard]] Index elementAt(Index tet, const Vec3& place) const {
     const TetBlocks* const blocks = partition_.blocksOf(tet);
     if (blocks == nullptr) return ofTet_[tet];
-    GridPoint z{};
+    lattice::GridPoint z{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double high = blocks->low[k] + static_cast<double>(blocks->size[k]) * blocks->side - 1;
       z[k] = static_cast<std::int32_t>(
@@ -150,11 +150,11 @@ class GraphMaker {
   }
 
   /// Looks on both sides of some points of the face, about one for each block at it.
-  void addFace(HalfFace here, HalfFace there) {
+  void addFace(adjacency::HalfFace here, adjacency::HalfFace there) {
     const std::array<Vec3, 4> corners = cornersOf(here);
     const double area = areaOf(corners);
-    const Index tet = tetOf(here);
-    const Index other = tetOf(there);
+    const Index tet = adjacency::tetOf(here);
+    const Index other = adjacency::tetOf(there);
     const TetBlocks* const blocks = partition_.blocksOf(tet);
     const TetBlocks* const others = partition_.blocksOf(other);
     if (blocks == nullptr && others == nullptr) {
@@ -165,7 +165,7 @@ class GraphMaker {
     const double side = std::min(blocks != nullptr ? blocks->side : others->side,
                                  others != nullptr ? others->side : blocks->side);
     const auto steps = static_cast<int>(std::clamp(2 * std::sqrt(2 * area) / side, 1.0, kMost));
-    const Transition& across = map_.exact.transitions.across(here);
+    const lattice::Transition& across = map_.exact.transitions.across(here);
     for (int i = 0; i < steps; ++i) {
       for (int j = 0; i + j < steps; ++j) {
         const double a = (i + 1.0 / 3) / steps;
@@ -246,7 +246,7 @@ class GraphMaker {
     }
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   const Partition& partition_;
   const std::vector<PartitionElement>& elements_;
   std::vector<Index> ofTet_;    ///< the element of a whole tet
@@ -256,7 +256,7 @@ class GraphMaker {
 
 }  // namespace
 
-std::vector<std::uint32_t> cutGraph(const PreparedMap& map, const Partition& partition,
+std::vector<std::uint32_t> cutGraph(const igm::PreparedMap& map, const Partition& partition,
                                     const std::vector<PartitionElement>& elements,
                                     PartitionMethod method) {
   const Library library = libraryOf(method);
@@ -290,4 +290,4 @@ std::vector<std::uint32_t> cutGraph(const PreparedMap& map, const Partition& par
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -6,7 +6,7 @@
 
 #include <parts/partition.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// Cuts the graph of elements, weighted by cells, whose edges are weighted by the faces of cells
 /// between them, about.
@@ -14,9 +14,9 @@ namespace hexhex {
 /// @throws Error InvalidArgument if the library is not there, is built for other integers, or
 /// fails;
 ///         TooLarge for a graph beyond its integers
-[[nodiscard]] std::vector<std::uint32_t> cutGraph(const PreparedMap& map,
+[[nodiscard]] std::vector<std::uint32_t> cutGraph(const igm::PreparedMap& map,
                                                   const Partition& partition,
                                                   const std::vector<PartitionElement>& elements,
                                                   PartitionMethod method);
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

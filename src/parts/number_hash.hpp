@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// The finalizer of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
 /// generators", 2014) after each number.
@@ -21,4 +21,4 @@ class NumberHash {
   std::uint64_t value_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

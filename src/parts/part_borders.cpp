@@ -9,14 +9,14 @@
 #include <lattice/cell_corners.hpp>
 #include <lattice/wide_int.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
 /// A face of a cell, own or not, all of whose vertices are shared.
 struct SharedSide {
-  UInt128 vertices;      ///< ascending
-  std::uint64_t number;  ///< global, of its cell
+  lattice::UInt128 vertices;  ///< ascending
+  std::uint64_t number;       ///< global, of its cell
   std::uint8_t side;
   Index cell;   ///< own, or kNone
   Index other;  ///< place in the list of other cells, or kNone
@@ -29,32 +29,32 @@ struct Pairing {
   PartFace face;  ///< as this part has it
 };
 
-UInt128 nameOf(Quad quad) {
+lattice::UInt128 nameOf(Quad quad) {
   std::sort(quad.begin(), quad.end());
-  UInt128 name = 0;
+  lattice::UInt128 name = 0;
   for (const Index v : quad) name = name << 32U | v;
   return name;
 }
 
 /// The corners of each side, as a set.
-constexpr std::array<CellCornerSet, 6> kSideCorners = [] {
-  std::array<CellCornerSet, 6> sets{};
+constexpr std::array<lattice::CellCornerSet, 6> kSideCorners = [] {
+  std::array<lattice::CellCornerSet, 6> sets{};
   for (std::size_t side = 0; side < 6; ++side) {
-    for (const std::uint8_t corner : kHexFaces[side]) sets[side] |= 1U << corner;
+    for (const std::uint8_t corner : adjacency::kHexFaces[side]) sets[side] |= 1U << corner;
   }
   return sets;
 }();
 
 void addSides(const Hex& corners, std::uint64_t number, Index cell, Index other,
               const std::vector<bool>& isShared, std::vector<SharedSide>& sides) {
-  CellCornerSet shared = 0;
+  lattice::CellCornerSet shared = 0;
   for (std::size_t k = 0; k < 8; ++k) {
     if (corners[k] != kNone && isShared[corners[k]]) shared |= 1U << k;
   }
   if (std::popcount(shared) < 4) return;
   for (std::uint8_t side = 0; side < 6; ++side) {
     if ((kSideCorners[side] & ~shared) != 0) continue;
-    sides.push_back({nameOf(faceVertices(corners, side)), number, side, cell, other});
+    sides.push_back({nameOf(adjacency::faceVertices(corners, side)), number, side, cell, other});
   }
 }
 
@@ -70,7 +70,7 @@ class FacePairs {
       if (a.vertices != b.vertices) return a.vertices < b.vertices;
       return a.number != b.number ? a.number < b.number : a.side < b.side;
     });
-    forEachRun(
+    adjacency::forEachRun(
         std::span<const SharedSide>(sides),
         [](const SharedSide& a, const SharedSide& b) { return a.vertices == b.vertices; },
         [&](std::span<const SharedSide> run) { pairUp(run); });
@@ -81,13 +81,13 @@ class FacePairs {
   [[nodiscard]] Quad quadOf(const SharedSide& side) const {
     const Hex& corners =
         side.cell != kNone ? part_.mesh.cells[side.cell] : around_[side.other].corners;
-    return faceVertices(corners, side.side);
+    return adjacency::faceVertices(corners, side.side);
   }
   void pairUp(std::span<const SharedSide> run) {
     std::vector<bool> taken(run.size(), false);
     for (std::size_t i = 0; i < run.size(); ++i) {
       for (std::size_t j = i + 1; j < run.size() && !taken[i]; ++j) {
-        if (taken[j] || !areOpposite(quadOf(run[i]), quadOf(run[j]))) continue;
+        if (taken[j] || !adjacency::areOpposite(quadOf(run[i]), quadOf(run[j]))) continue;
         taken[i] = taken[j] = true;
         add(run[i], run[j]);
       }
@@ -164,4 +164,4 @@ void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -6,7 +6,7 @@
 
 #include <hexhex/parts.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// A cell of another part with a vertex of this one.
 struct BorderCell {
@@ -20,4 +20,4 @@ struct BorderCell {
 /// @param around  all cells of other parts with a vertex of its own cells, ascending by number
 void findNeighbours(MeshPart& part, std::span<const BorderCell> around);
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

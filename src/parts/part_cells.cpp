@@ -4,7 +4,7 @@
 
 #include <base/workspaces.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -14,8 +14,9 @@ constexpr std::size_t kFewTets = 8;
 }  // namespace
 
 template <class Id>
-PartGrid<Id>::PartGrid(const PreparedMap& map, ElementCounts& counts, const Partition& partition,
-                       Charts& charts, std::span<const Index> chartOf, const GridRegion& region,
+PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts& counts,
+                       const Partition& partition, atlas::Charts& charts,
+                       std::span<const Index> chartOf, const atlas::GridRegion& region,
                        Stage& stage)
     : map_(map),
       counts_(counts),
@@ -27,19 +28,20 @@ PartGrid<Id>::PartGrid(const PreparedMap& map, ElementCounts& counts, const Part
   vertices_.emplace(map, charts_, counts.vertices, region, stage);
   vertices_->fill({}, stage);
   vertices_->resolveOverlaps(stage);
-  transitions_ = markCutCells(map, charts_, region, vertices_->grid(), stage).transitions;
+  transitions_ = atlas::markCutCells(map, charts_, region, vertices_->grid(), stage).transitions;
 }
 
 template <class Id>
 PartGrid<Id>::~PartGrid() {
-  for (const Index tet : region_.tets) charts_.chart[tet] = Charts::kNoChart;
+  for (const Index tet : region_.tets) charts_.chart[tet] = atlas::Charts::kNoChart;
 }
 
 template <class Id>
-std::vector<SweptLine> PartGrid<Id>::centersOf(Index tet) const {
-  std::vector<SweptLine> lines;
+std::vector<lattice::SweptLine> PartGrid<Id>::centersOf(Index tet) const {
+  std::vector<lattice::SweptLine> lines;
   if (counts_.cells[tet] == counts_.cells[std::size_t{tet} + 1]) return lines;
-  TetRasterizer(map_.exact.corners[tet], map_.exact.unit).append(kCenterGrid, lines);
+  lattice::TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
+      .append(lattice::kCenterGrid, lines);
   return lines;
 }
 
@@ -58,18 +60,19 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
   cells.corners.resize(count);
   parallelForWith(
       stage_, tets.size(), kFewTets,
-      [&] { return CellEmitter<Id>(map_, *vertices_, transitions_, true); },
-      [&](std::size_t i, CellEmitter<Id>& emitter) {
+      [&] { return atlas::CellEmitter<Id>(map_, *vertices_, transitions_, true); },
+      [&](std::size_t i, atlas::CellEmitter<Id>& emitter) {
         std::uint64_t at = begin[i];
         const Index tet = tets[i];
         forEachRun(map_, partition_, part, tet, centersOf(tet),
-                   [&](const SweptLine& line, std::uint32_t first, std::uint32_t run,
-                       std::uint64_t number) {
-                     emitter.emitOn(tet, line, first, std::span(cells.corners).subspan(at, run));
-                     for (std::uint32_t k = 0; k < run; ++k) {
-                       cells.numbers[at++] = counts_.cells[tet] + number + k;
-                     }
-                   });
+                              [&](const lattice::SweptLine& line, std::uint32_t first,
+                                  std::uint32_t run, std::uint64_t number) {
+                                emitter.emitOn(tet, line, first,
+                                               std::span(cells.corners).subspan(at, run));
+                                for (std::uint32_t k = 0; k < run; ++k) {
+                                  cells.numbers[at++] = counts_.cells[tet] + number + k;
+                                }
+                              });
       });
   return cells;
 }
@@ -77,7 +80,7 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
 template <class Id>
 struct PartGrid<Id>::Surroundings {
   std::uint32_t part;
-  CellEmitter<Id> emitter;
+  atlas::CellEmitter<Id> emitter;
   std::optional<VertexSet::Cache> touched;
   std::vector<std::array<Id, 8>> cells;  ///< working memory
 };
@@ -86,11 +89,11 @@ template <class Id>
 void PartGrid<Id>::addNearby(std::size_t i, Surroundings& around,
                              std::vector<NearbyCell<Id>>& list) const {
   const Index tet = region_.tets[i];
-  const std::vector<SweptLine> lines = centersOf(tet);
-  BoxedLines boxed(region_.boxesOf(i), 1);
-  CenterOwner owner(map_.topology, tet);
+  const std::vector<lattice::SweptLine> lines = centersOf(tet);
+  atlas::BoxedLines boxed(region_.boxesOf(i), 1);
+  sweep::CenterOwner owner(map_.topology, tet);
   std::uint64_t number = counts_.cells[tet];
-  for (const SweptLine& line : lines) {
+  for (const lattice::SweptLine& line : lines) {
     const auto [first, count] = owner.owned(line);
     const auto add = [&, first = first](std::uint32_t other, std::uint32_t at, std::uint32_t run) {
       if (other == around.part) return;
@@ -102,7 +105,7 @@ void PartGrid<Id>::addNearby(std::size_t i, Surroundings& around,
         list.push_back({number + (at + k - first), other, place, around.cells[k]});
       }
     };
-    for (const LinePoints& range : boxed.of(line)) {
+    for (const atlas::LinePoints& range : boxed.of(line)) {
       const std::uint32_t from = std::max(first, range.first);
       const std::uint32_t to = std::min(first + count, range.first + range.count);
       if (from < to) partition_.forEachPiece(tet, line, from, to - from, add);
@@ -119,7 +122,8 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
   parallelBlocksWith(
       stage_, region_.tets.size(), kFewTets,
       [&] {
-        Surroundings around{part, CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};
+        Surroundings around{
+            part, atlas::CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};
         if (touched != nullptr) around.touched.emplace(*touched);
         return around;
       },
@@ -135,4 +139,4 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
 template class PartGrid<std::uint32_t>;
 template class PartGrid<std::uint64_t>;
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -16,13 +16,13 @@
 #include <atlas/cut_marks.hpp>
 #include <atlas/grid_region.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// A cell by its place: a centre on a line of its owner.
 struct CellPlace {
   Index tet;
-  CornerMask simplex;  ///< of the tet, in whose interior the centre lies
-  GridPoint z;         ///< smallest corner
+  lattice::CornerMask simplex;  ///< of the tet, in whose interior the centre lies
+  lattice::GridPoint z;         ///< smallest corner
 };
 
 /// Cells by global numbers, ascending.
@@ -45,11 +45,11 @@ struct NearbyCell {
 /// centres `first` and so on of a line, the first of which is cell `number` of those that the tet
 /// owns.
 template <class Visit>
-void forEachRun(const PreparedMap& map, const Partition& partition, std::uint32_t part, Index tet,
-                std::span<const SweptLine> lines, const Visit& visit) {
-  CenterOwner owner(map.topology, tet);
+void forEachRun(const igm::PreparedMap& map, const Partition& partition, std::uint32_t part,
+                Index tet, std::span<const lattice::SweptLine> lines, const Visit& visit) {
+  sweep::CenterOwner owner(map.topology, tet);
   std::uint64_t number = 0;
-  for (const SweptLine& line : lines) {
+  for (const lattice::SweptLine& line : lines) {
     const auto [first, count] = owner.owned(line);
     partition.forEachPiece(
         tet, line, first, count,
@@ -65,8 +65,9 @@ template <class Id>
 class PartGrid {
  public:
   /// @param charts  of the whole map, but no tet is in one; likewise afterwards
-  PartGrid(const PreparedMap& map, ElementCounts& counts, const Partition& partition,
-           Charts& charts, std::span<const Index> chartOf, const GridRegion& region, Stage& stage);
+  PartGrid(const igm::PreparedMap& map, sweep::ElementCounts& counts, const Partition& partition,
+           atlas::Charts& charts, std::span<const Index> chartOf, const atlas::GridRegion& region,
+           Stage& stage);
   ~PartGrid();
   PartGrid(const PartGrid&) = delete;
   PartGrid& operator=(const PartGrid&) = delete;
@@ -80,21 +81,21 @@ class PartGrid {
  private:
   struct Surroundings;
 
-  [[nodiscard]] std::vector<SweptLine> centersOf(Index tet) const;
+  [[nodiscard]] std::vector<lattice::SweptLine> centersOf(Index tet) const;
   /// Adds the nearby cells of a tet of the region.
   void addNearby(std::size_t i, Surroundings& around, std::vector<NearbyCell<Id>>& list) const;
 
-  const PreparedMap& map_;
-  const ElementCounts& counts_;
+  const igm::PreparedMap& map_;
+  const sweep::ElementCounts& counts_;
   const Partition& partition_;
-  Charts& charts_;
-  const GridRegion& region_;
+  atlas::Charts& charts_;
+  const atlas::GridRegion& region_;
   Stage& stage_;
-  std::optional<VertexGrid<Id>> vertices_;
-  CutTransitions transitions_;
+  std::optional<atlas::VertexGrid<Id>> vertices_;
+  atlas::CutTransitions transitions_;
 };
 
 extern template class PartGrid<std::uint32_t>;
 extern template class PartGrid<std::uint64_t>;
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -11,7 +11,7 @@
 
 #include <extract/features.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -92,8 +92,8 @@ class GhostLayers {
 template <class Id>
 class Maker final : public PartMaker {
  public:
-  Maker(const PartsOfMap& map, const PartOptions& options, ElementCounts counts,
-        Partition partition, Charts charts, Context& context)
+  Maker(const PartsOfMap& map, const PartOptions& options, sweep::ElementCounts counts,
+        Partition partition, atlas::Charts charts, Context& context)
       : map_(map),
         options_(options),
         counts_(std::move(counts)),
@@ -102,7 +102,7 @@ class Maker final : public PartMaker {
         chartOf_(std::move(charts_.chart)),
         regions_(map.map, partition_, counts_.cells.back()),
         context_(context) {
-    charts_.chart.assign(chartOf_.size(), Charts::kNoChart);
+    charts_.chart.assign(chartOf_.size(), atlas::Charts::kNoChart);
   }
 
   PartsInfo info() const override {
@@ -119,7 +119,7 @@ class Maker final : public PartMaker {
     return info;
   }
 
-  const ElementCounts& counts() const noexcept override { return counts_; }
+  const sweep::ElementCounts& counts() const noexcept override { return counts_; }
 
   MeshPart make(std::uint32_t number) override {
     Stage stage(context_, "parts");
@@ -133,7 +133,7 @@ class Maker final : public PartMaker {
     {
       // One more, which knows the owners of the vertices of the last.
       const std::uint32_t around = options_.ghostLayers + 1;
-      const GridRegion region = regions_.find(number, around);
+      const atlas::GridRegion region = regions_.find(number, around);
       const PartGrid<Id> grid(map_.map, counts_, partition_, charts_, chartOf_, region, stage);
       own = grid.ownCells(number);
       vertices = VertexSet(std::span<const std::array<Id, 8>>(own.corners), stage);
@@ -273,7 +273,7 @@ class Maker final : public PartMaker {
     const auto& [part, layers, vertices, stage] = assembly;
     const std::span<const Index> tets = partition_.tetsOf(part.part);
     if (!map_.source.features.empty()) {
-      carryFeatures(map_.source, map_.map, cellsOf(part), part.mesh, stage);
+      extraction::carryFeatures(map_.source, map_.map, cellsOf(part), part.mesh, stage);
     }
     if (map_.source.regions.empty()) return;
     Array<std::int32_t>& regions = part.mesh.regions;
@@ -296,33 +296,34 @@ class Maker final : public PartMaker {
   }
 
   /// The part's own cells for carryFeatures(), a group for each tet.
-  [[nodiscard]] TaggedCells cellsOf(const MeshPart& part) const {
+  [[nodiscard]] extraction::TaggedCells cellsOf(const MeshPart& part) const {
     const std::span<const Index> tets = partition_.tetsOf(part.part);
-    return {tets.size(), [this, &part, tets](std::size_t i, const TaggedCells::Visit& visit) {
+    return {tets.size(),
+            [this, &part, tets](std::size_t i, const extraction::TaggedCells::Visit& visit) {
               const Index tet = tets[i];
               const std::uint64_t first = counts_.cells[tet];
               if (first == counts_.cells[std::size_t{tet} + 1]) return;
               const auto own = std::span(part.globalCells).first(part.ownCells);
               auto cell = static_cast<std::uint64_t>(
                   std::lower_bound(own.begin(), own.end(), first) - own.begin());
-              std::vector<SweptLine> lines;
-              TetRasterizer(map_.map.exact.corners[tet], map_.map.exact.unit)
-                  .append(kCenterGrid, lines);
+              std::vector<lattice::SweptLine> lines;
+              lattice::TetRasterizer(map_.map.exact.corners[tet], map_.map.exact.unit)
+                  .append(lattice::kCenterGrid, lines);
               forEachRun(map_.map, partition_, part.part, tet, lines,
-                         [&](const SweptLine& line, std::uint32_t begin, std::uint32_t count,
-                             std::uint64_t) {
-                           for (std::uint32_t k = begin; k < begin + count; ++k) {
-                             visit(cell++, tet, line.point(k), line.simplex(k));
-                           }
-                         });
+                                    [&](const lattice::SweptLine& line, std::uint32_t begin,
+                                        std::uint32_t count, std::uint64_t) {
+                                      for (std::uint32_t k = begin; k < begin + count; ++k) {
+                                        visit(cell++, tet, line.point(k), line.simplex(k));
+                                      }
+                                    });
             }};
   }
 
   PartsOfMap map_;
   PartOptions options_;
-  ElementCounts counts_;
+  sweep::ElementCounts counts_;
   Partition partition_;
-  Charts charts_;
+  atlas::Charts charts_;
   Array<Index> chartOf_;  ///< per tet
   RegionFinder regions_;
   Context& context_;
@@ -332,16 +333,16 @@ class Maker final : public PartMaker {
 
 std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOptions& options,
                                          Context& context, ExtractStatistics& statistics) {
-  Charts charts;
+  atlas::Charts charts;
   {
     Stage stage(context, "charts");
-    charts = buildCharts(map.map, stage);
+    charts = atlas::buildCharts(map.map, stage);
   }
   statistics.charts = charts.count;
-  ElementCounts counts;
+  sweep::ElementCounts counts;
   {
     Stage stage(context, "sweep");
-    counts = countElements(map.map, map.expectedCells, map.team, stage);
+    counts = sweep::countElements(map.map, map.expectedCells, map.team, stage);
   }
   statistics.generators = counts.vertices.generatorCounts;
   statistics.vertices = counts.vertices.vertexCounts;
@@ -355,4 +356,4 @@ std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOption
   return make(Index{});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -10,11 +10,11 @@
 #include <igm/prepare.hpp>
 #include <sweep/tet_counts.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// A map that has passed all checks and is scaled, with the caller's tags.
 struct PartsOfMap {
-  const PreparedMap& map;
+  const igm::PreparedMap& map;
   const TetMapView& source;
   std::uint64_t expectedCells;
   ProcessTeam* team = nullptr;  ///< if there is one, all of it counts
@@ -28,7 +28,7 @@ class PartMaker {
   virtual ~PartMaker() = default;
 
   [[nodiscard]] virtual PartsInfo info() const = 0;
-  [[nodiscard]] virtual const ElementCounts& counts() const noexcept = 0;
+  [[nodiscard]] virtual const sweep::ElementCounts& counts() const noexcept = 0;
   /// Any part, in any order.
   [[nodiscard]] virtual MeshPart make(std::uint32_t part) = 0;
 };
@@ -39,4 +39,4 @@ class PartMaker {
                                                        const PartOptions& options, Context& context,
                                                        ExtractStatistics& statistics);
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -6,7 +6,7 @@
 #include <base/workspaces.hpp>
 #include <sweep/tet_positions.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -17,7 +17,7 @@ struct OwnersVertices {
   std::size_t end;
 };
 
-std::vector<OwnersVertices> groupByOwner(const ElementCounts& counts,
+std::vector<OwnersVertices> groupByOwner(const sweep::ElementCounts& counts,
                                          std::span<const std::uint64_t> numbers) {
   const Array<std::uint64_t>& begin = counts.vertices.begin;
   std::vector<OwnersVertices> groups;
@@ -33,22 +33,25 @@ std::vector<OwnersVertices> groupByOwner(const ElementCounts& counts,
 
 class Describer {
  public:
-  Describer(const PreparedMap& map, const ElementCounts& counts,
+  Describer(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
             std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh)
       : map_(map), counts_(counts), numbers_(numbers), first_(first), mesh_(mesh) {}
 
   void describe(const OwnersVertices& wanted) {
     lines_.clear();
-    TetRasterizer(map_.exact.corners[wanted.tet], map_.exact.unit).append(kVertexGrid, lines_);
-    const SweepAxes axes = lines_.front().axes;
-    const TetPositions positions(map_, wanted.tet, axes);
-    TetNumbering(map_, counts_.vertices, wanted.tet, axes).run(lines_, [&](const VertexRun& run) {
-      if (run.owned) describe(run, wanted, positions);
-    });
+    lattice::TetRasterizer(map_.exact.corners[wanted.tet], map_.exact.unit)
+        .append(lattice::kVertexGrid, lines_);
+    const lattice::SweepAxes axes = lines_.front().axes;
+    const sweep::TetPositions positions(map_, wanted.tet, axes);
+    sweep::TetNumbering(map_, counts_.vertices, wanted.tet, axes)
+        .run(lines_, [&](const sweep::VertexRun& run) {
+          if (run.owned) describe(run, wanted, positions);
+        });
   }
 
  private:
-  void describe(const VertexRun& run, const OwnersVertices& wanted, const TetPositions& positions) {
+  void describe(const sweep::VertexRun& run, const OwnersVertices& wanted,
+                const sweep::TetPositions& positions) {
     const auto last = numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.end);
     // Interior vertices are numbered in the order of the sweep, so that the next is soon found.
     auto next = std::lower_bound(numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.begin), last,
@@ -56,8 +59,8 @@ class Describer {
     for (; next != last && *next < run.first + run.count; ++next) {
       const auto i = static_cast<std::uint32_t>(*next - run.first);
       const std::size_t at = first_ + static_cast<std::size_t>(next - numbers_.begin());
-      const SweptLine& line = *run.line;
-      if (run.simplex == kWholeTet) {
+      const lattice::SweptLine& line = *run.line;
+      if (run.simplex == lattice::kWholeTet) {
         positions.alongLine(line.level, line.row,
                             line.first + static_cast<std::int32_t>(run.offset + i), 1,
                             &mesh_.points[at]);
@@ -69,17 +72,17 @@ class Describer {
     }
   }
 
-  const PreparedMap& map_;
-  const ElementCounts& counts_;
+  const igm::PreparedMap& map_;
+  const sweep::ElementCounts& counts_;
   std::span<const std::uint64_t> numbers_;
   std::size_t first_;
   HexMesh& mesh_;
-  std::vector<SweptLine> lines_;
+  std::vector<lattice::SweptLine> lines_;
 };
 
 }  // namespace
 
-void describeVertices(const PreparedMap& map, const ElementCounts& counts,
+void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
                       std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
                       Stage& stage) {
   const std::vector<OwnersVertices> groups = groupByOwner(counts, numbers);
@@ -89,4 +92,4 @@ void describeVertices(const PreparedMap& map, const ElementCounts& counts,
       [&](std::size_t i, Describer& describer) { describer.describe(groups[i]); });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -4,23 +4,23 @@
 
 #include <parts/part_region.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
 /// Boxes around large faces would be as large as tets.
 constexpr std::int32_t kFacePiece = 12;
 
-using Triangle = std::array<LatticePoint, 3>;
+using Triangle = std::array<lattice::LatticePoint, 3>;
 
 constexpr std::uint8_t kAllFaces = 0xf;
-constexpr std::uint8_t bitOf(HalfFace halfFace) {
+constexpr std::uint8_t bitOf(adjacency::HalfFace halfFace) {
   return static_cast<std::uint8_t>(1U << halfFace % 4);
 }
 
-Triangle triangleOf(const PreparedMap& map, HalfFace halfFace) {
-  const LatticeTet& corners = map.exact.corners[tetOf(halfFace)];
-  const std::array<int, 3>& face = kFaceCorners[halfFace % 4];
+Triangle triangleOf(const igm::PreparedMap& map, adjacency::HalfFace halfFace) {
+  const lattice::LatticeTet& corners = map.exact.corners[adjacency::tetOf(halfFace)];
+  const std::array<int, 3>& face = lattice::kFaceCorners[halfFace % 4];
   return {corners[static_cast<std::size_t>(face[0])], corners[static_cast<std::size_t>(face[1])],
           corners[static_cast<std::size_t>(face[2])]};
 }
@@ -30,9 +30,9 @@ Triangle triangleOf(const PreparedMap& map, HalfFace halfFace) {
 constexpr std::int32_t kBoxRounding = 4;
 
 /// A box of grid points around a triangle, and at least `reach` more on all sides.
-GridBox boxAround(const Triangle& triangle, std::int64_t unit, std::int32_t reach) {
+lattice::GridBox boxAround(const Triangle& triangle, std::int64_t unit, std::int32_t reach) {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
-  GridBox box;
+  lattice::GridBox box;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
     // Shifts round down.
@@ -49,7 +49,7 @@ void cutUp(const Triangle& triangle, std::int64_t size, const Visit& visit) {
   std::size_t longest = 0;
   std::int64_t most = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const LatticePoint along = triangle[(i + 1) % 3] - triangle[i];
+    const lattice::LatticePoint along = triangle[(i + 1) % 3] - triangle[i];
     for (const std::int64_t extent : along) {
       if (std::abs(extent) > most) {
         most = std::abs(extent);
@@ -61,10 +61,10 @@ void cutUp(const Triangle& triangle, std::int64_t size, const Visit& visit) {
     visit(triangle);
     return;
   }
-  const LatticePoint& a = triangle[longest];
-  const LatticePoint& b = triangle[(longest + 1) % 3];
-  const LatticePoint& c = triangle[(longest + 2) % 3];
-  LatticePoint middle;
+  const lattice::LatticePoint& a = triangle[longest];
+  const lattice::LatticePoint& b = triangle[(longest + 1) % 3];
+  const lattice::LatticePoint& c = triangle[(longest + 2) % 3];
+  lattice::LatticePoint middle;
   for (std::size_t k = 0; k < 3; ++k) middle[k] = a[k] + (b[k] - a[k]) / 2;
   cutUp({a, middle, c}, size, visit);
   cutUp({middle, b, c}, size, visit);
@@ -72,7 +72,7 @@ void cutUp(const Triangle& triangle, std::int64_t size, const Visit& visit) {
 
 /// Whether a triangle may meet a closed box: no axis of the grid and not the triangle's normal
 /// separates them, with room for roundings.
-bool mayMeet(const Triangle& triangle, const GridBox& box, std::int64_t unit) {
+bool mayMeet(const Triangle& triangle, const lattice::GridBox& box, std::int64_t unit) {
   std::array<Vec3, 3> corners;
   Vec3 middle;
   Vec3 half;
@@ -101,21 +101,21 @@ bool mayMeet(const Triangle& triangle, const GridBox& box, std::int64_t unit) {
   return std::abs(distance) <= radius * (1 + 1e-6);
 }
 
-GridBox carried(const Transition& transition, const GridBox& box) {
-  GridPoint low;
-  GridPoint high;
+lattice::GridBox carried(const lattice::Transition& transition, const lattice::GridBox& box) {
+  lattice::GridPoint low;
+  lattice::GridPoint high;
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = box.range[k].first;
     high[k] = box.range[k].last;
   }
-  const GridPoint a = transition(low);
-  const GridPoint b = transition(high);
-  GridBox image;
+  const lattice::GridPoint a = transition(low);
+  const lattice::GridPoint b = transition(high);
+  lattice::GridBox image;
   for (std::size_t k = 0; k < 3; ++k) image.range[k] = {std::min(a[k], b[k]), std::max(a[k], b[k])};
   return image;
 }
 
-bool contains(const GridBox& outer, const GridBox& inner) {
+bool contains(const lattice::GridBox& outer, const lattice::GridBox& inner) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (inner.range[k].first < outer.range[k].first || inner.range[k].last > outer.range[k].last) {
       return false;
@@ -126,13 +126,14 @@ bool contains(const GridBox& outer, const GridBox& inner) {
 
 }  // namespace
 
-RegionFinder::RegionFinder(const PreparedMap& map, const Partition& partition, std::uint64_t cells)
+RegionFinder::RegionFinder(const igm::PreparedMap& map, const Partition& partition,
+                           std::uint64_t cells)
     : map_(map),
       partition_(partition),
       mostBoxes_(map.topology.tetCount() + cells),
       entryOfTet_(map.topology.tetCount(), kNone) {}
 
-GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
+atlas::GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
   const std::span<const Index> tets = partition_.tetsOf(part);
   const auto reach = static_cast<std::int32_t>(layers);
   enterWhole(tets);
@@ -156,7 +157,7 @@ GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
   for (const Entry& entry : entries_) entryOfTet_[entry.tet] = kNone;
   std::sort(entries_.begin(), entries_.end(),
             [](const Entry& a, const Entry& b) { return a.tet < b.tet; });
-  GridRegion region;
+  atlas::GridRegion region;
   for (const Entry& entry : entries_) {
     region.tets.push_back(entry.tet);
     region.begin.push_back(region.boxes.size());
@@ -178,10 +179,10 @@ void RegionFinder::enterWhole(std::span<const Index> tets) {
 void RegionFinder::startAtFaces(Index tet, std::int32_t reach) {
   const std::int64_t unit = map_.exact.unit;
   for (int face = 0; face < 4; ++face) {
-    const HalfFace halfFace = halfFaceOf(tet, face);
-    const HalfFace mate = map_.topology.mate[halfFace];
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, face);
+    const adjacency::HalfFace mate = map_.topology.mate[halfFace];
     if (mate == kNone) continue;
-    const Index entry = entryOfTet_[tetOf(mate)];
+    const Index entry = entryOfTet_[adjacency::tetOf(mate)];
     if (entry != kNone && entries_[entry].whole) continue;
     cutUp(triangleOf(map_, halfFace), kFacePiece * unit,
           [&](const Triangle& piece) { through(halfFace, boxAround(piece, unit, reach)); });
@@ -192,10 +193,10 @@ void RegionFinder::startAtBlocks(const TetBlocks& blocks, std::uint32_t part, st
   const auto isOwn = [&](std::size_t b) { return partition_.ofBlock[blocks.first + b] == part; };
   for (std::size_t b = 0; b < blocks.count(); ++b) {
     if (!isOwn(b)) continue;
-    const GridPoint low = blocks.lowOf(b);
+    const lattice::GridPoint low = blocks.lowOf(b);
     std::int32_t length = blocks.side;
     for (; (b + 1) % blocks.size[2] != 0 && isOwn(b + 1); ++b) length += blocks.side;
-    GridBox box;
+    lattice::GridBox box;
     for (std::size_t k = 0; k < 3; ++k) {
       box.range[k] = {low[k] - reach, low[k] + (k == 2 ? length : blocks.side) + reach};
     }
@@ -204,33 +205,33 @@ void RegionFinder::startAtBlocks(const TetBlocks& blocks, std::uint32_t part, st
 }
 
 /// Enters a box unless another one holds it.
-void RegionFinder::reach(Index tet, const GridBox& box) {
+void RegionFinder::reach(Index tet, const lattice::GridBox& box) {
   Entry& entry = entryOf(tet);
   if (entry.whole) return;
   if (std::any_of(entry.boxes.begin(), entry.boxes.end(),
-                  [&](const GridBox& known) { return contains(known, box); })) {
+                  [&](const lattice::GridBox& known) { return contains(known, box); })) {
     return;
   }
   queue_.push_back({tet, entry.boxes.size()});
   entry.boxes.push_back(box);
 }
 
-void RegionFinder::cross(Index tet, const GridBox& box) {
-  const GridBox from = box;  // its array may grow
+void RegionFinder::cross(Index tet, const lattice::GridBox& box) {
+  const lattice::GridBox from = box;  // its array may grow
   for (int face = 0; face < 4; ++face) {
-    const HalfFace halfFace = halfFaceOf(tet, face);
-    const HalfFace mate = map_.topology.mate[halfFace];
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, face);
+    const adjacency::HalfFace mate = map_.topology.mate[halfFace];
     if (mate == kNone || !mayMeet(triangleOf(map_, halfFace), from, map_.exact.unit)) continue;
     through(halfFace, from);
   }
 }
 
 /// Carries a box that may meet an inner face to the tet behind.
-void RegionFinder::through(HalfFace halfFace, const GridBox& box) {
-  const HalfFace mate = map_.topology.mate[halfFace];
-  entryOf(tetOf(halfFace)).faces |= bitOf(halfFace);
-  entryOf(tetOf(mate)).faces |= bitOf(mate);
-  reach(tetOf(mate), carried(map_.exact.transitions.across(halfFace), box));
+void RegionFinder::through(adjacency::HalfFace halfFace, const lattice::GridBox& box) {
+  const adjacency::HalfFace mate = map_.topology.mate[halfFace];
+  entryOf(adjacency::tetOf(halfFace)).faces |= bitOf(halfFace);
+  entryOf(adjacency::tetOf(mate)).faces |= bitOf(mate);
+  reach(adjacency::tetOf(mate), carried(map_.exact.transitions.across(halfFace), box));
 }
 
 /// All tets, with boxes around them unless they are the part's.
@@ -239,7 +240,7 @@ void RegionFinder::enterAll() {
     const auto tet = static_cast<Index>(t);
     Entry& entry = entryOf(tet);
     if (entry.whole) continue;
-    GridBox box = gridBox(map_.exact.corners[t], map_.exact.unit);
+    lattice::GridBox box = lattice::gridBox(map_.exact.corners[t], map_.exact.unit);
     for (auto& range : box.range) range = {range.first - 1, range.last + 1};
     entry.boxes.assign(1, box);
     entry.faces = kAllFaces;
@@ -254,4 +255,4 @@ RegionFinder::Entry& RegionFinder::entryOf(Index tet) {
   return entries_[entryOfTet_[tet]];
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

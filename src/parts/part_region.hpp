@@ -16,16 +16,16 @@
 
 #include <atlas/grid_region.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// Finds regions of one part after another.
 class RegionFinder {
  public:
   /// @param cells  of the mesh
-  RegionFinder(const PreparedMap& map, const Partition& partition, std::uint64_t cells);
+  RegionFinder(const igm::PreparedMap& map, const Partition& partition, std::uint64_t cells);
 
   /// @param layers  of cells around the part's own
-  [[nodiscard]] GridRegion find(std::uint32_t part, std::uint32_t layers);
+  [[nodiscard]] atlas::GridRegion find(std::uint32_t part, std::uint32_t layers);
 
  private:
   struct Reached {
@@ -36,19 +36,19 @@ class RegionFinder {
     Index tet = kNone;
     bool whole = false;      ///< a tet of the part
     std::uint8_t faces = 0;  ///< as in GridRegion
-    std::vector<GridBox> boxes;
+    std::vector<lattice::GridBox> boxes;
   };
 
   void enterWhole(std::span<const Index> tets);
   void startAtFaces(Index tet, std::int32_t reach);
   void startAtBlocks(const TetBlocks& blocks, std::uint32_t part, std::int32_t reach);
-  void reach(Index tet, const GridBox& box);
-  void cross(Index tet, const GridBox& box);
-  void through(HalfFace halfFace, const GridBox& box);
+  void reach(Index tet, const lattice::GridBox& box);
+  void cross(Index tet, const lattice::GridBox& box);
+  void through(adjacency::HalfFace halfFace, const lattice::GridBox& box);
   void enterAll();
   Entry& entryOf(Index tet);
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   const Partition& partition_;
   /// With more boxes, all tets are the region. Around the singularities of a coarse map, boxes turn
   /// and turn: on a ball of 7 x 27 cells in 4 parts they took 6 s instead of 0.05.
@@ -58,4 +58,4 @@ class RegionFinder {
   std::vector<Reached> queue_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

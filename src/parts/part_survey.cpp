@@ -10,7 +10,7 @@
 #include <hexhex/parts.hpp>
 #include <hexhex/team.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -22,7 +22,7 @@ std::uint64_t borderOf(const MeshPart& part, const PartNeighbour& neighbour) {
   hash.add(neighbour.vertices.size());
   for (const Index v : neighbour.vertices) hash.add(part.globalPoints[v]);
   for (const PartFace& face : neighbour.faces) {
-    Quad quad = faceVertices(part.mesh.cells[face.cell], face.side);
+    Quad quad = adjacency::faceVertices(part.mesh.cells[face.cell], face.side);
     std::sort(quad.begin(), quad.end());
     for (const Index v : quad) hash.add(part.globalPoints[v]);
   }
@@ -35,6 +35,10 @@ std::uint64_t sumBelow(std::uint64_t count) {
 }
 
 }  // namespace
+
+}  // namespace hexhex::parts
+
+namespace hexhex {
 
 void PartSurvey::begin(const PartsInfo& info) {
   info_ = info;
@@ -56,7 +60,7 @@ void PartSurvey::part(MeshPart&& part) {
   }
   std::vector<bool> shared(part.ownPoints, false);
   for (const PartNeighbour& neighbour : part.neighbours) {
-    borders_ ^= borderOf(part, neighbour);
+    borders_ ^= parts::borderOf(part, neighbour);
     for (const Index v : neighbour.vertices) shared[v] = true;
     if (part.part < neighbour.part) summary_.sharedFaces += neighbour.faces.size();
   }
@@ -95,9 +99,10 @@ void PartSurvey::addUp() {
 
 void PartSurvey::end() {
   if (team_ != nullptr) addUp();
-  const bool complete =
-      summary_.cells == info_.cellCount && summary_.vertices == info_.pointCount &&
-      cellSum_ == sumBelow(info_.cellCount) && vertexSum_ == sumBelow(info_.pointCount);
+  const bool complete = summary_.cells == info_.cellCount &&
+                        summary_.vertices == info_.pointCount &&
+                        cellSum_ == parts::sumBelow(info_.cellCount) &&
+                        vertexSum_ == parts::sumBelow(info_.pointCount);
   if (!complete || borders_ != 0) {
     throw Error(ErrorCode::VerificationFailed,
                 std::string("The parts do not make up one mesh: ") +

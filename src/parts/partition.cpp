@@ -10,7 +10,7 @@
 #include <sweep/cell_centers.hpp>
 #include <sweep/tet_positions.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -18,7 +18,7 @@ namespace {
 /// 5 %, of which METIS and Scotch use some.
 constexpr std::uint64_t kElementsPerPart = 32;
 
-Vec3 middleOf(const PreparedMap& map, Index tet) {
+Vec3 middleOf(const igm::PreparedMap& map, Index tet) {
   Vec3 middle{};
   for (const Index vertex : map.topology.tets[tet]) {
     for (std::size_t k = 0; k < 3; ++k) middle[k] += map.input.view.points[vertex][k] / 4;
@@ -37,9 +37,10 @@ std::int32_t sideOf(std::uint64_t cells) {
 /// Covers the cells of a tet.
 /// @param cells  of the tet
 /// @param most   cells in a block
-TetBlocks coverWithBlocks(const PreparedMap& map, Index tet, std::uint64_t cells,
+TetBlocks coverWithBlocks(const igm::PreparedMap& map, Index tet, std::uint64_t cells,
                           std::uint64_t most) {
-  const GridBox box = gridBox(map.exact.corners[tet], map.exact.unit, kCenterGrid);
+  const lattice::GridBox box =
+      lattice::gridBox(map.exact.corners[tet], map.exact.unit, lattice::kCenterGrid);
   TetBlocks blocks;
   blocks.tet = tet;
   for (std::size_t k = 0; k < 3; ++k) blocks.low[k] = box.range[k].first;
@@ -57,14 +58,16 @@ TetBlocks coverWithBlocks(const PreparedMap& map, Index tet, std::uint64_t cells
 }
 
 /// How many cells of the tet each of its blocks has.
-void countCells(const PreparedMap& map, const TetBlocks& blocks, std::span<std::uint64_t> counts) {
-  std::vector<SweptLine> lines;
-  TetRasterizer(map.exact.corners[blocks.tet], map.exact.unit).append(kCenterGrid, lines);
-  CenterOwner owner(map.topology, blocks.tet);
-  for (const SweptLine& line : lines) {
+void countCells(const igm::PreparedMap& map, const TetBlocks& blocks,
+                std::span<std::uint64_t> counts) {
+  std::vector<lattice::SweptLine> lines;
+  lattice::TetRasterizer(map.exact.corners[blocks.tet], map.exact.unit)
+      .append(lattice::kCenterGrid, lines);
+  sweep::CenterOwner owner(map.topology, blocks.tet);
+  for (const lattice::SweptLine& line : lines) {
     auto [first, count] = owner.owned(line);
     while (count > 0) {
-      const GridPoint z = line.point(first);
+      const lattice::GridPoint z = line.point(first);
       const std::uint32_t run = std::min(count, blocks.cellsAhead(z, line.axes));
       counts[blocks.blockOf(z)] += run;
       first += run;
@@ -93,7 +96,7 @@ void makeBlocks(const PartitionInput& input, std::uint64_t most, Partition& part
 /// Counts the cells of all blocks. The processes of a team share the work.
 void countCells(const PartitionInput& input, Partition& partition, Stage& stage) {
   const std::vector<TetBlocks>& blocks = partition.blocks;
-  const auto [first, end] = shareOf(input.team, blocks.size());
+  const auto [first, end] = sweep::shareOf(input.team, blocks.size());
   const auto placeOf = [&](std::size_t i) {
     return i < blocks.size() ? blocks[i].first : partition.inBlock.size();
   };
@@ -111,7 +114,7 @@ void countCells(const PartitionInput& input, Partition& partition, Stage& stage)
 
 std::vector<PartitionElement> listElements(const PartitionInput& input,
                                            const Partition& partition) {
-  const PreparedMap& map = input.map;
+  const igm::PreparedMap& map = input.map;
   const Array<std::uint64_t>& cells = input.counts.cells;
   std::vector<PartitionElement> elements;
   for (std::size_t t = 0; t < map.topology.tetCount(); ++t) {
@@ -121,15 +124,15 @@ std::vector<PartitionElement> listElements(const PartitionInput& input,
       elements.push_back({tet, kNone, 0, cells[t + 1] - cells[t], middleOf(map, tet)});
       continue;
     }
-    const GridBox box = gridBox(map.exact.corners[tet], map.exact.unit);
-    const TetPositions positions(map, tet, chooseSweepAxes(box));
+    const lattice::GridBox box = lattice::gridBox(map.exact.corners[tet], map.exact.unit);
+    const sweep::TetPositions positions(map, tet, lattice::chooseSweepAxes(box));
     for (std::size_t b = 0; b < blocks->count(); ++b) {
       const std::uint64_t inBlock = partition.inBlock[blocks->first + b];
       if (inBlock == 0) continue;
-      GridPoint z = blocks->lowOf(b);
+      lattice::GridPoint z = blocks->lowOf(b);
       for (std::int32_t& coordinate : z) coordinate += blocks->side / 2;
       const Index number = partition.ofTet[t] - Partition::kSplit;
-      elements.push_back({tet, number, b, inBlock, positions.at(kWholeTet, z)});
+      elements.push_back({tet, number, b, inBlock, positions.at(lattice::kWholeTet, z)});
     }
   }
   return elements;
@@ -185,4 +188,4 @@ Partition makePartition(const PartitionInput& input, std::uint32_t parts, Partit
   return partition;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -16,13 +16,13 @@
 #include <lattice/swept_line.hpp>
 #include <sweep/tet_counts.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 /// The blocks of a tet: cubes of `side` cells along each axis of its chart.
 struct TetBlocks {
   Index tet = 0;
   std::int32_t side = 1;
-  GridPoint low{};                      ///< smallest corner of the first one's first cell
+  lattice::GridPoint low{};             ///< smallest corner of the first one's first cell
   std::array<std::uint32_t, 3> size{};  ///< blocks along each axis
   std::size_t first = 0;                ///< of all blocks
 
@@ -30,7 +30,7 @@ struct TetBlocks {
     return std::size_t{size[0]} * size[1] * size[2];
   }
   /// The block of the cell with smallest corner z, counted from the tet's first one.
-  [[nodiscard]] std::size_t blockOf(const GridPoint& z) const noexcept {
+  [[nodiscard]] std::size_t blockOf(const lattice::GridPoint& z) const noexcept {
     std::size_t block = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       block = block * size[k] + static_cast<std::size_t>((z[k] - low[k]) / side);
@@ -38,13 +38,14 @@ struct TetBlocks {
     return block;
   }
   /// How many cells from z on are in the same block, along a sweep's lines.
-  [[nodiscard]] std::uint32_t cellsAhead(const GridPoint& z, SweepAxes axes) const noexcept {
+  [[nodiscard]] std::uint32_t cellsAhead(const lattice::GridPoint& z,
+                                         lattice::SweepAxes axes) const noexcept {
     const std::size_t along = axes()[2];
     return static_cast<std::uint32_t>(side - (z[along] - low[along]) % side);
   }
   /// The smallest corner of the first cell of a block.
-  [[nodiscard]] GridPoint lowOf(std::size_t block) const noexcept {
-    GridPoint z = low;
+  [[nodiscard]] lattice::GridPoint lowOf(std::size_t block) const noexcept {
+    lattice::GridPoint z = low;
     for (const std::size_t k : {2U, 1U, 0U}) {
       z[k] += static_cast<std::int32_t>(block % size[k]) * side;
       block /= size[k];
@@ -68,7 +69,7 @@ class Partition {
   std::vector<TetBlocks> blocks;  ///< of tets that are not dealt out as a whole; ascending by tet
 
   /// The part of a cell, by its owner and smallest corner.
-  [[nodiscard]] std::uint32_t partOf(Index tet, const GridPoint& z) const noexcept {
+  [[nodiscard]] std::uint32_t partOf(Index tet, const lattice::GridPoint& z) const noexcept {
     const std::uint32_t part = ofTet[tet];
     if (part < kSplit) return part;
     const TetBlocks& split = blocks[part - kSplit];
@@ -77,12 +78,12 @@ class Partition {
   /// Calls visit(part, first, count) for some cells of a tet's line, in pieces that are each in one
   /// part.
   template <class Visit>
-  void forEachPiece(Index tet, const SweptLine& line, std::uint32_t first, std::uint32_t count,
-                    const Visit& visit) const {
+  void forEachPiece(Index tet, const lattice::SweptLine& line, std::uint32_t first,
+                    std::uint32_t count, const Visit& visit) const {
     const TetBlocks* const split = blocksOf(tet);
     const std::uint32_t end = first + count;
     while (first < end) {
-      const GridPoint z = line.point(first);
+      const lattice::GridPoint z = line.point(first);
       const std::uint32_t piece =
           split == nullptr ? end - first : std::min(end - first, split->cellsAhead(z, line.axes));
       visit(partOf(tet, z), first, piece);
@@ -115,8 +116,8 @@ class Partition {
 };
 
 struct PartitionInput {
-  const PreparedMap& map;
-  const ElementCounts& counts;
+  const igm::PreparedMap& map;
+  const sweep::ElementCounts& counts;
   ProcessTeam* team;  ///< if not null, its processes, which all call this, share the work
 };
 
@@ -130,4 +131,4 @@ struct PartitionInput {
 [[nodiscard]] std::vector<std::uint32_t> bisect(std::vector<PartitionElement>& elements,
                                                 std::uint32_t parts);
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

@@ -5,7 +5,7 @@
 
 #include <hexhex/team.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 namespace {
 
@@ -22,18 +22,22 @@ void shareArray(ProcessTeam& team, std::span<const T> mine, std::vector<T>& thei
 
 }  // namespace
 
+}  // namespace hexhex::parts
+
+namespace hexhex {
+
 TetMap shareMap(ProcessTeam& team, const TetMapView& map) {
   TetMap shared;
   team.run([&] {
-    shareArray(team, map.points, shared.points);
-    shareArray(team, map.tets, shared.tets);
-    shareArray(team, map.parameters, shared.parameters);
-    shareArray(team, map.edgeValences, shared.edgeValences);
-    shareArray(team, map.rotations, shared.rotations);
-    shareArray(team, map.features.vertices, shared.features.vertices);
-    shareArray(team, map.features.edges, shared.features.edges);
-    shareArray(team, map.features.faces, shared.features.faces);
-    shareArray(team, map.regions, shared.regions);
+    parts::shareArray(team, map.points, shared.points);
+    parts::shareArray(team, map.tets, shared.tets);
+    parts::shareArray(team, map.parameters, shared.parameters);
+    parts::shareArray(team, map.edgeValences, shared.edgeValences);
+    parts::shareArray(team, map.rotations, shared.rotations);
+    parts::shareArray(team, map.features.vertices, shared.features.vertices);
+    parts::shareArray(team, map.features.edges, shared.features.edges);
+    parts::shareArray(team, map.features.faces, shared.features.faces);
+    parts::shareArray(team, map.regions, shared.regions);
   });
   return shared;
 }

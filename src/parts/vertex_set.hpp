@@ -15,7 +15,7 @@
 
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::parts {
 
 class VertexSet {
  public:
@@ -172,4 +172,4 @@ class VertexSet {
   std::uint64_t size_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::parts

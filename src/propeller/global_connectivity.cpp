@@ -3,7 +3,7 @@
 
 #include <propeller/global_connectivity.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 namespace {
 
@@ -13,15 +13,15 @@ constexpr std::size_t kGrain = 64;
 /// it the blade in direction `beside`.
 struct Trace {
   Index tet;
-  GridPoint z;
-  Direction along;
-  Direction beside;
+  lattice::GridPoint z;
+  lattice::Direction along;
+  lattice::Direction beside;
 };
 
 class Tracer {
  public:
-  Tracer(const PreparedMap& map, const Array<NormalSigns>& signs, const HexVertices& vertices,
-         const LocalConnectivity& local, GlobalConnectivity& global)
+  Tracer(const igm::PreparedMap& map, const Array<lattice::NormalSigns>& signs,
+         const HexVertices& vertices, const LocalConnectivity& local, GlobalConnectivity& global)
       : topology_(map.topology),
         exact_(map.exact),
         signs_(signs),
@@ -32,18 +32,19 @@ class Tracer {
 
   /// Traces every propeller whose first blade's casing lies in this tet.
   void run(Index tet) const {
-    vertices_.tables.forEach(tet, [&](const GridPoint& z, const VertexTables::Found& found) {
-      const Index vertex = found.vertex;
-      const Index generator = vertices_.generatorOf[vertex];
-      const Configuration& configuration = local_.configuration(generator);
-      const bool constant = local_.configurationOf[generator] < kConstantConfigurations;
-      for (std::size_t p = 0; p < configuration.propellerCount; ++p) {
-        const Propeller& propeller = local_.propeller(configuration, p);
-        const Slot& slot = local_.slot(propeller, 0);
-        if (!constant && slot.tet != tet) continue;
-        trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction});
-      }
-    });
+    vertices_.tables.forEach(
+        tet, [&](const lattice::GridPoint& z, const sweep::VertexTables::Found& found) {
+          const Index vertex = found.vertex;
+          const Index generator = vertices_.generatorOf[vertex];
+          const Configuration& configuration = local_.configuration(generator);
+          const bool constant = local_.configurationOf[generator] < kConstantConfigurations;
+          for (std::size_t p = 0; p < configuration.propellerCount; ++p) {
+            const Propeller& propeller = local_.propeller(configuration, p);
+            const Slot& slot = local_.slot(propeller, 0);
+            if (!constant && slot.tet != tet) continue;
+            trace(vertex, generator, p, {tet, z, propeller.direction, slot.direction});
+          }
+        });
   }
 
  private:
@@ -64,7 +65,7 @@ class Tracer {
     const Index end = follow(at);
     const Index endGenerator = vertices_.generatorOf[end];
     const SlotName arrived =
-        finder_.find(at.tet, endGenerator, hexhex::opposite(at.along), at.beside);
+        finder_.find(at.tet, endGenerator, hexhex::lattice::opposite(at.along), at.beside);
     const auto offset = static_cast<std::uint16_t>(arrived.slot);
     const std::uint64_t there = placeOf(end, endGenerator, arrived.propeller);
     entry(here).store(
@@ -80,27 +81,28 @@ class Tracer {
   Index follow(Trace& at) const {
     int entered = -1;
     for (;;) {
-      const VertexTables::Found found = vertices_.tables.find(at.tet, step(at.z, at.along));
+      const sweep::VertexTables::Found found =
+          vertices_.tables.find(at.tet, lattice::step(at.z, at.along));
       if (found.vertex != kNone && holdsBlade(at, found.simplex)) return found.vertex;
-      const int exit = exitOfLine(exact_.corners[at.tet], signs_[at.tet], at.z, exact_.unit,
-                                  at.along, at.beside, entered);
-      if (exit == kNoExit || passed(at)) failForMissingVertex(at.tet);
-      const HalfFace halfFace = halfFaceOf(at.tet, exit);
-      const HalfFace mate = topology_.mate[halfFace];
+      const int exit = lattice::exitOfLine(exact_.corners[at.tet], signs_[at.tet], at.z,
+                                           exact_.unit, at.along, at.beside, entered);
+      if (exit == lattice::kNoExit || passed(at)) failForMissingVertex(at.tet);
+      const adjacency::HalfFace halfFace = adjacency::halfFaceOf(at.tet, exit);
+      const adjacency::HalfFace mate = topology_.mate[halfFace];
       if (mate == kNone) failForMissingVertex(at.tet);
-      entered = localOf(mate);
-      const Transition& transition = exact_.transitions.across(halfFace);
-      at = {tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
+      entered = adjacency::localOf(mate);
+      const lattice::Transition& transition = exact_.transitions.across(halfFace);
+      at = {adjacency::tetOf(mate), transition(at.z), transition(at.along), transition(at.beside)};
     }
   }
 
   /// Whether the tet holds the blade's quarter plane at the edge's end, in the interior of a
   /// simplex. The edge may run inside a face of this tet while the blade lies on the other side of
   /// it.
-  [[nodiscard]] bool holdsBlade(const Trace& at, CornerMask simplex) const {
-    const NormalSigns& signs = signs_[at.tet];
+  [[nodiscard]] bool holdsBlade(const Trace& at, lattice::CornerMask simplex) const {
+    const lattice::NormalSigns& signs = signs_[at.tet];
     for (int face = 0; face < 4; ++face) {
-      if (!contains(simplex, face) && signs.dot(face, at.along) == 0 &&
+      if (!lattice::contains(simplex, face) && signs.dot(face, at.along) == 0 &&
           signs.dot(face, at.beside) < 0) {
         return false;
       }
@@ -110,17 +112,17 @@ class Tracer {
 
   /// Whether the whole tet lies beyond the edge's end, which then must have been overlooked.
   [[nodiscard]] bool passed(const Trace& at) const {
-    const auto axis = static_cast<std::size_t>(axisOf(at.along));
-    const std::int64_t end = (at.z[axis] + signOf(at.along)) * exact_.unit;
-    const LatticeTet& corners = exact_.corners[at.tet];
-    return std::all_of(corners.begin(), corners.end(), [&](const LatticePoint& corner) {
-      return signOf(at.along) > 0 ? corner[axis] > end : corner[axis] < end;
+    const auto axis = static_cast<std::size_t>(lattice::axisOf(at.along));
+    const std::int64_t end = (at.z[axis] + lattice::signOf(at.along)) * exact_.unit;
+    const lattice::LatticeTet& corners = exact_.corners[at.tet];
+    return std::all_of(corners.begin(), corners.end(), [&](const lattice::LatticePoint& corner) {
+      return lattice::signOf(at.along) > 0 ? corner[axis] > end : corner[axis] < end;
     });
   }
 
-  const TetTopology& topology_;
-  const ExactMap& exact_;
-  const Array<NormalSigns>& signs_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
+  const Array<lattice::NormalSigns>& signs_;
   const HexVertices& vertices_;
   const LocalConnectivity& local_;
   SlotFinder finder_;
@@ -129,7 +131,8 @@ class Tracer {
 
 }  // namespace
 
-GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSigns>& signs,
+GlobalConnectivity traceOpposites(const igm::PreparedMap& map,
+                                  const Array<lattice::NormalSigns>& signs,
                                   const HexVertices& vertices, const LocalConnectivity& local,
                                   Stage& stage) {
   GlobalConnectivity global;
@@ -152,4 +155,4 @@ GlobalConnectivity traceOpposites(const PreparedMap& map, const Array<NormalSign
   return global;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

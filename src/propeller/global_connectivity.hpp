@@ -7,7 +7,7 @@
 
 #include <propeller/local_connectivity.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 /// Where a global propeller (hex vertex, local propeller) leads: its opposite, and the connection
 /// offset, by which blade i corresponds to blade (offset - i) of the opposite, modulo their number.
@@ -34,9 +34,9 @@ struct GlobalConnectivity {
 };
 
 /// Traces all propellers. (Algorithm 8)
-[[nodiscard]] GlobalConnectivity traceOpposites(const PreparedMap& map,
-                                                const Array<NormalSigns>& signs,
+[[nodiscard]] GlobalConnectivity traceOpposites(const igm::PreparedMap& map,
+                                                const Array<lattice::NormalSigns>& signs,
                                                 const HexVertices& vertices,
                                                 const LocalConnectivity& local, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

@@ -2,7 +2,7 @@
 #include <sweep/cell_centers.hpp>
 #include <sweep/cell_tracer.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 namespace {
 
@@ -79,36 +79,39 @@ std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& l
   return corners / 8;
 }
 
-Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
+Array<Hex> collectCells(const igm::PreparedMap& map, const Array<lattice::NormalSigns>& signs,
                         const HexVertices& vertices, const LocalConnectivity& local,
                         const GlobalConnectivity& global, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
-  const CellCenters centers = findCells(map, stage);
+  const sweep::CellCenters centers = sweep::findCells(map, stage);
   Array<Hex> cells(centers.count());
   const CellWalker walker(vertices, local, global);
   const SlotFinder finder(map, signs, vertices, local);
-  const auto enter = [&](CellTracer& tracer, Index tet, const GridPoint& z, CornerMask generator) {
+  const auto enter = [&](sweep::CellTracer& tracer, Index tet, const lattice::GridPoint& z,
+                         lattice::CornerMask generator) {
     tracer.enter(tet, z, generator);
-    const CornerPlace place = tracer.trace({0, 0, 0});
+    const sweep::CornerPlace place = tracer.trace({0, 0, 0});
     const Index vertex = vertices.tables.find(place.tet, place.z).vertex;
     if (vertex == kNone) failForMissingVertex(place.tet);
-    return walker.walk(
-        vertex, finder.find(place.tet, vertices.generatorOf[vertex],
-                            place.rotation(direction(0, 1)), place.rotation(direction(1, 1))));
+    return walker.walk(vertex, finder.find(place.tet, vertices.generatorOf[vertex],
+                                           place.rotation(lattice::direction(0, 1)),
+                                           place.rotation(lattice::direction(1, 1))));
   };
-  parallelBlocks(stage, tets, kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t) {
-    CellTracer tracer(map);
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto tet = static_cast<Index>(t);
-      std::uint64_t next = centers.begin[t];
-      if (next == centers.begin[t + 1]) continue;
-      forEachOwnedCenter(map.topology, tet, centers.lines->of(tet),
-                         [&](const SweptLine& line, std::uint32_t i) {
-                           cells[next++] = enter(tracer, tet, line.point(i), line.simplex(i));
-                         });
-    }
-  });
+  parallelBlocks(
+      stage, tets, sweep::kSweepBlock, [&](std::size_t begin, std::size_t end, std::size_t) {
+        sweep::CellTracer tracer(map);
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          std::uint64_t next = centers.begin[t];
+          if (next == centers.begin[t + 1]) continue;
+          sweep::forEachOwnedCenter(map.topology, tet, centers.lines->of(tet),
+                                    [&](const lattice::SweptLine& line, std::uint32_t i) {
+                                      cells[next++] =
+                                          enter(tracer, tet, line.point(i), line.simplex(i));
+                                    });
+        }
+      });
   return cells;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

@@ -8,15 +8,16 @@
 
 #include <propeller/global_connectivity.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 /// Number of cells that the hex corners of all vertices make up.
 [[nodiscard]] std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& local);
 
 /// All cells in canonical order (cell_centers.hpp). Each is entered from its centre at its first
 /// corner; from there the walk goes from propeller to opposite.
-[[nodiscard]] Array<Hex> collectCells(const PreparedMap& map, const Array<NormalSigns>& signs,
+[[nodiscard]] Array<Hex> collectCells(const igm::PreparedMap& map,
+                                      const Array<lattice::NormalSigns>& signs,
                                       const HexVertices& vertices, const LocalConnectivity& local,
                                       const GlobalConnectivity& global, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

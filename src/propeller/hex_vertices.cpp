@@ -2,7 +2,7 @@
 
 #include <propeller/hex_vertices.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 namespace {
 
@@ -11,7 +11,7 @@ constexpr std::size_t kGrain = 512;
 /// Lists generators, and in which tets they are seen.
 class GeneratorLister {
  public:
-  GeneratorLister(const PreparedMap& map, HexVertices& result)
+  GeneratorLister(const igm::PreparedMap& map, HexVertices& result)
       : map_(map), numbers_(result.tables.numbers()), result_(result) {}
 
   void run(Stage& stage) {
@@ -31,11 +31,11 @@ class GeneratorLister {
  private:
   /// Hex vertices in the interior of a tet come behind those of its boundary.
   [[nodiscard]] std::uint64_t firstInside(Index tet) const {
-    return numbers_.firstOf(tet, kWholeTet);
+    return numbers_.firstOf(tet, lattice::kWholeTet);
   }
   /// The generators of a tet's boundary, owned or not, as a set of simplices.
   [[nodiscard]] unsigned boundaryGenerators(Index tet) const {
-    return result_.tables.occupiedSimplices(tet) & ~(1U << kWholeTet);
+    return result_.tables.occupiedSimplices(tet) & ~(1U << lattice::kWholeTet);
   }
 
   void count(Index tet) {
@@ -49,7 +49,7 @@ class GeneratorLister {
   void list(Index tet) {
     Index place = begin_[tet];
     auto vertex = static_cast<Index>(numbers_.begin[tet]);
-    const auto add = [&](CornerMask simplex, Index vertices) {
+    const auto add = [&](lattice::CornerMask simplex, Index vertices) {
       result_.generators[place] = {tet, vertex, vertices, simplex};
       std::fill_n(result_.generatorOf.begin() + vertex, vertices, place++);
       vertex += vertices;
@@ -58,15 +58,15 @@ class GeneratorLister {
       add(numbers_.generators[g].simplex, numbers_.generators[g].count);
     }
     if (place < begin_[tet + 1]) {
-      add(kWholeTet, static_cast<Index>(numbers_.begin[tet + 1]) - vertex);
+      add(lattice::kWholeTet, static_cast<Index>(numbers_.begin[tet + 1]) - vertex);
     }
   }
 
   void listIncidences(Index tet) {
     Index place = result_.incidenceBegin[tet];
     for (unsigned rest = boundaryGenerators(tet); rest != 0; rest &= rest - 1) {
-      const auto simplex = static_cast<CornerMask>(std::countr_zero(rest));
-      const Index owner = ownerTet(map_.topology, tet, simplex);
+      const auto simplex = static_cast<lattice::CornerMask>(std::countr_zero(rest));
+      const Index owner = adjacency::ownerTet(map_.topology, tet, simplex);
       GeneratorIncidence& entry = result_.incidences[place++];
       entry.generator = find(owner, map_.topology.translated(simplex, tet, owner));
       entry.simplex = simplex;
@@ -74,23 +74,23 @@ class GeneratorLister {
     }
   }
 
-  [[nodiscard]] Index find(Index owner, CornerMask simplex) const {
+  [[nodiscard]] Index find(Index owner, lattice::CornerMask simplex) const {
     for (Index g = begin_[owner]; g < begin_[owner + 1]; ++g) {
       if (result_.generators[g].simplex == simplex) return g;
     }
     failForMissingVertex(owner);
   }
 
-  const PreparedMap& map_;
-  const VertexNumbers& numbers_;
+  const igm::PreparedMap& map_;
+  const sweep::VertexNumbers& numbers_;
   HexVertices& result_;
   Array<Index> begin_;  ///< per tet (+1): the generators that it owns
 };
 
 }  // namespace
 
-HexVertices::HexVertices(const PreparedMap& map, double epsilon, Stage& stage)
-    : tables(map, sweepVertices(map, stage, nullptr, epsilon), stage) {
+HexVertices::HexVertices(const igm::PreparedMap& map, double epsilon, Stage& stage)
+    : tables(map, sweep::sweepVertices(map, stage, nullptr, epsilon), stage) {
   GeneratorLister(map, *this).run(stage);
 }
 
@@ -101,4 +101,4 @@ void failForMissingVertex(std::optional<Index> tet) {
               tet ? Place{PlaceKind::Tet, *tet} : Place{});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

@@ -15,7 +15,7 @@
 #include <igm/prepare.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 /// A simplex of the tet mesh with hex vertices in its interior, given by corners of its owner, the
 /// smallest tet around it. Its hex vertices are numbered consecutively.
@@ -23,23 +23,23 @@ struct Generator {
   Index tet;
   Index firstVertex;
   Index vertexCount;
-  CornerMask simplex;
+  lattice::CornerMask simplex;
 };
 
 /// A generator of lower dimension than a cell, as seen from one of the tets around it.
 struct GeneratorIncidence {
   Index generator;
-  CornerMask simplex;
+  lattice::CornerMask simplex;
   /// For each direction in the tet's chart the local propeller that leads there inside this closed
   /// tet, or kNoPropeller. Filled by the local connectivity.
-  std::array<std::uint16_t, kDirections> propeller;
+  std::array<std::uint16_t, lattice::kDirections> propeller;
 };
 inline constexpr std::uint16_t kNoPropeller = 0xffff;
 /// Hex edges at one point. There are fewer than twice as many hex corners, which 16 bits number.
 inline constexpr std::size_t kMaxPropellers = 0x8000;
 
 struct HexVertices {
-  VertexTables tables;          ///< hex vertices by tet and grid point
+  sweep::VertexTables tables;   ///< hex vertices by tet and grid point
   Array<Index> generatorOf;     ///< per hex vertex
   Array<Generator> generators;  ///< by owner, then dimension, then corners
   Array<Index> incidenceBegin;  ///< per tet (+1): its range in `incidences`
@@ -49,7 +49,7 @@ struct HexVertices {
   /// @param map      scaled
   /// @param epsilon  as in ExtractOptions
   /// @throws Error TooLarge if the vertices cannot be numbered in 32 bits
-  HexVertices(const PreparedMap& map, double epsilon, Stage& stage);
+  HexVertices(const igm::PreparedMap& map, double epsilon, Stage& stage);
 
   /// A generator of a tet's boundary, by its number.
   [[nodiscard]] const GeneratorIncidence& incidenceOf(Index tet, Index generator) const noexcept {
@@ -63,4 +63,4 @@ struct HexVertices {
 /// @param tet  unknown if only the number of cells tells
 [[noreturn]] void failForMissingVertex(std::optional<Index> tet);
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

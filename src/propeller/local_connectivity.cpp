@@ -4,7 +4,7 @@
 #include <propeller/local_connectivity.hpp>
 #include <propeller/star_connectivity.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 bool linkCorners(const std::vector<Propeller>& propellers, std::vector<Slot>& slots,
                  std::vector<HexCorner>& corners) {
@@ -73,11 +73,12 @@ void append(Configurations& to, const Configurations& block) {
 }
 
 /// Adds a propeller and its blades to a structure, by their directions.
-void addPropeller(StarConnectivity::Result& structure, Direction d,
-                  std::span<const Direction> blades, bool closed) {
+void addPropeller(StarConnectivity::Result& structure, lattice::Direction d,
+                  std::span<const lattice::Direction> blades, bool closed) {
   structure.propellers.push_back({static_cast<Index>(structure.slots.size()),
                                   static_cast<std::uint16_t>(blades.size()), closed, d});
-  for (const Direction blade : blades) structure.slots.push_back({kNone, blade, 0, 0, kNoCorner});
+  for (const lattice::Direction blade : blades)
+    structure.slots.push_back({kNone, blade, 0, 0, kNoCorner});
 }
 
 /// Finds the propellers that are the blades, and the hex corners.
@@ -95,26 +96,29 @@ void linkBlades(StarConnectivity::Result& structure) {
 }
 
 /// The four directions across d, counter-clockwise.
-std::array<Direction, 4> around(Direction d) {
-  const auto first = static_cast<Direction>((d + 2) % kDirections);
-  const Direction second = cross(d, first);
-  return {first, second, opposite(first), opposite(second)};
+std::array<lattice::Direction, 4> around(lattice::Direction d) {
+  const auto first = static_cast<lattice::Direction>((d + 2) % lattice::kDirections);
+  const lattice::Direction second = lattice::cross(d, first);
+  return {first, second, lattice::opposite(first), lattice::opposite(second)};
 }
 
 void addConstantConfigurations(Configurations& configurations) {
   StarConnectivity::Result cell;
-  for (Direction d = 0; d < kDirections; ++d) addPropeller(cell, d, around(d), true);
+  for (lattice::Direction d = 0; d < lattice::kDirections; ++d)
+    addPropeller(cell, d, around(d), true);
   linkBlades(cell);
   append(configurations, cell);
-  for (Direction inward = 0; inward < kDirections; ++inward) {
+  for (lattice::Direction inward = 0; inward < lattice::kDirections; ++inward) {
     StarConnectivity::Result boundary;
-    for (Direction d = 0; d < kDirections; ++d) {
-      if (d == opposite(inward)) continue;
+    for (lattice::Direction d = 0; d < lattice::kDirections; ++d) {
+      if (d == lattice::opposite(inward)) continue;
       if (d == inward) {
         addPropeller(boundary, d, around(d), true);
       } else {
         // A half disk: along the boundary, inward, along the boundary.
-        addPropeller(boundary, d, std::array{cross(inward, d), inward, cross(d, inward)}, false);
+        addPropeller(boundary, d,
+                     std::array{lattice::cross(inward, d), inward, lattice::cross(d, inward)},
+                     false);
       }
     }
     linkBlades(boundary);
@@ -123,13 +127,13 @@ void addConstantConfigurations(Configurations& configurations) {
 }
 
 /// The constant configuration of a generator, or kNone.
-Index constantConfiguration(const PreparedMap& map, const Array<NormalSigns>& signs,
+Index constantConfiguration(const igm::PreparedMap& map, const Array<lattice::NormalSigns>& signs,
                             const Generator& generator) {
-  if (generator.simplex == kWholeTet) return 0;
-  if (dimension(generator.simplex) != 2) return kNone;
-  const int face = oppositeCorner(generator.simplex);
-  if (!map.topology.isBoundary(halfFaceOf(generator.tet, face))) return kNone;
-  for (Direction d = 0; d < kDirections; ++d) {
+  if (generator.simplex == lattice::kWholeTet) return 0;
+  if (lattice::dimension(generator.simplex) != 2) return kNone;
+  const int face = lattice::oppositeCorner(generator.simplex);
+  if (!map.topology.isBoundary(adjacency::halfFaceOf(generator.tet, face))) return kNone;
+  for (lattice::Direction d = 0; d < lattice::kDirections; ++d) {
     if (signs[generator.tet].dot(face, d) > 0) return 1 + Index{d};
   }
   return kNone;
@@ -147,7 +151,8 @@ void publish(const std::vector<StarConnectivity::StarTet>& star, HexVertices& ve
 
 }  // namespace
 
-LocalConnectivity extractLocalConnectivity(const PreparedMap& map, const Array<NormalSigns>& signs,
+LocalConnectivity extractLocalConnectivity(const igm::PreparedMap& map,
+                                           const Array<lattice::NormalSigns>& signs,
                                            HexVertices& vertices, Stage& stage) {
   LocalConnectivity local;
   addConstantConfigurations(local);
@@ -173,7 +178,8 @@ LocalConnectivity extractLocalConnectivity(const PreparedMap& map, const Array<N
   return local;
 }
 
-SlotName SlotFinder::find(Index tet, Index generator, Direction along, Direction beside) const {
+SlotName SlotFinder::find(Index tet, Index generator, lattice::Direction along,
+                          lattice::Direction beside) const {
   const std::size_t p = findPropeller(tet, generator, along);
   const Slot key = casingKey(tet, generator, along, beside);
   const Propeller& propeller = local_.propeller(local_.configuration(generator), p);
@@ -184,12 +190,13 @@ SlotName SlotFinder::find(Index tet, Index generator, Direction along, Direction
   failForMissingVertex(tet);
 }
 
-std::size_t SlotFinder::findPropeller(Index tet, Index generator, Direction along) const {
+std::size_t SlotFinder::findPropeller(Index tet, Index generator, lattice::Direction along) const {
   const Index configuration = local_.configurationOf[generator];
   if (configuration == 0) return along;
   if (configuration < kConstantConfigurations) {
     // Propellers of a boundary face: all directions but the one that leads outside.
-    const Direction outward = opposite(static_cast<Direction>(configuration - 1));
+    const lattice::Direction outward =
+        lattice::opposite(static_cast<lattice::Direction>(configuration - 1));
     return along > outward ? along - std::size_t{1} : along;
   }
   const std::uint16_t propeller = vertices_.incidenceOf(tet, generator).propeller[along];
@@ -198,21 +205,22 @@ std::size_t SlotFinder::findPropeller(Index tet, Index generator, Direction alon
 }
 
 /// Names the blade's casing as the slots do.
-Slot SlotFinder::casingKey(Index tet, Index generator, Direction along, Direction beside) const {
+Slot SlotFinder::casingKey(Index tet, Index generator, lattice::Direction along,
+                           lattice::Direction beside) const {
   if (local_.configurationOf[generator] < kConstantConfigurations) {
     return {kNone, beside, 0, 0, 0};
   }
-  const CornerMask simplex =
-      casing(signs_[tet], vertices_.incidenceOf(tet, generator).simplex, along, beside);
-  if (dimension(simplex) == 2) {
-    const int face = oppositeCorner(simplex);
-    const HalfFace halfFace = halfFaceOf(tet, face);
-    const HalfFace mate = topology_.mate[halfFace];
-    if (mate != kNone && tetOf(mate) < tet) {
-      return {tetOf(mate), exact_.transitions.across(halfFace)(beside), 0, 0, 0};
+  const lattice::CornerMask simplex =
+      lattice::casing(signs_[tet], vertices_.incidenceOf(tet, generator).simplex, along, beside);
+  if (lattice::dimension(simplex) == 2) {
+    const int face = lattice::oppositeCorner(simplex);
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, face);
+    const adjacency::HalfFace mate = topology_.mate[halfFace];
+    if (mate != kNone && adjacency::tetOf(mate) < tet) {
+      return {adjacency::tetOf(mate), exact_.transitions.across(halfFace)(beside), 0, 0, 0};
     }
   }
   return {tet, beside, 0, 0, 0};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

@@ -14,24 +14,24 @@
 #include <igm/prepare.hpp>
 #include <propeller/hex_vertices.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 inline constexpr std::uint16_t kNoCorner = 0xffff;
 
 /// One blade of a propeller, and the hex corner behind it.
 struct Slot {
-  Index tet;             ///< owner of the casing: there the blade's direction is
-  Direction direction;   ///< ... this one
-  std::uint16_t blade;   ///< the propeller that is the blade
-  std::uint16_t back;    ///< which blade of that one this propeller is
-  std::uint16_t corner;  ///< hex corner between this blade and the next; kNoCorner if none
+  Index tet;                     ///< owner of the casing: there the blade's direction is
+  lattice::Direction direction;  ///< ... this one
+  std::uint16_t blade;           ///< the propeller that is the blade
+  std::uint16_t back;            ///< which blade of that one this propeller is
+  std::uint16_t corner;          ///< hex corner between this blade and the next; kNoCorner if none
 };
 
 struct Propeller {
   Index slotBegin;
-  std::uint16_t slotCount;  ///< number of blades, counter-clockwise
-  bool closed;              ///< inside the mesh: the last blade is followed by the first
-  Direction direction;      ///< in the tet of slot 0, into which that slot's casing leads
+  std::uint16_t slotCount;       ///< number of blades, counter-clockwise
+  bool closed;                   ///< inside the mesh: the last blade is followed by the first
+  lattice::Direction direction;  ///< in the tet of slot 0, into which that slot's casing leads
 };
 
 /// One hex corner, named by the first of its three slots.
@@ -52,7 +52,7 @@ struct Configuration {
 /// Configuration 0 is that of all cell generators, 1 + d that of boundary faces with inward normal
 /// in direction d (constant local connectivity property, Section 5.3.1); the rest belong to one
 /// generator each.
-inline constexpr Index kConstantConfigurations = 1 + kDirections;
+inline constexpr Index kConstantConfigurations = 1 + lattice::kDirections;
 
 struct Configurations {
   std::vector<Configuration> configurations;
@@ -99,15 +99,15 @@ struct SlotName {
 /// Extracts propellers, blades and hex corners of all generators, and notes in
 /// `vertices.incidences` which propeller each direction of each tet leads to. (Algorithm 6)
 /// @param signs  normal signs of every tet
-[[nodiscard]] LocalConnectivity extractLocalConnectivity(const PreparedMap& map,
-                                                         const Array<NormalSigns>& signs,
+[[nodiscard]] LocalConnectivity extractLocalConnectivity(const igm::PreparedMap& map,
+                                                         const Array<lattice::NormalSigns>& signs,
                                                          HexVertices& vertices, Stage& stage);
 
 /// Names propellers and blades by directions in the chart of a tet.
 class SlotFinder {
  public:
-  SlotFinder(const PreparedMap& map, const Array<NormalSigns>& signs, const HexVertices& vertices,
-             const LocalConnectivity& local)
+  SlotFinder(const igm::PreparedMap& map, const Array<lattice::NormalSigns>& signs,
+             const HexVertices& vertices, const LocalConnectivity& local)
       : topology_(map.topology),
         exact_(map.exact),
         signs_(signs),
@@ -116,17 +116,20 @@ class SlotFinder {
 
   /// The propeller that leaves a vertex in direction `along`, and its blade in direction `beside`,
   /// where the tet holds the beginning of the quarter plane that they span.
-  [[nodiscard]] SlotName find(Index tet, Index generator, Direction along, Direction beside) const;
+  [[nodiscard]] SlotName find(Index tet, Index generator, lattice::Direction along,
+                              lattice::Direction beside) const;
 
  private:
-  [[nodiscard]] std::size_t findPropeller(Index tet, Index generator, Direction along) const;
-  [[nodiscard]] Slot casingKey(Index tet, Index generator, Direction along, Direction beside) const;
+  [[nodiscard]] std::size_t findPropeller(Index tet, Index generator,
+                                          lattice::Direction along) const;
+  [[nodiscard]] Slot casingKey(Index tet, Index generator, lattice::Direction along,
+                               lattice::Direction beside) const;
 
-  const TetTopology& topology_;
-  const ExactMap& exact_;
-  const Array<NormalSigns>& signs_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
+  const Array<lattice::NormalSigns>& signs_;
   const HexVertices& vertices_;
   const LocalConnectivity& local_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

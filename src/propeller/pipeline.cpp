@@ -6,16 +6,16 @@
 #include <propeller/local_connectivity.hpp>
 #include <propeller/pipeline.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-Array<NormalSigns> computeNormalSigns(const ExactMap& map, Stage& stage) {
-  Array<NormalSigns> signs(map.corners.size());
+Array<lattice::NormalSigns> computeNormalSigns(const igm::ExactMap& map, Stage& stage) {
+  Array<lattice::NormalSigns> signs(map.corners.size());
   parallelFor(stage, map.corners.size(), kGrain,
-              [&](std::size_t t) { signs[t] = NormalSigns(map.corners[t]); });
+              [&](std::size_t t) { signs[t] = lattice::NormalSigns(map.corners[t]); });
   return signs;
 }
 
@@ -32,7 +32,7 @@ void count(const HexVertices& vertices, const LocalConnectivity& local,
 
 }  // namespace
 
-HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells, double epsilon,
+HexMesh runPipeline(const igm::PreparedMap& map, std::uint64_t expectedCells, double epsilon,
                     Context& context, ExtractStatistics& statistics) {
   statistics.epsilon = epsilon;
   HexMesh mesh;
@@ -45,7 +45,7 @@ HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells, double 
     swept.tables.describe({mesh.points, mesh.generatorTet, mesh.generatorCorners}, stage);
     return swept;
   }();
-  Array<NormalSigns> signs;
+  Array<lattice::NormalSigns> signs;
   LocalConnectivity local;
   {
     Stage stage(context, "local connectivity");
@@ -68,4 +68,4 @@ HexMesh runPipeline(const PreparedMap& map, std::uint64_t expectedCells, double 
   return mesh;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

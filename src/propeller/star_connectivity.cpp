@@ -3,7 +3,7 @@
 
 #include <propeller/star_connectivity.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 void StarConnectivity::fail(const char* what) const {
   throw Error(ErrorCode::Internal,
@@ -13,7 +13,7 @@ void StarConnectivity::fail(const char* what) const {
               {PlaceKind::Tet, star_.front().tet});
 }
 
-const StarConnectivity::Result& StarConnectivity::run(Index tet, CornerMask simplex) {
+const StarConnectivity::Result& StarConnectivity::run(Index tet, lattice::CornerMask simplex) {
   result_.propellers.clear();
   result_.slots.clear();
   result_.corners.clear();
@@ -28,21 +28,23 @@ const StarConnectivity::Result& StarConnectivity::run(Index tet, CornerMask simp
   return result_;
 }
 
-void StarConnectivity::collectStar(Index tet, CornerMask simplex) {
+void StarConnectivity::collectStar(Index tet, lattice::CornerMask simplex) {
   star_.clear();
-  const auto add = [&](Index t, CornerMask corners) {
+  const auto add = [&](Index t, lattice::CornerMask corners) {
     StarTet& entry = star_.emplace_back(StarTet{t, corners, {}});
     entry.propeller.fill(kNoPropeller);
   };
-  if (dimension(simplex) == 0) {
-    const Index vertex = topology_.tets[tet][firstCorner(simplex)];
-    for (const CornerIndex corner : topology_.star(vertex)) {
-      add(corner / 4, cornerBit(localOf(corner)));
+  if (lattice::dimension(simplex) == 0) {
+    const Index vertex = topology_.tets[tet][lattice::firstCorner(simplex)];
+    for (const adjacency::CornerIndex corner : topology_.star(vertex)) {
+      add(corner / 4, lattice::cornerBit(adjacency::localOf(corner)));
     }
     return;  // ascending already
   }
   forEachTetAround(topology_, exact_.transitions, tet, simplex,
-                   [&](Index t, CornerMask corners, Rotation /*rotation*/) { add(t, corners); });
+                   [&](Index t, lattice::CornerMask corners, lattice::Rotation /*rotation*/) {
+                     add(t, corners);
+                   });
   std::sort(star_.begin(), star_.end(),
             [](const StarTet& a, const StarTet& b) { return a.tet < b.tet; });
 }
@@ -57,9 +59,10 @@ StarConnectivity::StarTet& StarConnectivity::inStar(Index tet) {
 void StarConnectivity::findPropellers() {
   for (const StarTet& entry : star_) {
     const Index tet = entry.tet;
-    for (Direction d = 0; d < kDirections; ++d) {
-      const CornerMask simplex = holder(signs_[tet], entry.simplex, d);
-      if (simplex == kNoSimplex || !ownsSimplex(topology_, tet, simplex)) continue;
+    for (lattice::Direction d = 0; d < lattice::kDirections; ++d) {
+      const lattice::CornerMask simplex = lattice::holder(signs_[tet], entry.simplex, d);
+      if (simplex == lattice::kNoSimplex || !adjacency::ownsSimplex(topology_, tet, simplex))
+        continue;
       if (holders_.size() == kMaxPropellers) {
         throw Error(ErrorCode::TooLarge,
                     "More than " + std::to_string(kMaxPropellers) +
@@ -74,17 +77,17 @@ void StarConnectivity::findPropellers() {
 }
 
 /// Notes a propeller in all tets around its holder, in each with its direction there.
-void StarConnectivity::announce(std::uint16_t propeller, Index tet, CornerMask holderSimplex,
-                                Direction d) {
+void StarConnectivity::announce(std::uint16_t propeller, Index tet,
+                                lattice::CornerMask holderSimplex, lattice::Direction d) {
   forEachTetAround(topology_, exact_.transitions, tet, holderSimplex,
-                   [&](Index t, CornerMask /*corners*/, Rotation rotation) {
+                   [&](Index t, lattice::CornerMask /*corners*/, lattice::Rotation rotation) {
                      inStar(t).propeller[rotation(d)] = propeller;
                    });
 }
 
-Direction StarConnectivity::directionIn(Index tet, std::size_t propeller) {
+lattice::Direction StarConnectivity::directionIn(Index tet, std::size_t propeller) {
   const StarTet& entry = inStar(tet);
-  for (Direction d = 0; d < kDirections; ++d) {
+  for (lattice::Direction d = 0; d < lattice::kDirections; ++d) {
     if (entry.propeller[d] == propeller) return d;
   }
   fail("a propeller is unknown in a tet around its holder");
@@ -94,12 +97,13 @@ StarConnectivity::Quadrant StarConnectivity::anyCasing(std::size_t propeller) {
   const Holder& at = holders_[propeller];
   Quadrant found{kNone, 0, 0};
   forEachTetAround(topology_, exact_.transitions, at.tet, at.simplex,
-                   [&](Index tet, CornerMask /*corners*/, Rotation rotation) {
+                   [&](Index tet, lattice::CornerMask /*corners*/, lattice::Rotation rotation) {
                      if (found.tet != kNone) return;
-                     const Direction first = rotation(at.direction);
-                     for (Direction second = 0; second < kDirections; ++second) {
-                       if (axisOf(second) == axisOf(first)) continue;
-                       if (casing(signs_[tet], inStar(tet).simplex, first, second) != kNoSimplex) {
+                     const lattice::Direction first = rotation(at.direction);
+                     for (lattice::Direction second = 0; second < lattice::kDirections; ++second) {
+                       if (lattice::axisOf(second) == lattice::axisOf(first)) continue;
+                       if (lattice::casing(signs_[tet], inStar(tet).simplex, first, second) !=
+                           lattice::kNoSimplex) {
                          found = {tet, first, second};
                          return;
                        }
@@ -110,45 +114,48 @@ StarConnectivity::Quadrant StarConnectivity::anyCasing(std::size_t propeller) {
 }
 
 bool StarConnectivity::turn(Quadrant& quadrant, bool counterClockwise) {
-  Direction target = counterClockwise ? cross(quadrant.first, quadrant.second)
-                                      : cross(quadrant.second, quadrant.first);
-  Direction from = quadrant.second;
-  Direction axis = quadrant.first;
+  lattice::Direction target = counterClockwise ? lattice::cross(quadrant.first, quadrant.second)
+                                               : lattice::cross(quadrant.second, quadrant.first);
+  lattice::Direction from = quadrant.second;
+  lattice::Direction axis = quadrant.first;
   Index tet = quadrant.tet;
   // A turn by a right angle meets every tet around the holder at most once; the doubled bound also
   // covers tets that it only touches.
   for (std::size_t steps = 0; steps <= 2 * star_.size(); ++steps) {
-    const CornerMask holderSimplex = holder(signs_[tet], inStar(tet).simplex, axis);
-    if (holderSimplex == kNoSimplex) fail("a turn around a propeller left its holder");
-    const int exit = exitOfTurn(exact_.corners[tet], signs_[tet], holderSimplex, from, target);
-    if (exit == kStaysInside) {
+    const lattice::CornerMask holderSimplex =
+        lattice::holder(signs_[tet], inStar(tet).simplex, axis);
+    if (holderSimplex == lattice::kNoSimplex) fail("a turn around a propeller left its holder");
+    const int exit =
+        lattice::exitOfTurn(exact_.corners[tet], signs_[tet], holderSimplex, from, target);
+    if (exit == lattice::kStaysInside) {
       quadrant = {tet, axis, target};
       return true;
     }
-    if (exit == kNoExit) fail("a turn around a propeller leaves a tet through no face");
-    const HalfFace halfFace = halfFaceOf(tet, exit);
-    const HalfFace mate = topology_.mate[halfFace];
+    if (exit == lattice::kNoExit) fail("a turn around a propeller leaves a tet through no face");
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, exit);
+    const adjacency::HalfFace mate = topology_.mate[halfFace];
     if (mate == kNone) return false;
-    const Rotation rotation = exact_.transitions.across(halfFace).rotation;
+    const lattice::Rotation rotation = exact_.transitions.across(halfFace).rotation;
     from = rotation(from);
     target = rotation(target);
     axis = rotation(axis);
-    tet = tetOf(mate);
+    tet = adjacency::tetOf(mate);
   }
   fail("a turn around a propeller does not end");
 }
 
 StarConnectivity::Quadrant StarConnectivity::canonical(const Quadrant& quadrant) {
-  const CornerMask simplex =
-      casing(signs_[quadrant.tet], inStar(quadrant.tet).simplex, quadrant.first, quadrant.second);
-  if (simplex == kNoSimplex) fail("a quarter plane does not lead into the tet it was traced to");
-  if (simplex == kWholeTet) return quadrant;
-  const int face = oppositeCorner(simplex);
-  const HalfFace halfFace = halfFaceOf(quadrant.tet, face);
-  const HalfFace mate = topology_.mate[halfFace];
-  if (mate == kNone || tetOf(mate) > quadrant.tet) return quadrant;
-  const Rotation rotation = exact_.transitions.across(halfFace).rotation;
-  return {tetOf(mate), rotation(quadrant.first), rotation(quadrant.second)};
+  const lattice::CornerMask simplex = lattice::casing(
+      signs_[quadrant.tet], inStar(quadrant.tet).simplex, quadrant.first, quadrant.second);
+  if (simplex == lattice::kNoSimplex)
+    fail("a quarter plane does not lead into the tet it was traced to");
+  if (simplex == lattice::kWholeTet) return quadrant;
+  const int face = lattice::oppositeCorner(simplex);
+  const adjacency::HalfFace halfFace = adjacency::halfFaceOf(quadrant.tet, face);
+  const adjacency::HalfFace mate = topology_.mate[halfFace];
+  if (mate == kNone || adjacency::tetOf(mate) > quadrant.tet) return quadrant;
+  const lattice::Rotation rotation = exact_.transitions.across(halfFace).rotation;
+  return {adjacency::tetOf(mate), rotation(quadrant.first), rotation(quadrant.second)};
 }
 
 /// Enumerates the casings of a propeller counter-clockwise: on the boundary from the first on.
@@ -198,21 +205,22 @@ void StarConnectivity::findBlades() {
 void StarConnectivity::traceBlade(std::size_t propeller, std::size_t slotIndex) {
   Slot& slot = result_.slots[result_.propellers[propeller].slotBegin + slotIndex];
   Index tet = slot.tet;
-  Direction from = directionIn(tet, propeller);
-  Direction to = slot.direction;
+  lattice::Direction from = directionIn(tet, propeller);
+  lattice::Direction to = slot.direction;
   for (std::size_t steps = 0;; ++steps) {
     if (steps > 2 * star_.size()) fail("the turn from a propeller to its blade does not end");
-    const int exit = exitOfTurn(exact_.corners[tet], signs_[tet], inStar(tet).simplex, from, to);
-    if (exit == kStaysInside) break;
-    if (exit == kNoExit)
+    const int exit =
+        lattice::exitOfTurn(exact_.corners[tet], signs_[tet], inStar(tet).simplex, from, to);
+    if (exit == lattice::kStaysInside) break;
+    if (exit == lattice::kNoExit)
       fail("the turn from a propeller to its blade leaves a tet through no face");
-    const HalfFace halfFace = halfFaceOf(tet, exit);
-    const HalfFace mate = topology_.mate[halfFace];
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, exit);
+    const adjacency::HalfFace mate = topology_.mate[halfFace];
     if (mate == kNone) fail("the turn from a propeller to its blade leaves the mesh");
-    const Rotation rotation = exact_.transitions.across(halfFace).rotation;
+    const lattice::Rotation rotation = exact_.transitions.across(halfFace).rotation;
     from = rotation(from);
     to = rotation(to);
-    tet = tetOf(mate);
+    tet = adjacency::tetOf(mate);
   }
   const std::uint16_t blade = inStar(tet).propeller[to];
   if (blade == kNoPropeller) fail("a blade is not a propeller");
@@ -231,4 +239,4 @@ void StarConnectivity::traceBlade(std::size_t propeller, std::size_t slotIndex) 
   fail("a propeller is no blade of its blade");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

@@ -10,7 +10,7 @@
 
 #include <propeller/local_connectivity.hpp>
 
-namespace hexhex {
+namespace hexhex::propeller {
 
 /// Extracts one generator after the other; keeps its working memory between them.
 class StarConnectivity {
@@ -23,18 +23,18 @@ class StarConnectivity {
     std::vector<HexCorner> corners;
   };
 
-  StarConnectivity(const PreparedMap& map, const Array<NormalSigns>& signs)
+  StarConnectivity(const igm::PreparedMap& map, const Array<lattice::NormalSigns>& signs)
       : topology_(map.topology), exact_(map.exact), signs_(signs) {}
 
   /// @param simplex  corners of the generator in `tet`; not a cell
   /// @throws Error Internal if the star is not that of a valid map
-  const Result& run(Index tet, CornerMask simplex);
+  const Result& run(Index tet, lattice::CornerMask simplex);
 
   /// For each tet of the star: the propeller in each direction.
   struct StarTet {
     Index tet;
-    CornerMask simplex;  ///< the generator's corners in this tet
-    std::array<std::uint16_t, kDirections> propeller;
+    lattice::CornerMask simplex;  ///< the generator's corners in this tet
+    std::array<std::uint16_t, lattice::kDirections> propeller;
   };
   [[nodiscard]] const std::vector<StarTet>& star() const noexcept { return star_; }
 
@@ -42,19 +42,20 @@ class StarConnectivity {
   /// A quarter plane at the generator in the chart of a tet: spanned by `first` and `second`.
   struct Quadrant {
     Index tet;
-    Direction first;
-    Direction second;
+    lattice::Direction first;
+    lattice::Direction second;
   };
 
-  void collectStar(Index tet, CornerMask simplex);
+  void collectStar(Index tet, lattice::CornerMask simplex);
   void findPropellers();
-  void announce(std::uint16_t propeller, Index tet, CornerMask holderSimplex, Direction d);
+  void announce(std::uint16_t propeller, Index tet, lattice::CornerMask holderSimplex,
+                lattice::Direction d);
   void findCasings(std::size_t propeller);
   void findBlades();
   void traceBlade(std::size_t propeller, std::size_t slot);
 
   [[nodiscard]] StarTet& inStar(Index tet);
-  [[nodiscard]] Direction directionIn(Index tet, std::size_t propeller);
+  [[nodiscard]] lattice::Direction directionIn(Index tet, std::size_t propeller);
   /// The first quadrant of a propeller that leads into a tet of its holder's star.
   [[nodiscard]] Quadrant anyCasing(std::size_t propeller);
   /// Turns `second` by a right angle around `first`, counter-clockwise or clockwise, from tet to
@@ -64,16 +65,16 @@ class StarConnectivity {
   [[nodiscard]] Quadrant canonical(const Quadrant& quadrant);
   [[noreturn]] void fail(const char* what) const;
 
-  const TetTopology& topology_;
-  const ExactMap& exact_;
-  const Array<NormalSigns>& signs_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
+  const Array<lattice::NormalSigns>& signs_;
   std::vector<StarTet> star_;
   Result result_;
   /// Per propeller: its holder's owner, corners there, and direction there.
   struct Holder {
     Index tet;
-    CornerMask simplex;
-    Direction direction;
+    lattice::CornerMask simplex;
+    lattice::Direction direction;
   };
   std::vector<Holder> holders_;
 };
@@ -81,22 +82,22 @@ class StarConnectivity {
 /// Calls visit(tet, corners of the simplex there, transition from `tet`'s chart) for every tet
 /// around an edge, face or cell, in no particular order.
 template <class Visit>
-void forEachTetAround(const TetTopology& topology, const Transitions& transitions, Index tet,
-                      CornerMask simplex, const Visit& visit) {
-  visit(tet, simplex, Rotation{});
-  if (simplex == kWholeTet) return;
-  const int first = otherFaceAtEdge(simplex, -1);
-  if (dimension(simplex) == 2) {
-    const HalfFace halfFace = halfFaceOf(tet, first);
-    const HalfFace mate = topology.mate[halfFace];
+void forEachTetAround(const adjacency::TetTopology& topology, const igm::Transitions& transitions,
+                      Index tet, lattice::CornerMask simplex, const Visit& visit) {
+  visit(tet, simplex, lattice::Rotation{});
+  if (simplex == lattice::kWholeTet) return;
+  const int first = adjacency::otherFaceAtEdge(simplex, -1);
+  if (lattice::dimension(simplex) == 2) {
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, first);
+    const adjacency::HalfFace mate = topology.mate[halfFace];
     if (mate == kNone) return;
-    visit(tetOf(mate), acrossFace(topology, halfFace, simplex),
+    visit(adjacency::tetOf(mate), adjacency::acrossFace(topology, halfFace, simplex),
           transitions.across(halfFace).rotation);
     return;
   }
-  for (const int face : {first, otherFaceAtEdge(simplex, first)}) {
-    EdgeTurn turn(topology, tet, simplex, face);
-    Rotation rotation;
+  for (const int face : {first, adjacency::otherFaceAtEdge(simplex, first)}) {
+    adjacency::EdgeTurn turn(topology, tet, simplex, face);
+    lattice::Rotation rotation;
     while (turn.next() != kNone) {
       rotation = transitions.across(turn.out()).rotation * rotation;
       turn.step();
@@ -106,4 +107,4 @@ void forEachTetAround(const TetTopology& topology, const Transitions& transition
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::propeller

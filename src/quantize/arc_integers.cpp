@@ -3,7 +3,7 @@
 
 #include <quantize/arc_integers.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -47,11 +47,11 @@ void BlockIntegers::findPositions(const MotorcycleComplex& complex,
                                   const std::vector<std::int64_t>& integers) {
   // Steps along arcs, from node to node of a block.
   struct Step {
-    LatticePoint to;
+    lattice::LatticePoint to;
     std::size_t axis;
     std::int64_t by;
   };
-  std::vector<std::map<LatticePoint, std::vector<Step>>> steps(complex.blockCount);
+  std::vector<std::map<lattice::LatticePoint, std::vector<Step>>> steps(complex.blockCount);
   for (const PatchSide& patch : complex.patches) {
     for (const ArcSide& side : patch.border) {
       const std::int64_t by = side.sign * integers[side.arc];
@@ -61,14 +61,14 @@ void BlockIntegers::findPositions(const MotorcycleComplex& complex,
   }
   for (Index block = 0; block < complex.blockCount; ++block) {
     auto& positions = positions_[block];
-    const LatticePoint first = steps[block].begin()->first;
-    std::vector<LatticePoint> queue = {first};
+    const lattice::LatticePoint first = steps[block].begin()->first;
+    std::vector<lattice::LatticePoint> queue = {first};
     positions[first] = {};
-    LatticePoint size{};
+    lattice::LatticePoint size{};
     for (std::size_t next = 0; next < queue.size(); ++next) {
-      const LatticePoint here = queue[next];
+      const lattice::LatticePoint here = queue[next];
       for (const Step& step : steps[block].at(here)) {
-        LatticePoint there = positions.at(here);
+        lattice::LatticePoint there = positions.at(here);
         there[step.axis] += step.by;
         const auto [found, isNew] = positions.emplace(step.to, there);
         if (found->second != there) failClosed("a block does not close up.");
@@ -93,8 +93,8 @@ void BlockIntegers::findTransitions(const MotorcycleComplex& complex) {
     change.rotation = real.rotation;
     bool isFirst = true;
     for (const ArcSide& side : here.border) {
-      const LatticePoint from = (*this)(here.block, side.start);
-      const LatticePoint to = (*this)(complex.patches[other].block, real(side.start));
+      const lattice::LatticePoint from = (*this)(here.block, side.start);
+      const lattice::LatticePoint to = (*this)(complex.patches[other].block, real(side.start));
       if (isFirst) change.translation = to - change.rotation(from);
       if (change(from) != to) failClosed("the sides of a patch differ.");
       isFirst = false;
@@ -102,4 +102,4 @@ void BlockIntegers::findTransitions(const MotorcycleComplex& complex) {
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

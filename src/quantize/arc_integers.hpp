@@ -8,7 +8,7 @@
 #include <quantize/integer_program.hpp>
 #include <quantize/motorcycle_complex.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Opposite sides of a patch are equally long.
 [[nodiscard]] std::vector<ArcEquation> arcEquations(const MotorcycleComplex& complex);
@@ -20,11 +20,12 @@ class BlockIntegers {
   BlockIntegers(const MotorcycleComplex& complex, const std::vector<std::int64_t>& integers);
 
   /// Of a node of a block, at its position in the block's chart.
-  [[nodiscard]] const LatticePoint& operator()(Index block, const LatticePoint& position) const {
+  [[nodiscard]] const lattice::LatticePoint& operator()(
+      Index block, const lattice::LatticePoint& position) const {
     return positions_[block].at(position);
   }
   /// Across a half-face, between the integer charts of the blocks on its sides.
-  [[nodiscard]] ChartChange across(const MotorcycleComplex& complex, HalfFace h) const {
+  [[nodiscard]] ChartChange across(const MotorcycleComplex& complex, adjacency::HalfFace h) const {
     return complex.mesh.isWall[h] ? across_[complex.patchOf[h]] : ChartChange{};
   }
   [[nodiscard]] double cellCount() const noexcept { return cells_; }
@@ -33,9 +34,9 @@ class BlockIntegers {
   void findPositions(const MotorcycleComplex& complex, const std::vector<std::int64_t>& integers);
   void findTransitions(const MotorcycleComplex& complex);
 
-  std::vector<std::map<LatticePoint, LatticePoint>> positions_;  ///< per block
-  std::vector<ChartChange> across_;                              ///< per side of a patch
+  std::vector<std::map<lattice::LatticePoint, lattice::LatticePoint>> positions_;  ///< per block
+  std::vector<ChartChange> across_;  ///< per side of a patch
   double cells_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

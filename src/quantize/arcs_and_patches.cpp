@@ -6,7 +6,7 @@
 
 #include <base/disjoint_sets.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -15,16 +15,16 @@ struct WallEdge {
   std::array<Index, 2> key{};  ///< ascending
   Index tail = 0;
   Index head = 0;
-  HalfFace halfFace = 0;
+  adjacency::HalfFace halfFace = 0;
   [[nodiscard]] auto operator<=>(const WallEdge&) const = default;
 };
 
 std::vector<WallEdge> wallEdges(const WallMesh& mesh) {
   std::vector<WallEdge> edges;
-  for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
     if (!mesh.isWall[h]) continue;
-    const auto& c = kFaceCorners[h % 4];
-    const Tet& tet = mesh.tets[tetOf(h)];
+    const auto& c = lattice::kFaceCorners[h % 4];
+    const Tet& tet = mesh.tets[adjacency::tetOf(h)];
     for (std::size_t k = 0; k < 3; ++k) {
       const Index tail = tet[static_cast<std::size_t>(c[k])];
       const Index head = tet[static_cast<std::size_t>(c[(k + 1) % 3])];
@@ -43,7 +43,7 @@ class ArcFinder {
   /// Finds the complex's edges, and joins sides of triangles that lie in one plane.
   void collect() {
     const std::vector<WallEdge> edges = wallEdges(complex_.mesh);
-    forEachRun(
+    adjacency::forEachRun(
         std::span<const WallEdge>(edges),
         [](const WallEdge& a, const WallEdge& b) { return a.key == b.key; },
         [this](std::span<const WallEdge> same) { addEdge(same); });
@@ -100,13 +100,13 @@ class ArcFinder {
     const WallMesh& mesh = complex_.mesh;
     std::size_t triangles = 0;
     for (const WallEdge& each : same) {
-      const HalfFace mate = mesh.mate[each.halfFace];
+      const adjacency::HalfFace mate = mesh.mate[each.halfFace];
       triangles += mate == kNone || each.halfFace < mate ? 1 : 0;
     }
     if (triangles == 2 && joinIfFlat(same)) return;
-    const Index tet = tetOf(same[0].halfFace);
-    const LatticePoint along = mesh.at(tet, mesh.cornerOf(tet, same[0].key[1])) -
-                               mesh.at(tet, mesh.cornerOf(tet, same[0].key[0]));
+    const Index tet = adjacency::tetOf(same[0].halfFace);
+    const lattice::LatticePoint along = mesh.at(tet, mesh.cornerOf(tet, same[0].key[1])) -
+                                        mesh.at(tet, mesh.cornerOf(tet, same[0].key[0]));
     Edge edge;
     edge.vertices = same[0].key;
     for (const std::int64_t x : along) edge.length += std::abs(x);
@@ -117,7 +117,8 @@ class ArcFinder {
   /// Of two triangles at an edge: joins them if they lie in a plane.
   bool joinIfFlat(std::span<const WallEdge> same) {
     for (const WallEdge& each : same) {
-      const HalfFace other = wallOpposite(complex_.mesh, each.halfFace, each.tail, each.head);
+      const adjacency::HalfFace other =
+          wallOpposite(complex_.mesh, each.halfFace, each.tail, each.head);
       if (other == kNone || sameTriangle(each.halfFace, other)) return false;
     }
     for (const WallEdge& each : same) {
@@ -125,7 +126,7 @@ class ArcFinder {
     }
     return true;
   }
-  [[nodiscard]] bool sameTriangle(HalfFace a, HalfFace b) const {
+  [[nodiscard]] bool sameTriangle(adjacency::HalfFace a, adjacency::HalfFace b) const {
     return a == b || complex_.mesh.mate[a] == b;
   }
 
@@ -171,7 +172,7 @@ class PatchFinder {
   void run() {
     const WallMesh& mesh = complex_.mesh;
     complex_.patchOf.assign(mesh.mate.size(), kNone);
-    for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
+    for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
       if (mesh.isWall[h]) addTriangle(h);
     }
     for (std::size_t p = 0; p < borders_.size(); ++p) {
@@ -180,28 +181,28 @@ class PatchFinder {
   }
 
  private:
-  void addTriangle(HalfFace h) {
-    const HalfFace first = sides_.find(h);
+  void addTriangle(adjacency::HalfFace h) {
+    const adjacency::HalfFace first = sides_.find(h);
     if (first == h) {
       complex_.patchOf[h] = static_cast<Index>(complex_.patches.size());
-      complex_.patches.push_back({complex_.blockOf[tetOf(h)], h, {}});
+      complex_.patches.push_back({complex_.blockOf[adjacency::tetOf(h)], h, {}});
       borders_.emplace_back();
     }
     complex_.patchOf[h] = complex_.patchOf[first];
-    const auto& c = kFaceCorners[h % 4];
+    const auto& c = lattice::kFaceCorners[h % 4];
     for (std::size_t k = 0; k < 3; ++k) {
       addEdge(h, static_cast<std::size_t>(c[k]), static_cast<std::size_t>(c[(k + 1) % 3]));
     }
   }
 
   /// A directed edge of a triangle, if it is one of an arc.
-  void addEdge(HalfFace h, std::size_t tail, std::size_t head) {
-    const Index tet = tetOf(h);
+  void addEdge(adjacency::HalfFace h, std::size_t tail, std::size_t head) {
+    const Index tet = adjacency::tetOf(h);
     const WallMesh& mesh = complex_.mesh;
     const auto at = arcs_.positionOf(mesh.tets[tet][tail], mesh.tets[tet][head]);
     if (at.arc == kNone) return;
-    const LatticePoint from = complex_.toBlock[tet](mesh.at(tet, tail));
-    const LatticePoint along = complex_.toBlock[tet](mesh.at(tet, head)) - from;
+    const lattice::LatticePoint from = complex_.toBlock[tet](mesh.at(tet, tail));
+    const lattice::LatticePoint along = complex_.toBlock[tet](mesh.at(tet, head)) - from;
     ArcSide side;
     side.arc = at.arc;
     while (along[side.axis] == 0) ++side.axis;
@@ -220,7 +221,7 @@ class PatchFinder {
     const Index vertex = complex_.mesh.tets[tet][corner];
     const bool isNode = arcs_.isNode(vertex) && complex_.mesh.featureVertices.contains(vertex);
     if (!isNode && !complex_.arcs[side.arc].isFeature) return;
-    const LatticePoint here = complex_.toBlock[tet](complex_.mesh.at(tet, corner));
+    const lattice::LatticePoint here = complex_.toBlock[tet](complex_.mesh.at(tet, corner));
     complex_.featureCorners.push_back(
         {tet, corner, isNode ? 3 : std::size_t{side.axis}, isNode ? here : side.start});
   }
@@ -253,4 +254,4 @@ std::vector<bool> findNodes(MotorcycleComplex& complex) {
   return nodes;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

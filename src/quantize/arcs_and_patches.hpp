@@ -6,7 +6,7 @@
 
 #include <quantize/motorcycle_complex.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Fills in arcs, patches and corners on features, from walls and the charts of blocks.
 void findArcsAndPatches(MotorcycleComplex& complex);
@@ -14,4 +14,4 @@ void findArcsAndPatches(MotorcycleComplex& complex);
 /// Per vertex of the complex's mesh: whether arcs end there.
 [[nodiscard]] std::vector<bool> findNodes(MotorcycleComplex& complex);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

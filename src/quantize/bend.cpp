@@ -11,7 +11,7 @@
 #include <base/vector3.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -38,14 +38,14 @@ class Round {
   Round(BendState& state, Stage& stage) : state_(state), stage_(stage) {
     topology_.tets = state.problem.tets;
     topology_.pointCount = state.problem.points.size();
-    if (!matchFaces(topology_, stage)) {
+    if (!adjacency::matchFaces(topology_, stage)) {
       throw Error(ErrorCode::Internal, "What is to be bent is no manifold.");
     }
-    addStars(topology_, stage);
+    adjacency::addStars(topology_, stage);
     unknowns_ = findUnknowns(state.problem, topology_, stage);
   }
 
-  [[nodiscard]] const TetTopology& topology() const noexcept { return topology_; }
+  [[nodiscard]] const adjacency::TetTopology& topology() const noexcept { return topology_; }
   [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
 
   /// From now on, only vertices near these tets move.
@@ -58,7 +58,7 @@ class Round {
     }
     for (Index v = 0; v < topology_.pointCount; ++v) {
       if (isNear[v] || topology_.isIsolated(v)) continue;
-      unknowns_.fixed[v] = kAllAxes;
+      unknowns_.fixed[v] = lattice::kAllAxes;
       unknowns_.fixedPosition[v] = representative(v);
     }
   }
@@ -128,14 +128,14 @@ class Round {
   }
 
   [[nodiscard]] untangle::Corner cornerOf(std::size_t corner) const {
-    const Index v = topology_.vertex(static_cast<CornerIndex>(corner));
-    const Transition& way = unknowns_.toCorner[corner];
+    const Index v = topology_.vertex(static_cast<adjacency::CornerIndex>(corner));
+    const lattice::Transition& way = unknowns_.toCorner[corner];
     const auto rotation = static_cast<std::size_t>(way.rotation.index());
     untangle::Corner result;
     result.constant = way(unknowns_.fixedPosition[v], 1.0);
     for (std::size_t k = 0; k < 3; ++k) {
-      result.unknown[k] = numbers_[v][detail::kAxisSources.axis[rotation][k]];
-      result.sign[k] = detail::kAxisSources.sign[rotation][k];
+      result.unknown[k] = numbers_[v][lattice::detail::kAxisSources.axis[rotation][k]];
+      result.sign[k] = lattice::detail::kAxisSources.sign[rotation][k];
     }
     return result;
   }
@@ -155,20 +155,21 @@ class Round {
         stage_, topology_.tetCount(), 1024, [&](std::size_t begin, std::size_t end, auto& list) {
           for (auto t = static_cast<Index>(begin); t < end; ++t) {
             state_.bent[t] = cornersAt(problem.elements[t], problem.x);
-            LatticeTet lattice;
+            lattice::LatticeTet lattice;
             for (std::size_t i = 0; i < 4; ++i) {
               for (std::size_t k = 0; k < 3; ++k) {
                 lattice[i][k] = static_cast<std::int64_t>(state_.bent[t][i][k] * kUnit);
               }
             }
-            if (orientation(lattice[0], lattice[1], lattice[2], lattice[3]) <= 0) list.push_back(t);
+            if (lattice::orientation(lattice[0], lattice[1], lattice[2], lattice[3]) <= 0)
+              list.push_back(t);
           }
         });
   }
 
   BendState& state_;
   Stage& stage_;
-  TetTopology topology_;
+  adjacency::TetTopology topology_;
   VertexUnknowns unknowns_;
   std::vector<std::array<int, 3>> numbers_;  ///< per vertex: unknowns of its representative, or -1
 };
@@ -214,4 +215,4 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
   return map;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -14,7 +14,7 @@
 #include <base/stage.hpp>
 #include <lattice/transition.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// The plane that a triangle of the boundary or of a feature is to lie in, in its tet's chart.
 struct BoundaryPlane {
@@ -38,7 +38,7 @@ struct BendProblem {
   /// Per half-face: from the tet's chart into its neighbour's. The rotation is that of the
   /// reference, the translation may be any integers that are consistent: around a regular edge
   /// transitions compose to the identity. Not used on the boundary.
-  std::vector<Transition> transitions;
+  std::vector<lattice::Transition> transitions;
   std::vector<BoundaryPlane> planes;  ///< per half-face
   /// Further planes for single corners, by their index 4 * tet + corner: of features.
   std::map<std::uint32_t, std::vector<BoundaryPlane>> fixedCorners = {};
@@ -87,4 +87,4 @@ struct BentMap {
 /// Deterministic with any number of threads.
 [[nodiscard]] BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -5,10 +5,10 @@
 #include <quantize/arc_integers.hpp>
 #include <quantize/bend.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// @param scale  of the seamless map, for the shapes that tets should keep
 [[nodiscard]] BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex,
                                       const BlockIntegers& integers, double scale);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -6,7 +6,7 @@
 
 #include <base/vector3.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -17,39 +17,39 @@ Vec3 middle(const Vec3& a, const Vec3& b) {
 /// How many coordinates of an edge's inner points are fixed, by what is around the edge.
 class EdgeReader {
  public:
-  EdgeReader(const BendProblem& problem, const TetTopology& topology)
+  EdgeReader(const BendProblem& problem, const adjacency::TetTopology& topology)
       : problem_(problem), topology_(topology) {}
 
-  int fixedCount(Index tet, CornerMask edge) {
+  int fixedCount(Index tet, lattice::CornerMask edge) {
     axes_ = 0;
-    const int first = std::countr_zero(unsigned{edge} ^ kWholeTet);
-    if (!turn(tet, edge, first)) turn(tet, edge, otherFaceAtEdge(edge, first));
+    const int first = std::countr_zero(unsigned{edge} ^ lattice::kWholeTet);
+    if (!turn(tet, edge, first)) turn(tet, edge, adjacency::otherFaceAtEdge(edge, first));
     return std::popcount(axes_);
   }
 
  private:
   /// @return whether the turn came back to where it began
-  bool turn(Index tet, CornerMask edge, int face) {
-    Transition chart;
-    EdgeTurn turn(topology_, tet, edge, face);
+  bool turn(Index tet, lattice::CornerMask edge, int face) {
+    lattice::Transition chart;
+    adjacency::EdgeTurn turn(topology_, tet, edge, face);
     while (turn.next() != kNone) {
       chart = problem_.transitions[turn.out()] * chart;
       turn.step();
       if (turn.tet() != tet) continue;
       for (int axis = 0; axis < 3; ++axis) {
-        const Direction d = direction(axis, 1);
+        const lattice::Direction d = lattice::direction(axis, 1);
         if (chart(d) != d) axes_ |= 1U << axis;
       }
       return true;
     }
     const BoundaryPlane& plane = problem_.planes[turn.out()];
-    if (plane.axis >= 0) axes_ |= imageOf(1U << plane.axis, chart.rotation.inverse());
+    if (plane.axis >= 0) axes_ |= lattice::imageOf(1U << plane.axis, chart.rotation.inverse());
     return false;
   }
 
   const BendProblem& problem_;
-  const TetTopology& topology_;
-  AxisSet axes_ = 0;  ///< in the chart of the tet
+  const adjacency::TetTopology& topology_;
+  lattice::AxisSet axes_ = 0;  ///< in the chart of the tet
 };
 
 SplitEdge sorted(Index v, Index w) { return {std::min(v, w), std::max(v, w)}; }
@@ -59,7 +59,7 @@ template <class Visit>
 void forEachEdgeOf(const Tet& tet, const Visit& visit) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i + 1; j < 4; ++j) {
-      visit(sorted(tet[i], tet[j]), static_cast<CornerMask>((1U << i) | (1U << j)));
+      visit(sorted(tet[i], tet[j]), static_cast<lattice::CornerMask>((1U << i) | (1U << j)));
     }
   }
 }
@@ -70,12 +70,13 @@ void sortOut(std::vector<SplitEdge>& edges) {
 }
 
 /// Edges whose middles are freer than both of their ends.
-std::vector<SplitEdge> freeingEdges(const BendProblem& problem, const TetTopology& topology,
+std::vector<SplitEdge> freeingEdges(const BendProblem& problem,
+                                    const adjacency::TetTopology& topology,
                                     const VertexUnknowns& unknowns, std::span<const Index> tets) {
   EdgeReader reader(problem, topology);
   std::vector<SplitEdge> edges;
   for (const Index t : tets) {
-    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, CornerMask corners) {
+    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, lattice::CornerMask corners) {
       const int ends =
           std::min(std::popcount(unknowns.fixed[edge[0]]), std::popcount(unknowns.fixed[edge[1]]));
       if (problem.keptEdges.contains(edge)) return;
@@ -92,8 +93,8 @@ using Stars = std::vector<std::vector<Index>>;
 void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Index vertex) {
   BendProblem& problem = state.problem;
   const auto second = static_cast<Index>(problem.tets.size());
-  const auto a = static_cast<std::size_t>(localCorner(problem.tets[t], edge[0]));
-  const auto b = static_cast<std::size_t>(localCorner(problem.tets[t], edge[1]));
+  const auto a = static_cast<std::size_t>(adjacency::localCorner(problem.tets[t], edge[0]));
+  const auto b = static_cast<std::size_t>(adjacency::localCorner(problem.tets[t], edge[1]));
   problem.tets.push_back(problem.tets[t]);
   problem.tets[t][b] = vertex;
   problem.tets[second][a] = vertex;
@@ -113,8 +114,8 @@ void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Inde
     problem.transitions[inner] = {};
     problem.planes[inner] = {};
   }
-  if (auto fixed = problem.fixedCorners.extract(static_cast<CornerIndex>(4 * t + b))) {
-    fixed.key() = static_cast<CornerIndex>(4 * second + b);
+  if (auto fixed = problem.fixedCorners.extract(static_cast<adjacency::CornerIndex>(4 * t + b))) {
+    fixed.key() = static_cast<adjacency::CornerIndex>(4 * second + b);
     problem.fixedCorners.insert(std::move(fixed));
   }
   for (const Index v : problem.tets[second]) stars[v].push_back(second);
@@ -124,11 +125,13 @@ void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Inde
 
 }  // namespace
 
-std::vector<Index> withNeighbours(const TetTopology& topology, std::span<const Index> tets) {
+std::vector<Index> withNeighbours(const adjacency::TetTopology& topology,
+                                  std::span<const Index> tets) {
   std::vector<Index> around;
   for (const Index t : tets) {
     for (const Index v : topology.tets[t]) {
-      for (const CornerIndex corner : topology.star(v)) around.push_back(tetOf(corner));
+      for (const adjacency::CornerIndex corner : topology.star(v))
+        around.push_back(adjacency::tetOf(corner));
     }
   }
   std::sort(around.begin(), around.end());
@@ -136,14 +139,15 @@ std::vector<Index> withNeighbours(const TetTopology& topology, std::span<const I
   return around;
 }
 
-std::vector<SplitEdge> edgesToSplit(const BendProblem& problem, const TetTopology& topology,
+std::vector<SplitEdge> edgesToSplit(const BendProblem& problem,
+                                    const adjacency::TetTopology& topology,
                                     const VertexUnknowns& unknowns, std::span<const Index> tets) {
   std::vector<SplitEdge> edges = freeingEdges(problem, topology, unknowns, tets);
   if (!edges.empty()) return edges;
   edges = freeingEdges(problem, topology, unknowns, withNeighbours(topology, tets));
   if (!edges.empty()) return edges;
   for (const Index t : tets) {
-    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, CornerMask /*corners*/) {
+    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
       if (!problem.keptEdges.contains(edge)) edges.push_back(edge);
     });
   }
@@ -175,4 +179,4 @@ bool splitEdges(BendState& state, std::span<const SplitEdge> edges, std::size_t 
   return problem.tets.size() <= mostTets;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -7,7 +7,7 @@
 
 #include <quantize/vertex_unknowns.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// A map while it is bent.
 struct BendState {
@@ -18,13 +18,13 @@ struct BendState {
 };
 
 /// All tets at the vertices of some, ascending. Needs the stars of the topology.
-[[nodiscard]] std::vector<Index> withNeighbours(const TetTopology& topology,
+[[nodiscard]] std::vector<Index> withNeighbours(const adjacency::TetTopology& topology,
                                                 std::span<const Index> tets);
 
 /// Edges at which splitting helps, of these tets or, if there are none, of their neighbours; all
 /// edges of the tets if there are none, either. Ascending.
 [[nodiscard]] std::vector<SplitEdge> edgesToSplit(const BendProblem& problem,
-                                                  const TetTopology& topology,
+                                                  const adjacency::TetTopology& topology,
                                                   const VertexUnknowns& unknowns,
                                                   std::span<const Index> tets);
 
@@ -33,4 +33,4 @@ struct BendState {
 /// @return false if there are more than `mostTets` then: the rest of the edges are left
 bool splitEdges(BendState& state, std::span<const SplitEdge> edges, std::size_t mostTets);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -9,7 +9,7 @@
 #include <quantize/loaded_solver.hpp>
 #endif
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 #if defined(HEXHEX_CBC_NAME)
 namespace {
@@ -80,4 +80,4 @@ IntegerSolver cbcSolver() {
 IntegerSolver cbcSolver() { return {}; }
 #endif
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -10,31 +10,23 @@
 #include <lattice/rotation.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
-
-[[nodiscard]] constexpr LatticePoint operator+(const LatticePoint& a,
-                                               const LatticePoint& b) noexcept {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-[[nodiscard]] constexpr LatticePoint operator-(const LatticePoint& a) noexcept {
-  return {-a[0], -a[1], -a[2]};
-}
+namespace hexhex::quantization {
 
 /// u -> R u + t, exactly, with coordinates on a lattice: units for a seamless map, integers for a
 /// quantized one.
 struct ChartChange {
-  Rotation rotation;
-  LatticePoint translation{};
+  lattice::Rotation rotation;
+  lattice::LatticePoint translation{};
 
   [[nodiscard]] constexpr bool operator==(const ChartChange&) const = default;
   [[nodiscard]] constexpr bool isIdentity() const noexcept { return *this == ChartChange{}; }
 
-  [[nodiscard]] constexpr LatticePoint operator()(const LatticePoint& u) const noexcept {
+  [[nodiscard]] constexpr lattice::LatticePoint operator()(
+      const lattice::LatticePoint& u) const noexcept {
     return rotation(u) + translation;
   }
   [[nodiscard]] constexpr ChartChange inverse() const noexcept {
-    const Rotation back = rotation.inverse();
+    const lattice::Rotation back = rotation.inverse();
     return {back, -back(translation)};
   }
   /// Composition: (a * b)(u) = a(b(u)).
@@ -48,21 +40,21 @@ class FaceChanges {
  public:
   explicit FaceChanges(std::size_t halfFaces = 0) : places_(halfFaces, 0) {}
 
-  [[nodiscard]] const ChartChange& operator[](HalfFace h) const noexcept {
+  [[nodiscard]] const ChartChange& operator[](adjacency::HalfFace h) const noexcept {
     return distinct_[places_[h]];
   }
-  void set(HalfFace h, const ChartChange& change) {
+  void set(adjacency::HalfFace h, const ChartChange& change) {
     const auto [found, isNew] = placeOf_.try_emplace({change.rotation.index(), change.translation},
                                                      static_cast<Index>(distinct_.size()));
     if (isNew) distinct_.push_back(change);
     places_[h] = found->second;
   }
-  void appendCopyOf(HalfFace h) { places_.push_back(Index{places_[h]}); }
+  void appendCopyOf(adjacency::HalfFace h) { places_.push_back(Index{places_[h]}); }
 
  private:
   std::vector<Index> places_;  ///< in `distinct_`, per half-face
   std::vector<ChartChange> distinct_ = {{}};
-  std::map<std::pair<int, LatticePoint>, Index> placeOf_ = {{{0, {}}, 0}};
+  std::map<std::pair<int, lattice::LatticePoint>, Index> placeOf_ = {{{0, {}}, 0}};
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -17,7 +17,7 @@
 
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 namespace {
 
 /// What the child says last, before its numbers.
@@ -134,4 +134,4 @@ std::optional<std::vector<std::int64_t>> inChildProcess(
   return std::vector<std::int64_t>(numbers.begin() + 1, numbers.end());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

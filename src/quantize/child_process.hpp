@@ -10,7 +10,7 @@
 
 #include <hexhex/context.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Runs `work` in a copy of this process (fork) and waits for it; what it prints is lost, and no
 /// signal but the last one reaches it. Of threads, it has its own only: it must not wait for
@@ -23,4 +23,4 @@ namespace hexhex {
     std::size_t count, const Context& context,
     const std::function<bool(std::span<std::int64_t>)>& work);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -4,7 +4,7 @@
 
 #include <quantize/coincidences.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -28,10 +28,10 @@ void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>&
     for (int from = 0; from < 3; ++from) {
       const auto& [factor, rest] = conditions.fixed[static_cast<std::size_t>(from)];
       if (factor == 0 || 2 % factor != 0) continue;
-      const Direction to = sector.rotation(direction(from, 1));
+      const lattice::Direction to = sector.rotation(lattice::direction(from, 1));
       FixedCoordinate fixed;
-      fixed.axis = static_cast<std::size_t>(axisOf(to));
-      fixed.form.add(rest, -signOf(to) * 2 / factor);
+      fixed.axis = static_cast<std::size_t>(lattice::axisOf(to));
+      fixed.form.add(rest, -lattice::signOf(to) * 2 / factor);
       fixed.form.add(sector.translation[fixed.axis], 2);
       all.insert(std::move(fixed));
     }
@@ -42,12 +42,13 @@ void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>&
 std::set<FixedCoordinate> beyondCut(const std::set<FixedCoordinate>& here, const CutGraph& graph,
                                     const SharedUnknowns& unknowns) {
   std::set<FixedCoordinate> all = here;
-  for (const HalfFace h : unknowns.cutPieces()) {
+  for (const adjacency::HalfFace h : unknowns.cutPieces()) {
     for (const FixedCoordinate& fixed : here) {
-      const Direction to = graph.rotations[h](direction(static_cast<int>(fixed.axis), 1));
+      const lattice::Direction to =
+          graph.rotations[h](lattice::direction(static_cast<int>(fixed.axis), 1));
       FixedCoordinate there;
-      there.axis = static_cast<std::size_t>(axisOf(to));
-      there.form.add(fixed.form, signOf(to));
+      there.axis = static_cast<std::size_t>(lattice::axisOf(to));
+      there.form.add(fixed.form, lattice::signOf(to));
       there.form.add(unknowns.translation(h, there.axis), 2);
       all.insert(std::move(there));
     }
@@ -60,9 +61,9 @@ std::set<FixedCoordinate> beyondCut(const std::set<FixedCoordinate>& here, const
 void collectMoves(const CutGraph& graph, const SharedUnknowns& unknowns,
                   std::set<FixedCoordinate>& all) {
   all.insert({kMoves, {}});
-  for (const HalfFace h : unknowns.cutPieces()) {
+  for (const adjacency::HalfFace h : unknowns.cutPieces()) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Direction d = direction(static_cast<int>(axis), 1);
+      const lattice::Direction d = lattice::direction(static_cast<int>(axis), 1);
       if (graph.rotations[h](d) != d) continue;
       FixedCoordinate move{kMoves, {}};
       move.form.add(unknowns.translation(h, axis), 2);
@@ -108,4 +109,4 @@ std::vector<IntegerForm> coincidences(const CutGraph& graph, const SharedUnknown
   return equations;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -6,7 +6,7 @@
 
 #include <quantize/seamless_conditions.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Equations for what is fixed at nearly the same coordinate of the common charts: as symmetric
 /// objects have it.
@@ -17,4 +17,4 @@ namespace hexhex {
                                                     std::span<const std::int64_t> values,
                                                     double noise);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -14,7 +14,7 @@
 #include <base/stage.hpp>
 #include <lattice/rotation.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Of a tet at its edge (a, b).
 [[nodiscard]] double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b);
@@ -23,25 +23,26 @@ namespace hexhex {
 class EdgeFans {
  public:
   /// @param topology  with stars; must outlive this
-  explicit EdgeFans(const TetTopology& topology);
+  explicit EdgeFans(const adjacency::TetTopology& topology);
 
   [[nodiscard]] std::size_t size() const noexcept { return begin_.size() - 1; }
-  [[nodiscard]] std::span<const EdgeCorner> operator()(std::size_t edge) const noexcept {
+  [[nodiscard]] std::span<const adjacency::EdgeCorner> operator()(std::size_t edge) const noexcept {
     return std::span(corners_).subspan(begin_[edge], begin_[edge + 1] - begin_[edge]);
   }
   /// The edge of two corners of a tet.
-  [[nodiscard]] Index edgeOf(Index tet, CornerMask ends) const noexcept;
-  [[nodiscard]] Index edgeOf(const EdgeCorner& at) const noexcept {
-    return edgeOf(at.tet, static_cast<CornerMask>(cornerBit(at.corner0) | cornerBit(at.corner1)));
+  [[nodiscard]] Index edgeOf(Index tet, lattice::CornerMask ends) const noexcept;
+  [[nodiscard]] Index edgeOf(const adjacency::EdgeCorner& at) const noexcept {
+    return edgeOf(at.tet, static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
+                                                           lattice::cornerBit(at.corner1)));
   }
   [[nodiscard]] bool isBoundary(std::size_t edge) const noexcept {
-    return boundaryFacesAt(topology_, (*this)(edge)) != 0;
+    return adjacency::boundaryFacesAt(topology_, (*this)(edge)) != 0;
   }
 
  private:
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   std::vector<std::size_t> begin_ = {0};
-  std::vector<EdgeCorner> corners_;
+  std::vector<adjacency::EdgeCorner> corners_;
   std::vector<std::array<Index, 6>> edges_;  ///< per tet
 };
 
@@ -52,7 +53,7 @@ template <class Corners>
   std::vector<int> quarters(edges.size());
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     double sum = 0;
-    for (const EdgeCorner& at : edges(edge)) {
+    for (const adjacency::EdgeCorner& at : edges(edge)) {
       TetParameters u{};
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t k = 0; k < 3; ++k) u[i][k] = static_cast<double>(map[at.tet][i][k]);
@@ -78,36 +79,37 @@ template <class Corners>
 }
 
 /// Per half-face, the rotation of the grid that takes its triangle nearest to the neighbour's.
-[[nodiscard]] std::vector<Rotation> fitRotations(const TetTopology& topology,
-                                                 std::span<const TetParameters> parameters);
+[[nodiscard]] std::vector<lattice::Rotation> fitRotations(
+    const adjacency::TetTopology& topology, std::span<const TetParameters> parameters);
 
 /// A seamless map in charts that agree across all triangles but those of a cut.
 struct CutGraph {
-  std::vector<TetParameters> parameters;  ///< per tet, in the common charts
-  std::vector<Rotation> rotations;        ///< per half-face, from here to the neighbour
-  std::vector<bool> isCut;                ///< per half-face
-  std::vector<Index> sectors;             ///< per corner: a number for all that are not cut apart
+  std::vector<TetParameters> parameters;     ///< per tet, in the common charts
+  std::vector<lattice::Rotation> rotations;  ///< per half-face, from here to the neighbour
+  std::vector<bool> isCut;                   ///< per half-face
+  std::vector<Index> sectors;  ///< per corner: a number for all that are not cut apart
   std::size_t sectorCount = 0;
 };
 
 /// Moves charts along a tree of tets, cuts all other triangles, then mends the cut where it ends:
 /// across the last triangle of the cut at an inner edge charts agree, unless the edge is singular.
 /// @param rotations  per half-face, between the charts given
-[[nodiscard]] CutGraph cutOpen(const TetTopology& topology, const EdgeFans& edges,
+[[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology, const EdgeFans& edges,
                                std::span<const TetParameters> parameters,
-                               std::span<const Rotation> rotations);
+                               std::span<const lattice::Rotation> rotations);
 
 /// Calls visit(half-face) for the triangles of the tet at an edge.
 template <class Visit>
-void forEachFaceAt(const EdgeCorner& at, const Visit& visit) {
+void forEachFaceAt(const adjacency::EdgeCorner& at, const Visit& visit) {
   for (int face = 0; face < 4; ++face) {
-    if (face != at.corner0 && face != at.corner1) visit(halfFaceOf(at.tet, face));
+    if (face != at.corner0 && face != at.corner1) visit(adjacency::halfFaceOf(at.tet, face));
   }
 }
 
 /// The cut that bounds, beyond `halfFace`, the tets at an edge that are not cut apart: the
 /// half-face on its near side; or kNone if that is the boundary of the mesh.
-[[nodiscard]] HalfFace nextCutAround(const TetTopology& topology, const CutGraph& graph,
-                                     CornerMask edge, HalfFace halfFace);
+[[nodiscard]] adjacency::HalfFace nextCutAround(const adjacency::TetTopology& topology,
+                                                const CutGraph& graph, lattice::CornerMask edge,
+                                                adjacency::HalfFace halfFace);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -4,23 +4,24 @@
 
 #include <quantize/edge_turns.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
 constexpr std::size_t kGrain = 256;
 
-double angleSum(std::span<const TetParameters> map, std::span<const EdgeCorner> fan) {
+double angleSum(std::span<const TetParameters> map, std::span<const adjacency::EdgeCorner> fan) {
   double sum = 0;
-  for (const EdgeCorner& at : fan) sum += dihedralAngle(map[at.tet], at.corner0, at.corner1);
+  for (const adjacency::EdgeCorner& at : fan)
+    sum += dihedralAngle(map[at.tet], at.corner0, at.corner1);
   return sum;
 }
 
-int expectedQuarters(const TetTopology& topology, const IrregularEdges& expected, Index vertex,
-                     std::span<const EdgeCorner> fan) {
+int expectedQuarters(const adjacency::TetTopology& topology, const IrregularEdges& expected,
+                     Index vertex, std::span<const adjacency::EdgeCorner> fan) {
   const auto found = expected.find({vertex, fan.front().other});
   if (found != expected.end()) return found->second;
-  return boundaryFacesAt(topology, fan) != 0 ? 2 : 4;
+  return adjacency::boundaryFacesAt(topology, fan) != 0 ? 2 : 4;
 }
 
 }  // namespace
@@ -32,17 +33,19 @@ void splitIrregular(const SplitEdge& edge, Index middle, IrregularEdges& irregul
   irregular.erase(found);
 }
 
-std::vector<Index> tetsAtOtherTurns(const TetTopology& topology, const IrregularEdges& expected,
+std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
+                                    const IrregularEdges& expected,
                                     std::span<const TetParameters> map, Stage& stage) {
   auto tets = collectFromBlocks<Index>(
       stage, topology.pointCount, kGrain, [&](std::size_t begin, std::size_t end, auto& list) {
-        std::vector<EdgeCorner> scratch;
+        std::vector<adjacency::EdgeCorner> scratch;
         for (auto v = static_cast<Index>(begin); v < end; ++v) {
-          forEachEdge(topology, v, scratch, [&](Index /*w*/, std::span<const EdgeCorner> fan) {
-            const double quarters = angleSum(map, fan) / (std::numbers::pi / 2);
-            if (std::abs(quarters - expectedQuarters(topology, expected, v, fan)) < 0.5) return;
-            for (const EdgeCorner& at : fan) list.push_back(at.tet);
-          });
+          adjacency::forEachEdge(
+              topology, v, scratch, [&](Index /*w*/, std::span<const adjacency::EdgeCorner> fan) {
+                const double quarters = angleSum(map, fan) / (std::numbers::pi / 2);
+                if (std::abs(quarters - expectedQuarters(topology, expected, v, fan)) < 0.5) return;
+                for (const adjacency::EdgeCorner& at : fan) list.push_back(at.tet);
+              });
         }
       });
   std::sort(tets.begin(), tets.end());
@@ -50,4 +53,4 @@ std::vector<Index> tetsAtOtherTurns(const TetTopology& topology, const Irregular
   return tets;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -9,7 +9,7 @@
 #include <quantize/bend.hpp>
 #include <quantize/cut_graph.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// @tparam Corners  as in quartersAround()
 template <class Corners>
@@ -19,7 +19,7 @@ template <class Corners>
   IrregularEdges irregular;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (quarters[e] == regularQuarters(edges, e)) continue;
-    const EdgeCorner& at = edges(e).front();
+    const adjacency::EdgeCorner& at = edges(e).front();
     irregular[{tets[at.tet][at.corner0], at.other}] = quarters[e];
   }
   return irregular;
@@ -32,8 +32,8 @@ void splitIrregular(const SplitEdge& edge, Index middle, IrregularEdges& irregul
 /// Tets at edges around which a map turns otherwise than expected, ascending. Its boundary
 /// triangles lie along planes of the grid, so that it turns by multiples of a right angle. Needs
 /// the stars of the topology.
-[[nodiscard]] std::vector<Index> tetsAtOtherTurns(const TetTopology& topology,
+[[nodiscard]] std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
                                                   const IrregularEdges& expected,
                                                   std::span<const TetParameters> map, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

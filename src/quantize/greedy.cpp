@@ -5,7 +5,7 @@
 #include <quantize/integer_form.hpp>
 #include <quantize/integer_program.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -99,4 +99,4 @@ IntegerSolver integerSolver() {
   return roundingSolver();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

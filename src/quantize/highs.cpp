@@ -8,7 +8,7 @@
 #include <quantize/loaded_solver.hpp>
 #endif
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 #if defined(HEXHEX_HIGHS_NAME)
 namespace {
@@ -84,4 +84,4 @@ IntegerSolver highsSolver() {
 IntegerSolver highsSolver() { return {}; }
 #endif
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

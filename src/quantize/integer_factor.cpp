@@ -11,11 +11,11 @@
 #include <base/vector3.hpp>
 #include <igm/prepare.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 namespace {
 
 /// The coordinate of a face along the axis that it is perpendicular to.
-double planeOf(const TetParameters& corners, HalfFace face) {
+double planeOf(const TetParameters& corners, adjacency::HalfFace face) {
   double least = INFINITY;
   double plane = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -35,20 +35,20 @@ double planeOf(const TetParameters& corners, HalfFace face) {
 
 /// Sizes of all that has to be an integer, in the charts given: those of the seamless map begin
 /// anywhere.
-std::vector<double> conditions(const TetTopology& topology,
+std::vector<double> conditions(const adjacency::TetTopology& topology,
                                std::span<const TetParameters> parameters) {
   std::vector<double> sizes;
-  const std::vector<Rotation> rotations = fitRotations(topology, parameters);
-  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
-    const TetParameters& here = parameters[tetOf(h)];
+  const std::vector<lattice::Rotation> rotations = fitRotations(topology, parameters);
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const TetParameters& here = parameters[adjacency::tetOf(h)];
     if (topology.isBoundary(h)) {
       sizes.push_back(std::abs(planeOf(here, h)));
       continue;
     }
-    const HalfFace mate = topology.mate[h];
-    const SharedFace face(topology, h, mate);
+    const adjacency::HalfFace mate = topology.mate[h];
+    const adjacency::SharedFace face(topology, h, mate);
     const Vec3 translation =
-        minus(parameters[tetOf(mate)][face.there(0)], rotations[h](here[face.here(0)]));
+        minus(parameters[adjacency::tetOf(mate)][face.there(0)], rotations[h](here[face.here(0)]));
     for (const double x : translation) sizes.push_back(std::abs(x));
   }
   std::sort(sizes.begin(), sizes.end());
@@ -91,9 +91,9 @@ bool isInteger(const TetMapView& map, double factor, Context& context) {
   }
   TetMapView view = map;
   view.parameters = scaled;
-  DefectCollector defects;
-  static_cast<void>(
-      prepareMap(view, ExtractOptions{}.tolerance, 1, context, defects, ChartChoice::Unfolded));
+  igm::DefectCollector defects;
+  static_cast<void>(igm::prepareMap(view, ExtractOptions{}.tolerance, 1, context, defects,
+                                    igm::ChartChoice::Unfolded));
   return defects.empty();
 }
 
@@ -101,8 +101,8 @@ bool isInteger(const TetMapView& map, double factor, Context& context) {
 
 double integerFactor(const TetMapView& map, const SeamlessMap& seamless, Context& context) {
   Stage stage(context, "seamless map");
-  DefectCollector defects;
-  const OrientedMap input = readInput(map, stage, defects);
+  igm::DefectCollector defects;
+  const igm::OrientedMap input = igm::readInput(map, stage, defects);
   const std::vector<double> sizes = conditions(seamless.topology, input.view.parameters);
   stage.finish();
   if (sizes.empty()) return 0;
@@ -118,4 +118,4 @@ double integerFactor(const TetMapView& map, const SeamlessMap& seamless, Context
   return 0;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -3,7 +3,7 @@
 
 #include <quantize/seamless_map.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// The smallest number that makes the map's parameters those of an integer-grid map: the inverse of
 /// the largest length of which all boundary coordinates and translations are multiples. Checked as
@@ -12,4 +12,4 @@ namespace hexhex {
 [[nodiscard]] double integerFactor(const TetMapView& map, const SeamlessMap& seamless,
                                    Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

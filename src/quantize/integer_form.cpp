@@ -13,7 +13,7 @@
 
 #include <lattice/wide_int.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -34,7 +34,7 @@ constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
 
 /// sum + a * b
 std::int64_t plusProduct(std::int64_t sum, std::int64_t a, std::int64_t b) {
-  const Int128 result = sum + static_cast<Int128>(a) * b;
+  const lattice::Int128 result = sum + static_cast<lattice::Int128>(a) * b;
   if (result > kLargestCoefficient || result < -kLargestCoefficient) failForSize();
   return static_cast<std::int64_t>(result);
 }
@@ -78,9 +78,9 @@ void IntegerForm::divide(std::int64_t divisor) {
 }
 
 std::int64_t IntegerForm::operator()(std::span<const std::int64_t> values) const {
-  Int128 sum = 0;
+  lattice::Int128 sum = 0;
   for (const auto& [variable, factor] : terms_) {
-    sum += static_cast<Int128>(factor) * values[variable];
+    sum += static_cast<lattice::Int128>(factor) * values[variable];
   }
   if (sum > kLargestValue || sum < -kLargestValue) failForSize();
   return static_cast<std::int64_t>(sum);
@@ -182,4 +182,4 @@ std::vector<std::int64_t> IntegerSystem::roundedTo(const std::vector<double>& so
   return values;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

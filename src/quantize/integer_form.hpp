@@ -8,7 +8,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// A sum of integer multiples of variables.
 class IntegerForm {
@@ -78,4 +78,4 @@ class IntegerSystem {
   std::vector<Index> free_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -8,7 +8,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// A sum of arcs, with signs, that has to be zero: arc and factor, ascending.
 using ArcEquation = std::vector<std::pair<Index, int>>;
@@ -46,4 +46,4 @@ struct IntegerSolver {
 /// The first of these that there is.
 [[nodiscard]] IntegerSolver integerSolver();
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -8,7 +8,7 @@
 
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 namespace {
 
 void* open(const char* name) {
@@ -71,4 +71,4 @@ std::vector<std::int64_t> solveInChildProcess(
       .value_or(std::vector<std::int64_t>());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -8,7 +8,7 @@
 
 #include <quantize/integer_program.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// @param name  that stands for the library's binary interface, as the system's loader finds it
 /// @param file  where it was when hexhex was built: it may be nowhere where the loader looks
@@ -50,4 +50,4 @@ inline constexpr int kMostNodes = 20000;
 /// They end as near to the minimum as this, relatively.
 inline constexpr double kGap = 0.01;
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -6,7 +6,7 @@
 #include <quantize/motorcycle_complex.hpp>
 #include <quantize/wall_remover.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -29,9 +29,9 @@ Index findBlocks(MotorcycleComplex& complex) {
     queue.assign(1, root);
     for (std::size_t next = 0; next < queue.size(); ++next) {
       for (int face = 0; face < 4; ++face) {
-        const HalfFace h = halfFaceOf(queue[next], face);
+        const adjacency::HalfFace h = adjacency::halfFaceOf(queue[next], face);
         if (mesh.isWall[h]) continue;
-        const Index there = tetOf(mesh.mate[h]);
+        const Index there = adjacency::tetOf(mesh.mate[h]);
         if (complex.blockOf[there] == kNone) {
           complex.blockOf[there] = block;
           complex.toBlock[there] = complex.toBlock[queue[next]] * mesh.change[h].inverse();
@@ -57,7 +57,7 @@ class RingCutter {
   }
 
   void run() {
-    const LatticePoint moves = findMoves();
+    const lattice::LatticePoint moves = findMoves();
     const std::size_t axis = axisOfMost(moves);
     if (moves[axis] == 0) {
       throw Error(ErrorCode::TransitionResidual,
@@ -75,29 +75,29 @@ class RingCutter {
 
  private:
   /// How far the block moves along each axis when one comes back from it, at most.
-  [[nodiscard]] LatticePoint findMoves() const {
-    LatticePoint most{};
+  [[nodiscard]] lattice::LatticePoint findMoves() const {
+    lattice::LatticePoint most{};
     for (const Index t : tets_) {
       for (int face = 0; face < 4; ++face) {
-        const HalfFace h = halfFaceOf(t, face);
+        const adjacency::HalfFace h = adjacency::halfFaceOf(t, face);
         if (mesh_.isWall[h]) continue;
         const ChartChange way = complex_.across(h);
         for (std::size_t k = 0; k < 3; ++k) {
-          const Direction d = direction(static_cast<int>(k), 1);
+          const lattice::Direction d = lattice::direction(static_cast<int>(k), 1);
           if (way.rotation(d) == d) most[k] = std::max(most[k], std::abs(way.translation[k]));
         }
       }
     }
     return most;
   }
-  static std::size_t axisOfMost(const LatticePoint& moves) {
+  static std::size_t axisOfMost(const lattice::LatticePoint& moves) {
     return static_cast<std::size_t>(std::max_element(moves.begin(), moves.end()) - moves.begin());
   }
 
   /// A node, so that no short arcs arise.
-  [[nodiscard]] LatticePoint somePlace() const {
+  [[nodiscard]] lattice::LatticePoint somePlace() const {
     const std::vector<bool> isNode = findNodes(complex_);
-    LatticePoint place = complex_.toBlock[inRing_](mesh_.at(inRing_, 0));
+    lattice::LatticePoint place = complex_.toBlock[inRing_](mesh_.at(inRing_, 0));
     for (const Index t : tets_) {
       for (std::size_t i = 0; i < 4; ++i) {
         if (isNode[mesh_.tets[t][i]]) place = complex_.toBlock[t](mesh_.at(t, i));
@@ -109,12 +109,12 @@ class RingCutter {
   /// Cuts along a plane of the block's chart. Where ways around lead along several axes, a wall
   /// alone may wind for ever: two that begin at one point end at each other.
   /// @return false if no tet reaches to both sides of the plane
-  bool startAt(const AxisPlane& plane, const LatticePoint& moves) {
+  bool startAt(const AxisPlane& plane, const lattice::LatticePoint& moves) {
     WallTracer tracer(mesh_);
     const auto before = static_cast<Index>(mesh_.tetCount());
     for (const Index t : tets_) {
       const ChartChange back = complex_.toBlock[t].inverse();
-      const LatticePoint point = complex_.toBlock[t](pointIn(t, plane.beyond(back)));
+      const lattice::LatticePoint point = complex_.toBlock[t](pointIn(t, plane.beyond(back)));
       if (!tracer.startIn(t, plane.beyond(back))) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         if (k == plane.axis || moves[k] <= moves[plane.axis] >> kNoiseBits) continue;
@@ -130,13 +130,13 @@ class RingCutter {
   }
 
   /// In the middle of where a plane cuts a tet, in the tet's chart, if it does.
-  [[nodiscard]] LatticePoint pointIn(Index t, const AxisPlane& plane) const {
+  [[nodiscard]] lattice::LatticePoint pointIn(Index t, const AxisPlane& plane) const {
     Vec3 sum{};
     double count = 0;
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) {
-        const LatticePoint& from = mesh_.at(t, a);
-        const LatticePoint& to = mesh_.at(t, b);
+        const lattice::LatticePoint& from = mesh_.at(t, a);
+        const lattice::LatticePoint& to = mesh_.at(t, b);
         if (plane.sideOf(from) * plane.sideOf(to) > 0 || from[plane.axis] == to[plane.axis]) {
           continue;
         }
@@ -148,7 +148,7 @@ class RingCutter {
         ++count;
       }
     }
-    LatticePoint point;
+    lattice::LatticePoint point;
     for (std::size_t k = 0; k < 3; ++k) point[k] = std::llround(sum[k] / std::max(count, 1.0));
     return point;
   }
@@ -162,22 +162,22 @@ class RingCutter {
 /// A block is a box if it has the volume of its bounding box.
 void requireBoxes(const MotorcycleComplex& complex) {
   std::vector<Extent> extents(complex.blockCount);
-  std::vector<Int192> sixfoldVolumes(complex.blockCount);
+  std::vector<lattice::Int192> sixfoldVolumes(complex.blockCount);
   std::vector<Index> someTet(complex.blockCount);
   for (Index t = 0; t < complex.mesh.tetCount(); ++t) {
     const Index block = complex.blockOf[t];
     someTet[block] = t;
-    LatticeTet u = complex.mesh.corners[t];
-    for (LatticePoint& corner : u) {
+    lattice::LatticeTet u = complex.mesh.corners[t];
+    for (lattice::LatticePoint& corner : u) {
       corner = complex.toBlock[t](corner);
       extents[block].add(corner);
     }
-    sixfoldVolumes[block] += orientationDeterminant(u[0], u[1], u[2], u[3]);
+    sixfoldVolumes[block] += lattice::orientationDeterminant(u[0], u[1], u[2], u[3]);
   }
   for (Index block = 0; block < complex.blockCount; ++block) {
-    const LatticePoint size = extents[block].high - extents[block].low;
-    Int192 difference = sixfoldVolumes[block];
-    difference.addProduct(static_cast<Int128>(size[0]) * size[1], -6 * size[2]);
+    const lattice::LatticePoint size = extents[block].high - extents[block].low;
+    lattice::Int192 difference = sixfoldVolumes[block];
+    difference.addProduct(static_cast<lattice::Int128>(size[0]) * size[1], -6 * size[2]);
     if (difference.sign() != 0) {
       throw Error(ErrorCode::Internal,
                   "A block of the motorcycle complex is no box. This is a bug.",
@@ -190,35 +190,37 @@ void requireBoxes(const MotorcycleComplex& complex) {
 void requireRectangles(const MotorcycleComplex& complex) {
   const WallMesh& mesh = complex.mesh;
   std::vector<Extent> extents(complex.patches.size());
-  std::vector<Int128> twofoldAreas(complex.patches.size());
-  for (HalfFace h = 0; h < mesh.mate.size(); ++h) {
+  std::vector<lattice::Int128> twofoldAreas(complex.patches.size());
+  for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
     const Index p = complex.patchOf[h];
     if (p == kNone) continue;
-    const Index tet = tetOf(h);
-    std::array<LatticePoint, 3> u;
+    const Index tet = adjacency::tetOf(h);
+    std::array<lattice::LatticePoint, 3> u;
     for (std::size_t k = 0; k < 3; ++k) {
-      u[k] = complex.toBlock[tet](mesh.at(tet, static_cast<std::size_t>(kFaceCorners[h % 4][k])));
+      u[k] = complex.toBlock[tet](
+          mesh.at(tet, static_cast<std::size_t>(lattice::kFaceCorners[h % 4][k])));
       extents[p].add(u[k]);
     }
-    const LatticePoint a = u[1] - u[0];
-    const LatticePoint b = u[2] - u[0];
+    const lattice::LatticePoint a = u[1] - u[0];
+    const lattice::LatticePoint b = u[2] - u[0];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t i = (k + 1) % 3;
       const std::size_t j = (k + 2) % 3;
-      const Int128 area = static_cast<Int128>(a[i]) * b[j] - static_cast<Int128>(a[j]) * b[i];
+      const lattice::Int128 area =
+          static_cast<lattice::Int128>(a[i]) * b[j] - static_cast<lattice::Int128>(a[j]) * b[i];
       twofoldAreas[p] += area < 0 ? -area : area;
     }
   }
   for (Index p = 0; p < complex.patches.size(); ++p) {
-    const LatticePoint size = extents[p].high - extents[p].low;
-    Int128 area = 0;
+    const lattice::LatticePoint size = extents[p].high - extents[p].low;
+    lattice::Int128 area = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      area += static_cast<Int128>(size[k]) * size[(k + 1) % 3];
+      area += static_cast<lattice::Int128>(size[k]) * size[(k + 1) % 3];
     }
     if (twofoldAreas[p] == 2 * area) continue;
     throw Error(ErrorCode::Internal,
                 "A patch of the motorcycle complex is no rectangle. This is a bug.",
-                {PlaceKind::Tet, mesh.original[tetOf(complex.patches[p].first)]});
+                {PlaceKind::Tet, mesh.original[adjacency::tetOf(complex.patches[p].first)]});
   }
 }
 
@@ -243,4 +245,4 @@ MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced, Context& co
   return complex;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

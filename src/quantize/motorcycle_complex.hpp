@@ -10,7 +10,7 @@
 
 #include <quantize/walls.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Between two nodes: edges in a line where walls meet other than flat.
 struct Arc {
@@ -24,8 +24,8 @@ struct Arc {
 struct FeatureCorner {
   Index tet = 0;
   std::size_t corner = 0;
-  std::size_t freeAxis = 3;  ///< of its block, or 3
-  LatticePoint node{};       ///< of the arc, in its block's chart
+  std::size_t freeAxis = 3;      ///< of its block, or 3
+  lattice::LatticePoint node{};  ///< of the arc, in its block's chart
 };
 
 /// An arc as it borders a patch on one side, or a block: from where to where it goes in the block's
@@ -34,16 +34,16 @@ struct ArcSide {
   Index arc = 0;
   std::uint8_t axis = 0;  ///< along which it goes
   std::int8_t sign = 1;   ///< up or down that axis
-  LatticePoint start{};
-  LatticePoint end{};
+  lattice::LatticePoint start{};
+  lattice::LatticePoint end{};
   [[nodiscard]] auto operator<=>(const ArcSide&) const = default;
 };
 
 /// A rectangle between two blocks, or between a block and nothing, as seen from the first of them.
 struct PatchSide {
   Index block = 0;
-  HalfFace first = 0;           ///< one of its triangles
-  std::vector<ArcSide> border;  ///< anticlockwise, from inside of the block
+  adjacency::HalfFace first = 0;  ///< one of its triangles
+  std::vector<ArcSide> border;    ///< anticlockwise, from inside of the block
 };
 
 struct MotorcycleComplex {
@@ -58,22 +58,23 @@ struct MotorcycleComplex {
 
   /// The other side of a patch, or kNone on the boundary.
   [[nodiscard]] Index acrossPatch(Index side) const {
-    const HalfFace mate = mesh.mate[patches[side].first];
+    const adjacency::HalfFace mate = mesh.mate[patches[side].first];
     return mate == kNone ? kNone : patchOf[mate];
   }
   /// From the chart of a tet's block into that beyond one of its faces.
-  [[nodiscard]] ChartChange across(HalfFace h) const {
-    return toBlock[tetOf(mesh.mate[h])] * mesh.change[h] * toBlock[tetOf(h)].inverse();
+  [[nodiscard]] ChartChange across(adjacency::HalfFace h) const {
+    return toBlock[adjacency::tetOf(mesh.mate[h])] * mesh.change[h] *
+           toBlock[adjacency::tetOf(h)].inverse();
   }
 };
 
 /// A box, from its lowest corner to its highest one.
 struct Extent {
-  LatticePoint low{};
-  LatticePoint high{};
+  lattice::LatticePoint low{};
+  lattice::LatticePoint high{};
   bool isEmpty = true;
 
-  void add(const LatticePoint& point) {
+  void add(const lattice::LatticePoint& point) {
     if (isEmpty) low = high = point;
     isEmpty = false;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -92,4 +93,4 @@ struct Extent {
 [[nodiscard]] MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced,
                                              Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -4,12 +4,12 @@
 
 #include <base/disjoint_sets.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
-std::string nameOf(Direction label) {
-  return {signOf(label) > 0 ? '+' : '-', static_cast<char>('x' + axisOf(label))};
+std::string nameOf(lattice::Direction label) {
+  return {lattice::signOf(label) > 0 ? '+' : '-', static_cast<char>('x' + lattice::axisOf(label))};
 }
 
 VertexPair verticesOf(const BoundarySides& sides, BoundarySides::Side side) {
@@ -29,17 +29,18 @@ Index triangleOf(BoundarySides::Side side) { return static_cast<Index>(side / 3)
 
 }  // namespace
 
-BoundarySides::BoundarySides(const TetTopology& topology) : topology_(topology) {
-  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+BoundarySides::BoundarySides(const adjacency::TetTopology& topology) : topology_(topology) {
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (topology.isBoundary(h)) faces_.push_back(h);
   }
   twins_.resize(3 * faces_.size());
   for (Side side = 0; side < twins_.size(); ++side) {
-    const HalfFace h = face(side);
-    const auto ends =
-        static_cast<CornerMask>(cornerBit(topology.localCorner(tetOf(h), head(side))) |
-                                cornerBit(topology.localCorner(tetOf(h), tail(side))));
-    EdgeTurn turn(topology, tetOf(h), ends, otherFaceAtEdge(ends, localOf(h)));
+    const adjacency::HalfFace h = face(side);
+    const auto ends = static_cast<lattice::CornerMask>(
+        lattice::cornerBit(topology.localCorner(adjacency::tetOf(h), head(side))) |
+        lattice::cornerBit(topology.localCorner(adjacency::tetOf(h), tail(side))));
+    adjacency::EdgeTurn turn(topology, adjacency::tetOf(h), ends,
+                             adjacency::otherFaceAtEdge(ends, adjacency::localOf(h)));
     while (turn.next() != kNone) turn.step();
     const auto found = std::lower_bound(faces_.begin(), faces_.end(), turn.out());
     Side there = 3 * static_cast<Side>(found - faces_.begin());
@@ -50,9 +51,9 @@ BoundarySides::BoundarySides(const TetTopology& topology) : topology_(topology) 
 
 Index BoundarySides::corner(Side side, std::size_t ahead) const noexcept {
   // Corners of a face are in the order that looks inwards.
-  const HalfFace h = face(side);
-  const auto& corners = kFaceCorners[h % 4];
-  return topology_.tets[tetOf(h)][static_cast<std::size_t>(corners[(side + ahead) % 3])];
+  const adjacency::HalfFace h = face(side);
+  const auto& corners = lattice::kFaceCorners[h % 4];
+  return topology_.tets[adjacency::tetOf(h)][static_cast<std::size_t>(corners[(side + ahead) % 3])];
 }
 
 PolycubeBorders::PolycubeBorders(const LabelledMesh& mesh)
@@ -69,10 +70,11 @@ PolycubeBorders::PolycubeBorders(const LabelledMesh& mesh)
 }
 
 void PolycubeBorders::requireOtherAxes(Side border) const {
-  if (axisOf(label(border)) != axisOf(labelBeyond(border))) return;
-  const Direction upper = std::min(label(border), labelBeyond(border));
+  if (lattice::axisOf(label(border)) != lattice::axisOf(labelBeyond(border))) return;
+  const lattice::Direction upper = std::min(label(border), labelBeyond(border));
   throw Error(ErrorCode::InvalidArgument,
-              "Triangles with the labels " + nameOf(upper) + " and " + nameOf(opposite(upper)) +
+              "Triangles with the labels " + nameOf(upper) + " and " +
+                  nameOf(lattice::opposite(upper)) +
                   " meet at an edge; opposite faces of a polycube never do. Put triangles with "
                   "another label between them.",
               placeOf(verticesOf(sides_, border)));
@@ -149,8 +151,8 @@ PolycubeBorders::Side PolycubeBorders::nextBorderAtTail(Side border) const {
   return side;
 }
 
-std::vector<Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const {
-  std::vector<Direction> directions(sides_.size());
+std::vector<lattice::Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const {
+  std::vector<lattice::Direction> directions(sides_.size());
   for (const Side first : borders_) {
     if (!isCorner(sides_.tail(first))) continue;
     Side last = first;
@@ -166,7 +168,7 @@ std::vector<Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const
                    placeOf(verticesOf(sides_, first)));
     }
     for (Side side = first; true; side = nextBorder(side)) {
-      directions[side] = direction(axis, length < 0 ? -1 : 1);
+      directions[side] = lattice::direction(axis, length < 0 ? -1 : 1);
       if (side == last) break;
     }
   }
@@ -174,18 +176,19 @@ std::vector<Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const
 }
 
 /// Walks around a corner, along edges and over faces.
-void PolycubeBorders::requireRoom(Side first, const std::vector<Direction>& directions) const {
-  std::array<bool, kDirections> isTaken{};
+void PolycubeBorders::requireRoom(Side first,
+                                  const std::vector<lattice::Direction>& directions) const {
+  std::array<bool, lattice::kDirections> isTaken{};
   bool isInjective = true;
   std::string labels;
   Side side = first;
   do {
     const Side next = nextBorderAtTail(side);
-    Direction at = directions[side];
+    lattice::Direction at = directions[side];
     do {
       isInjective = isInjective && !isTaken[at];
       isTaken[at] = true;
-      at = cross(label(side), at);
+      at = lattice::cross(label(side), at);
     } while (at != directions[next]);
     labels += (labels.empty() ? "" : ", ") + nameOf(label(side));
     side = next;
@@ -198,7 +201,7 @@ void PolycubeBorders::requireRoom(Side first, const std::vector<Direction>& dire
 }
 
 /// Quarter turns to the left around a flat face: four times its Euler characteristic.
-void PolycubeBorders::requireFlatFaces(const std::vector<Direction>& directions) const {
+void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& directions) const {
   DisjointSets faces(sides_.size() / 3);
   for (Side side = 0; side < sides_.size(); ++side) {
     if (!isBorder(side)) faces.unite(triangleOf(side), triangleOf(sides_.twin(side)));
@@ -211,9 +214,9 @@ void PolycubeBorders::requireFlatFaces(const std::vector<Direction>& directions)
     const Index face = faces.find(triangleOf(side));
     if (side % 3 == 0) twiceCharacteristic[face] += 2;
     if (isBorder(side)) {
-      const Direction next = directions[nextBorder(side)];
+      const lattice::Direction next = directions[nextBorder(side)];
       if (next != directions[side]) {
-        turns[face] += next == cross(label(side), directions[side]) ? 1 : -1;
+        turns[face] += next == lattice::cross(label(side), directions[side]) ? 1 : -1;
       }
       continue;
     }
@@ -234,7 +237,7 @@ void PolycubeBorders::requireFlatFaces(const std::vector<Direction>& directions)
 }
 
 IrregularEdges PolycubeBorders::turns(const PlaneAt& planeAt) const {
-  const std::vector<Direction> along = directions(planeAt);
+  const std::vector<lattice::Direction> along = directions(planeAt);
   for (const Side border : borders_) {
     if (isCorner(sides_.tail(border))) requireRoom(border, along);
   }
@@ -242,10 +245,11 @@ IrregularEdges PolycubeBorders::turns(const PlaneAt& planeAt) const {
   IrregularEdges quarters;
   for (const Side border : borders_) {
     // From the edge, the face goes to the left.
-    const bool isConvex = labelBeyond(border) == opposite(cross(label(border), along[border]));
+    const bool isConvex =
+        labelBeyond(border) == lattice::opposite(lattice::cross(label(border), along[border]));
     quarters[verticesOf(sides_, border)] = isConvex ? 1 : 3;
   }
   return quarters;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -15,17 +15,17 @@
 #include <quantize/polycube_labels.hpp>
 #include <quantize/wall_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// The sides of boundary triangles, counterclockwise as seen from outside.
 class BoundarySides {
  public:
   using Side = std::size_t;  ///< 3 * triangle + 0 to 2
 
-  explicit BoundarySides(const TetTopology& topology);
+  explicit BoundarySides(const adjacency::TetTopology& topology);
 
   [[nodiscard]] std::size_t size() const noexcept { return twins_.size(); }
-  [[nodiscard]] HalfFace face(Side side) const noexcept { return faces_[side / 3]; }
+  [[nodiscard]] adjacency::HalfFace face(Side side) const noexcept { return faces_[side / 3]; }
   [[nodiscard]] Index head(Side side) const noexcept { return corner(side, 0); }
   [[nodiscard]] Index tail(Side side) const noexcept { return corner(side, 1); }
   /// Of the same triangle, from the head on.
@@ -36,8 +36,8 @@ class BoundarySides {
  private:
   [[nodiscard]] Index corner(Side side, std::size_t ahead) const noexcept;
 
-  const TetTopology& topology_;
-  std::vector<HalfFace> faces_;  ///< ascending
+  const adjacency::TetTopology& topology_;
+  std::vector<adjacency::HalfFace> faces_;  ///< ascending
   std::vector<Side> twins_;
 };
 
@@ -57,12 +57,12 @@ class PolycubeBorders {
  private:
   using Side = BoundarySides::Side;
 
-  [[nodiscard]] Direction label(Side side) const { return mesh_.label(sides_.face(side)); }
-  [[nodiscard]] Direction labelBeyond(Side side) const { return label(sides_.twin(side)); }
+  [[nodiscard]] lattice::Direction label(Side side) const { return mesh_.label(sides_.face(side)); }
+  [[nodiscard]] lattice::Direction labelBeyond(Side side) const { return label(sides_.twin(side)); }
   [[nodiscard]] bool isBorder(Side side) const { return label(side) != labelBeyond(side); }
   /// Along which a border runs.
   [[nodiscard]] int axisAlong(Side side) const {
-    return 3 - axisOf(label(side)) - axisOf(labelBeyond(side));
+    return 3 - lattice::axisOf(label(side)) - lattice::axisOf(labelBeyond(side));
   }
   [[nodiscard]] bool isCorner(Index vertex) const { return borderCount_[vertex] > 2; }
   [[nodiscard]] Side nextBorder(Side border) const;
@@ -73,9 +73,9 @@ class PolycubeBorders {
   void requireFourEdges() const;
   void requireBorderOnEachPiece() const;
   /// Per side of a border: where it runs.
-  [[nodiscard]] std::vector<Direction> directions(const PlaneAt& planeAt) const;
-  void requireRoom(Side first, const std::vector<Direction>& directions) const;
-  void requireFlatFaces(const std::vector<Direction>& directions) const;
+  [[nodiscard]] std::vector<lattice::Direction> directions(const PlaneAt& planeAt) const;
+  void requireRoom(Side first, const std::vector<lattice::Direction>& directions) const;
+  void requireFlatFaces(const std::vector<lattice::Direction>& directions) const;
 
   const LabelledMesh& mesh_;
   BoundarySides sides_;
@@ -83,4 +83,4 @@ class PolycubeBorders {
   std::vector<Index> borderCount_;  ///< per vertex
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

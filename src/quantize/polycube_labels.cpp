@@ -3,12 +3,12 @@
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
 /// Positions stand in for the parameters of a map, which is thereby oriented as the object is.
-OrientedMap readTets(const TetMesh& tets, Stage& stage) {
+igm::OrientedMap readTets(const TetMesh& tets, Stage& stage) {
   std::vector<TetParameters> positions;
   positions.reserve(tets.tets.size());
   for (const Tet& tet : tets.tets) {
@@ -17,8 +17,8 @@ OrientedMap readTets(const TetMesh& tets, Stage& stage) {
       if (tet[i] < tets.points.size()) corners[i] = tets.points[tet[i]];
     }
   }
-  DefectCollector defects;
-  OrientedMap input = readInput({tets.points, tets.tets, positions}, stage, defects);
+  igm::DefectCollector defects;
+  igm::OrientedMap input = igm::readInput({tets.points, tets.tets, positions}, stage, defects);
   defects.throwIfAny();
   input.view.parameters = {};
   input.parameters = {};
@@ -49,7 +49,7 @@ void requirePositive(const TetMapView& view) {
               {PlaceKind::Tet, first});
 }
 
-void requireLabel(const LabelledMesh& mesh, HalfFace h) {
+void requireLabel(const LabelledMesh& mesh, adjacency::HalfFace h) {
   const std::int8_t flag = mesh.flags[h];
   const bool isBoundary = mesh.topology.isBoundary(h);
   if (flag < -1 || flag > 5) {
@@ -67,7 +67,7 @@ void requireLabel(const LabelledMesh& mesh, HalfFace h) {
 
 }  // namespace
 
-void refuseFlag(const LabelledMesh& mesh, HalfFace h, const std::string& sentence) {
+void refuseFlag(const LabelledMesh& mesh, adjacency::HalfFace h, const std::string& sentence) {
   throw Error(ErrorCode::InvalidArgument, sentence, mesh.placeOf(h));
 }
 
@@ -80,17 +80,17 @@ LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, S
   LabelledMesh mesh;
   mesh.input = readTets(tets, stage);
   requirePositive(mesh.input.view);
-  DefectCollector defects;
-  mesh.topology = buildTopology(mesh.input.view, stage, defects);
+  igm::DefectCollector defects;
+  mesh.topology = igm::buildTopology(mesh.input.view, stage, defects);
   defects.throwIfAny();
-  addStars(mesh.topology, stage);
+  adjacency::addStars(mesh.topology, stage);
   mesh.flags.resize(mesh.topology.mate.size());
-  for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
-    const auto face = static_cast<std::size_t>(mesh.input.callersCorner(localOf(h)));
-    mesh.flags[h] = flags[tetOf(h)][face];
+  for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
+    const auto face = static_cast<std::size_t>(mesh.input.callersCorner(adjacency::localOf(h)));
+    mesh.flags[h] = flags[adjacency::tetOf(h)][face];
     requireLabel(mesh, h);
   }
   return mesh;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -12,23 +12,26 @@
 #include <igm/input.hpp>
 #include <lattice/direction.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// A tet mesh with labels, positive in space.
 struct LabelledMesh {
-  OrientedMap input;               ///< without parameters
-  TetTopology topology;            ///< with stars
-  std::vector<std::int8_t> flags;  ///< per half-face
+  igm::OrientedMap input;           ///< without parameters
+  adjacency::TetTopology topology;  ///< with stars
+  std::vector<std::int8_t> flags;   ///< per half-face
 
   [[nodiscard]] const Vec3& point(Index tet, int corner) const {
     return input.view.points[topology.tets[tet][static_cast<std::size_t>(corner)]];
   }
-  [[nodiscard]] bool isLabelled(HalfFace h) const { return flags[h] >= 0; }
+  [[nodiscard]] bool isLabelled(adjacency::HalfFace h) const { return flags[h] >= 0; }
   /// Of a half-face that has one.
-  [[nodiscard]] Direction label(HalfFace h) const { return static_cast<Direction>(flags[h]); }
+  [[nodiscard]] lattice::Direction label(adjacency::HalfFace h) const {
+    return static_cast<lattice::Direction>(flags[h]);
+  }
   /// In the caller's terms.
-  [[nodiscard]] Place placeOf(HalfFace h) const {
-    return {PlaceKind::Face, tetOf(h), static_cast<std::uint64_t>(input.callersCorner(localOf(h)))};
+  [[nodiscard]] Place placeOf(adjacency::HalfFace h) const {
+    return {PlaceKind::Face, adjacency::tetOf(h),
+            static_cast<std::uint64_t>(input.callersCorner(adjacency::localOf(h)))};
   }
 };
 
@@ -37,6 +40,7 @@ struct LabelledMesh {
                                       Stage& stage);
 
 /// @throws Error InvalidArgument at a half-face
-[[noreturn]] void refuseFlag(const LabelledMesh& mesh, HalfFace h, const std::string& sentence);
+[[noreturn]] void refuseFlag(const LabelledMesh& mesh, adjacency::HalfFace h,
+                             const std::string& sentence);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -30,7 +30,7 @@
 #include <base/vector3.hpp>
 #endif
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 #if defined(HEXHEX_HAS_QUANTIZE)
 namespace {
@@ -83,7 +83,7 @@ std::vector<TetShape> measureShapes(const LabelledMesh& mesh) {
 class PoissonProblem {
  public:
   /// @param unknownOf  per vertex: its unknown, or -1 if its value is known
-  PoissonProblem(const TetTopology& topology, const std::vector<TetShape>& shapes,
+  PoissonProblem(const adjacency::TetTopology& topology, const std::vector<TetShape>& shapes,
                  std::vector<int> unknownOf, int count)
       : topology_(topology),
         shapes_(shapes),
@@ -138,7 +138,7 @@ class PoissonProblem {
   }
   [[nodiscard]] int at(Index tet, int corner) const { return unknownOf_[vertex(tet, corner)]; }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const std::vector<TetShape>& shapes_;
   std::vector<int> unknownOf_;
   Matrix matrix_;
@@ -148,19 +148,22 @@ class PoissonProblem {
 /// How tets have to turn for the boundary to face where its labels say: harmonic between rotations
 /// of boundary vertices, which fit the labels around them.
 Rotations turnToLabels(const LabelledMesh& mesh, const std::vector<TetShape>& shapes) {
-  const TetTopology& topology = mesh.topology;
+  const adjacency::TetTopology& topology = mesh.topology;
   Rotations ofVertices(topology.pointCount, Matrix33::Zero());
-  for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
     if (!mesh.isLabelled(h)) continue;
-    const Direction label = mesh.label(h);
-    const auto& face = kFaceCorners[h % 4];
-    const auto corner = [&](std::size_t k) { return asEigen(mesh.point(tetOf(h), face[k])); };
+    const lattice::Direction label = mesh.label(h);
+    const auto& face = lattice::kFaceCorners[h % 4];
+    const auto corner = [&](std::size_t k) {
+      return asEigen(mesh.point(adjacency::tetOf(h), face[k]));
+    };
     // Corners of a face are in the order that looks inwards.
     const Eigen::Vector3d normal = (corner(2) - corner(0)).cross(corner(1) - corner(0));
-    const Matrix33 fit = signOf(label) * Eigen::Vector3d::Unit(axisOf(label)) * normal.transpose() +
+    const Matrix33 fit = lattice::signOf(label) * Eigen::Vector3d::Unit(lattice::axisOf(label)) *
+                             normal.transpose() +
                          kInertia * normal.norm() * Matrix33::Identity();
     for (const int k : face)
-      ofVertices[topology.tets[tetOf(h)][static_cast<std::size_t>(k)]] += fit;
+      ofVertices[topology.tets[adjacency::tetOf(h)][static_cast<std::size_t>(k)]] += fit;
   }
   std::vector<int> unknownOf(topology.pointCount, -1);
   int count = 0;
@@ -200,10 +203,10 @@ class PlaneFinder {
     const std::size_t n = mesh.topology.pointCount;
     for (int axis = 0; axis < 3; ++axis) {
       DisjointSets planes(n);
-      for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
-        if (!mesh.isLabelled(h) || axisOf(mesh.label(h)) != axis) continue;
-        const Tet& tet = mesh.topology.tets[tetOf(h)];
-        const auto& c = kFaceCorners[h % 4];
+      for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
+        if (!mesh.isLabelled(h) || lattice::axisOf(mesh.label(h)) != axis) continue;
+        const Tet& tet = mesh.topology.tets[adjacency::tetOf(h)];
+        const auto& c = lattice::kFaceCorners[h % 4];
         for (std::size_t k = 1; k < 3; ++k) {
           planes.unite(tet[static_cast<std::size_t>(c[0])], tet[static_cast<std::size_t>(c[k])]);
         }
@@ -289,12 +292,12 @@ BendProblem problemOf(const LabelledMesh& mesh, const PolycubeBorders& borders,
   }
   problem.transitions.resize(mesh.flags.size());
   problem.planes.resize(mesh.flags.size());
-  for (HalfFace h = 0; h < mesh.flags.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
     if (!mesh.isLabelled(h)) continue;
-    const int axis = axisOf(mesh.label(h));
-    const auto corner = static_cast<std::size_t>(kFaceCorners[h % 4][0]);
+    const int axis = lattice::axisOf(mesh.label(h));
+    const auto corner = static_cast<std::size_t>(lattice::kFaceCorners[h % 4][0]);
     problem.planes[h] = {static_cast<std::int8_t>(axis),
-                         planeAt(axis, mesh.topology.tets[tetOf(h)][corner])};
+                         planeAt(axis, mesh.topology.tets[adjacency::tetOf(h)][corner])};
   }
   problem.irregularEdges = borders.turns(planeAt);
   return problem;
@@ -305,14 +308,14 @@ void requireSigns(const LabelledMesh& mesh, const std::vector<BoundaryPlane>& pl
                   const BentMap& bent) {
   for (std::size_t t = 0; t < bent.tets.size(); ++t) {
     for (std::size_t face = 0; face < 4; ++face) {
-      const auto h = static_cast<HalfFace>(4 * bent.parentTet[t] + face);
+      const auto h = static_cast<adjacency::HalfFace>(4 * bent.parentTet[t] + face);
       if (!mesh.isLabelled(h)) continue;
-      const auto axis = static_cast<std::size_t>(axisOf(mesh.label(h)));
+      const auto axis = static_cast<std::size_t>(lattice::axisOf(mesh.label(h)));
       const double plane = planes[h].coordinate;
       const bool isWhole = std::all_of(
-          kFaceCorners[face].begin(), kFaceCorners[face].end(),
+          lattice::kFaceCorners[face].begin(), lattice::kFaceCorners[face].end(),
           [&](int k) { return bent.parameters[t][static_cast<std::size_t>(k)][axis] == plane; });
-      if (!isWhole || signOf(mesh.label(h)) * (plane - bent.parameters[t][face][axis]) > 0)
+      if (!isWhole || lattice::signOf(mesh.label(h)) * (plane - bent.parameters[t][face][axis]) > 0)
         continue;
       refuseFlag(mesh, h,
                  "The labels are those of no polycube: in the only map that fits them, a boundary "
@@ -362,10 +365,14 @@ TetMap polycubeMap(const TetMesh& tets, std::span<const FaceFlags> flags, Stage&
 
 }  // namespace
 
+}  // namespace hexhex::quantization
+
+namespace hexhex {
+
 TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags, Context& context) {
   Stage stage(context, "polycube");
   TetMap map;
-  withThreads(context.threads(), [&] { map = polycubeMap(tets, flags, stage); });
+  withThreads(context.threads(), [&] { map = quantization::polycubeMap(tets, flags, stage); });
   return map;
 }
 #else
@@ -377,4 +384,4 @@ TetMap mapFromFlags(const TetMesh& /*tets*/, std::span<const FaceFlags> /*flags*
 }
 #endif
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -26,7 +26,7 @@
 #include <base/vector3.hpp>
 #endif
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 #if defined(HEXHEX_HAS_QUANTIZE)
 namespace {
@@ -240,7 +240,7 @@ class Quantizer {
         seamless_(seamlessMap(map_, options, apart, context)) {
     std::vector<TetParameters>().swap(map_.parameters);  // which are large
     irregularEdges_ = irregularEdges(EdgeFans(seamless_.topology), seamless_.topology.tets,
-                                     std::span<const LatticeTet>(seamless_.corners));
+                                     std::span<const lattice::LatticeTet>(seamless_.corners));
     report_.cellsWanted = cellsWanted(map_, seamless_, options);
     report_.displacement = seamless_.maxDisplacement;
     report_.integersBy = solver_.name;
@@ -422,6 +422,10 @@ QuantizedMap quantizeSorted(TetMap map, const QuantizeOptions& options, Context&
 
 }  // namespace
 
+}  // namespace hexhex::quantization
+
+namespace hexhex {
+
 bool canQuantize() noexcept { return true; }
 
 SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
@@ -429,16 +433,17 @@ SeamlessReport examineSeamless(const TetMapView& map, Context& context) {
   WorkSteps steps(context, "examineSeamless", kSteps);
   SeamlessReport report;
   try {
-    const SeamlessMap seamless = makeSeamless(map, {kAlmost, 0, 0}, context);
+    const quantization::SeamlessMap seamless =
+        quantization::makeSeamless(map, {quantization::kAlmost, 0, 0}, context);
     report.displacement = seamless.maxDisplacement;
-    report.cells = volumeOf(seamless);
+    report.cells = quantization::volumeOf(seamless);
     report.kind = report.displacement <= QuantizeOptions{}.tolerance * seamless.size
                       ? SeamlessKind::Seamless
                       : SeamlessKind::AlmostSeamless;
     if (report.kind == SeamlessKind::Seamless || !seamless.flippedAsGiven.empty()) {
-      requirePositiveTets(seamless);
+      quantization::requirePositiveTets(seamless);
     }
-    report.integerFactor = integerFactor(map, seamless, context);
+    report.integerFactor = quantization::integerFactor(map, seamless, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled) throw;
     report.kind = SeamlessKind::Neither;
@@ -456,22 +461,22 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
                                                {"integers", 2},
                                                {"bending", 4},
                                                {"singular curves", 0.2}}};
-  checkOptions(options);
+  quantization::checkOptions(options);
   WorkSteps steps(context, "quantize", kSteps);
   QuantizedMap result;
   withThreads(context.threads(), [&] {
     // What is wrong with the caller's arrays is found in them.
-    if (map.parameters.size() != map.tets.size() || !areInRange(map)) {
-      static_cast<void>(makeSeamless(map, {}, context));
+    if (map.parameters.size() != map.tets.size() || !quantization::areInRange(map)) {
+      static_cast<void>(quantization::makeSeamless(map, {}, context));
     }
     std::vector<Index> order;
-    TetMap sorted = inCanonicalOrder(map, order);
+    TetMap sorted = quantization::inCanonicalOrder(map, order);
     try {
-      result = quantizeSorted(std::move(sorted), options, context);
+      result = quantization::quantizeSorted(std::move(sorted), options, context);
     } catch (const Error& error) {
-      throw inCallersTerms(error, map, order);
+      throw quantization::inCallersTerms(error, map, order);
     }
-    restoreOrder(order, result.map);
+    quantization::restoreOrder(order, result.map);
   });
   steps.finish();
   return result;
@@ -494,4 +499,4 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options) {
   return quantize(map, options, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -11,7 +11,7 @@
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -83,13 +83,13 @@ Features splitFeatures(const FeaturesView& given, std::size_t pointCount,
 /// Singular curves must be what they were.
 void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {
   Stage stage(context, "singular curves");
-  TetTopology topology;
+  adjacency::TetTopology topology;
   topology.tets = map.tets;
   topology.pointCount = map.points.size();
-  if (!matchFaces(topology, stage)) {
+  if (!adjacency::matchFaces(topology, stage)) {
     throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
   }
-  addStars(topology, stage);
+  adjacency::addStars(topology, stage);
   const EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = map.parameters;
   if (irregularEdges(edges, topology.tets, parameters) != expected) {
@@ -128,4 +128,4 @@ QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

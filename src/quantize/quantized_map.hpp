@@ -6,7 +6,7 @@
 
 #include <hexhex/quantize.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// @param singular  edges of the map before it was bent
 /// @param given  whose features and regions come along
@@ -16,4 +16,4 @@ namespace hexhex {
                                               BentMap bent, const QuantizeReport& report,
                                               Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -6,17 +6,18 @@
 
 #include <base/disjoint_sets.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
 /// R applied to forms.
-std::array<IntegerForm, 3> rotated(Rotation rotation, const std::array<IntegerForm, 3>& forms) {
+std::array<IntegerForm, 3> rotated(lattice::Rotation rotation,
+                                   const std::array<IntegerForm, 3>& forms) {
   std::array<IntegerForm, 3> image;
   for (int from = 0; from < 3; ++from) {
-    const Direction to = rotation(direction(from, 1));
-    image[static_cast<std::size_t>(axisOf(to))].add(forms[static_cast<std::size_t>(from)],
-                                                    signOf(to));
+    const lattice::Direction to = rotation(lattice::direction(from, 1));
+    image[static_cast<std::size_t>(lattice::axisOf(to))].add(forms[static_cast<std::size_t>(from)],
+                                                             lattice::signOf(to));
   }
   return image;
 }
@@ -78,10 +79,12 @@ void addDifference(const VertexConditions::Sector& reached, const VertexConditio
     Row row;
     for (int from = 0; from < 3; ++from) {
       const auto column = static_cast<std::size_t>(from);
-      const Direction a = reached.rotation(direction(from, 1));
-      const Direction b = known.rotation(direction(from, 1));
-      if (static_cast<std::size_t>(axisOf(a)) == k) row.coefficients[column] += signOf(a);
-      if (static_cast<std::size_t>(axisOf(b)) == k) row.coefficients[column] -= signOf(b);
+      const lattice::Direction a = reached.rotation(lattice::direction(from, 1));
+      const lattice::Direction b = known.rotation(lattice::direction(from, 1));
+      if (static_cast<std::size_t>(lattice::axisOf(a)) == k)
+        row.coefficients[column] += lattice::signOf(a);
+      if (static_cast<std::size_t>(lattice::axisOf(b)) == k)
+        row.coefficients[column] -= lattice::signOf(b);
     }
     row.rest = reached.translation[k];
     row.rest.add(known.translation[k], -1);
@@ -93,12 +96,12 @@ void addDifference(const VertexConditions::Sector& reached, const VertexConditio
 void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unknowns,
                std::vector<Row>& rows) {
   for (int from = 0; from < 3; ++from) {
-    const Direction to = sector.rotation(direction(from, 1));
-    const auto axis = static_cast<std::size_t>(axisOf(to));
+    const lattice::Direction to = sector.rotation(lattice::direction(from, 1));
+    const auto axis = static_cast<std::size_t>(lattice::axisOf(to));
     const Index plane = unknowns.plane(sector.sector, axis);
     if (plane == kNone) continue;
     Row row;
-    row.coefficients[static_cast<std::size_t>(from)] = signOf(to);
+    row.coefficients[static_cast<std::size_t>(from)] = lattice::signOf(to);
     row.rest = sector.translation[axis];
     row.rest.add({plane, 1}, -1);
     rows.push_back(std::move(row));
@@ -109,18 +112,19 @@ void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unk
 struct Crossing {
   Index from;
   Index to;
-  HalfFace halfFace;
+  adjacency::HalfFace halfFace;
 };
 
-std::vector<Crossing> crossingsAt(Index vertex, const TetTopology& topology,
+std::vector<Crossing> crossingsAt(Index vertex, const adjacency::TetTopology& topology,
                                   const CutGraph& graph) {
   std::vector<Crossing> crossings;
-  for (const CornerIndex corner : topology.star(vertex)) {
+  for (const adjacency::CornerIndex corner : topology.star(vertex)) {
     for (int face = 0; face < 4; ++face) {
-      const HalfFace h = halfFaceOf(corner / 4, face);
-      if (face == localOf(corner) || !graph.isCut[h]) continue;
-      const Index there = tetOf(topology.mate[h]);
-      const CornerIndex mate = 4 * there + static_cast<Index>(topology.localCorner(there, vertex));
+      const adjacency::HalfFace h = adjacency::halfFaceOf(corner / 4, face);
+      if (face == adjacency::localOf(corner) || !graph.isCut[h]) continue;
+      const Index there = adjacency::tetOf(topology.mate[h]);
+      const adjacency::CornerIndex mate =
+          4 * there + static_cast<Index>(topology.localCorner(there, vertex));
       crossings.push_back({graph.sectors[corner], graph.sectors[mate], h});
     }
   }
@@ -129,7 +133,7 @@ std::vector<Crossing> crossingsAt(Index vertex, const TetTopology& topology,
 
 }  // namespace
 
-SharedUnknowns::SharedUnknowns(const TetTopology& topology, const EdgeFans& edges,
+SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology, const EdgeFans& edges,
                                const CutGraph& graph, const Alignment& alignment)
     : topology_(topology), graph_(graph) {
   numberCutPieces(edges);
@@ -140,31 +144,32 @@ void SharedUnknowns::numberCutPieces(const EdgeFans& edges) {
   // Across an edge with two triangles of the cut, translations are the same, unless it is singular.
   DisjointSets sets(topology_.mate.size());
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-    std::vector<std::pair<HalfFace, CornerMask>> cuts;
-    for (const EdgeCorner& at : edges(edge)) {
-      const auto ends = static_cast<CornerMask>(cornerBit(at.corner0) | cornerBit(at.corner1));
-      forEachFaceAt(at, [&](HalfFace h) {
+    std::vector<std::pair<adjacency::HalfFace, lattice::CornerMask>> cuts;
+    for (const adjacency::EdgeCorner& at : edges(edge)) {
+      const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
+                                                         lattice::cornerBit(at.corner1));
+      forEachFaceAt(at, [&](adjacency::HalfFace h) {
         if (graph_.isCut[h]) cuts.emplace_back(h, ends);
       });
     }
     if (cuts.size() != 4 || edges.isBoundary(edge)) continue;
     for (const auto& [h, ends] : cuts) {
-      const HalfFace next = nextCutAround(topology_, graph_, ends, h);
+      const adjacency::HalfFace next = nextCutAround(topology_, graph_, ends, h);
       if (graph_.rotations[h] == graph_.rotations[next]) sets.unite(h, next);
     }
   }
   pieces_.assign(topology_.mate.size(), kNone);
   first_.assign(topology_.mate.size(), kNone);
-  for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (!graph_.isCut[h]) continue;
     pieces_[h] = sets.find(h);
-    const HalfFace otherSide = sets.find(topology_.mate[h]);
+    const adjacency::HalfFace otherSide = sets.find(topology_.mate[h]);
     if (pieces_[h] != h || otherSide < h) continue;
     first_[h] = static_cast<Index>(size_);
     size_ += 3;
   }
   // A piece with one side only: its translation is that of its inverse.
-  for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (first_[h] == kNone || sets.find(topology_.mate[h]) != h) continue;
     std::array<IntegerForm, 3> own;
     for (std::size_t k = 0; k < 3; ++k) own[k] = translation(h, k);
@@ -179,22 +184,25 @@ void SharedUnknowns::numberCutPieces(const EdgeFans& edges) {
 void SharedUnknowns::numberPlanes(const Alignment& alignment) {
   DisjointSets sets(3 * graph_.sectorCount);
   std::vector<bool> isPlane(3 * graph_.sectorCount);
-  const auto join = [&](CornerIndex a, CornerIndex b, Index axis) {
+  const auto join = [&](adjacency::CornerIndex a, adjacency::CornerIndex b, Index axis) {
     const Index first = 3 * graph_.sectors[a] + axis;
     const Index second = 3 * graph_.sectors[b] + axis;
     isPlane[first] = isPlane[second] = true;
     sets.unite(first, second);
   };
-  for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (alignment.axes[h] == kFree) continue;
-    const auto corner = [&](std::size_t k) { return halfFaceOf(tetOf(h), kFaceCorners[h % 4][k]); };
+    const auto corner = [&](std::size_t k) {
+      return adjacency::halfFaceOf(adjacency::tetOf(h), lattice::kFaceCorners[h % 4][k]);
+    };
     join(corner(0), corner(1), alignment.axes[h]);
     join(corner(0), corner(2), alignment.axes[h]);
   }
   for (const auto& [at, along] : alignment.edges) {
     for (Index axis = 0; axis < 3; ++axis) {
       if (axis == along) continue;
-      join(halfFaceOf(at.tet, at.corner0), halfFaceOf(at.tet, at.corner1), axis);
+      join(adjacency::halfFaceOf(at.tet, at.corner0), adjacency::halfFaceOf(at.tet, at.corner1),
+           axis);
     }
   }
   planes_.assign(isPlane.size(), kNone);
@@ -205,19 +213,19 @@ void SharedUnknowns::numberPlanes(const Alignment& alignment) {
   }
 }
 
-IntegerForm SharedUnknowns::translation(HalfFace halfFace, std::size_t axis) const {
-  const HalfFace piece = pieces_[halfFace];
+IntegerForm SharedUnknowns::translation(adjacency::HalfFace halfFace, std::size_t axis) const {
+  const adjacency::HalfFace piece = pieces_[halfFace];
   if (first_[piece] != kNone) return {first_[piece] + static_cast<Index>(axis), 1};
   // Known on the other side: u' = R u + t, hence u = R^-1 u' - R^-1 t.
-  const HalfFace other = pieces_[topology_.mate[halfFace]];
+  const adjacency::HalfFace other = pieces_[topology_.mate[halfFace]];
   std::array<IntegerForm, 3> there;
   for (Index k = 0; k < 3; ++k) there[k] = {first_[other] + k, -1};
   return rotated(graph_.rotations[halfFace], there)[axis];
 }
 
-std::vector<HalfFace> SharedUnknowns::cutPieces() const {
-  std::vector<HalfFace> pieces;
-  for (HalfFace h = 0; h < first_.size(); ++h) {
+std::vector<adjacency::HalfFace> SharedUnknowns::cutPieces() const {
+  std::vector<adjacency::HalfFace> pieces;
+  for (adjacency::HalfFace h = 0; h < first_.size(); ++h) {
     if (first_[h] == kNone) continue;
     pieces.push_back(h);
     pieces.push_back(topology_.mate[h]);
@@ -232,16 +240,16 @@ std::vector<double> SharedUnknowns::measured() const {
     sums[unknown] += value;
     counts[unknown] += 1;
   };
-  for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (!graph_.isCut[h] || first_[pieces_[h]] == kNone) continue;
-    const SharedFace face(topology_, h, topology_.mate[h]);
+    const adjacency::SharedFace face(topology_, h, topology_.mate[h]);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& there = graph_.parameters[tetOf(topology_.mate[h])][face.there(k)];
-      const Vec3 here = graph_.rotations[h](graph_.parameters[tetOf(h)][face.here(k)]);
+      const Vec3& there = graph_.parameters[adjacency::tetOf(topology_.mate[h])][face.there(k)];
+      const Vec3 here = graph_.rotations[h](graph_.parameters[adjacency::tetOf(h)][face.here(k)]);
       for (std::size_t i = 0; i < 3; ++i) add(first_[pieces_[h]] + i, there[i] - here[i]);
     }
   }
-  for (CornerIndex corner = 0; corner < graph_.sectors.size(); ++corner) {
+  for (adjacency::CornerIndex corner = 0; corner < graph_.sectors.size(); ++corner) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Index unknown = plane(graph_.sectors[corner], i);
       if (unknown != kNone) add(unknown, graph_.parameters[corner / 4][corner % 4][i]);
@@ -251,8 +259,9 @@ std::vector<double> SharedUnknowns::measured() const {
   return sums;
 }
 
-VertexConditions conditionsOf(Index vertex, const TetTopology& topology, const CutGraph& graph,
-                              const SharedUnknowns& unknowns, std::vector<IntegerForm>& equations) {
+VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topology,
+                              const CutGraph& graph, const SharedUnknowns& unknowns,
+                              std::vector<IntegerForm>& equations) {
   VertexConditions conditions;
   std::vector<Row> rows;
   // All sectors from the first one, across the cut; each further way between them is a condition.
@@ -266,7 +275,7 @@ VertexConditions conditionsOf(Index vertex, const TetTopology& topology, const C
     for (const Crossing& crossing : crossings) {
       if (crossing.from != conditions.sectors[next].sector) continue;
       const VertexConditions::Sector& from = conditions.sectors[next];
-      const Rotation turn = graph.rotations[crossing.halfFace];
+      const lattice::Rotation turn = graph.rotations[crossing.halfFace];
       VertexConditions::Sector reached{crossing.to, turn * from.rotation,
                                        rotated(turn, from.translation)};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -287,4 +296,4 @@ VertexConditions conditionsOf(Index vertex, const TetTopology& topology, const C
   return conditions;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

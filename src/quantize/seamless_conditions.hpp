@@ -8,14 +8,14 @@
 #include <quantize/cut_graph.hpp>
 #include <quantize/integer_form.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// What is to be aligned with axes beside singular curves.
 struct Alignment {
   std::vector<std::uint8_t> axes;  ///< per half-face: the axis perpendicular to it, or kFree
   /// An edge along an axis of its tet's common chart.
   struct Edge {
-    EdgeCorner at;
+    adjacency::EdgeCorner at;
     std::uint8_t axis;
   };
   std::vector<Edge> edges;
@@ -26,12 +26,12 @@ inline constexpr std::uint8_t kFree = 3;
 /// one for each plane in which a piece of the boundary, or an aligned feature, lies.
 class SharedUnknowns {
  public:
-  SharedUnknowns(const TetTopology& topology, const EdgeFans& edges, const CutGraph& graph,
-                 const Alignment& alignment);
+  SharedUnknowns(const adjacency::TetTopology& topology, const EdgeFans& edges,
+                 const CutGraph& graph, const Alignment& alignment);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   /// Component of the translation across a half-face of the cut.
-  [[nodiscard]] IntegerForm translation(HalfFace halfFace, std::size_t axis) const;
+  [[nodiscard]] IntegerForm translation(adjacency::HalfFace halfFace, std::size_t axis) const;
   /// The plane that fixes a coordinate of a sector, or kNone.
   [[nodiscard]] Index plane(Index sector, std::size_t axis) const {
     return planes_[3 * sector + axis];
@@ -39,7 +39,7 @@ class SharedUnknowns {
   /// Equations between translations alone.
   [[nodiscard]] const std::vector<IntegerForm>& equations() const noexcept { return equations_; }
   /// A half-face of each piece of the cut, on both of its sides.
-  [[nodiscard]] std::vector<HalfFace> cutPieces() const;
+  [[nodiscard]] std::vector<adjacency::HalfFace> cutPieces() const;
   /// Means of what the map has.
   [[nodiscard]] std::vector<double> measured() const;
 
@@ -47,12 +47,13 @@ class SharedUnknowns {
   void numberCutPieces(const EdgeFans& edges);
   void numberPlanes(const Alignment& alignment);
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const CutGraph& graph_;
   std::size_t size_ = 0;
-  std::vector<HalfFace> pieces_;  ///< per half-face of the cut: the first of its piece, on its side
-  std::vector<Index> first_;      ///< per half-face that is first: its first unknown, or kNone
-  std::vector<Index> planes_;     ///< per sector and axis
+  std::vector<adjacency::HalfFace>
+      pieces_;                 ///< per half-face of the cut: the first of its piece, on its side
+  std::vector<Index> first_;   ///< per half-face that is first: its first unknown, or kNone
+  std::vector<Index> planes_;  ///< per sector and axis
   std::vector<IntegerForm> equations_;
 };
 
@@ -66,7 +67,7 @@ struct VertexConditions {
   /// u = rotation(first sector's u) + translation
   struct Sector {
     Index sector = 0;
-    Rotation rotation;
+    lattice::Rotation rotation;
     std::array<IntegerForm, 3> translation;
   };
   std::vector<Sector> sectors;
@@ -75,8 +76,8 @@ struct VertexConditions {
 
 /// @pre around each edge inside, charts turn about an axis, or agree
 /// @param equations  receives what must hold between shared unknowns
-[[nodiscard]] VertexConditions conditionsOf(Index vertex, const TetTopology& topology,
+[[nodiscard]] VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topology,
                                             const CutGraph& graph, const SharedUnknowns& unknowns,
                                             std::vector<IntegerForm>& equations);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -11,7 +11,7 @@
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -34,10 +34,10 @@ constexpr int kRoundsOfWishes = 3;
 
 /// The axis to which a triangle is perpendicular: along which it extends least. The normal of a
 /// thin one may be noise.
-std::uint8_t normalAxis(const CutGraph& graph, HalfFace h) {
-  const TetParameters& u = graph.parameters[tetOf(h)];
+std::uint8_t normalAxis(const CutGraph& graph, adjacency::HalfFace h) {
+  const TetParameters& u = graph.parameters[adjacency::tetOf(h)];
   const auto corner = [&](std::size_t k) {
-    return u[static_cast<std::size_t>(kFaceCorners[h % 4][k])];
+    return u[static_cast<std::size_t>(lattice::kFaceCorners[h % 4][k])];
   };
   std::array<double, 3> extents{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -54,18 +54,21 @@ bool areLevel(const TetParameters& u, std::size_t a, std::size_t b, std::size_t 
 }
 
 /// The tets of a feature edge, or of a feature triangle (as half-faces).
-std::optional<EdgeCorner> findEdge(const TetTopology& topology, Index v, Index w) {
-  for (const CornerIndex corner : topology.star(v)) {
+std::optional<adjacency::EdgeCorner> findEdge(const adjacency::TetTopology& topology, Index v,
+                                              Index w) {
+  for (const adjacency::CornerIndex corner : topology.star(v)) {
     const Tet& tet = topology.tets[corner / 4];
     for (std::uint8_t i = 0; i < 4; ++i) {
-      if (tet[i] == w) return EdgeCorner{w, corner / 4, static_cast<std::uint8_t>(corner % 4), i};
+      if (tet[i] == w)
+        return adjacency::EdgeCorner{w, corner / 4, static_cast<std::uint8_t>(corner % 4), i};
     }
   }
   return std::nullopt;
 }
 
-HalfFace findFace(const TetTopology& topology, const std::array<Index, 3>& triangle) {
-  for (const CornerIndex corner : topology.star(triangle[0])) {
+adjacency::HalfFace findFace(const adjacency::TetTopology& topology,
+                             const std::array<Index, 3>& triangle) {
+  for (const adjacency::CornerIndex corner : topology.star(triangle[0])) {
     const Tet& tet = topology.tets[corner / 4];
     for (int face = 0; face < 4; ++face) {
       const auto isOn = [&](Index v) {
@@ -73,7 +76,7 @@ HalfFace findFace(const TetTopology& topology, const std::array<Index, 3>& trian
         return at != tet.end() && at - tet.begin() != face;
       };
       if (isOn(triangle[0]) && isOn(triangle[1]) && isOn(triangle[2])) {
-        return halfFaceOf(corner / 4, face);
+        return adjacency::halfFaceOf(corner / 4, face);
       }
     }
   }
@@ -81,18 +84,19 @@ HalfFace findFace(const TetTopology& topology, const std::array<Index, 3>& trian
 }
 
 /// Triangles between regions, and tagged ones.
-std::vector<HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
-  const TetTopology& topology = map.topology;
+std::vector<adjacency::HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
+  const adjacency::TetTopology& topology = map.topology;
   const TetMapView& view = map.input.view;
-  std::vector<HalfFace> faces;
-  for (HalfFace h = 0; h < topology.mate.size() && !view.regions.empty(); ++h) {
-    const HalfFace mate = topology.mate[h];
+  std::vector<adjacency::HalfFace> faces;
+  for (adjacency::HalfFace h = 0; h < topology.mate.size() && !view.regions.empty(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
     if (mate == kNone || mate < h) continue;
-    if (view.regions[tetOf(h)] != view.regions[tetOf(mate)]) faces.push_back(h);
+    if (view.regions[adjacency::tetOf(h)] != view.regions[adjacency::tetOf(mate)])
+      faces.push_back(h);
   }
   for (const FeatureFace& feature : view.features.faces) {
     if (wallTag != 0 && feature.tag == wallTag) continue;
-    const HalfFace h = findFace(topology, feature.vertices);
+    const adjacency::HalfFace h = findFace(topology, feature.vertices);
     if (h != kNone && topology.mate[h] != kNone) faces.push_back(h);
   }
   return faces;
@@ -103,17 +107,17 @@ std::vector<HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
 /// planes of the mesh.
 Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
                         const SeamlessOptions& options) {
-  const TetTopology& topology = map.topology;
+  const adjacency::TetTopology& topology = map.topology;
   const double tolerance = options.featureTolerance * map.size;
   Alignment alignment;
   alignment.axes.assign(topology.mate.size(), kFree);
-  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (topology.mate[h] == kNone) alignment.axes[h] = normalAxis(graph, h);
   }
-  for (const HalfFace h : innerFaces(map, options.wallTag)) {
+  for (const adjacency::HalfFace h : innerFaces(map, options.wallTag)) {
     const std::uint8_t axis = normalAxis(graph, h);
-    const auto& c = kFaceCorners[h % 4];
-    const TetParameters& u = graph.parameters[tetOf(h)];
+    const auto& c = lattice::kFaceCorners[h % 4];
+    const TetParameters& u = graph.parameters[adjacency::tetOf(h)];
     const auto corner = [&](std::size_t k) { return static_cast<std::size_t>(c[k]); };
     if (!areLevel(u, corner(0), corner(1), axis, tolerance) ||
         !areLevel(u, corner(0), corner(2), axis, tolerance)) {
@@ -122,11 +126,11 @@ Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph&
     alignment.axes[h] = axis;
     map.featureFaces.push_back(h);
   }
-  const auto addEdge = [&](const EdgeCorner& at, std::uint8_t along) {
+  const auto addEdge = [&](const adjacency::EdgeCorner& at, std::uint8_t along) {
     alignment.edges.push_back({at, along});
     map.featureEdges.push_back(at);
   };
-  const auto axisAlong = [&graph](const EdgeCorner& at) {
+  const auto axisAlong = [&graph](const adjacency::EdgeCorner& at) {
     const TetParameters& u = graph.parameters[at.tet];
     return static_cast<std::uint8_t>(dominantAxis(minus(u[at.corner1], u[at.corner0])));
   };
@@ -163,7 +167,7 @@ double largestCoordinate(const CutGraph& graph) {
 /// Exact parameters of a vertex in all its sectors.
 class VertexSolver {
  public:
-  VertexSolver(const TetTopology& topology, const CutGraph& graph,
+  VertexSolver(const adjacency::TetTopology& topology, const CutGraph& graph,
                std::span<const std::int64_t> values, double unit)
       : topology_(topology),
         graph_(graph),
@@ -173,7 +177,7 @@ class VertexSolver {
 
   /// @return false if a coordinate that is fixed is not on the lattice
   bool solve(Index vertex, const VertexConditions& conditions) {
-    LatticePoint u = meanOf(vertex, conditions);
+    lattice::LatticePoint u = meanOf(vertex, conditions);
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexConditions::Fixed& fixed = conditions.fixed[k];
       if (fixed.factor == 0) continue;
@@ -187,51 +191,54 @@ class VertexSolver {
     return true;
   }
 
-  [[nodiscard]] const LatticePoint& operator[](Index sector) const { return bySector_[sector]; }
+  [[nodiscard]] const lattice::LatticePoint& operator[](Index sector) const {
+    return bySector_[sector];
+  }
 
  private:
-  [[nodiscard]] LatticePoint translationOf(const VertexConditions::Sector& sector) const {
+  [[nodiscard]] lattice::LatticePoint translationOf(const VertexConditions::Sector& sector) const {
     return {sector.translation[0](values_), sector.translation[1](values_),
             sector.translation[2](values_)};
   }
 
   /// Of the parameters given at all its corners, seen from the first sector.
-  [[nodiscard]] LatticePoint meanOf(Index vertex, const VertexConditions& conditions) const {
+  [[nodiscard]] lattice::LatticePoint meanOf(Index vertex,
+                                             const VertexConditions& conditions) const {
     Vec3 sum{};
-    for (const CornerIndex corner : topology_.star(vertex)) {
+    for (const adjacency::CornerIndex corner : topology_.star(vertex)) {
       const auto sector =
           std::find_if(conditions.sectors.begin(), conditions.sectors.end(),
                        [&](const auto& each) { return each.sector == graph_.sectors[corner]; });
-      const LatticePoint t = translationOf(*sector);
+      const lattice::LatticePoint t = translationOf(*sector);
       Vec3 u = graph_.parameters[corner / 4][corner % 4];
       for (std::size_t k = 0; k < 3; ++k) u[k] = u[k] * unit_ - static_cast<double>(t[k]);
       sum = plus(sum, sector->rotation.inverse()(u));
     }
-    LatticePoint mean;
+    lattice::LatticePoint mean;
     const auto n = static_cast<double>(topology_.star(vertex).size());
     for (std::size_t k = 0; k < 3; ++k) mean[k] = std::llround(sum[k] / n);
     return mean;
   }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   const CutGraph& graph_;
   std::span<const std::int64_t> values_;
   double unit_;
-  std::vector<LatticePoint> bySector_;
+  std::vector<lattice::LatticePoint> bySector_;
 };
 
-std::vector<Index> flippedTets(std::span<const LatticeTet> corners) {
+std::vector<Index> flippedTets(std::span<const lattice::LatticeTet> corners) {
   std::vector<Index> flipped;
   for (Index t = 0; t < corners.size(); ++t) {
-    const LatticeTet& u = corners[t];
-    if (orientation(u[0], u[1], u[2], u[3]) <= 0) flipped.push_back(t);
+    const lattice::LatticeTet& u = corners[t];
+    if (lattice::orientation(u[0], u[1], u[2], u[3]) <= 0) flipped.push_back(t);
   }
   return flipped;
 }
 
 /// On the lattice, which is finer than what doubles have of the largest coordinates.
 std::vector<Index> flippedAsGiven(const CutGraph& graph, double unit) {
-  std::vector<LatticeTet> corners(graph.parameters.size());
+  std::vector<lattice::LatticeTet> corners(graph.parameters.size());
   for (std::size_t t = 0; t < corners.size(); ++t) {
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -243,7 +250,7 @@ std::vector<Index> flippedAsGiven(const CutGraph& graph, double unit) {
 }
 
 void throwFlipped(std::span<const Index> flipped) {
-  DefectCollector defects;
+  igm::DefectCollector defects;
   for (const Index t : flipped) defects.add(ErrorCode::FlippedTet, {PlaceKind::Tet, t}, 0);
   defects.throwIfAny();
 }
@@ -270,14 +277,14 @@ void requireSize(double size) {
 /// No corner may move by more than the tolerance: so transitions of a triangle's corners differ by
 /// four of them at most. Asked early, as what is far from seamless has no end of conditions.
 void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double tolerance) {
-  const TetTopology& topology = map.topology;
-  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
-    const HalfFace mate = topology.mate[h];
+  const adjacency::TetTopology& topology = map.topology;
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
     if (mate == kNone || mate < h) continue;
-    const SharedFace face(topology, h, mate);
-    const Rotation rotation = graph.isCut[h] ? graph.rotations[h] : Rotation{};
-    const TetParameters& here = graph.parameters[tetOf(h)];
-    const TetParameters& there = graph.parameters[tetOf(mate)];
+    const adjacency::SharedFace face(topology, h, mate);
+    const lattice::Rotation rotation = graph.isCut[h] ? graph.rotations[h] : lattice::Rotation{};
+    const TetParameters& here = graph.parameters[adjacency::tetOf(h)];
+    const TetParameters& there = graph.parameters[adjacency::tetOf(mate)];
     std::array<Vec3, 3> translations;
     for (std::size_t k = 0; k < 3; ++k) {
       translations[k] = minus(there[face.there(k)], rotation(here[face.here(k)]));
@@ -289,19 +296,21 @@ void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double to
       std::ostringstream what;
       what << "a triangle differs by " << most - least
            << " between its two tets, more than four times the tolerance of " << tolerance << '.';
-      const auto corner = static_cast<std::uint64_t>(map.input.callersCorner(localOf(h)));
-      notSeamless(map, what.str(), {PlaceKind::Face, tetOf(h), corner});
+      const auto corner =
+          static_cast<std::uint64_t>(map.input.callersCorner(adjacency::localOf(h)));
+      notSeamless(map, what.str(), {PlaceKind::Face, adjacency::tetOf(h), corner});
     }
   }
 }
 
 /// Whether charts turn about an axis around an inner edge, and the edge is parallel to it; or
 /// agree.
-bool turnsAboutItsAxis(const TetTopology& topology, const CutGraph& graph, const EdgeCorner& at,
-                       double tolerance) {
-  const auto ends = static_cast<CornerMask>(cornerBit(at.corner0) | cornerBit(at.corner1));
-  EdgeTurn turn(topology, at.tet, ends, otherFaceAtEdge(ends, -1));
-  Rotation around;
+bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& graph,
+                       const adjacency::EdgeCorner& at, double tolerance) {
+  const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
+                                                     lattice::cornerBit(at.corner1));
+  adjacency::EdgeTurn turn(topology, at.tet, ends, adjacency::otherFaceAtEdge(ends, -1));
+  lattice::Rotation around;
   do {
     around = graph.rotations[turn.out()] * around;
     turn.step();
@@ -309,7 +318,7 @@ bool turnsAboutItsAxis(const TetTopology& topology, const CutGraph& graph, const
   if (around.isIdentity()) return true;
   const TetParameters& u = graph.parameters[at.tet];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Direction along = direction(static_cast<int>(axis), 1);
+    const lattice::Direction along = lattice::direction(static_cast<int>(axis), 1);
     if (around(along) != along) continue;
     // Each end moves by the tolerance at most.
     return areLevel(u, at.corner0, at.corner1, (axis + 1) % 3, 2 * tolerance) &&
@@ -321,9 +330,9 @@ bool turnsAboutItsAxis(const TetTopology& topology, const CutGraph& graph, const
 /// Around any other edge, no hexahedra fit; and all that charts demand of a vertex are coordinates.
 void requireAxesOfCurves(const SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
                          double tolerance) {
-  const TetTopology& topology = map.topology;
+  const adjacency::TetTopology& topology = map.topology;
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-    const EdgeCorner& at = edges(edge).front();
+    const adjacency::EdgeCorner& at = edges(edge).front();
     if (edges.isBoundary(edge) || turnsAboutItsAxis(topology, graph, at, tolerance)) continue;
     const Tet& tet = topology.tets[at.tet];
     notSeamless(map, "a singular curve is parallel to no axis.",
@@ -344,7 +353,7 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
     }
   }
   map.corners.resize(map.topology.tetCount());
-  for (CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
+  for (adjacency::CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
     map.corners[corner / 4][corner % 4] = solver[graph.sectors[corner]];
   }
 }
@@ -352,12 +361,12 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
 /// Between charts as they are after the cut.
 void findChanges(SeamlessMap& map, const CutGraph& graph) {
   map.changes = FaceChanges(map.topology.mate.size());
-  for (HalfFace h = 0; h < map.topology.mate.size(); ++h) {
-    const HalfFace mate = map.topology.mate[h];
+  for (adjacency::HalfFace h = 0; h < map.topology.mate.size(); ++h) {
+    const adjacency::HalfFace mate = map.topology.mate[h];
     if (mate == kNone) continue;
-    const SharedFace face(map.topology, h, mate);
-    const LatticeTet& here = map.corners[tetOf(h)];
-    const LatticeTet& there = map.corners[tetOf(mate)];
+    const adjacency::SharedFace face(map.topology, h, mate);
+    const lattice::LatticeTet& here = map.corners[adjacency::tetOf(h)];
+    const lattice::LatticeTet& there = map.corners[adjacency::tetOf(mate)];
     ChartChange change;
     if (graph.isCut[h]) change.rotation = graph.rotations[h];
     change.translation = there[face.there(0)] - change.rotation(here[face.here(0)]);
@@ -365,7 +374,7 @@ void findChanges(SeamlessMap& map, const CutGraph& graph) {
     for (std::size_t k = 1; k < 3; ++k) {
       if (change(here[face.here(k)]) == there[face.there(k)]) continue;
       throw Error(ErrorCode::Internal, "A map that was made seamless is not. This is a bug.",
-                  {PlaceKind::Face, tetOf(h), h % 4});
+                  {PlaceKind::Face, adjacency::tetOf(h), h % 4});
     }
   }
 }
@@ -415,8 +424,8 @@ std::vector<std::int64_t> nearestValues(const SharedUnknowns& unknowns, double u
 
 double volumeOf(const SeamlessMap& map) {
   double volume = 0;
-  for (const LatticeTet& u : map.corners) {
-    volume += orientationDeterminant(u[0], u[1], u[2], u[3]).toDouble() / 6;
+  for (const lattice::LatticeTet& u : map.corners) {
+    volume += lattice::orientationDeterminant(u[0], u[1], u[2], u[3]).toDouble() / 6;
   }
   return volume / (map.unit * map.unit * map.unit);
 }
@@ -430,16 +439,16 @@ void requirePositiveTets(const SeamlessMap& map) {
 
 SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, Context& context) {
   Stage stage(context, "seamless map");
-  DefectCollector defects;
+  igm::DefectCollector defects;
   SeamlessMap result;
-  result.input = readInput(map, stage, defects);
+  result.input = igm::readInput(map, stage, defects);
   defects.throwIfAny();
-  result.topology = buildTopology(result.input.view, stage, defects);
+  result.topology = igm::buildTopology(result.input.view, stage, defects);
   defects.throwIfAny();
   // Walks around edges and vertices come back only on manifolds.
-  collectTopologyDefects(result.topology, stage, defects);
+  igm::collectTopologyDefects(result.topology, stage, defects);
   defects.throwIfAny();
-  const TetTopology& topology = result.topology;
+  const adjacency::TetTopology& topology = result.topology;
   const EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = result.input.view.parameters;
   const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
@@ -490,4 +499,4 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   return result;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -15,18 +15,18 @@
 
 #include <igm/input.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// An exactly seamless map on a dyadic lattice: a coordinate is a parameter times `unit`.
 struct SeamlessMap {
-  OrientedMap input;                ///< without parameters
-  TetTopology topology;             ///< with stars
-  std::vector<LatticeTet> corners;  ///< per tet, in charts that mostly agree
-  FaceChanges changes;              ///< from here to the neighbour's chart
+  igm::OrientedMap input;                    ///< without parameters
+  adjacency::TetTopology topology;           ///< with stars
+  std::vector<lattice::LatticeTet> corners;  ///< per tet, in charts that mostly agree
+  FaceChanges changes;                       ///< from here to the neighbour's chart
   /// Features that are aligned with axes, and to stay so, and what else charts do not tell of:
   /// edges, inner faces.
-  std::vector<EdgeCorner> featureEdges;
-  std::vector<HalfFace> featureFaces;
+  std::vector<adjacency::EdgeCorner> featureEdges;
+  std::vector<adjacency::HalfFace> featureFaces;
   double unit = 1;
   double size = 0;                    ///< extent from a corner, along the axis where it is longest
   double maxDisplacement = 0;         ///< of a parameter from that given, along an axis
@@ -54,4 +54,4 @@ void requirePositiveTets(const SeamlessMap& map);
 /// In unit cubes.
 [[nodiscard]] double volumeOf(const SeamlessMap& map);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -7,7 +7,7 @@
 
 #include <igm/vertex_star.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -36,7 +36,7 @@ class PointEquations {
 
   /// The coordinates that are determined; false if that is not a point, a line along an axis or a
   /// plane across one, at integers.
-  [[nodiscard]] bool solve(AxisSet& fixed, Vec3& position) const {
+  [[nodiscard]] bool solve(lattice::AxisSet& fixed, Vec3& position) const {
     bool good = !contradictory_;
     for (std::size_t k = 0; k < 3; ++k) {
       const Row& row = rows_[k];
@@ -70,10 +70,10 @@ class PointEquations {
 };
 
 /// A coordinate of a point's image, as coefficients of the point's own.
-PointEquations::Row coordinateOf(Rotation rotation, std::size_t axis) {
+PointEquations::Row coordinateOf(lattice::Rotation rotation, std::size_t axis) {
   PointEquations::Row row{};
   for (std::size_t i = 0; i < 3; ++i) {
-    GridPoint unit{};
+    lattice::GridPoint unit{};
     unit[i] = 1;
     row[i] = rotation(unit)[axis];
   }
@@ -81,7 +81,7 @@ PointEquations::Row coordinateOf(Rotation rotation, std::size_t axis) {
 }
 
 /// Demands that a transition leaves the point where it is.
-void addFixedPoint(const Transition& loop, PointEquations& equations) {
+void addFixedPoint(const lattice::Transition& loop, PointEquations& equations) {
   for (std::size_t k = 0; k < 3; ++k) {
     PointEquations::Row row = coordinateOf(loop.rotation, k);
     --row[k];
@@ -91,7 +91,8 @@ void addFixedPoint(const Transition& loop, PointEquations& equations) {
 }
 
 /// Demands that the image of the point lies in a plane.
-void addPlane(const Transition& toPlane, const BoundaryPlane& plane, PointEquations& equations) {
+void addPlane(const lattice::Transition& toPlane, const BoundaryPlane& plane,
+              PointEquations& equations) {
   const auto axis = static_cast<std::uint8_t>(plane.axis);
   PointEquations::Row row = coordinateOf(toPlane.rotation, axis);
   row[3] = std::int64_t{plane.coordinate} - toPlane.translation[axis];
@@ -101,7 +102,8 @@ void addPlane(const Transition& toPlane, const BoundaryPlane& plane, PointEquati
 /// What the star of one vertex demands.
 class StarReader {
  public:
-  StarReader(const BendProblem& problem, const TetTopology& topology, VertexUnknowns& unknowns)
+  StarReader(const BendProblem& problem, const adjacency::TetTopology& topology,
+             VertexUnknowns& unknowns)
       : problem_(problem), topology_(topology), unknowns_(unknowns) {}
 
   /// @return whether there is a point
@@ -110,7 +112,7 @@ class StarReader {
     const auto members = star_.members();
     charts_.assign(members.size(), {});
     for (std::size_t i = 1; i < members.size(); ++i) {
-      const HalfFace back = members[i].halfFace(members[i].entry);
+      const adjacency::HalfFace back = members[i].halfFace(members[i].entry);
       charts_[i] = across(topology_.mate[back]) * charts_[members[i].neighbour[members[i].entry]];
     }
     PointEquations equations;
@@ -126,32 +128,34 @@ class StarReader {
   }
 
  private:
-  [[nodiscard]] const Transition& across(HalfFace halfFace) const {
+  [[nodiscard]] const lattice::Transition& across(adjacency::HalfFace halfFace) const {
     return problem_.transitions[halfFace];
   }
 
-  void look(const VertexStar::Member& member, std::size_t k, const Transition& chart,
+  void look(const igm::VertexStar::Member& member, std::size_t k, const lattice::Transition& chart,
             PointEquations& equations) const {
-    const HalfFace halfFace = member.halfFace(k);
+    const adjacency::HalfFace halfFace = member.halfFace(k);
     const BoundaryPlane& plane = problem_.planes[halfFace];
     if (plane.axis >= 0) addPlane(chart, plane, equations);
     if (member.neighbour[k] == kNone) return;
-    const Transition loop = charts_[member.neighbour[k]].inverse() * (across(halfFace) * chart);
+    const lattice::Transition loop =
+        charts_[member.neighbour[k]].inverse() * (across(halfFace) * chart);
     if (!loop.isIdentity()) addFixedPoint(loop, equations);
   }
 
   const BendProblem& problem_;
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   VertexUnknowns& unknowns_;
-  VertexStar star_;
-  std::vector<Transition> charts_;  ///< per member: from the first one's chart
+  igm::VertexStar star_;
+  std::vector<lattice::Transition> charts_;  ///< per member: from the first one's chart
 };
 
 }  // namespace
 
-VertexUnknowns findUnknowns(const BendProblem& problem, const TetTopology& topology, Stage& stage) {
+VertexUnknowns findUnknowns(const BendProblem& problem, const adjacency::TetTopology& topology,
+                            Stage& stage) {
   VertexUnknowns unknowns;
-  unknowns.fixed.assign(topology.pointCount, kAllAxes);  // isolated vertices stay so
+  unknowns.fixed.assign(topology.pointCount, lattice::kAllAxes);  // isolated vertices stay so
   unknowns.fixedPosition.resize(topology.pointCount);
   unknowns.toCorner.resize(4 * topology.tetCount());
   unknowns.contradictions = collectFromBlocks<Index>(
@@ -164,4 +168,4 @@ VertexUnknowns findUnknowns(const BendProblem& problem, const TetTopology& topol
   return unknowns;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -12,16 +12,17 @@
 #include <adjacency/tet_topology.hpp>
 #include <quantize/bend.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 struct VertexUnknowns {
-  std::vector<AxisSet> fixed;         ///< per vertex: axes of the representative's chart
-  std::vector<Vec3> fixedPosition;    ///< per vertex: integers along these, 0 along the others
-  std::vector<Transition> toCorner;   ///< per corner: from the representative's chart into its own
+  std::vector<lattice::AxisSet> fixed;  ///< per vertex: axes of the representative's chart
+  std::vector<Vec3> fixedPosition;      ///< per vertex: integers along these, 0 along the others
+  std::vector<lattice::Transition>
+      toCorner;                       ///< per corner: from the representative's chart into its own
   std::vector<Index> contradictions;  ///< vertices for which there is no such point, ascending
 };
 
-[[nodiscard]] VertexUnknowns findUnknowns(const BendProblem& problem, const TetTopology& topology,
-                                          Stage& stage);
+[[nodiscard]] VertexUnknowns findUnknowns(const BendProblem& problem,
+                                          const adjacency::TetTopology& topology, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

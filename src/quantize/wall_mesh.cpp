@@ -2,7 +2,7 @@
 
 #include <quantize/wall_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -10,18 +10,18 @@ namespace {
 constexpr double kLeastShare = 0.2;
 
 /// Between two points, where a coordinate has a value; the others rounded.
-LatticePoint pointBetween(const LatticePoint& a, const LatticePoint& b, std::size_t axis,
-                          std::int64_t value) {
-  const Int128 whole = static_cast<Int128>(b[axis]) - a[axis];
-  const Int128 share = static_cast<Int128>(value) - a[axis];
-  LatticePoint u;
+lattice::LatticePoint pointBetween(const lattice::LatticePoint& a, const lattice::LatticePoint& b,
+                                   std::size_t axis, std::int64_t value) {
+  const lattice::Int128 whole = static_cast<lattice::Int128>(b[axis]) - a[axis];
+  const lattice::Int128 share = static_cast<lattice::Int128>(value) - a[axis];
+  lattice::LatticePoint u;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Int128 product = (static_cast<Int128>(b[k]) - a[k]) * share;
+    const lattice::Int128 product = (static_cast<lattice::Int128>(b[k]) - a[k]) * share;
     // Rounded to the nearest, symmetrically, so that constant coordinates stay as they are.
-    const Int128 doubled = 2 * product;
+    const lattice::Int128 doubled = 2 * product;
     const bool isNegative = (doubled < 0) != (whole < 0);
-    const Int128 numerator = doubled < 0 ? -doubled : doubled;
-    const Int128 denominator = whole < 0 ? -whole : whole;
+    const lattice::Int128 numerator = doubled < 0 ? -doubled : doubled;
+    const lattice::Int128 denominator = whole < 0 ? -whole : whole;
     const auto rounded = static_cast<std::int64_t>((numerator + denominator) / (2 * denominator));
     u[k] = a[k] + (isNegative ? -rounded : rounded);
   }
@@ -44,11 +44,11 @@ WallMesh::WallMesh(const SeamlessMap& map)
       moved_(tets.size(), kNone),
       firstPart_(tets.size(), kNone) {
   for (Index t = 0; t < tets.size(); ++t) original[t] = t;
-  for (HalfFace h = 0; h < mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < mate.size(); ++h) {
     originalFace[h] = static_cast<std::uint8_t>(h % 4);
     isWall[h] = mate[h] == kNone;
   }
-  for (const HalfFace h : map.featureFaces) isFeature[h] = isFeature[mate[h]] = true;
+  for (const adjacency::HalfFace h : map.featureFaces) isFeature[h] = isFeature[mate[h]] = true;
   for (const FeatureVertex& feature : map.input.view.features.vertices) {
     featureVertices.insert(feature.vertex);
   }
@@ -60,20 +60,20 @@ void WallMesh::keepEdge(Index v, Index w) {
 }
 
 void WallTurn::step() noexcept {
-  const HalfFace in = mesh_.mate[out()];
+  const adjacency::HalfFace in = mesh_.mate[out()];
   const Tet& from = mesh_.tets[edge_.tet];
   const Index last = from[ahead()];
-  const Index tet = tetOf(in);
+  const Index tet = adjacency::tetOf(in);
   edge_ = {tet, mesh_.cornerOf(tet, from[edge_.corner0]), mesh_.cornerOf(tet, from[edge_.corner1])};
   face_ = mesh_.cornerOf(tet, last);
 }
 
 std::vector<WallMesh::Around> WallMesh::tetsAround(const TetEdge& edge,
-                                                   const LatticePoint& u) const {
+                                                   const lattice::LatticePoint& u) const {
   std::vector<Around> ring = {{edge, u}};
   const auto walk = [&](int face) {
     WallTurn turn(*this, edge, face);
-    LatticePoint here = u;
+    lattice::LatticePoint here = u;
     while (!turn.isAtBoundary()) {
       here = change[turn.out()](here);
       turn.step();
@@ -83,8 +83,8 @@ std::vector<WallMesh::Around> WallMesh::tetsAround(const TetEdge& edge,
     return false;
   };
   int face = 0;
-  while (contains(edge.mask(), face)) ++face;
-  if (!walk(face)) walk(otherFaceAtEdge(edge.mask(), face));
+  while (lattice::contains(edge.mask(), face)) ++face;
+  if (!walk(face)) walk(adjacency::otherFaceAtEdge(edge.mask(), face));
   return ring;
 }
 
@@ -111,13 +111,14 @@ Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value)
         {second, firstPart_[first], tets[first][at.corner0], tets[first][at.corner1], middle});
     firstPart_[first] = static_cast<Index>(parts_.size() - 1);
     for (int face = 0; face < 4; ++face) {
-      const HalfFace h = halfFaceOf(second, face);
+      const adjacency::HalfFace h = adjacency::halfFaceOf(second, face);
       if (mate[h] == kNone || face == at.corner1) continue;
       // The face beyond the new vertex is the second part's alone; those at the edge are split.
       if (face == at.corner0) {
         mate[mate[h]] = h;
       } else {
-        mate[h] = halfFaceOf(secondOf(tetOf(mate[h])), localOf(mate[h]));
+        mate[h] =
+            adjacency::halfFaceOf(secondOf(adjacency::tetOf(mate[h])), adjacency::localOf(mate[h]));
       }
     }
   }
@@ -125,7 +126,8 @@ Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value)
     const Index second = secondOf(at.tet);
     tets[at.tet][at.corner1] = tets[second][at.corner0] = middle;
     corners[at.tet][at.corner1] = corners[second][at.corner0] = u;
-    joinInside(halfFaceOf(at.tet, at.corner0), halfFaceOf(second, at.corner1));
+    joinInside(adjacency::halfFaceOf(at.tet, at.corner0),
+               adjacency::halfFaceOf(second, at.corner1));
     requirePositive(at.tet);
     requirePositive(second);
   }
@@ -133,8 +135,8 @@ Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value)
 }
 
 void WallMesh::requirePositive(Index tet) const {
-  const LatticeTet& u = corners[tet];
-  if (orientation(u[0], u[1], u[2], u[3]) > 0) return;
+  const lattice::LatticeTet& u = corners[tet];
+  if (lattice::orientation(u[0], u[1], u[2], u[3]) > 0) return;
   throw TooThinForWalls(
       ErrorCode::FlippedTet,
       "A tet is too thin in the map to be cut by a wall of its motorcycle complex. Make tets "
@@ -158,18 +160,18 @@ bool WallMesh::leavesKeptEdge(const MovedCorner& moved) const {
 
 bool WallMesh::mayMove(const MovedCorner& moved) const {
   if (leavesKeptEdge(moved)) return false;
-  LatticeTet u = corners[moved.tet];
-  const Int192 before = orientationDeterminant(u[0], u[1], u[2], u[3]);
+  lattice::LatticeTet u = corners[moved.tet];
+  const lattice::Int192 before = lattice::orientationDeterminant(u[0], u[1], u[2], u[3]);
   u[moved.corner] = u[moved.corner] + moved.by;
-  const Int192 after = orientationDeterminant(u[0], u[1], u[2], u[3]);
+  const lattice::Int192 after = lattice::orientationDeterminant(u[0], u[1], u[2], u[3]);
   if (after.toDouble() < kLeastShare * before.toDouble()) return false;
   for (int face = 0; face < 4; ++face) {
-    if (face == moved.corner || !isWall[halfFaceOf(moved.tet, face)]) continue;
+    if (face == moved.corner || !isWall[adjacency::halfFaceOf(moved.tet, face)]) continue;
     // In the plane of a wall it may move.
-    const auto& c = kFaceCorners[static_cast<std::size_t>(face)];
+    const auto& c = lattice::kFaceCorners[static_cast<std::size_t>(face)];
     const auto corner = [&](std::size_t k) { return u[static_cast<std::size_t>(c[k])]; };
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const LatticePoint& old = at(moved.tet, moved.corner);
+      const lattice::LatticePoint& old = at(moved.tet, moved.corner);
       const auto isOn = [&](std::size_t k) {
         return static_cast<int>(moved.corner) == c[k] || corner(k)[axis] == old[axis];
       };
@@ -188,10 +190,10 @@ bool WallMesh::moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::i
     const MovedCorner here = star[next];
     isPossible = mayMove(here);
     for (int face = 0; face < 4; ++face) {
-      const HalfFace h = halfFaceOf(here.tet, face);
+      const adjacency::HalfFace h = adjacency::halfFaceOf(here.tet, face);
       if (face == here.corner || mate[h] == kNone) continue;
-      const Index there = tetOf(mate[h]);
-      const LatticePoint by = change[h].rotation(here.by);
+      const Index there = adjacency::tetOf(mate[h]);
+      const lattice::LatticePoint by = change[h].rotation(here.by);
       if (moved_[there] == kNone) {
         moved_[there] = static_cast<Index>(star.size());
         star.push_back({there, cornerOf(there, tets[here.tet][here.corner]), by});
@@ -209,14 +211,14 @@ bool WallMesh::moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::i
 
 void WallMesh::appendCopy(Index tet) {
   const Tet copy = tets[tet];
-  const LatticeTet corner = corners[tet];
+  const lattice::LatticeTet corner = corners[tet];
   tets.push_back(copy);
   corners.push_back(corner);
   original.push_back(Index{original[tet]});
   firstPart_.push_back(kNone);
   moved_.push_back(kNone);
-  for (HalfFace h = 4 * tet; h < 4 * tet + 4; ++h) {
-    mate.push_back(HalfFace{mate[h]});
+  for (adjacency::HalfFace h = 4 * tet; h < 4 * tet + 4; ++h) {
+    mate.push_back(adjacency::HalfFace{mate[h]});
     change.appendCopyOf(h);
     isWall.push_back(bool{isWall[h]});
     isFeature.push_back(bool{isFeature[h]});
@@ -224,10 +226,10 @@ void WallMesh::appendCopy(Index tet) {
   }
 }
 
-void WallMesh::joinInside(HalfFace a, HalfFace b) {
+void WallMesh::joinInside(adjacency::HalfFace a, adjacency::HalfFace b) {
   mate[a] = b;
   mate[b] = a;
-  for (const HalfFace h : {a, b}) {
+  for (const adjacency::HalfFace h : {a, b}) {
     change.set(h, {});
     isWall[h] = isFeature[h] = false;
     originalFace[h] = kInside;
@@ -256,4 +258,4 @@ WallMesh::Found WallMesh::find(Index v, Index w, Index tet) const {
               {PlaceKind::Edge, v, w});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

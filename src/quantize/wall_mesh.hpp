@@ -11,7 +11,7 @@
 
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// An edge of the mesh as seen from a tet: two of its corners.
 struct TetEdge {
@@ -19,8 +19,9 @@ struct TetEdge {
   std::uint8_t corner0;
   std::uint8_t corner1;
 
-  [[nodiscard]] CornerMask mask() const noexcept {
-    return static_cast<CornerMask>(cornerBit(corner0) | cornerBit(corner1));
+  [[nodiscard]] lattice::CornerMask mask() const noexcept {
+    return static_cast<lattice::CornerMask>(lattice::cornerBit(corner0) |
+                                            lattice::cornerBit(corner1));
   }
 };
 
@@ -47,18 +48,18 @@ class WallMesh {
 
   [[nodiscard]] std::size_t tetCount() const noexcept { return tets.size(); }
   [[nodiscard]] std::size_t vertexCount() const noexcept { return isHeld.size(); }
-  [[nodiscard]] bool isBoundary(HalfFace h) const noexcept { return mate[h] == kNone; }
+  [[nodiscard]] bool isBoundary(adjacency::HalfFace h) const noexcept { return mate[h] == kNone; }
   /// Whether a vertex is none of the map's.
   [[nodiscard]] bool isNew(Index vertex) const noexcept { return vertex >= originalVertices_; }
-  [[nodiscard]] const LatticePoint& at(Index tet, std::size_t corner) const noexcept {
+  [[nodiscard]] const lattice::LatticePoint& at(Index tet, std::size_t corner) const noexcept {
     return corners[tet][corner];
   }
   [[nodiscard]] std::uint8_t cornerOf(Index tet, Index vertex) const noexcept {
-    return static_cast<std::uint8_t>(localCorner(tets[tet], vertex));
+    return static_cast<std::uint8_t>(adjacency::localCorner(tets[tet], vertex));
   }
 
   /// Marks a triangle, on both sides.
-  void markWall(HalfFace h) {
+  void markWall(adjacency::HalfFace h) {
     isWall[h] = true;
     if (mate[h] != kNone) isWall[mate[h]] = true;
   }
@@ -100,8 +101,8 @@ class WallMesh {
   }
 
   std::vector<Tet> tets;
-  std::vector<LatticeTet> corners;
-  std::vector<HalfFace> mate;
+  std::vector<lattice::LatticeTet> corners;
+  std::vector<adjacency::HalfFace> mate;
   FaceChanges change;
   std::vector<bool> isWall;           ///< per half-face; the boundary is a wall, too
   std::vector<bool> isFeature;        ///< per half-face
@@ -120,20 +121,21 @@ class WallMesh {
   /// A tet at an edge, and a point of the edge in its chart.
   struct Around {
     TetEdge edge;
-    LatticePoint point;
+    lattice::LatticePoint point;
   };
-  [[nodiscard]] std::vector<Around> tetsAround(const TetEdge& edge, const LatticePoint& u) const;
+  [[nodiscard]] std::vector<Around> tetsAround(const TetEdge& edge,
+                                               const lattice::LatticePoint& u) const;
   /// A tet at a vertex that is moved, and by what in its chart.
   struct MovedCorner {
     Index tet;
     std::uint8_t corner;
-    LatticePoint by;
+    lattice::LatticePoint by;
   };
   [[nodiscard]] bool leavesKeptEdge(const MovedCorner& moved) const;
   [[nodiscard]] bool mayMove(const MovedCorner& moved) const;
   void requirePositive(Index tet) const;
   void appendCopy(Index tet);
-  void joinInside(HalfFace a, HalfFace b);
+  void joinInside(adjacency::HalfFace a, adjacency::HalfFace b);
 
   Index originalVertices_;
   std::vector<Index> moved_;  ///< per tet: its place in a list, while one is made; else kNone
@@ -150,11 +152,13 @@ class WallTurn {
 
   [[nodiscard]] const TetEdge& edge() const noexcept { return edge_; }
   /// The half-face that it leaves the tet through.
-  [[nodiscard]] HalfFace out() const noexcept { return halfFaceOf(edge_.tet, face_); }
+  [[nodiscard]] adjacency::HalfFace out() const noexcept {
+    return adjacency::halfFaceOf(edge_.tet, face_);
+  }
   [[nodiscard]] bool isAtBoundary() const noexcept { return mesh_.isBoundary(out()); }
   /// The corner that is on that face, beside the edge.
   [[nodiscard]] std::size_t ahead() const noexcept {
-    return static_cast<std::size_t>(otherFaceAtEdge(edge_.mask(), face_));
+    return static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge_.mask(), face_));
   }
   /// Enters the next tet.
   void step() noexcept;
@@ -165,4 +169,4 @@ class WallTurn {
   int face_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

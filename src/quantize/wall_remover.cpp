@@ -5,7 +5,7 @@
 
 #include <quantize/wall_remover.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -29,7 +29,7 @@ class WallRemover {
         sidesAt_[side.arc].push_back({p, side.arc, side.axis});
       }
     }
-    for (HalfFace h = 0; h < complex.patchOf.size(); ++h) {
+    for (adjacency::HalfFace h = 0; h < complex.patchOf.size(); ++h) {
       if (complex.mesh.isFeature[h]) isFeature_[complex.patchOf[h]] = true;
     }
     for (Index p = 0; p < complex.patches.size(); ++p) {
@@ -59,7 +59,7 @@ class WallRemover {
       isChanged[a] = isChanged[b] = true;
       isRemoved[p] = isRemoved[other] = isAny = true;
     }
-    for (HalfFace h = 0; h < complex_.patchOf.size(); ++h) {
+    for (adjacency::HalfFace h = 0; h < complex_.patchOf.size(); ++h) {
       const Index p = complex_.patchOf[h];
       if (p != kNone && isRemoved[p]) complex_.mesh.isWall[h] = false;
     }
@@ -116,8 +116,8 @@ class WallRemover {
   [[nodiscard]] std::int64_t thickness(const PatchSide& patch) const {
     Extent own;
     own.add(patch);
-    const LatticePoint size = own.high - own.low;
-    const LatticePoint whole = blocks_[patch.block].high - blocks_[patch.block].low;
+    const lattice::LatticePoint size = own.high - own.low;
+    const lattice::LatticePoint whole = blocks_[patch.block].high - blocks_[patch.block].low;
     std::int64_t thick = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (size[k] == 0) {
@@ -141,4 +141,4 @@ class WallRemover {
 
 bool removeNeedlessWalls(MotorcycleComplex& complex) { return WallRemover(complex).run(); }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -3,7 +3,7 @@
 
 #include <quantize/motorcycle_complex.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// Takes away walls between two blocks that are one box without it: arcs that nothing needs would
 /// only demand hexahedra (the reduced complex of Brueckner et al.). Thin blocks go first, and no
@@ -11,4 +11,4 @@ namespace hexhex {
 /// @return whether there were any
 bool removeNeedlessWalls(MotorcycleComplex& complex);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

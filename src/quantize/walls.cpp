@@ -5,7 +5,7 @@
 
 #include <base/vector3.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 namespace {
 
@@ -14,7 +14,7 @@ constexpr double kClose = 0.25;
 /// Of distances between which priorities tell, on the lattice of 2^52 units.
 constexpr double kDistanceUnits = 0x1p28;
 
-Vec3 toVector(const LatticePoint& u) {
+Vec3 toVector(const lattice::LatticePoint& u) {
   return {static_cast<double>(u[0]), static_cast<double>(u[1]), static_cast<double>(u[2])};
 }
 
@@ -23,14 +23,14 @@ int otherAxis(std::size_t a, std::size_t b) { return static_cast<int>(3 - a - b)
 }  // namespace
 
 AxisPlane AxisPlane::beyond(const ChartChange& change) const noexcept {
-  const Direction to = change.rotation(direction(static_cast<int>(axis), 1));
-  const auto there = static_cast<std::size_t>(axisOf(to));
-  return {there, signOf(to) * value + change.translation[there]};
+  const lattice::Direction to = change.rotation(lattice::direction(static_cast<int>(axis), 1));
+  const auto there = static_cast<std::size_t>(lattice::axisOf(to));
+  return {there, lattice::signOf(to) * value + change.translation[there]};
 }
 
-AxisPlane planeOf(const WallMesh& mesh, HalfFace wall) {
-  const auto& c = kFaceCorners[wall % 4];
-  const LatticeTet& u = mesh.corners[tetOf(wall)];
+AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall) {
+  const auto& c = lattice::kFaceCorners[wall % 4];
+  const lattice::LatticeTet& u = mesh.corners[adjacency::tetOf(wall)];
   const auto corner = [&](std::size_t k) { return u[static_cast<std::size_t>(c[k])]; };
   std::size_t axis = 0;
   while (axis < 3 && (corner(0)[axis] != corner(1)[axis] || corner(0)[axis] != corner(2)[axis])) {
@@ -38,7 +38,7 @@ AxisPlane planeOf(const WallMesh& mesh, HalfFace wall) {
   }
   if (axis == 3) {
     throw Error(ErrorCode::Internal, "A wall does not lie in a plane. This is a bug.",
-                {PlaceKind::Tet, mesh.original[tetOf(wall)]});
+                {PlaceKind::Tet, mesh.original[adjacency::tetOf(wall)]});
   }
   return {axis, corner(0)[axis]};
 }
@@ -54,7 +54,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn tu
     if (sideAhead < 0) {
       meeting.kind = PlaneMeeting::Kind::Inside;
       // From the corner behind to that ahead.
-      meeting.crossed = {tet, static_cast<std::uint8_t>(localOf(turn.out())),
+      meeting.crossed = {tet, static_cast<std::uint8_t>(adjacency::localOf(turn.out())),
                          static_cast<std::uint8_t>(turn.ahead())};
       meeting.plane = plane;
       return meeting;
@@ -67,21 +67,23 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn tu
     if (turn.isAtBoundary()) return meeting;
     meeting.wallBefore = meeting.wallBefore || mesh.isWall[turn.out()];
     const ChartChange& change = mesh.change[turn.out()];
-    const Direction to = change.rotation(direction(static_cast<int>(plane.axis), 1));
+    const lattice::Direction to =
+        change.rotation(lattice::direction(static_cast<int>(plane.axis), 1));
     plane = plane.beyond(change);
-    side *= signOf(to);
+    side *= lattice::signOf(to);
     turn.step();
   }
 }
 
 /// Half a turn from a wall, around one of its edges.
-PlaneMeeting meetOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w) {
-  const Index tet = tetOf(wall);
+PlaneMeeting meetOpposite(const WallMesh& mesh, adjacency::HalfFace wall, Index v, Index w) {
+  const Index tet = adjacency::tetOf(wall);
   const TetEdge edge{tet, mesh.cornerOf(tet, v), mesh.cornerOf(tet, w)};
   const AxisPlane plane = planeOf(mesh, wall);
-  const int side = plane.sideOf(mesh.at(tet, static_cast<std::size_t>(localOf(wall))));
-  return turnTo(mesh, plane, side,
-                WallTurn(mesh, edge, otherFaceAtEdge(edge.mask(), localOf(wall))));
+  const int side = plane.sideOf(mesh.at(tet, static_cast<std::size_t>(adjacency::localOf(wall))));
+  return turnTo(
+      mesh, plane, side,
+      WallTurn(mesh, edge, adjacency::otherFaceAtEdge(edge.mask(), adjacency::localOf(wall))));
 }
 
 }  // namespace
@@ -117,7 +119,7 @@ void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
   if (mesh_.isNew(tet[edge.corner0]) || mesh_.isNew(tet[edge.corner1])) {
     bool isClosed = false;
     for (int face = 0; face < 4 && !isClosed; ++face) {
-      if (contains(edge.mask(), face)) continue;
+      if (lattice::contains(edge.mask(), face)) continue;
       WallTurn turn(mesh_, edge, face);
       AxisPlane here = plane;
       while (!isClosed && !turn.isAtBoundary()) {
@@ -143,28 +145,29 @@ void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
   }
 }
 
-HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
-  HalfFace face = meeting.face;
+adjacency::HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
+  adjacency::HalfFace face = meeting.face;
   if (meeting.kind == PlaneMeeting::Kind::Inside) {
     const auto& [tet, corner0, corner1] = meeting.crossed;
     const int moved = moveEnd(meeting.crossed, meeting.plane);
     if (moved < 0) split(meeting.crossed, meeting.plane);
     // Always as a half-face of the tet before it: a turn goes on from its mate.
-    face = moved == corner0 ? mesh_.mate[halfFaceOf(tet, corner1)] : halfFaceOf(tet, corner0);
+    face = moved == corner0 ? mesh_.mate[adjacency::halfFaceOf(tet, corner1)]
+                            : adjacency::halfFaceOf(tet, corner0);
   }
   mesh_.markWall(face);
   return face;
 }
 
-void WallTracer::push(HalfFace wall, const std::array<Index, 2>& edge,
+void WallTracer::push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
                       const std::array<double, 2>& distances) {
   // Distance grows by one per unit away from the edge, linearly (the update of fast marching).
-  const Index tet = tetOf(wall);
+  const Index tet = adjacency::tetOf(wall);
   const auto point = [&](Index vertex) {
     return toVector(mesh_.at(tet, mesh_.cornerOf(tet, vertex)));
   };
   Index third = kNone;
-  for (const int corner : kFaceCorners[wall % 4]) {
+  for (const int corner : lattice::kFaceCorners[wall % 4]) {
     const Index vertex = mesh_.tets[tet][static_cast<std::size_t>(corner)];
     if (vertex != edge[0] && vertex != edge[1]) third = vertex;
   }
@@ -189,30 +192,31 @@ void WallTracer::push(const std::array<Index, 2>& edge, const std::array<double,
 void WallTracer::startAt(const TetEdge& edge, int face) {
   const std::array<Index, 2> ends = {mesh_.tets[edge.tet][edge.corner0],
                                      mesh_.tets[edge.tet][edge.corner1]};
-  const LatticePoint origin = mesh_.at(edge.tet, edge.corner0);
-  const LatticePoint along = mesh_.at(edge.tet, edge.corner1) - origin;
+  const lattice::LatticePoint origin = mesh_.at(edge.tet, edge.corner0);
+  const lattice::LatticePoint along = mesh_.at(edge.tet, edge.corner1) - origin;
   std::size_t axis = 0;
   while (along[axis] == 0) ++axis;
   const std::size_t a = (axis + 1) % 3;
   const std::size_t b = (axis + 2) % 3;
   // The first direction of the grid that a turn from `face` meets, if that is not in it.
-  HalfFace wall = halfFaceOf(edge.tet, face);
-  const LatticePoint behind =
-      mesh_.at(edge.tet, static_cast<std::size_t>(otherFaceAtEdge(edge.mask(), face))) - origin;
+  adjacency::HalfFace wall = adjacency::halfFaceOf(edge.tet, face);
+  const lattice::LatticePoint behind =
+      mesh_.at(edge.tet, static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge.mask(), face))) -
+      origin;
   if (behind[a] != 0 && behind[b] != 0) {
-    const LatticePoint ahead = mesh_.at(edge.tet, static_cast<std::size_t>(face)) - origin;
-    const int turn =
-        sign(static_cast<Int128>(behind[a]) * ahead[b] - static_cast<Int128>(behind[b]) * ahead[a]);
+    const lattice::LatticePoint ahead = mesh_.at(edge.tet, static_cast<std::size_t>(face)) - origin;
+    const int turn = lattice::sign(static_cast<lattice::Int128>(behind[a]) * ahead[b] -
+                                   static_cast<lattice::Int128>(behind[b]) * ahead[a]);
     const bool sameSigns = (behind[a] > 0) == (behind[b] > 0);
     const std::size_t zero = (turn > 0) == sameSigns ? a : b;
     wall = wallAt(turnTo(mesh_, {zero, origin[zero]}, behind[zero] > 0 ? 1 : -1,
-                         WallTurn(mesh_, edge, otherFaceAtEdge(edge.mask(), face))));
+                         WallTurn(mesh_, edge, adjacency::otherFaceAtEdge(edge.mask(), face))));
   } else {
     mesh_.markWall(wall);
   }
-  const auto thirdOf = [&](HalfFace h) {
-    for (const int corner : kFaceCorners[h % 4]) {
-      const Index vertex = mesh_.tets[tetOf(h)][static_cast<std::size_t>(corner)];
+  const auto thirdOf = [&](adjacency::HalfFace h) {
+    for (const int corner : lattice::kFaceCorners[h % 4]) {
+      const Index vertex = mesh_.tets[adjacency::tetOf(h)][static_cast<std::size_t>(corner)];
       if (vertex != ends[0] && vertex != ends[1]) return vertex;
     }
     return kNone;
@@ -222,19 +226,19 @@ void WallTracer::startAt(const TetEdge& edge, int face) {
   // Quarter turn by quarter turn, always from the far side of the wall.
   bool isStart = true;
   while (true) {
-    const HalfFace from = isStart && mesh_.isBoundary(wall) ? wall : mesh_.mate[wall];
+    const adjacency::HalfFace from = isStart && mesh_.isBoundary(wall) ? wall : mesh_.mate[wall];
     isStart = false;
-    const Index tet = tetOf(from);
+    const Index tet = adjacency::tetOf(from);
     const TetEdge here{tet, mesh_.cornerOf(tet, ends[0]), mesh_.cornerOf(tet, ends[1])};
-    const LatticePoint out =
+    const lattice::LatticePoint out =
         mesh_.at(tet, mesh_.cornerOf(tet, thirdOf(from))) - mesh_.at(tet, here.corner0);
-    const LatticePoint line = mesh_.at(tet, here.corner1) - mesh_.at(tet, here.corner0);
+    const lattice::LatticePoint line = mesh_.at(tet, here.corner1) - mesh_.at(tet, here.corner0);
     std::size_t lineAxis = 0;
     while (line[lineAxis] == 0) ++lineAxis;
     const auto next = static_cast<std::size_t>(otherAxis(lineAxis, planeOf(mesh_, from).axis));
-    const PlaneMeeting meeting =
-        turnTo(mesh_, {next, mesh_.at(tet, here.corner0)[next]}, out[next] > 0 ? 1 : -1,
-               WallTurn(mesh_, here, otherFaceAtEdge(here.mask(), localOf(from))));
+    const PlaneMeeting meeting = turnTo(
+        mesh_, {next, mesh_.at(tet, here.corner0)[next]}, out[next] > 0 ? 1 : -1,
+        WallTurn(mesh_, here, adjacency::otherFaceAtEdge(here.mask(), adjacency::localOf(from))));
     if (meeting.kind == PlaneMeeting::Kind::Boundary) return;
     wall = wallAt(meeting);
     if (mesh_.isBoundary(wall) || thirdOf(wall) == first) return;
@@ -252,14 +256,14 @@ bool WallTracer::startIn(Index tet, const AxisPlane& plane) {
         if (plane.sideOf(mesh_.at(t, a)) >= 0 || plane.sideOf(mesh_.at(t, b)) <= 0) continue;
         if (moveEnd({t, a, b}, plane) >= 0) continue;
         mesh_.split({t, a, b}, plane.axis, plane.value);
-        parts.push_back(tetOf(mesh_.mate[halfFaceOf(t, a)]));
+        parts.push_back(adjacency::tetOf(mesh_.mate[adjacency::halfFaceOf(t, a)]));
       }
     }
   }
   bool isStarted = false;
   for (const Index t : parts) {
     for (int face = 0; face < 4; ++face) {
-      const auto& c = kFaceCorners[static_cast<std::size_t>(face)];
+      const auto& c = lattice::kFaceCorners[static_cast<std::size_t>(face)];
       std::array<Index, 3> triangle{};
       bool isInPlane = true;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -267,7 +271,7 @@ bool WallTracer::startIn(Index tet, const AxisPlane& plane) {
         triangle[k] = mesh_.tets[t][corner];
         isInPlane = isInPlane && plane.sideOf(mesh_.at(t, corner)) == 0;
       }
-      const HalfFace wall = halfFaceOf(t, face);
+      const adjacency::HalfFace wall = adjacency::halfFaceOf(t, face);
       if (!isInPlane || mesh_.isWall[wall]) continue;
       mesh_.markWall(wall);
       isStarted = true;
@@ -277,9 +281,9 @@ bool WallTracer::startIn(Index tet, const AxisPlane& plane) {
   return isStarted;
 }
 
-HalfFace WallTracer::someWall(const TetEdge& edge) const {
+adjacency::HalfFace WallTracer::someWall(const TetEdge& edge) const {
   for (int face = 0; face < 4; ++face) {
-    if (contains(edge.mask(), face)) continue;
+    if (lattice::contains(edge.mask(), face)) continue;
     WallTurn turn(mesh_, edge, face);
     while (true) {
       if (mesh_.isWall[turn.out()]) return turn.out();
@@ -308,7 +312,7 @@ void WallTracer::grow(const Front& front) {
     push({found.middle, w}, {middle, front.distances[1]}, front.tet);
     return;
   }
-  const HalfFace wall = someWall(*found.edge);
+  const adjacency::HalfFace wall = someWall(*found.edge);
   if (wall == kNone) {
     throw Error(ErrorCode::Internal, "An edge of a wall has lost its wall. This is a bug.",
                 {PlaceKind::Edge, v, w});
@@ -324,7 +328,7 @@ void WallTracer::grow(const Front& front) {
   push(wallAt(one), front.vertices, front.distances);
 }
 
-HalfFace wallOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w) {
+adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall, Index v, Index w) {
   const auto meeting = meetOpposite(mesh, wall, v, w);
   const bool isWall = meeting.kind == PlaneMeeting::Kind::Face && mesh.isWall[meeting.face];
   return isWall ? meeting.face : kNone;
@@ -334,13 +338,13 @@ void WallTracer::startAlong(Index v, Index w, Index tet) {
   // Walls of other edges may have split it.
   mesh_.forEachPart(v, w, tet, [this](TetEdge edge) {
     int face = 0;
-    while (contains(edge.mask(), face)) ++face;
+    while (lattice::contains(edge.mask(), face)) ++face;
     WallTurn turn(mesh_, edge, face);
     const TetEdge first = edge;
     do {
       if (turn.isAtBoundary()) {
         // Anew from the boundary, inwards.
-        startAt(turn.edge(), localOf(turn.out()));
+        startAt(turn.edge(), adjacency::localOf(turn.out()));
         return;
       }
       turn.step();
@@ -349,13 +353,13 @@ void WallTracer::startAlong(Index v, Index w, Index tet) {
   });
 }
 
-void WallTracer::startAt(HalfFace feature) {
+void WallTracer::startAt(adjacency::HalfFace feature) {
   mesh_.markWall(feature);
-  const Tet& tet = mesh_.tets[tetOf(feature)];
-  const auto& c = kFaceCorners[feature % 4];
+  const Tet& tet = mesh_.tets[adjacency::tetOf(feature)];
+  const auto& c = lattice::kFaceCorners[feature % 4];
   for (std::size_t k = 0; k < 3; ++k) {
     push({tet[static_cast<std::size_t>(c[k])], tet[static_cast<std::size_t>(c[(k + 1) % 3])]},
-         {0, 0}, tetOf(feature));
+         {0, 0}, adjacency::tetOf(feature));
   }
 }
 
@@ -363,26 +367,26 @@ WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges) {
   WallMesh mesh(map);
   WallTracer tracer(mesh);
   const std::vector<int> quarters = quartersAround(edges, std::span(map.corners));
-  std::vector<EdgeCorner> features;
-  for (const EdgeCorner& at : map.featureEdges) {
+  std::vector<adjacency::EdgeCorner> features;
+  for (const adjacency::EdgeCorner& at : map.featureEdges) {
     const Index edge = edges.edgeOf(at);
     const bool isSingular = quarters[edge] != regularQuarters(edges, edge);
     if (isSingular && !isSingularByTurnsAlone(edges, edge, quarters[edge])) continue;
     if (!isSingular) features.push_back(at);
     mesh.keepEdge(mesh.tets[at.tet][at.corner0], mesh.tets[at.tet][at.corner1]);
   }
-  const auto start = [&](const EdgeCorner& at) {
+  const auto start = [&](const adjacency::EdgeCorner& at) {
     const Tet& tet = map.topology.tets[at.tet];
     tracer.startAlong(tet[at.corner0], tet[at.corner1], at.tet);
   };
-  for (const HalfFace feature : map.featureFaces) tracer.startAt(feature);
+  for (const adjacency::HalfFace feature : map.featureFaces) tracer.startAt(feature);
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     if (quarters[edge] != regularQuarters(edges, edge)) start(edges(edge).front());
   }
-  for (const EdgeCorner& at : features) start(at);
+  for (const adjacency::EdgeCorner& at : features) start(at);
   std::fill(mesh.isHeld.begin(), mesh.isHeld.end(), false);
   tracer.grow();
   return mesh;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

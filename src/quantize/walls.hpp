@@ -9,14 +9,14 @@
 #include <quantize/cut_graph.hpp>
 #include <quantize/wall_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 /// A plane perpendicular to an axis, in the chart of some tet.
 struct AxisPlane {
   std::size_t axis = 0;
   std::int64_t value = 0;
 
-  [[nodiscard]] int sideOf(const LatticePoint& u) const noexcept {
+  [[nodiscard]] int sideOf(const lattice::LatticePoint& u) const noexcept {
     return (u[axis] > value ? 1 : 0) - (u[axis] < value ? 1 : 0);
   }
   /// The same in the chart beyond.
@@ -26,10 +26,10 @@ struct AxisPlane {
 /// Where a turn around an edge meets a plane.
 struct PlaneMeeting {
   enum class Kind : std::uint8_t { Boundary, Face, Inside } kind = Kind::Boundary;
-  HalfFace face = kNone;    ///< that lies in the plane
-  TetEdge crossed{};        ///< that the plane crosses inside of its tet
-  AxisPlane plane{};        ///< in the chart of that tet
-  bool wallBefore = false;  ///< whether a wall was passed on the way
+  adjacency::HalfFace face = kNone;  ///< that lies in the plane
+  TetEdge crossed{};                 ///< that the plane crosses inside of its tet
+  AxisPlane plane{};                 ///< in the chart of that tet
+  bool wallBefore = false;           ///< whether a wall was passed on the way
 };
 
 /// Lets walls grow, nearest to their singular edge first.
@@ -42,7 +42,7 @@ class WallTracer {
   void startAlong(Index v, Index w, Index tet);
 
   /// A wall from an aligned triangle.
-  void startAt(HalfFace feature);
+  void startAt(adjacency::HalfFace feature);
 
   /// A wall along a plane that crosses a tet, or runs along its side.
   /// @return false if there is nothing of it
@@ -73,11 +73,11 @@ class WallTracer {
   /// edges of tets around it that the plane crosses: two walls that cross one edge would otherwise
   /// split what the other has made, by turns and without end, beside that edge.
   void split(const TetEdge& edge, const AxisPlane& plane);
-  HalfFace wallAt(const PlaneMeeting& meeting);
-  void push(HalfFace wall, const std::array<Index, 2>& edge,
+  adjacency::HalfFace wallAt(const PlaneMeeting& meeting);
+  void push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
             const std::array<double, 2>& distances);
   void push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances, Index tet);
-  [[nodiscard]] HalfFace someWall(const TetEdge& edge) const;
+  [[nodiscard]] adjacency::HalfFace someWall(const TetEdge& edge) const;
 
   WallMesh& mesh_;
   std::priority_queue<Front> fronts_;
@@ -85,13 +85,14 @@ class WallTracer {
 };
 
 /// The axis to which a triangle of a wall is perpendicular, in the chart of the half-face's tet.
-[[nodiscard]] AxisPlane planeOf(const WallMesh& mesh, HalfFace wall);
+[[nodiscard]] AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall);
 
 /// The wall, if any, that continues a wall's triangle beyond its edge (v, w), on the same side;
 /// kNone if there is none or the edge is on the boundary.
-[[nodiscard]] HalfFace wallOpposite(const WallMesh& mesh, HalfFace wall, Index v, Index w);
+[[nodiscard]] adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall,
+                                               Index v, Index w);
 
 /// A mesh whose walls are the motorcycle complex of a map.
 [[nodiscard]] WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges);
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

@@ -8,7 +8,7 @@
 #include <repair/cell_flood.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -27,23 +27,26 @@ int wallOf(const Vec3& point) {
   return -1;
 }
 
-LatticeTet carried(const LatticeTet& corners, const Transition& transition, std::int64_t unit) {
-  LatticeTet image{};
+lattice::LatticeTet carried(const lattice::LatticeTet& corners,
+                            const lattice::Transition& transition, std::int64_t unit) {
+  lattice::LatticeTet image{};
   for (std::size_t i = 0; i < 4; ++i) image[i] = transition(corners[i], unit);
   return image;
 }
 
 /// The four weights of a point in a tet, times the tet's determinant.
-std::array<Int192, 4> weightsOf(const LatticeTet& c, const LatticePoint& at) {
-  return {
-      orientationDeterminant(at, c[1], c[2], c[3]), orientationDeterminant(c[0], at, c[2], c[3]),
-      orientationDeterminant(c[0], c[1], at, c[3]), orientationDeterminant(c[0], c[1], c[2], at)};
+std::array<lattice::Int192, 4> weightsOf(const lattice::LatticeTet& c,
+                                         const lattice::LatticePoint& at) {
+  return {lattice::orientationDeterminant(at, c[1], c[2], c[3]),
+          lattice::orientationDeterminant(c[0], at, c[2], c[3]),
+          lattice::orientationDeterminant(c[0], c[1], at, c[3]),
+          lattice::orientationDeterminant(c[0], c[1], c[2], at)};
 }
 
-Int128 squaredDistance(const LatticePoint& a, const LatticePoint& b) {
-  Int128 sum = 0;
+lattice::Int128 squaredDistance(const lattice::LatticePoint& a, const lattice::LatticePoint& b) {
+  lattice::Int128 sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Int128 d = static_cast<Int128>(a[k]) - b[k];
+    const lattice::Int128 d = static_cast<lattice::Int128>(a[k]) - b[k];
     sum += d * d;
   }
   return sum;
@@ -118,7 +121,7 @@ double volumeOf(const Body& body, const Vec3& from) {
 
 }  // namespace
 
-bool CellFlood::run(Index tet, const GridPoint& low) {
+bool CellFlood::run(Index tet, const lattice::GridPoint& low) {
   low_ = low;
   pieces_.clear();
   wallArea_ = {};
@@ -131,7 +134,7 @@ bool CellFlood::run(Index tet, const GridPoint& low) {
   return std::abs(volume - 1) < kSlack;
 }
 
-std::array<Vec3, 4> CellFlood::relative(const LatticeTet& corners) const {
+std::array<Vec3, 4> CellFlood::relative(const lattice::LatticeTet& corners) const {
   const auto unit = static_cast<double>(map_.exact.unit);
   std::array<Vec3, 4> result{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -145,7 +148,7 @@ std::array<Vec3, 4> CellFlood::relative(const LatticeTet& corners) const {
 
 /// False if the tet has been met in another place of the chart: the cell is wrapped around
 /// something.
-bool CellFlood::visit(Index tet, const Transition& fromFirst) {
+bool CellFlood::visit(Index tet, const lattice::Transition& fromFirst) {
   for (const Piece& piece : pieces_) {
     if (piece.tet == tet) return piece.fromFirst == fromFirst;
   }
@@ -162,20 +165,21 @@ bool CellFlood::spread(std::size_t index) {
   const Piece piece = pieces_[index];
   const std::array<Vec3, 4> corners = relative(piece.corners);
   for (int f = 0; f < 4; ++f) {
-    const std::array<int, 3>& face = kFaceCorners[static_cast<std::size_t>(f)];
+    const std::array<int, 3>& face = lattice::kFaceCorners[static_cast<std::size_t>(f)];
     const ClippedTriangle part = clipToCube({corners[static_cast<std::size_t>(face[0])],
                                              corners[static_cast<std::size_t>(face[1])],
                                              corners[static_cast<std::size_t>(face[2])]});
     if (part.area < kLeastArea) continue;
-    const HalfFace halfFace = halfFaceOf(piece.tet, f);
-    const HalfFace mate = map_.topology.mate[halfFace];
+    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(piece.tet, f);
+    const adjacency::HalfFace mate = map_.topology.mate[halfFace];
     const int wall = wallOf(part.centre);
     if (wall >= 0) {
       if (mate == kNone) wallArea_[static_cast<std::size_t>(wall)] += part.area;
       continue;
     }
-    if (mate == kNone || valid_[tetOf(mate)] == 0 || !isCarriedOver(map_, halfFace)) return false;
-    if (!visit(tetOf(mate), map_.exact.transitions.across(halfFace) * piece.fromFirst)) {
+    if (mate == kNone || valid_[adjacency::tetOf(mate)] == 0 || !isCarriedOver(map_, halfFace))
+      return false;
+    if (!visit(adjacency::tetOf(mate), map_.exact.transitions.across(halfFace) * piece.fromFirst)) {
       return false;
     }
   }
@@ -183,20 +187,21 @@ bool CellFlood::spread(std::size_t index) {
 }
 
 std::optional<CellFlood::Corner> CellFlood::corner(std::size_t i) const {
-  LatticePoint at{};
+  lattice::LatticePoint at{};
   for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = (std::int64_t{low_[k]} + kCellCorners[i][k]) * map_.exact.unit;
+    at[k] = (std::int64_t{low_[k]} + lattice::kCellCorners[i][k]) * map_.exact.unit;
   }
   // Every piece that touches the corner has the same answer.
   for (const Piece& piece : pieces_) {
-    const std::array<Int192, 4> weights = weightsOf(piece.corners, at);
-    CornerMask simplex = 0;
+    const std::array<lattice::Int192, 4> weights = weightsOf(piece.corners, at);
+    lattice::CornerMask simplex = 0;
     bool inside = true;
     double sum = 0;
     for (int c = 0; c < 4; ++c) {
-      const Int192& weight = weights[static_cast<std::size_t>(c)];
+      const lattice::Int192& weight = weights[static_cast<std::size_t>(c)];
       inside = inside && weight.sign() >= 0;
-      if (weight.sign() > 0) simplex = static_cast<CornerMask>(simplex | cornerBit(c));
+      if (weight.sign() > 0)
+        simplex = static_cast<lattice::CornerMask>(simplex | lattice::cornerBit(c));
       sum += weight.toDouble();
     }
     if (!inside) continue;
@@ -212,12 +217,13 @@ std::optional<CellFlood::Corner> CellFlood::corner(std::size_t i) const {
   return {};
 }
 
-VertexName CellFlood::nameOf(const Piece& piece, CornerMask simplex, const LatticePoint& at) const {
+VertexName CellFlood::nameOf(const Piece& piece, lattice::CornerMask simplex,
+                             const lattice::LatticePoint& at) const {
   const Tet& tet = map_.topology.tets[piece.tet];
   VertexName name;
   std::vector<int> corners;
   for (int c = 0; c < 4; ++c) {
-    if (contains(simplex, c)) corners.push_back(c);
+    if (lattice::contains(simplex, c)) corners.push_back(c);
   }
   std::sort(corners.begin(), corners.end(), [&](int a, int b) {
     return tet[static_cast<std::size_t>(a)] < tet[static_cast<std::size_t>(b)];
@@ -229,8 +235,8 @@ VertexName CellFlood::nameOf(const Piece& piece, CornerMask simplex, const Latti
       name.place[i] = squaredDistance(piece.corners[c], at);
     }
   }
-  if (simplex == kWholeTet) {
-    const LatticePoint own = piece.fromFirst(at, map_.exact.unit);
+  if (simplex == lattice::kWholeTet) {
+    const lattice::LatticePoint own = piece.fromFirst(at, map_.exact.unit);
     for (std::size_t k = 0; k < 3; ++k) name.place[k] = own[k];
   }
   return name;
@@ -238,7 +244,7 @@ VertexName CellFlood::nameOf(const Piece& piece, CornerMask simplex, const Latti
 
 double volumeInCube(const std::array<Vec3, 4>& tet) {
   Body body;
-  for (const std::array<int, 3>& face : kFaceCorners) {
+  for (const std::array<int, 3>& face : lattice::kFaceCorners) {
     // Outward.
     body.push_back({tet[static_cast<std::size_t>(face[0])], tet[static_cast<std::size_t>(face[2])],
                     tet[static_cast<std::size_t>(face[1])]});
@@ -280,4 +286,4 @@ ClippedTriangle clipToCube(const std::array<Vec3, 3>& triangle) {
   return clipped;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -14,14 +14,14 @@
 #include <igm/prepare.hpp>
 #include <lattice/wide_int.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// A hex vertex, whatever the chart: the simplex of the tet mesh that holds it, by its vertices in
 /// ascending order (the rest kNone), and its squared distances from up to three of them, which tell
 /// where it is in an edge or triangle. In a tet, the coordinates in the tet's chart.
 struct VertexName {
   std::array<Index, 4> simplex = {kNone, kNone, kNone, kNone};
-  std::array<Int128, 3> place{};
+  std::array<lattice::Int128, 3> place{};
   [[nodiscard]] bool operator==(const VertexName&) const = default;
   [[nodiscard]] bool operator<(const VertexName& other) const {
     return simplex != other.simplex ? simplex < other.simplex : place < other.place;
@@ -33,19 +33,19 @@ class CellFlood {
   /// A tet that meets the cube, in the chart of the first one.
   struct Piece {
     Index tet;
-    Transition fromFirst;
-    LatticeTet corners;
+    lattice::Transition fromFirst;
+    lattice::LatticeTet corners;
     double volume;  ///< of its part in the cube
   };
 
   /// @param valid  per tet
   /// @param scaled  the map's lattice is already scaled
-  CellFlood(const PreparedMap& map, std::span<const std::uint8_t> valid)
+  CellFlood(const igm::PreparedMap& map, std::span<const std::uint8_t> valid)
       : map_(map), valid_(valid) {}
 
   /// Spreads from a valid tet over all tets that meet the open unit cube above a grid point of its
   /// chart. False if something is in the way: the cell is not whole.
-  bool run(Index tet, const GridPoint& low);
+  bool run(Index tet, const lattice::GridPoint& low);
 
   [[nodiscard]] std::span<const Piece> pieces() const { return pieces_; }
 
@@ -65,15 +65,15 @@ class CellFlood {
   static constexpr double kSlack = 1e-6;
 
  private:
-  bool visit(Index tet, const Transition& fromFirst);
+  bool visit(Index tet, const lattice::Transition& fromFirst);
   bool spread(std::size_t index);
-  [[nodiscard]] std::array<Vec3, 4> relative(const LatticeTet& corners) const;
-  [[nodiscard]] VertexName nameOf(const Piece& piece, CornerMask simplex,
-                                  const LatticePoint& at) const;
+  [[nodiscard]] std::array<Vec3, 4> relative(const lattice::LatticeTet& corners) const;
+  [[nodiscard]] VertexName nameOf(const Piece& piece, lattice::CornerMask simplex,
+                                  const lattice::LatticePoint& at) const;
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   std::span<const std::uint8_t> valid_;
-  GridPoint low_{};
+  lattice::GridPoint low_{};
   std::vector<Piece> pieces_;
   std::array<double, 6> wallArea_{};  ///< of the tets' boundary in each wall: axis 0 low, high, ...
 };
@@ -88,4 +88,4 @@ struct ClippedTriangle {
 };
 [[nodiscard]] ClippedTriangle clipToCube(const std::array<Vec3, 3>& triangle);
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -8,7 +8,7 @@
 #include <repair/patch.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -16,8 +16,8 @@ constexpr std::size_t kGrain = 4096;
 
 class Examiner {
  public:
-  Examiner(const PreparedMap& map, const LocalParameters& parameters, const std::vector<Index>& bad,
-           double tolerance, double limit)
+  Examiner(const igm::PreparedMap& map, const igm::LocalParameters& parameters,
+           const std::vector<Index>& bad, double tolerance, double limit)
       : map_(map), parameters_(parameters), tolerance_(tolerance), limit_(limit) {
     touched_.assign(map.topology.pointCount, 0);
     boundary_.assign(map.topology.pointCount, 0);
@@ -32,16 +32,17 @@ class Examiner {
 
   /// How far sanitization moves each vertex.
   void examineVertices(Stage& stage, Diagnosis& diagnosis) {
-    const TetTopology& topology = map_.topology;
+    const adjacency::TetTopology& topology = map_.topology;
     const auto unit = static_cast<double>(map_.exact.unit);
     Array<double> displacement(topology.pointCount);
     std::fill(displacement.begin(), displacement.end(), 0.0);
     for (std::size_t t = 0; t < topology.tetCount(); ++t) {
       for (std::size_t c = 0; c < 4; ++c) {
         const Index v = topology.tets[t][c];
-        displacement[v] = std::max(
-            displacement[v], displacementOf(parameters_(static_cast<Index>(t), static_cast<int>(c)),
-                                            map_.exact.corners[t][c], unit));
+        displacement[v] =
+            std::max(displacement[v],
+                     igm::displacementOf(parameters_(static_cast<Index>(t), static_cast<int>(c)),
+                                         map_.exact.corners[t][c], unit));
         if (topology.mate[4 * t + c] != kNone) continue;
         for (std::size_t k = 0; k < 4; ++k) {
           if (k != c) boundary_[topology.tets[t][k]] = 1;
@@ -61,33 +62,33 @@ class Examiner {
 
   /// Whether transitions carry triangles over.
   void examineFaces(Stage& stage, Diagnosis& diagnosis) {
-    const TetTopology& topology = map_.topology;
+    const adjacency::TetTopology& topology = map_.topology;
     parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
       for (int f = 0; f < 4; ++f) {
-        const HalfFace halfFace = halfFaceOf(static_cast<Index>(t), f);
+        const adjacency::HalfFace halfFace = adjacency::halfFaceOf(static_cast<Index>(t), f);
         if (topology.mate[halfFace] == kNone || topology.mate[halfFace] < halfFace) continue;
         if (isTouched(halfFace) || isCarriedOver(map_, halfFace)) continue;
         diagnosis.hopeless.add(ErrorCode::HalfIntegerFixedPoint,
                                {PlaceKind::Face, t, static_cast<std::uint64_t>(f)}, 0);
       }
     });
-    for (const Transitions::Misfit& misfit : map_.exact.transitions.misfits) {
+    for (const igm::Transitions::Misfit& misfit : map_.exact.transitions.misfits) {
       // A triangle's own corners tell whether it fits, even where its tets are flipped. The nearest
       // rotation need not be the one that fits best with an integer translation.
       const double residual =
-          fitAllTransitions(SharedTriangle(topology, parameters_, misfit.halfFace))
+          igm::fitAllTransitions(igm::SharedTriangle(topology, parameters_, misfit.halfFace))
               .front()
               .residual;
       if (residual <= tolerance_) continue;
       if (residual <= limit_) {
-        for (const int c : kFaceCorners[misfit.halfFace % 4]) {
+        for (const int c : lattice::kFaceCorners[misfit.halfFace % 4]) {
           diagnosis.roundable.push_back(
-              topology.tets[tetOf(misfit.halfFace)][static_cast<std::size_t>(c)]);
+              topology.tets[adjacency::tetOf(misfit.halfFace)][static_cast<std::size_t>(c)]);
         }
       } else {
-        diagnosis.hopeless.add(ErrorCode::TransitionResidual,
-                               {PlaceKind::Face, tetOf(misfit.halfFace), misfit.halfFace % 4},
-                               residual);
+        diagnosis.hopeless.add(
+            ErrorCode::TransitionResidual,
+            {PlaceKind::Face, adjacency::tetOf(misfit.halfFace), misfit.halfFace % 4}, residual);
       }
     }
   }
@@ -102,14 +103,15 @@ class Examiner {
     return boundary_[v] != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
   }
 
-  [[nodiscard]] bool isTouched(HalfFace halfFace) const {
-    const Tet& tet = map_.topology.tets[tetOf(halfFace)];
-    return std::any_of(kFaceCorners[halfFace % 4].begin(), kFaceCorners[halfFace % 4].end(),
+  [[nodiscard]] bool isTouched(adjacency::HalfFace halfFace) const {
+    const Tet& tet = map_.topology.tets[adjacency::tetOf(halfFace)];
+    return std::any_of(lattice::kFaceCorners[halfFace % 4].begin(),
+                       lattice::kFaceCorners[halfFace % 4].end(),
                        [&](int c) { return touched_[tet[static_cast<std::size_t>(c)]] != 0; });
   }
 
-  const PreparedMap& map_;
-  const LocalParameters& parameters_;
+  const igm::PreparedMap& map_;
+  const igm::LocalParameters& parameters_;
   double tolerance_;
   double limit_;
   std::vector<std::uint8_t> touched_;  ///< per vertex: a bad tet is at it
@@ -125,7 +127,8 @@ std::string tetsAsText(std::size_t count) {
   return count == 1 ? "1 tet" : std::to_string(count) + " tets";
 }
 
-void refuseInvertedComponents(const TetTopology& topology, const LocalParameters& parameters) {
+void refuseInvertedComponents(const adjacency::TetTopology& topology,
+                              const igm::LocalParameters& parameters) {
   DisjointSets sets = componentsOf(topology, [](Index) { return true; });
   std::vector<double> volume(topology.tetCount(), 0);  // by smallest tet
   std::vector<Index> count(topology.tetCount(), 0);
@@ -149,13 +152,13 @@ void refuseInvertedComponents(const TetTopology& topology, const LocalParameters
 }
 
 /// Whether all tets at the vertices of a tet are bad.
-bool isSurrounded(const TetTopology& topology, Index tet, const std::vector<Index>& bad,
-                  VertexStar& star) {
+bool isSurrounded(const adjacency::TetTopology& topology, Index tet, const std::vector<Index>& bad,
+                  igm::VertexStar& star) {
   const Tet& corners = topology.tets[tet];
   return std::all_of(corners.begin(), corners.end(), [&](Index v) {
     star.collect(topology, v);
     return std::all_of(star.members().begin(), star.members().end(),
-                       [&](const VertexStar::Member& member) {
+                       [&](const igm::VertexStar::Member& member) {
                          return std::binary_search(bad.begin(), bad.end(), member.tet());
                        });
   });
@@ -163,7 +166,7 @@ bool isSurrounded(const TetTopology& topology, Index tet, const std::vector<Inde
 
 }  // namespace
 
-void diagnose(const PreparedMap& map, const LocalParameters& parameters,
+void diagnose(const igm::PreparedMap& map, const igm::LocalParameters& parameters,
               const std::vector<Index>& bad, double tolerance, double limit, Stage& stage,
               Diagnosis& diagnosis) {
   Examiner examiner(map, parameters, bad, tolerance, limit);
@@ -172,8 +175,8 @@ void diagnose(const PreparedMap& map, const LocalParameters& parameters,
   sortUnique(diagnosis.roundable);
 }
 
-void refuseInvertedParts(const TetTopology& topology, const LocalParameters& parameters,
-                         const std::vector<Index>& bad) {
+void refuseInvertedParts(const adjacency::TetTopology& topology,
+                         const igm::LocalParameters& parameters, const std::vector<Index>& bad) {
   if (bad.empty()) return;
   refuseInvertedComponents(topology, parameters);
   const auto tets = static_cast<double>(topology.tetCount());
@@ -187,7 +190,7 @@ void refuseInvertedParts(const TetTopology& topology, const LocalParameters& par
   }
 }
 
-void refuseInvertedRegions(const TetTopology& topology, const std::vector<Index>& bad) {
+void refuseInvertedRegions(const adjacency::TetTopology& topology, const std::vector<Index>& bad) {
   if (bad.size() <= kMaxBadTets) return;
   DisjointSets sets = componentsOf(
       topology, [&](Index t) { return std::binary_search(bad.begin(), bad.end(), t); });
@@ -195,7 +198,7 @@ void refuseInvertedRegions(const TetTopology& topology, const std::vector<Index>
   roots.reserve(bad.size());
   for (const Index t : bad) roots.push_back(sets.find(t));
   std::sort(roots.begin(), roots.end());
-  VertexStar star;
+  igm::VertexStar star;
   for (const Index t : bad) {
     const auto [first, last] = std::equal_range(roots.begin(), roots.end(), sets.find(t));
     const auto size = static_cast<std::size_t>(last - first);
@@ -209,4 +212,4 @@ void refuseInvertedRegions(const TetTopology& topology, const std::vector<Index>
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

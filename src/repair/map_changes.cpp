@@ -4,7 +4,7 @@
 
 #include <repair/map_changes.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -83,11 +83,11 @@ struct Fan {
 };
 
 /// Fans that have no tet in common, first come first served.
-std::vector<Fan> disjointFans(const TetTopology& topology,
+std::vector<Fan> disjointFans(const adjacency::TetTopology& topology,
                               std::span<const std::array<Index, 2>> edges) {
   std::vector<Fan> fans;
   std::vector<Index> taken;  // sorted
-  VertexStar star;
+  igm::VertexStar star;
   for (const std::array<Index, 2>& edge : edges) {
     Fan fan{edge, tetsAtEdge(topology, edge, star)};
     const bool free = std::none_of(fan.tets.begin(), fan.tets.end(), [&](Index t) {
@@ -103,11 +103,11 @@ std::vector<Fan> disjointFans(const TetTopology& topology,
 
 }  // namespace
 
-std::vector<Index> tetsAtEdge(const TetTopology& topology, const std::array<Index, 2>& edge,
-                              VertexStar& star) {
+std::vector<Index> tetsAtEdge(const adjacency::TetTopology& topology,
+                              const std::array<Index, 2>& edge, igm::VertexStar& star) {
   std::vector<Index> tets;
   star.collect(topology, edge[0]);
-  for (const VertexStar::Member& member : star.members()) {
+  for (const igm::VertexStar::Member& member : star.members()) {
     const Tet& tet = topology.tets[member.tet()];
     if (std::find(tet.begin(), tet.end(), edge[1]) != tet.end()) tets.push_back(member.tet());
   }
@@ -147,7 +147,7 @@ void MapBackup::restore(TetMap& map) const {
   map.edgeValences = lists_->edgeValences;
 }
 
-std::size_t splitEdges(TetMap& map, const TetTopology& topology,
+std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
                        std::span<const std::array<Index, 2>> edges, MapBackup& backup) {
   // All of them first: the topology sees the map's own array, which is going to grow.
   const std::vector<Fan> fans = disjointFans(topology, edges);
@@ -163,4 +163,4 @@ std::size_t splitEdges(TetMap& map, const TetTopology& topology,
   return fans.size();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -15,7 +15,7 @@
 
 #include <igm/vertex_star.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 class MapBackup {
  public:
@@ -58,8 +58,9 @@ class MapBackup {
 
 /// The tets with both vertices, ascending; none if there is no such edge.
 /// @param star  reused between calls
-[[nodiscard]] std::vector<Index> tetsAtEdge(const TetTopology& topology,
-                                            const std::array<Index, 2>& edge, VertexStar& star);
+[[nodiscard]] std::vector<Index> tetsAtEdge(const adjacency::TetTopology& topology,
+                                            const std::array<Index, 2>& edge,
+                                            igm::VertexStar& star);
 
 /// Puts a vertex in the middle of each edge, in space and in all charts, and cuts the tets at it in
 /// two. The map stays the same function. Edges that share a tet with one before them are left out.
@@ -68,7 +69,7 @@ class MapBackup {
 /// @param topology  of the map; must not be used afterwards
 /// @param backup  keeps what is changed
 /// @return the number of edges that were split
-std::size_t splitEdges(TetMap& map, const TetTopology& topology,
+std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
                        std::span<const std::array<Index, 2>> edges, MapBackup& backup);
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -13,7 +13,7 @@
 #include <repair/cell_flood.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -32,30 +32,31 @@ struct Found {
 /// Finds the cells whose centres a tet owns.
 class CellFinder {
  public:
-  CellFinder(const PreparedMap& map, std::span<const std::uint8_t> valid)
+  CellFinder(const igm::PreparedMap& map, std::span<const std::uint8_t> valid)
       : map_(map), valid_(valid), flood_(map, valid) {}
 
   void run(Index tet, Found& found) {
     centres_.clear();
-    TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
-        .sweep(kCenterGrid, [&](const SweptLine& line) {
+    lattice::TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
+        .sweep(lattice::kCenterGrid, [&](const lattice::SweptLine& line) {
           for (std::uint32_t i = 0; i < line.count; ++i) centres_.push_back(line.point(i));
         });
     // The sweep's axes depend on the tet; cells of all tets come in the same order.
     std::sort(centres_.begin(), centres_.end());
-    for (const GridPoint& z : centres_) tryCell(tet, z, found);
+    for (const lattice::GridPoint& z : centres_) tryCell(tet, z, found);
   }
 
  private:
-  void tryCell(Index tet, const GridPoint& z, Found& found) {
+  void tryCell(Index tet, const lattice::GridPoint& z, Found& found) {
     if (!flood_.run(tet, z)) return;
-    LatticePoint centre{};
+    lattice::LatticePoint centre{};
     for (std::size_t k = 0; k < 3; ++k) {
       centre[k] = std::int64_t{z[k]} * map_.exact.unit + map_.exact.unit / 2;
     }
     // A centre between tets belongs to the smallest of them.
     for (const CellFlood::Piece& piece : flood_.pieces()) {
-      if (piece.tet < tet && simplexOf(piece.corners, centre) != kNoSimplex) return;
+      if (piece.tet < tet && lattice::simplexOf(piece.corners, centre) != lattice::kNoSimplex)
+        return;
     }
     FoundCell cell;
     for (std::size_t i = 0; i < 8; ++i) {
@@ -74,10 +75,10 @@ class CellFinder {
     }
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   std::span<const std::uint8_t> valid_;
   CellFlood flood_;
-  std::vector<GridPoint> centres_;  ///< by smallest corner of the cell; reused
+  std::vector<lattice::GridPoint> centres_;  ///< by smallest corner of the cell; reused
 };
 
 /// Numbers the vertices of all cells by their names.
@@ -107,7 +108,8 @@ void assemble(const std::vector<Found>& blocks, PartialMesh& result,
 
 /// Marks cells at holes: a face has no other cell behind it, and the tets go on.
 void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, Stage& stage, PartialMesh& result) {
-  const HexFaces faces = findFaces(result.mesh, cellsAroundVertices(result.mesh, stage), stage);
+  const adjacency::HexFaces faces =
+      adjacency::findFaces(result.mesh, adjacency::cellsAroundVertices(result.mesh, stage), stage);
   result.mesh.regions.assign(result.mesh.cells.size(), 0);
   for (std::size_t c = 0; c < boundaryWalls.size(); ++c) {
     if ((faces.boundary[c] & ~boundaryWalls[c]) != 0) result.mesh.regions[c] = 1;
@@ -115,24 +117,25 @@ void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, Stage& stage, Pa
   result.faceConflicts = faces.overfull.count + faces.sameDirection.count;
 }
 
-double volumeOf(const ExactMap& map, std::size_t t) {
-  const LatticeTet& c = map.corners[t];
+double volumeOf(const igm::ExactMap& map, std::size_t t) {
+  const lattice::LatticeTet& c = map.corners[t];
   const auto unit = static_cast<double>(map.unit);
-  return orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() / (6 * unit * unit * unit);
+  return lattice::orientationDeterminant(c[0], c[1], c[2], c[3]).toDouble() /
+         (6 * unit * unit * unit);
 }
 
 /// Cells are collected, each with names for its corners, before they are numbered.
-void requireNumbers(const PreparedMap& map, std::span<const std::uint8_t> valid) {
+void requireNumbers(const igm::PreparedMap& map, std::span<const std::uint8_t> valid) {
   double cells = 0;
   for (std::size_t t = 0; t < valid.size(); ++t) cells += valid[t] * volumeOf(map.exact, t);
-  static_cast<void>(
-      scaledCells(static_cast<std::uint64_t>(std::min(cells, kMaxCountedCells)), 1, kNone));
+  static_cast<void>(igm::scaledCells(
+      static_cast<std::uint64_t>(std::min(cells, igm::kMaxCountedCells)), 1, kNone));
 }
 
 /// Connected tets that are not covered.
-void collectHoles(const PreparedMap& map, std::span<const std::uint8_t> valid,
+void collectHoles(const igm::PreparedMap& map, std::span<const std::uint8_t> valid,
                   const std::vector<Found>& blocks, PartialMesh& result) {
-  const TetTopology& topology = map.topology;
+  const adjacency::TetTopology& topology = map.topology;
   std::vector<double> missing(topology.tetCount());
   for (std::size_t t = 0; t < missing.size(); ++t) missing[t] = volumeOf(map.exact, t);
   for (const Found& block : blocks) {
@@ -165,35 +168,41 @@ void collectHoles(const PreparedMap& map, std::span<const std::uint8_t> valid,
 
 }  // namespace
 
+}  // namespace hexhex::repairs
+
+namespace hexhex {
+
 PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options, Context& context) {
   constexpr std::array<WorkStep, 3> kSteps = {
       {{"prepare", 0.1}, {"valid tets", 0.1}, {"cells", 1}}};
   WorkSteps steps(context, "extractPartial", kSteps);
   PartialMesh result;
   withThreads(context.threads(), [&] {
-    DefectCollector defects;
-    PreparedMap prepared = prepareMap(map, options.tolerance, options.scale, context, defects);
+    igm::DefectCollector defects;
+    igm::PreparedMap prepared =
+        igm::prepareMap(map, options.tolerance, options.scale, context, defects);
     if (prepared.exact.corners.empty()) defects.throwIfAny();
     std::vector<std::uint8_t> valid;
     {
       Stage stage(context, "valid tets");
-      valid = findValidTets(prepared, LocalParameters(prepared.input), options.tolerance, stage);
-      scaleMap(prepared.exact, options.scale, stage);
+      valid = repairs::findValidTets(prepared, igm::LocalParameters(prepared.input),
+                                     options.tolerance, stage);
+      igm::scaleMap(prepared.exact, options.scale, stage);
     }
-    requireNumbers(prepared, valid);
-    std::vector<Found> blocks(blockCount(valid.size(), kTetGrain));
+    repairs::requireNumbers(prepared, valid);
+    std::vector<repairs::Found> blocks(blockCount(valid.size(), repairs::kTetGrain));
     Stage stage(context, "cells");
-    parallelBlocks(stage, valid.size(), kTetGrain,
+    parallelBlocks(stage, valid.size(), repairs::kTetGrain,
                    [&](std::size_t begin, std::size_t end, std::size_t block) {
-                     CellFinder finder(prepared, valid);
+                     repairs::CellFinder finder(prepared, valid);
                      for (std::size_t t = begin; t < end; ++t) {
                        if (valid[t] != 0) finder.run(static_cast<Index>(t), blocks[block]);
                      }
                    });
     std::vector<std::uint8_t> boundaryWalls;
-    assemble(blocks, result, boundaryWalls);
-    matchFaces(boundaryWalls, stage, result);
-    collectHoles(prepared, valid, blocks, result);
+    repairs::assemble(blocks, result, boundaryWalls);
+    repairs::matchFaces(boundaryWalls, stage, result);
+    repairs::collectHoles(prepared, valid, blocks, result);
   });
   steps.finish();
   return result;

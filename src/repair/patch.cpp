@@ -5,11 +5,11 @@
 #include <base/disjoint_sets.hpp>
 #include <repair/patch.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
-std::vector<Index> verticesOf(const TetTopology& topology, std::span<const Index> tets) {
+std::vector<Index> verticesOf(const adjacency::TetTopology& topology, std::span<const Index> tets) {
   std::vector<Index> vertices;
   for (const Index t : tets) {
     vertices.insert(vertices.end(), topology.tets[t].begin(), topology.tets[t].end());
@@ -20,11 +20,12 @@ std::vector<Index> verticesOf(const TetTopology& topology, std::span<const Index
 
 }  // namespace
 
-Patch growPatch(const TetTopology& topology, std::span<const Index> startTets, int rings) {
+Patch growPatch(const adjacency::TetTopology& topology, std::span<const Index> startTets,
+                int rings) {
   Patch patch;
   patch.startTets.assign(startTets.begin(), startTets.end());
   patch.tets = patch.startTets;
-  VertexStar star;
+  igm::VertexStar star;
   for (int ring = 0; ring < rings; ++ring) {
     patch.vertices = verticesOf(topology, patch.tets);
     patch.tets.clear();
@@ -32,14 +33,15 @@ Patch growPatch(const TetTopology& topology, std::span<const Index> startTets, i
     for (const Index v : patch.vertices) {
       star.collect(topology, v);
       patch.stars.emplace_back(star.members().begin(), star.members().end());
-      for (const VertexStar::Member& member : star.members()) patch.tets.push_back(member.tet());
+      for (const igm::VertexStar::Member& member : star.members())
+        patch.tets.push_back(member.tet());
     }
     sortUnique(patch.tets);
   }
   return patch;
 }
 
-std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
+std::vector<std::vector<Index>> separateRegions(const adjacency::TetTopology& topology,
                                                 std::span<const Index> bad, int rings) {
   // All patches grow together, ring by ring, and each tet and vertex gets the first patch that
   // reaches it. Where another one comes to it within its rings, both are one region.
@@ -48,7 +50,7 @@ std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
   std::unordered_map<Index, Index> ownerOfVertex;
   std::vector<Index> front(bad.begin(), bad.end());  // tets
   for (Index i = 0; i < bad.size(); ++i) ownerOfTet.emplace(bad[i], i);
-  VertexStar star;
+  igm::VertexStar star;
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<Index> next;
     for (const Index t : front) {
@@ -58,7 +60,7 @@ std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
         sets.unite(before->second, owner);
         if (!isNew) continue;
         star.collect(topology, v);
-        for (const VertexStar::Member& member : star.members()) {
+        for (const igm::VertexStar::Member& member : star.members()) {
           const auto [known, reached] = ownerOfTet.emplace(member.tet(), owner);
           sets.unite(known->second, owner);
           if (reached) next.push_back(member.tet());
@@ -73,4 +75,4 @@ std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
   return regions;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -9,7 +9,7 @@
 
 #include <igm/vertex_star.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// Sorts a list and drops what is in it repeatedly.
 template <class T>
@@ -23,18 +23,17 @@ struct Patch {
   std::vector<Index> vertices;   ///< ascending; with their whole stars in the patch: they may move
   std::vector<Index> tets;       ///< ascending: the tets at these vertices
   /// Per entry of `vertices`: its star.
-  std::vector<std::vector<VertexStar::Member>> stars;
+  std::vector<std::vector<igm::VertexStar::Member>> stars;
 };
 
 /// The vertices of the start tets, and `rings - 1` times those of the tets around.
 /// @param startTets  ascending
 /// @param rings  at least 1
-[[nodiscard]] Patch growPatch(const TetTopology& topology, std::span<const Index> startTets,
-                              int rings);
+[[nodiscard]] Patch growPatch(const adjacency::TetTopology& topology,
+                              std::span<const Index> startTets, int rings);
 
 /// Splits bad tets into groups whose patches of so many rings have no tet in common.
-[[nodiscard]] std::vector<std::vector<Index>> separateRegions(const TetTopology& topology,
-                                                              std::span<const Index> bad,
-                                                              int rings);
+[[nodiscard]] std::vector<std::vector<Index>> separateRegions(
+    const adjacency::TetTopology& topology, std::span<const Index> bad, int rings);
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -7,7 +7,7 @@
 #include <repair/patch_charts.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -20,16 +20,16 @@ constexpr double kImpossible = 100;
 constexpr double kPerChoice = 1e-4;
 
 /// The axis that a rotation leaves as it is; -1 for the identity and for those about diagonals.
-int fixedAxis(Rotation rotation) {
+int fixedAxis(lattice::Rotation rotation) {
   if (rotation.isIdentity()) return -1;
   for (int axis = 0; axis < 3; ++axis) {
-    const Direction d = direction(axis, 1);
+    const lattice::Direction d = lattice::direction(axis, 1);
     if (rotation(d) == d) return axis;
   }
   return -1;
 }
 
-bool isHalfTurn(Rotation rotation) { return (rotation * rotation).isIdentity(); }
+bool isHalfTurn(lattice::Rotation rotation) { return (rotation * rotation).isIdentity(); }
 
 /// Whether a vector is parallel to an axis, or too short to tell.
 bool isAlong(const Vec3& v, int axis, double tolerance) {
@@ -56,8 +56,9 @@ double dihedralAngle(const TetParameters& u, int corner0, int corner1) {
 
 }  // namespace
 
-PatchCharts::PatchCharts(const TetMapView& map, const TetTopology& topology,
-                         const LocalParameters& parameters, const Patch& patch, double tolerance)
+PatchCharts::PatchCharts(const TetMapView& map, const adjacency::TetTopology& topology,
+                         const igm::LocalParameters& parameters, const Patch& patch,
+                         double tolerance)
     : map_(map), topology_(topology), parameters_(parameters), tolerance_(tolerance) {
   collectFaces(patch);
   findCandidates();
@@ -67,40 +68,40 @@ PatchCharts::PatchCharts(const TetMapView& map, const TetTopology& topology,
 }
 
 void PatchCharts::collectFaces(const Patch& patch) {
-  std::vector<HalfFace> halfFaces;
-  for (const std::vector<VertexStar::Member>& star : patch.stars) {
-    for (const VertexStar::Member& member : star) {
+  std::vector<adjacency::HalfFace> halfFaces;
+  for (const std::vector<igm::VertexStar::Member>& star : patch.stars) {
+    for (const igm::VertexStar::Member& member : star) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const HalfFace halfFace = member.halfFace(k);
-        const HalfFace mate = topology_.mate[halfFace];
+        const adjacency::HalfFace halfFace = member.halfFace(k);
+        const adjacency::HalfFace mate = topology_.mate[halfFace];
         halfFaces.push_back(mate == kNone ? halfFace : std::min(halfFace, mate));
       }
     }
   }
   sortUnique(halfFaces);
   faces_.reserve(halfFaces.size());
-  for (const HalfFace halfFace : halfFaces) {
+  for (const adjacency::HalfFace halfFace : halfFaces) {
     faces_.push_back({halfFace, topology_.isBoundary(halfFace), {}, {}, 0, {}});
   }
 }
 
-std::size_t PatchCharts::faceIndex(HalfFace halfFace) const {
-  const auto found =
-      std::lower_bound(faces_.begin(), faces_.end(), halfFace,
-                       [](const Face& face, HalfFace wanted) { return face.halfFace < wanted; });
+std::size_t PatchCharts::faceIndex(adjacency::HalfFace halfFace) const {
+  const auto found = std::lower_bound(
+      faces_.begin(), faces_.end(), halfFace,
+      [](const Face& face, adjacency::HalfFace wanted) { return face.halfFace < wanted; });
   return static_cast<std::size_t>(found - faces_.begin());
 }
 
 void PatchCharts::findCandidates() {
   // How well rotations fit here, where nothing is wrong: as exact as the map is.
   double noise = 1e-9;
-  std::vector<std::vector<FittedTransition>> fits(faces_.size());
+  std::vector<std::vector<igm::FittedTransition>> fits(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     if (faces_[f].boundary) continue;
-    const HalfFace halfFace = faces_[f].halfFace;
+    const adjacency::HalfFace halfFace = faces_[f].halfFace;
     fits[f] = fitsOf(halfFace);
-    const bool healthy = !isBad(parameters_(tetOf(halfFace))) &&
-                         !isBad(parameters_(tetOf(topology_.mate[halfFace])));
+    const bool healthy = !isBad(parameters_(adjacency::tetOf(halfFace))) &&
+                         !isBad(parameters_(adjacency::tetOf(topology_.mate[halfFace])));
     if (healthy) noise = std::max(noise, fits[f].front().residual);
   }
   fitLimit_ = std::min(2 * noise, tolerance_);
@@ -110,7 +111,7 @@ void PatchCharts::findCandidates() {
       face.axes = planesOf(face.halfFace);
     } else {
       const double limit = std::max(fitLimit_, 2 * fits[f].front().residual);
-      for (const FittedTransition& fit : fits[f]) {
+      for (const igm::FittedTransition& fit : fits[f]) {
         if (fit.residual <= limit) face.candidates.push_back(fit.transition);
       }
     }
@@ -119,20 +120,21 @@ void PatchCharts::findCandidates() {
 }
 
 /// All rotations, or the one that the caller knows.
-std::vector<FittedTransition> PatchCharts::fitsOf(HalfFace halfFace) const {
-  const SharedTriangle triangle(topology_, parameters_, halfFace);
-  const int known = map_.rotations.empty() ? -1 : map_.rotations[tetOf(halfFace)][halfFace % 4];
-  if (known >= 0 && known < Rotation::kCount) {
-    return {fitTransition(triangle, rotationFromAlgoHex(known))};
+std::vector<igm::FittedTransition> PatchCharts::fitsOf(adjacency::HalfFace halfFace) const {
+  const igm::SharedTriangle triangle(topology_, parameters_, halfFace);
+  const int known =
+      map_.rotations.empty() ? -1 : map_.rotations[adjacency::tetOf(halfFace)][halfFace % 4];
+  if (known >= 0 && known < lattice::Rotation::kCount) {
+    return {igm::fitTransition(triangle, lattice::rotationFromAlgoHex(known))};
   }
-  return fitAllTransitions(triangle);
+  return igm::fitAllTransitions(triangle);
 }
 
 /// The axes across which a boundary triangle may lie: one, unless it is flat.
-std::vector<int> PatchCharts::planesOf(HalfFace halfFace) const {
-  const std::array<int, 3>& corners = kFaceCorners[halfFace % 4];
+std::vector<int> PatchCharts::planesOf(adjacency::HalfFace halfFace) const {
+  const std::array<int, 3>& corners = lattice::kFaceCorners[halfFace % 4];
   std::array<Vec3, 3> u{};
-  for (std::size_t k = 0; k < 3; ++k) u[k] = parameters_(tetOf(halfFace), corners[k]);
+  for (std::size_t k = 0; k < 3; ++k) u[k] = parameters_(adjacency::tetOf(halfFace), corners[k]);
   const Vec3 a = minus(u[1], u[0]);
   const Vec3 b = minus(u[2], u[0]);
   const Vec3 normal = cross(a, b);
@@ -155,8 +157,8 @@ std::vector<int> PatchCharts::planesOf(HalfFace halfFace) const {
 void PatchCharts::collectEdges(const Patch& patch) {
   for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
     const Index v = patch.vertices[i];
-    for (const VertexStar::Member& member : patch.stars[i]) {
-      for (const std::uint8_t c : kOthers[member.corner % 4]) {
+    for (const igm::VertexStar::Member& member : patch.stars[i]) {
+      for (const std::uint8_t c : igm::kOthers[member.corner % 4]) {
         const Index w = topology_.tets[member.tet()][c];
         PatchEdge edge;
         edge.vertex0 = std::min(v, w);
@@ -194,9 +196,10 @@ void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
                       topology_.localCorner(tet, edge.vertex1)};
   };
   const auto [from, to] = corners(edge.tet);
-  const auto mask = static_cast<CornerMask>(cornerBit(from) | cornerBit(to));
+  const auto mask =
+      static_cast<lattice::CornerMask>(lattice::cornerBit(from) | lattice::cornerBit(to));
   // Back to the boundary, if there is one.
-  EdgeTurn back(topology_, edge.tet, mask, otherFaceAtEdge(mask, -1));
+  adjacency::EdgeTurn back(topology_, edge.tet, mask, adjacency::otherFaceAtEdge(mask, -1));
   while (back.next() != kNone) {
     back.step();
     if (back.tet() == edge.tet) break;
@@ -209,12 +212,12 @@ void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
   const auto [first, second] = corners(edge.tet);
   fan.vector = minus(parameters_(edge.tet, second), parameters_(edge.tet, first));
   edge.sound = true;
-  EdgeTurn turn(topology_, edge.tet, back.edge(),
-                otherFaceAtEdge(back.edge(), localOf(back.out())));
+  adjacency::EdgeTurn turn(topology_, edge.tet, back.edge(),
+                           adjacency::otherFaceAtEdge(back.edge(), adjacency::localOf(back.out())));
   do {
     if (isThin(parameters_(turn.tet()), fitLimit_)) edge.sound = false;
-    const HalfFace leaving = turn.out();
-    const HalfFace mate = turn.next();
+    const adjacency::HalfFace leaving = turn.out();
+    const adjacency::HalfFace mate = turn.next();
     if (mate == kNone) {
       fan.lastBoundary = static_cast<std::uint32_t>(faceIndex(leaving));
       return;
@@ -225,24 +228,24 @@ void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
   } while (turn.tet() != edge.tet);
 }
 
-Transition PatchCharts::across(HalfFace halfFace) const {
-  const HalfFace mate = topology_.mate[halfFace];
+lattice::Transition PatchCharts::across(adjacency::HalfFace halfFace) const {
+  const adjacency::HalfFace mate = topology_.mate[halfFace];
   const Face& face = faces_[faceIndex(std::min(halfFace, mate))];
-  const Transition& transition = face.candidates[face.chosen];
+  const lattice::Transition& transition = face.candidates[face.chosen];
   return halfFace < mate ? transition : transition.inverse();
 }
 
-int PatchCharts::boundaryAxis(HalfFace halfFace) const {
+int PatchCharts::boundaryAxis(adjacency::HalfFace halfFace) const {
   const Face& face = faces_[faceIndex(halfFace)];
   return face.axes[face.chosen];
 }
 
 /// Of the whole fan: back to the first tet's chart, or on the boundary from the first to the last.
-Rotation PatchCharts::holonomy(const Fan& fan) const {
-  Rotation total;
+lattice::Rotation PatchCharts::holonomy(const Fan& fan) const {
+  lattice::Rotation total;
   for (const Crossing& crossing : fan.crossings) {
     const Face& face = faces_[crossing.face];
-    const Rotation rotation = face.candidates[face.chosen].rotation;
+    const lattice::Rotation rotation = face.candidates[face.chosen].rotation;
     total = (crossing.forward ? rotation : rotation.inverse()) * total;
   }
   return total;
@@ -253,8 +256,8 @@ Rotation PatchCharts::holonomy(const Fan& fan) const {
 std::pair<int, int> PatchCharts::planesAt(const Fan& fan) const {
   const Face& first = faces_[fan.firstBoundary];
   const Face& last = faces_[fan.lastBoundary];
-  const Direction normal = direction(last.axes[last.chosen], 1);
-  return {first.axes[first.chosen], axisOf(holonomy(fan).inverse()(normal))};
+  const lattice::Direction normal = lattice::direction(last.axes[last.chosen], 1);
+  return {first.axes[first.chosen], lattice::axisOf(holonomy(fan).inverse()(normal))};
 }
 
 double PatchCharts::edgeCost(std::size_t e) const {
@@ -264,7 +267,7 @@ double PatchCharts::edgeCost(std::size_t e) const {
     if (from == to) return 0;
     return isAlong(fan.vector, 3 - from - to, tolerance_) ? kSingular : kImpossible;
   }
-  const Rotation total = holonomy(fan);
+  const lattice::Rotation total = holonomy(fan);
   if (total.isIdentity()) return 0;
   const int axis = fixedAxis(total);
   if (axis < 0 || !isAlong(fan.vector, axis, tolerance_)) return kImpossible;
@@ -345,8 +348,8 @@ double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
   Index tet = edge.tet;
   for (const Crossing& crossing : fan.crossings) {
     add(tet);
-    const HalfFace halfFace = faces_[crossing.face].halfFace;
-    tet = tetOf(crossing.forward ? topology_.mate[halfFace] : halfFace);
+    const adjacency::HalfFace halfFace = faces_[crossing.face].halfFace;
+    tet = adjacency::tetOf(crossing.forward ? topology_.mate[halfFace] : halfFace);
   }
   if (edge.boundary) add(tet);
   return sum / (std::numbers::pi / 2);
@@ -408,7 +411,7 @@ bool PatchCharts::classifyByPlanes(std::size_t e) {
 /// So is an inner edge around which charts turn. Its valence fits the turn, if known.
 bool PatchCharts::classifyByHolonomy(std::size_t e) {
   PatchEdge& edge = edges_[e];
-  const Rotation total = holonomy(fans_[e]);
+  const lattice::Rotation total = holonomy(fans_[e]);
   const int rest = edge.valence % 4;
   const bool confirmed =
       total.isIdentity() ? rest == 0 : (isHalfTurn(total) ? rest == 2 : rest % 2 == 1);
@@ -436,4 +439,4 @@ const PatchEdge* PatchCharts::impossibleEdge() const {
   return nullptr;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

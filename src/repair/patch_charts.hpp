@@ -23,7 +23,7 @@
 #include <lattice/transition.hpp>
 #include <repair/patch.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// What a repair knows about one edge of a patch.
 struct PatchEdge {
@@ -41,13 +41,13 @@ class PatchCharts {
  public:
   /// @param map  the topology's view, for known rotations and valences
   /// @param tolerance  how far triangles may be from integer conditions
-  PatchCharts(const TetMapView& map, const TetTopology& topology, const LocalParameters& parameters,
-              const Patch& patch, double tolerance);
+  PatchCharts(const TetMapView& map, const adjacency::TetTopology& topology,
+              const igm::LocalParameters& parameters, const Patch& patch, double tolerance);
 
   /// Of an inner half-face at a vertex of the patch: from its tet's chart to its mate's.
-  [[nodiscard]] Transition across(HalfFace halfFace) const;
+  [[nodiscard]] lattice::Transition across(adjacency::HalfFace halfFace) const;
   /// Of a boundary half-face at a vertex of the patch: the axis across it.
-  [[nodiscard]] int boundaryAxis(HalfFace halfFace) const;
+  [[nodiscard]] int boundaryAxis(adjacency::HalfFace halfFace) const;
   /// All edges at vertices of the patch, by vertices.
   [[nodiscard]] std::span<const PatchEdge> edges() const { return edges_; }
   /// Whether some edge has a holonomy that no integer-grid map has: the first such edge.
@@ -55,10 +55,10 @@ class PatchCharts {
 
  private:
   struct Face {
-    HalfFace halfFace;  ///< inner: the smaller of the two
+    adjacency::HalfFace halfFace;  ///< inner: the smaller of the two
     bool boundary;
-    std::vector<Transition> candidates;  ///< inner: best first
-    std::vector<int> axes;               ///< boundary: best first
+    std::vector<lattice::Transition> candidates;  ///< inner: best first
+    std::vector<int> axes;                        ///< boundary: best first
     std::size_t chosen = 0;
     std::vector<std::uint32_t> edges;  ///< that it belongs to
 
@@ -78,8 +78,8 @@ class PatchCharts {
 
   void collectFaces(const Patch& patch);
   void findCandidates();
-  [[nodiscard]] std::vector<FittedTransition> fitsOf(HalfFace halfFace) const;
-  [[nodiscard]] std::vector<int> planesOf(HalfFace halfFace) const;
+  [[nodiscard]] std::vector<igm::FittedTransition> fitsOf(adjacency::HalfFace halfFace) const;
+  [[nodiscard]] std::vector<int> planesOf(adjacency::HalfFace halfFace) const;
   void collectEdges(const Patch& patch);
   void walkFan(PatchEdge& edge, Fan& fan) const;
   void resolve();
@@ -93,13 +93,13 @@ class PatchCharts {
   void setValence(std::size_t e);
   [[nodiscard]] bool isOnGridLine(Index tet, const PatchEdge& edge) const;
   [[nodiscard]] double signedAngle(const PatchEdge& edge, const Fan& fan) const;
-  [[nodiscard]] std::size_t faceIndex(HalfFace halfFace) const;
-  [[nodiscard]] Rotation holonomy(const Fan& fan) const;
+  [[nodiscard]] std::size_t faceIndex(adjacency::HalfFace halfFace) const;
+  [[nodiscard]] lattice::Rotation holonomy(const Fan& fan) const;
   [[nodiscard]] double edgeCost(std::size_t e) const;
 
   const TetMapView& map_;
-  const TetTopology& topology_;
-  const LocalParameters& parameters_;
+  const adjacency::TetTopology& topology_;
+  const igm::LocalParameters& parameters_;
   double tolerance_;
   double fitLimit_ = 0;      ///< up to which residual a rotation fits a triangle
   std::vector<Face> faces_;  ///< by half-face
@@ -108,4 +108,4 @@ class PatchCharts {
   std::vector<std::uint32_t> ambiguous_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -5,12 +5,12 @@
 #include <repair/patch_problem.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
 /// Transitions from the chart of the first corner to all others, along the walk through the star.
-void unfold(const std::vector<VertexStar::Member>& star, const PatchCharts& charts,
+void unfold(const std::vector<igm::VertexStar::Member>& star, const PatchCharts& charts,
             PatchVertex& vertex) {
   vertex.corners.resize(star.size());
   vertex.corners[0] = {star[0].corner, {}};
@@ -42,14 +42,14 @@ void forEachEdgeAt(const Patch& patch, const PatchCharts& charts, const Visit& v
   }
 }
 
-AxisSet boundaryAxes(const std::vector<VertexStar::Member>& star, const PatchCharts& charts,
-                     const PatchVertex& vertex) {
-  AxisSet fixed = 0;
+lattice::AxisSet boundaryAxes(const std::vector<igm::VertexStar::Member>& star,
+                              const PatchCharts& charts, const PatchVertex& vertex) {
+  lattice::AxisSet fixed = 0;
   for (std::size_t i = 0; i < star.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (star[i].neighbour[k] != kNone) continue;
-      fixed |= imageOf(1U << charts.boundaryAxis(star[i].halfFace(k)),
-                       vertex.corners[i].fromFirst.rotation.inverse());
+      fixed |= lattice::imageOf(1U << charts.boundaryAxis(star[i].halfFace(k)),
+                                vertex.corners[i].fromFirst.rotation.inverse());
     }
   }
   return fixed;
@@ -96,7 +96,7 @@ Edges regularTet(double sixfoldVolume) {
 
 }  // namespace
 
-std::vector<PatchVertex> findFreedom(const LocalParameters& parameters, const Patch& patch,
+std::vector<PatchVertex> findFreedom(const igm::LocalParameters& parameters, const Patch& patch,
                                      const PatchCharts& charts) {
   std::vector<PatchVertex> vertices(patch.vertices.size());
   std::vector<int> degrees(vertices.size(), 0);
@@ -111,17 +111,18 @@ std::vector<PatchVertex> findFreedom(const LocalParameters& parameters, const Pa
     PatchVertex& vertex = vertices[i];
     vertex.singular = true;
     ++degrees[i];
-    const auto copy =
-        std::find_if(vertex.corners.begin(), vertex.corners.end(),
-                     [&](const PatchVertex::Copy& c) { return tetOf(c.corner) == edge.tet; });
-    vertex.fixed |= imageOf(kAllAxes & ~(1U << edge.axis), copy->fromFirst.rotation.inverse());
+    const auto copy = std::find_if(
+        vertex.corners.begin(), vertex.corners.end(),
+        [&](const PatchVertex::Copy& c) { return adjacency::tetOf(c.corner) == edge.tet; });
+    vertex.fixed |= lattice::imageOf(lattice::kAllAxes & ~(1U << edge.axis),
+                                     copy->fromFirst.rotation.inverse());
   });
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     PatchVertex& vertex = vertices[i];
     // A singular vertex has other than zero or two singular edges. (Section 3.2)
-    if (degrees[i] != 0 && degrees[i] != 2) vertex.fixed = kAllAxes;
-    const CornerIndex first = vertex.corners.front().corner;
-    vertex.parameter = parameters(tetOf(first), localOf(first));
+    if (degrees[i] != 0 && degrees[i] != 2) vertex.fixed = lattice::kAllAxes;
+    const adjacency::CornerIndex first = vertex.corners.front().corner;
+    vertex.parameter = parameters(adjacency::tetOf(first), adjacency::localOf(first));
     for (std::size_t k = 0; k < 3; ++k) {
       if (((vertex.fixed >> k) & 1U) == 0) continue;
       const double integer = std::nearbyint(vertex.parameter[k]);
@@ -132,8 +133,8 @@ std::vector<PatchVertex> findFreedom(const LocalParameters& parameters, const Pa
   return vertices;
 }
 
-PatchProblem::PatchProblem(const TetMapView& map, const TetTopology& topology,
-                           const LocalParameters& parameters, const Patch& patch,
+PatchProblem::PatchProblem(const TetMapView& map, const adjacency::TetTopology& topology,
+                           const igm::LocalParameters& parameters, const Patch& patch,
                            std::span<const PatchVertex> vertices)
     : map_(map),
       topology_(topology),
@@ -203,15 +204,15 @@ untangle::Corner PatchProblem::cornerOf(Index tet, int corner) const {
   const PatchVertex& vertex = vertices_[i];
   const auto copy =
       std::find_if(vertex.corners.begin(), vertex.corners.end(),
-                   [&](const PatchVertex::Copy& c) { return tetOf(c.corner) == tet; });
+                   [&](const PatchVertex::Copy& c) { return adjacency::tetOf(c.corner) == tet; });
   for (int axis = 0; axis < 3; ++axis) {
-    const Direction image = copy->fromFirst.rotation(direction(axis, 1));
-    const auto own = static_cast<std::size_t>(axisOf(image));
+    const lattice::Direction image = copy->fromFirst.rotation(lattice::direction(axis, 1));
+    const auto own = static_cast<std::size_t>(lattice::axisOf(image));
     const auto k = static_cast<std::size_t>(axis);
     result.constant[own] = copy->fromFirst.translation[own];
-    result.sign[own] = static_cast<std::int8_t>(signOf(image));
+    result.sign[own] = static_cast<std::int8_t>(lattice::signOf(image));
     result.unknown[own] = unknowns_[i][k];
-    if (unknowns_[i][k] < 0) result.constant[own] += signOf(image) * vertex.parameter[k];
+    if (unknowns_[i][k] < 0) result.constant[own] += lattice::signOf(image) * vertex.parameter[k];
   }
   return result;
 }
@@ -222,13 +223,13 @@ std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
     std::array<untangle::Corner, 4> corners{};
     for (int c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = cornerOf(t, c);
     // Along how many axes all corners of a simplex are bound to the same coordinate.
-    const auto commonBonds = [&](CornerMask simplex) {
-      const untangle::Corner& first = corners[firstCorner(simplex)];
+    const auto commonBonds = [&](lattice::CornerMask simplex) {
+      const untangle::Corner& first = corners[lattice::firstCorner(simplex)];
       int bonds = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         bool common = true;
         for (int c = 0; c < 4; ++c) {
-          if (!contains(simplex, c)) continue;
+          if (!lattice::contains(simplex, c)) continue;
           const untangle::Corner& corner = corners[static_cast<std::size_t>(c)];
           common = common && corner.unknown[k] < 0 && corner.constant[k] == first.constant[k];
         }
@@ -236,11 +237,12 @@ std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
       }
       return bonds;
     };
-    CornerMask found = commonBonds(kWholeTet) > 0 ? kWholeTet : kNoSimplex;
+    lattice::CornerMask found =
+        commonBonds(lattice::kWholeTet) > 0 ? lattice::kWholeTet : lattice::kNoSimplex;
     for (int f = 0; f < 4; ++f) {
-      if (commonBonds(faceMask(f)) >= 2) found = faceMask(f);
+      if (commonBonds(lattice::faceMask(f)) >= 2) found = lattice::faceMask(f);
     }
-    if (found != kNoSimplex) locked.push_back({t, found});
+    if (found != lattice::kNoSimplex) locked.push_back({t, found});
   }
   return locked;
 }
@@ -260,4 +262,4 @@ bool PatchProblem::mayMove(std::size_t vertex) const {
   return std::any_of(unknowns.begin(), unknowns.end(), [](int unknown) { return unknown >= 0; });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -11,39 +11,39 @@
 
 #include <repair/patch_charts.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// A vertex of a patch. Its parameter in the chart of its first corner stands for all.
 struct PatchVertex {
   Index vertex = 0;
-  Vec3 parameter{};   ///< in the chart of corners.front(); integers where it is fixed
-  AxisSet fixed = 0;  ///< axes of that chart along which it must stay
+  Vec3 parameter{};            ///< in the chart of corners.front(); integers where it is fixed
+  lattice::AxisSet fixed = 0;  ///< axes of that chart along which it must stay
   bool singular = false;
   bool boundary = false;
   double off = 0;  ///< how far the fixed coordinates were from integers
   struct Copy {
-    CornerIndex corner;
-    Transition fromFirst;
+    adjacency::CornerIndex corner;
+    lattice::Transition fromFirst;
   };
   std::vector<Copy> corners;  ///< all corners at the vertex
 };
 
 /// One entry per vertex of the patch.
-[[nodiscard]] std::vector<PatchVertex> findFreedom(const LocalParameters& parameters,
+[[nodiscard]] std::vector<PatchVertex> findFreedom(const igm::LocalParameters& parameters,
                                                    const Patch& patch, const PatchCharts& charts);
 
 /// A tet that no parameters make positive, whatever its vertices do: all four corners in one
 /// integer plane to which they are bound, or three of them on one line.
 struct LockedTet {
   Index tet;
-  CornerMask corners;  ///< the ones in question
+  lattice::CornerMask corners;  ///< the ones in question
 };
 
 class PatchProblem {
  public:
   /// @param vertices  by findFreedom()
-  PatchProblem(const TetMapView& map, const TetTopology& topology,
-               const LocalParameters& parameters, const Patch& patch,
+  PatchProblem(const TetMapView& map, const adjacency::TetTopology& topology,
+               const igm::LocalParameters& parameters, const Patch& patch,
                std::span<const PatchVertex> vertices);
 
   /// Locked tets among the start tets.
@@ -64,12 +64,12 @@ class PatchProblem {
   [[nodiscard]] double parametricScale(const Patch& patch) const;
 
   const TetMapView& map_;
-  const TetTopology& topology_;
-  const LocalParameters& parameters_;
+  const adjacency::TetTopology& topology_;
+  const igm::LocalParameters& parameters_;
   std::span<const PatchVertex> vertices_;
   double magnification_;                      ///< of edges in space
   std::vector<std::array<int, 3>> unknowns_;  ///< per vertex and axis of its first chart, or -1
   untangle::Problem problem_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

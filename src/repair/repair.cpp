@@ -25,7 +25,7 @@
 #include <repair/repair_map.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -40,8 +40,8 @@ constexpr double kVolumeSlackShare = 0x1p-40;
 
 /// One look at the map as it is at the moment.
 struct Snapshot {
-  DefectCollector defects;
-  PreparedMap prepared;
+  igm::DefectCollector defects;
+  igm::PreparedMap prepared;
 };
 
 #if defined(HEXHEX_HAS_REPAIR)
@@ -105,7 +105,8 @@ class Repairer {
  private:
   void look() {
     now_ = std::make_unique<Snapshot>();
-    now_->prepared = prepareMap(map_, options_.tolerance, options_.scale, context_, now_->defects);
+    now_->prepared =
+        igm::prepareMap(map_, options_.tolerance, options_.scale, context_, now_->defects);
   }
 
   std::vector<Index> startOver() {
@@ -121,7 +122,9 @@ class Repairer {
     return findStartTets();
   }
 
-  [[nodiscard]] LocalParameters parameters() const { return LocalParameters(now_->prepared.input); }
+  [[nodiscard]] igm::LocalParameters parameters() const {
+    return igm::LocalParameters(now_->prepared.input);
+  }
 
   /// Nothing that moving parameters could repair.
   void refuseBrokenTopology() const {
@@ -139,7 +142,7 @@ class Repairer {
   /// Moving parameters along free coordinates changes no volume, so that of the defective map,
   /// where flipped tets count negative, is that of the repaired one.
   void prepareExpectation(const std::vector<Index>& bad) {
-    const LocalParameters u = parameters();
+    const igm::LocalParameters u = parameters();
     volume_ = 0;
     for (std::size_t t = 0; t < map_.tets.size(); ++t) {
       volume_ += determinantOf(u(static_cast<Index>(t))) / 6;
@@ -175,7 +178,7 @@ class Repairer {
     std::vector<Index> startTets = bad;
     startTets.insert(startTets.end(), toRound.begin(), toRound.end());
     sortUnique(startTets);
-    const LocalParameters u = parameters();
+    const igm::LocalParameters u = parameters();
     for (const std::vector<Index>& region :
          separateRegions(now_->prepared.topology, startTets, rings)) {
       context_.throwIfCancelled();
@@ -183,10 +186,10 @@ class Repairer {
     }
   }
 
-  void solveRegion(const std::vector<Index>& region, const LocalParameters& u, int rings,
+  void solveRegion(const std::vector<Index>& region, const igm::LocalParameters& u, int rings,
                    Stage& stage) {
     const TetMapView& view = now_->prepared.input.view;
-    const TetTopology& topology = now_->prepared.topology;
+    const adjacency::TetTopology& topology = now_->prepared.topology;
     const Patch patch = growPatch(topology, region, rings);
     const PatchCharts charts(view, topology, u, patch, limit_);
     if (const PatchEdge* edge = charts.impossibleEdge()) throwImpossible(*edge);
@@ -236,12 +239,12 @@ class Repairer {
     }
   }
 
-  void addEdgesOf(Index t, CornerMask corners, const PatchCharts& charts, bool boundary,
+  void addEdgesOf(Index t, lattice::CornerMask corners, const PatchCharts& charts, bool boundary,
                   std::vector<std::array<Index, 2>>& list) const {
     const Tet& tet = now_->prepared.topology.tets[t];
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
-        if (!contains(corners, a) || !contains(corners, b)) continue;
+        if (!lattice::contains(corners, a) || !lattice::contains(corners, b)) continue;
         const PatchEdge* const edge =
             find(charts, tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]);
         if (edge == nullptr || edge->singular || edge->boundary != boundary) continue;
@@ -252,7 +255,8 @@ class Repairer {
 
   /// Should all patches fail: the inner edges of bad tets.
   void noteSplitCandidates(const Patch& patch, const PatchCharts& charts) {
-    for (const Index t : patch.startTets) addEdgesOf(t, kWholeTet, charts, false, candidates_);
+    for (const Index t : patch.startTets)
+      addEdgesOf(t, lattice::kWholeTet, charts, false, candidates_);
   }
 
   bool refine(const std::vector<Index>& bad) {
@@ -268,8 +272,8 @@ class Repairer {
   /// Enters the new parameters of a patch into the caller's charts.
   void write(const PatchProblem& problem, const std::vector<PatchVertex>& vertices,
              const Patch& patch) {
-    const OrientedMap& input = now_->prepared.input;
-    const LocalParameters u = parameters();
+    const igm::OrientedMap& input = now_->prepared.input;
+    const igm::LocalParameters u = parameters();
     // Fine, but such that no chart, however far from the origin, rounds it.
     const int bits = std::clamp(50 - (std::ilogb(input.largestCoordinate + 1) + 1), 16, 40);
     const double quantum = std::ldexp(1.0, -bits);
@@ -280,7 +284,7 @@ class Repairer {
       if (!problem.mayMove(i) && vertices[i].off <= options_.tolerance) continue;
       const Vec3 first = problem.parameterOf(i, quantum);
       for (const PatchVertex::Copy& copy : vertices[i].corners) {
-        original_.keep(map_, tetOf(copy.corner));
+        original_.keep(map_, adjacency::tetOf(copy.corner));
         changes.push_back(changeOf(input, u, copy.corner, copy.fromFirst(first, 1.0)));
       }
       moved_.try_emplace(vertices[i].vertex, region);
@@ -289,10 +293,10 @@ class Repairer {
   }
 
   /// Which of the caller's parameters a corner has, and its new value in the caller's chart.
-  std::pair<Vec3*, Vec3> changeOf(const OrientedMap& input, const LocalParameters& u,
-                                  CornerIndex corner, const Vec3& local) {
-    const int c = localOf(corner);
-    const Index t = tetOf(corner);
+  std::pair<Vec3*, Vec3> changeOf(const igm::OrientedMap& input, const igm::LocalParameters& u,
+                                  adjacency::CornerIndex corner, const Vec3& local) {
+    const int c = adjacency::localOf(corner);
+    const Index t = adjacency::tetOf(corner);
     const Vec3 chart = minus(input.view.parameters[t][static_cast<std::size_t>(c)], u(t, c));
     Vec3 value = plus(local, chart);
     if (input.mirrored) value[0] = -value[0];
@@ -330,12 +334,12 @@ class Repairer {
   /// The map is valid: is it also the one that was meant? If not, complaint_ says why.
   [[nodiscard]] bool isWhatWasMeant() {
     complaint_.clear();
-    const std::uint64_t cells = parametricVolume(now_->prepared.exact);
+    const std::uint64_t cells = igm::parametricVolume(now_->prepared.exact);
     // Sanitization moves the boundary, and nothing else changes the volume.
     const double slack =
         kVolumeSlack + kVolumeSlackShare * volume_ +
         2 * now_->prepared.exact.maxDisplacement *
-            static_cast<double>(boundaryArea(now_->prepared.topology, now_->prepared.exact));
+            static_cast<double>(igm::boundaryArea(now_->prepared.topology, now_->prepared.exact));
     if (!options_.round && !(std::abs(volume_ - static_cast<double>(cells)) <= slack)) {
       complaint_ = "the volume of the map changed to " + std::to_string(cells) + " cells from " +
                    shortNumber(volume_);
@@ -346,10 +350,10 @@ class Repairer {
 
   [[nodiscard]] bool hasExpectedValences() {
     std::map<EdgeKey, int> found;
-    for (const SingularEdge& edge : now_->prepared.singularities.edges) {
+    for (const igm::SingularEdge& edge : now_->prepared.singularities.edges) {
       found[{edge.vertex0, edge.vertex1}] = edge.valence;
     }
-    VertexStar star;
+    igm::VertexStar star;
     for (const auto& [key, valence] : valences_) {
       // Was it split?
       if (tetsAtEdge(now_->prepared.topology, {key.first, key.second}, star).empty()) continue;
@@ -366,16 +370,17 @@ class Repairer {
   }
 
   void describeMoves() {
-    const OrientedMap& input = now_->prepared.input;
-    VertexStar star;
+    const igm::OrientedMap& input = now_->prepared.input;
+    igm::VertexStar star;
     for (const auto& [vertex, region] : moved_) {
       if (vertex >= original_.pointCount()) continue;
       star.collect(now_->prepared.topology, vertex);
       double move = 0;
-      for (const VertexStar::Member& member : star.members()) {
+      for (const igm::VertexStar::Member& member : star.members()) {
         const TetParameters* const before = original_.parametersOf(member.tet());
         if (before == nullptr) continue;
-        const auto c = static_cast<std::size_t>(input.callersCorner(localOf(member.corner)));
+        const auto c =
+            static_cast<std::size_t>(input.callersCorner(adjacency::localOf(member.corner)));
         const TetParameters& after = map_.parameters[member.tet()];
         for (std::size_t k = 0; k < 3; ++k) {
           move = std::max(move, std::abs(after[c][k] - (*before)[c][k]));
@@ -427,7 +432,15 @@ class Repairer {
 
 }  // namespace
 
-bool canRepair() noexcept { return kHasSolver; }
+}  // namespace hexhex::repairs
+
+namespace hexhex {
+
+bool canRepair() noexcept { return repairs::kHasSolver; }
+
+}  // namespace hexhex
+
+namespace hexhex::repairs {
 
 TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
                      RepairReport& report) {
@@ -451,12 +464,16 @@ TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
   }
 }
 
+}  // namespace hexhex::repairs
+
+namespace hexhex {
+
 TetMap repair(const TetMap& map, const RepairOptions& options, Context& context,
               RepairReport* report) {
   RepairReport local;
   TetMap repaired;
   withThreads(context.threads(), [&] {
-    repaired = repairInArena(map, options, context, report != nullptr ? *report : local);
+    repaired = repairs::repairInArena(map, options, context, report != nullptr ? *report : local);
   });
   return repaired;
 }

@@ -4,7 +4,7 @@
 
 #include <repair/repair_errors.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::string shortNumber(double value) {
   return text.data();
 }
 
-void throwWithoutSolver(const DefectCollector& defects) {
+void throwWithoutSolver(const igm::DefectCollector& defects) {
   const Defect first = defects.defects().front();
   throw Error(first.code,
               first.sentence +
@@ -30,7 +30,7 @@ void throwWithoutSolver(const DefectCollector& defects) {
               first.worst.empty() ? Place{} : first.worst.front().place);
 }
 
-void throwHopeless(const DefectCollector& hopeless, std::size_t badTets, bool rounds) {
+void throwHopeless(const igm::DefectCollector& hopeless, std::size_t badTets, bool rounds) {
   const std::vector<Defect> list = hopeless.defects();
   const Defect& first = list.front();
   const Defect::Occurrence& worst = first.worst.front();
@@ -82,4 +82,4 @@ void refuseOffLattice(const std::vector<PatchVertex>& vertices, double limit, bo
               message, {PlaceKind::Vertex, worst->vertex});
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -8,7 +8,7 @@
 #include <repair/patch_charts.hpp>
 #include <repair/patch_problem.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// What --round may move.
 inline constexpr double kRoundingLimit = 0.1;
@@ -17,12 +17,13 @@ inline constexpr double kRoundingLimit = 0.1;
 [[nodiscard]] std::string shortNumber(double value);
 
 /// This build has no solver. @param defects  not empty
-[[noreturn]] void throwWithoutSolver(const DefectCollector& defects);
+[[noreturn]] void throwWithoutSolver(const igm::DefectCollector& defects);
 
 /// Conditions are violated where no bad tet is near. Names transitions first, since what they are
 /// off shows elsewhere, too.
 /// @param rounds  whether rounding was asked for
-[[noreturn]] void throwHopeless(const DefectCollector& hopeless, std::size_t badTets, bool rounds);
+[[noreturn]] void throwHopeless(const igm::DefectCollector& hopeless, std::size_t badTets,
+                                bool rounds);
 
 /// No integer-grid map has such charts around an edge.
 [[noreturn]] void throwImpossible(const PatchEdge& edge);
@@ -31,4 +32,4 @@ inline constexpr double kRoundingLimit = 0.1;
 ///         the limit
 void refuseOffLattice(const std::vector<PatchVertex>& vertices, double limit, bool rounds);
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

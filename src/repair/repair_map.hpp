@@ -3,10 +3,10 @@
 
 #include <hexhex/repair.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// As repair(), inside of withThreads().
 [[nodiscard]] TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
                                    RepairReport& report);
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

@@ -5,7 +5,7 @@
 #include <lattice/tet_geometry.hpp>
 #include <repair/valid_tets.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 namespace {
 
@@ -55,47 +55,49 @@ bool isThin(const TetParameters& u, double noise) noexcept {
   return !(determinantOf(u) > 7 * noise * largest);
 }
 
-std::vector<Index> findBadTets(std::size_t tets, const LocalParameters& parameters, Stage& stage) {
+std::vector<Index> findBadTets(std::size_t tets, const igm::LocalParameters& parameters,
+                               Stage& stage) {
   return select(tets, stage, [&](Index t) { return isBad(parameters(t)); });
 }
 
-std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage) {
+std::vector<Index> findExactlyBadTets(const igm::ExactMap& map, Stage& stage) {
   return select(map.corners.size(), stage, [&](Index t) {
-    const LatticeTet& c = map.corners[t];
-    return orientation(c[0], c[1], c[2], c[3]) <= 0;
+    const lattice::LatticeTet& c = map.corners[t];
+    return lattice::orientation(c[0], c[1], c[2], c[3]) <= 0;
   });
 }
 
-bool isCarriedOver(const PreparedMap& map, HalfFace halfFace) noexcept {
-  const TetTopology& topology = map.topology;
-  const HalfFace mate = topology.mate[halfFace];
-  for (const int c : kFaceCorners[halfFace % 4]) {
+bool isCarriedOver(const igm::PreparedMap& map, adjacency::HalfFace halfFace) noexcept {
+  const adjacency::TetTopology& topology = map.topology;
+  const adjacency::HalfFace mate = topology.mate[halfFace];
+  for (const int c : lattice::kFaceCorners[halfFace % 4]) {
     const auto corner = static_cast<std::size_t>(c);
-    const Index v = topology.tets[tetOf(halfFace)][corner];
-    const auto other = static_cast<std::size_t>(topology.localCorner(tetOf(mate), v));
-    const LatticePoint& here = map.exact.corners[tetOf(halfFace)][corner];
-    const LatticePoint& there = map.exact.corners[tetOf(mate)][other];
+    const Index v = topology.tets[adjacency::tetOf(halfFace)][corner];
+    const auto other = static_cast<std::size_t>(topology.localCorner(adjacency::tetOf(mate), v));
+    const lattice::LatticePoint& here = map.exact.corners[adjacency::tetOf(halfFace)][corner];
+    const lattice::LatticePoint& there = map.exact.corners[adjacency::tetOf(mate)][other];
     if (map.exact.transitions.across(halfFace)(here, map.exact.unit) != there) return false;
   }
   return true;
 }
 
-std::vector<std::uint8_t> findValidTets(const PreparedMap& map, const LocalParameters& parameters,
-                                        double tolerance, Stage& stage) {
+std::vector<std::uint8_t> findValidTets(const igm::PreparedMap& map,
+                                        const igm::LocalParameters& parameters, double tolerance,
+                                        Stage& stage) {
   std::vector<std::uint8_t> valid(map.topology.tetCount(), 0);
   const auto unit = static_cast<double>(map.exact.unit);
   parallelFor(stage, valid.size(), kGrain, [&](std::size_t t) {
-    const LatticeTet& corners = map.exact.corners[t];
+    const lattice::LatticeTet& corners = map.exact.corners[t];
     double displacement = 0;
     for (int c = 0; c < 4; ++c) {
       displacement =
-          std::max(displacement, displacementOf(parameters(static_cast<Index>(t), c),
-                                                corners[static_cast<std::size_t>(c)], unit));
+          std::max(displacement, igm::displacementOf(parameters(static_cast<Index>(t), c),
+                                                     corners[static_cast<std::size_t>(c)], unit));
     }
-    const bool positive = orientation(corners[0], corners[1], corners[2], corners[3]) > 0;
+    const bool positive = lattice::orientation(corners[0], corners[1], corners[2], corners[3]) > 0;
     valid[t] = positive && displacement <= tolerance ? 1 : 0;
   });
   return valid;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

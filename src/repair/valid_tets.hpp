@@ -11,7 +11,7 @@
 #include <igm/input.hpp>
 #include <igm/prepare.hpp>
 
-namespace hexhex {
+namespace hexhex::repairs {
 
 /// det(u1 - u0, u2 - u0, u3 - u0): six times the signed volume.
 [[nodiscard]] double determinantOf(const TetParameters& u) noexcept;
@@ -24,31 +24,33 @@ namespace hexhex {
 [[nodiscard]] bool isThin(const TetParameters& u, double noise) noexcept;
 
 /// The bad tets among all, ascending.
-[[nodiscard]] std::vector<Index> findBadTets(std::size_t tets, const LocalParameters& parameters,
-                                             Stage& stage);
+[[nodiscard]] std::vector<Index> findBadTets(std::size_t tets,
+                                             const igm::LocalParameters& parameters, Stage& stage);
 
 /// The tets that are not positive on the sanitized lattice, ascending.
-[[nodiscard]] std::vector<Index> findExactlyBadTets(const ExactMap& map, Stage& stage);
+[[nodiscard]] std::vector<Index> findExactlyBadTets(const igm::ExactMap& map, Stage& stage);
 
 /// Unites the tets that have a triangle in common, and for both of which a test holds.
 template <class Test>
-[[nodiscard]] DisjointSets componentsOf(const TetTopology& topology, const Test& test) {
+[[nodiscard]] DisjointSets componentsOf(const adjacency::TetTopology& topology, const Test& test) {
   DisjointSets sets(topology.tetCount());
-  for (HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
-    const HalfFace mate = topology.mate[halfFace];
+  for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
+    const adjacency::HalfFace mate = topology.mate[halfFace];
     if (mate == kNone || mate < halfFace) continue;
-    if (test(tetOf(halfFace)) && test(tetOf(mate))) sets.unite(tetOf(halfFace), tetOf(mate));
+    if (test(adjacency::tetOf(halfFace)) && test(adjacency::tetOf(mate)))
+      sets.unite(adjacency::tetOf(halfFace), adjacency::tetOf(mate));
   }
   return sets;
 }
 
 /// Whether transitions carry the three lattice corners of an inner triangle over.
-[[nodiscard]] bool isCarriedOver(const PreparedMap& map, HalfFace halfFace) noexcept;
+[[nodiscard]] bool isCarriedOver(const igm::PreparedMap& map,
+                                 adjacency::HalfFace halfFace) noexcept;
 
 /// Per tet: 1 if it is positive on the sanitized lattice and sanitization moved its corners by no
 /// more than the tolerance.
-[[nodiscard]] std::vector<std::uint8_t> findValidTets(const PreparedMap& map,
-                                                      const LocalParameters& parameters,
+[[nodiscard]] std::vector<std::uint8_t> findValidTets(const igm::PreparedMap& map,
+                                                      const igm::LocalParameters& parameters,
                                                       double tolerance, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::repairs

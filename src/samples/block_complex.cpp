@@ -12,35 +12,37 @@ namespace hexhex::samples {
 namespace {
 
 /// The coordinates of a corner of the unit cube.
-GridPoint cornerPoint(std::size_t corner) {
+lattice::GridPoint cornerPoint(std::size_t corner) {
   return {static_cast<int>(corner & 1), static_cast<int>(corner >> 1 & 1),
           static_cast<int>(corner >> 2 & 1)};
 }
 
 /// The direction across a face, out of its block.
-Direction outwards(const BlockPart& face) {
+lattice::Direction outwards(const BlockPart& face) {
   int axis = 0;
   while (face.digits[static_cast<std::size_t>(axis)] == BlockPart::kAlong) ++axis;
-  return direction(axis, face.digits[static_cast<std::size_t>(axis)] == 1 ? 1 : -1);
+  return lattice::direction(axis, face.digits[static_cast<std::size_t>(axis)] == 1 ? 1 : -1);
 }
 
 /// The transition across a face, between the frames of two blocks that are unit cubes. The cell's
 /// own frame is common to both; what points out of one block points into the other.
-Transition transitionAcross(const Occurrence& from, const Occurrence& to) {
-  std::array<Direction, 3> image{};
-  const auto send = [&image](Direction before, Direction after) {
-    image[static_cast<std::size_t>(axisOf(before))] = signOf(before) < 0 ? opposite(after) : after;
+lattice::Transition transitionAcross(const Occurrence& from, const Occurrence& to) {
+  std::array<lattice::Direction, 3> image{};
+  const auto send = [&image](lattice::Direction before, lattice::Direction after) {
+    image[static_cast<std::size_t>(lattice::axisOf(before))] =
+        lattice::signOf(before) < 0 ? lattice::opposite(after) : after;
   };
   send(from.axes[0], to.axes[0]);
   send(from.axes[1], to.axes[1]);
-  send(outwards(from.part), opposite(outwards(to.part)));
-  if (cross(image[0], image[1]) != image[2]) {
+  send(outwards(from.part), lattice::opposite(outwards(to.part)));
+  if (lattice::cross(image[0], image[1]) != image[2]) {
     throw Error(ErrorCode::Internal,
                 "Two neighbouring blocks of a sample have opposite orientation; please report this "
                 "as a bug.");
   }
-  Transition across{Rotation::fromAxes(image[0], image[1]), cornerPoint(to.origin)};
-  const GridPoint turned = across.rotation(cornerPoint(from.origin));
+  lattice::Transition across{lattice::Rotation::fromAxes(image[0], image[1]),
+                             cornerPoint(to.origin)};
+  const lattice::GridPoint turned = across.rotation(cornerPoint(from.origin));
   for (std::size_t a = 0; a < 3; ++a) across.translation[a] -= turned[a];
   return across;
 }
@@ -101,12 +103,13 @@ Occurrence BlockComplex::frameOf(std::size_t block, const BlockPart& part) const
         corners.begin(), corners.end(),
         [&vertices](std::size_t a, std::size_t b) { return vertices[a] < vertices[b]; });
   }
-  std::vector<std::pair<Index, Direction>> axes;
+  std::vector<std::pair<Index, lattice::Direction>> axes;
   for (std::size_t a = 0; a < 3; ++a) {
     if (part.digits[a] != BlockPart::kAlong) continue;
     const std::size_t end = occurrence.origin ^ (std::size_t{1} << a);
     const Index rank = dimension < 3 ? vertices[end] : static_cast<Index>(a);
-    axes.emplace_back(rank, direction(static_cast<int>(a), end > occurrence.origin ? 1 : -1));
+    axes.emplace_back(rank,
+                      lattice::direction(static_cast<int>(a), end > occurrence.origin ? 1 : -1));
   }
   std::sort(axes.begin(), axes.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -197,7 +200,7 @@ void BlockComplex::turnStars() {
 void BlockComplex::restrictFreeAxes() {
   for (CoarseCell& cell : cells_) {
     for (const Occurrence& occurrence : cell.occurrences) {
-      const Rotation toFirst = occurrence.fromFirst.inverse();
+      const lattice::Rotation toFirst = occurrence.fromFirst.inverse();
       for (std::size_t code = 0; code < BlockPart::kCount; ++code) {
         const BlockPart around = BlockPart::fromCode(code);
         if (!around.contains(occurrence.part)) continue;
@@ -207,8 +210,8 @@ void BlockComplex::restrictFreeAxes() {
         if (!fixing) continue;
         for (std::size_t a = 0; a < 3; ++a) {
           if (around.digits[a] == BlockPart::kAlong) continue;
-          const Direction fixed = toFirst(direction(static_cast<int>(a), 1));
-          cell.free[static_cast<std::size_t>(axisOf(fixed))] = false;
+          const lattice::Direction fixed = toFirst(lattice::direction(static_cast<int>(a), 1));
+          cell.free[static_cast<std::size_t>(lattice::axisOf(fixed))] = false;
         }
       }
     }

@@ -39,9 +39,9 @@ struct BlockPart {
 struct Occurrence {
   std::size_t block = 0;
   BlockPart part;
-  std::size_t origin = 0;           ///< corner of the block
-  std::array<Direction, 3> axes{};  ///< of the cell's frame, in the block's frame
-  Rotation fromFirst;               ///< from the first occurrence's block frame to this one's
+  std::size_t origin = 0;                    ///< corner of the block
+  std::array<lattice::Direction, 3> axes{};  ///< of the cell's frame, in the block's frame
+  lattice::Rotation fromFirst;  ///< from the first occurrence's block frame to this one's
 };
 
 /// A vertex, edge, face or block of the complex (dimension 0 to 3).
@@ -69,7 +69,7 @@ struct CellReference {
 /// frame (for blocks that are unit cubes).
 struct Neighbour {
   std::size_t block = 0;
-  Transition transition;
+  lattice::Transition transition;
 };
 
 class BlockComplex {

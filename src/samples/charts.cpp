@@ -25,30 +25,33 @@ std::int64_t translationLimit(const SampleOptions& options) {
   return options.offset >= 1 ? static_cast<std::int64_t>(options.offset) : kSmallOffset;
 }
 
-GridPoint randomTranslation(std::int64_t limit, Random& random) {
-  GridPoint translation{};
+lattice::GridPoint randomTranslation(std::int64_t limit, Random& random) {
+  lattice::GridPoint translation{};
   for (auto& coordinate : translation) {
     coordinate = static_cast<std::int32_t>(random.integerUpTo(limit));
   }
   return translation;
 }
 
-Transition randomChart(std::int64_t limit, Random& random) {
+lattice::Transition randomChart(std::int64_t limit, Random& random) {
   // Numbered by the axis that +x is sent to, the one that +y is sent to, and the two signs.
-  const auto number = static_cast<int>(random.below(Rotation::kCount));
+  const auto number = static_cast<int>(random.below(lattice::Rotation::kCount));
   const int first = number / 8;
   const int second = (first + 1 + number / 4 % 2) % 3;
-  const auto signedAxis = [](int axis, int bit) { return direction(axis, bit == 0 ? 1 : -1); };
-  const Rotation rotation =
-      Rotation::fromAxes(signedAxis(first, number % 2), signedAxis(second, number / 2 % 2));
+  const auto signedAxis = [](int axis, int bit) {
+    return lattice::direction(axis, bit == 0 ? 1 : -1);
+  };
+  const lattice::Rotation rotation = lattice::Rotation::fromAxes(
+      signedAxis(first, number % 2), signedAxis(second, number / 2 % 2));
   return {rotation, randomTranslation(limit, random)};
 }
 
 /// Charts of all blocks such that transitions across a spanning tree of the blocks are identities;
 /// all are moved by the same translation.
-std::vector<Transition> alignedCharts(const BlockComplex& complex, int cells,
-                                      const GridPoint& translation) {
-  std::vector<Transition> charts(complex.blockCount(), Transition{{}, translation});
+std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, int cells,
+                                               const lattice::GridPoint& translation) {
+  std::vector<lattice::Transition> charts(complex.blockCount(),
+                                          lattice::Transition{{}, translation});
   std::vector<bool> hasChart(charts.size(), false);
   for (std::size_t root = 0; root < charts.size(); ++root) {
     if (hasChart[root]) continue;
@@ -58,7 +61,7 @@ std::vector<Transition> alignedCharts(const BlockComplex& complex, int cells,
       for (std::size_t face = 0; face < 6; ++face) {
         const auto other = complex.neighbour(reached[next], face / 2, static_cast<int>(face % 2));
         if (!other || hasChart[other->block]) continue;
-        Transition across = other->transition;
+        lattice::Transition across = other->transition;
         for (std::int32_t& coordinate : across.translation) coordinate *= cells;
         charts[other->block] = charts[reached[next]] * across.inverse();
         hasChart[other->block] = true;
@@ -70,15 +73,15 @@ std::vector<Transition> alignedCharts(const BlockComplex& complex, int cells,
 }
 
 /// From the frames of blocks to their charts.
-std::vector<Transition> blockCharts(const BlockComplex& complex, const SampleOptions& options,
-                                    Random& random) {
+std::vector<lattice::Transition> blockCharts(const BlockComplex& complex,
+                                             const SampleOptions& options, Random& random) {
   if (options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Scattered) {
     const auto offset = static_cast<std::int64_t>(options.offset);
     return alignedCharts(complex, options.cells, randomTranslation(offset, random));
   }
-  std::vector<Transition> charts(complex.blockCount());
+  std::vector<lattice::Transition> charts(complex.blockCount());
   if (options.charts == ChartStyle::Random) return charts;  // every tet gets its own
-  for (Transition& chart : charts) chart = randomChart(translationLimit(options), random);
+  for (lattice::Transition& chart : charts) chart = randomChart(translationLimit(options), random);
   return charts;
 }
 
@@ -91,7 +94,8 @@ std::vector<Vec3> stretchedLengths(const BlockComplex& complex, const SampleOpti
   for (const CoarseCell& cell : complex.cells()) {
     if (cell.dimension != 1) continue;
     const auto axisOfEdge = [](const Occurrence& at) {
-      return static_cast<Index>(3 * at.block + static_cast<std::size_t>(axisOf(at.axes[0])));
+      return static_cast<Index>(3 * at.block +
+                                static_cast<std::size_t>(lattice::axisOf(at.axes[0])));
     };
     for (const Occurrence& at : cell.occurrences) {
       chains.unite(axisOfEdge(cell.occurrences.front()), axisOfEdge(at));
@@ -129,7 +133,7 @@ void permuteCorners(Tet& tet, std::array<Int3, 4>& corners, Random& random) {
 class MapWriter {
  public:
   /// @param lengths  of a hexahedron in each block, along each axis
-  MapWriter(const TetGrid& grid, std::vector<Transition> charts, std::vector<Vec3> lengths,
+  MapWriter(const TetGrid& grid, std::vector<lattice::Transition> charts, std::vector<Vec3> lengths,
             const SampleOptions& options, Random chartRandom)
       : grid_(grid),
         charts_(std::move(charts)),
@@ -149,7 +153,7 @@ class MapWriter {
       Tet tet = {grid_.centreVertex(subBlock), vertices[t[0]], vertices[t[1]], vertices[t[2]]};
       std::array<Int3, 4> corners = {centre, parameters[t[0]], parameters[t[1]], parameters[t[2]]};
       const bool isOwn = hasOwnChart();
-      const Transition own = isOwn ? randomChart(limit_, chartRandom_) : charts_[block];
+      const lattice::Transition own = isOwn ? randomChart(limit_, chartRandom_) : charts_[block];
       if (isOwn) permuteCorners(tet, corners, chartRandom_);
       map.tets.push_back(tet);
       map.parameters.push_back(inChart(corners, lengths_[block], own));
@@ -164,7 +168,7 @@ class MapWriter {
   }
   /// To double, which is exact unless blocks are stretched, and noise on top.
   TetParameters inChart(const std::array<Int3, 4>& corners, const Vec3& length,
-                        const Transition& chart) {
+                        const lattice::Transition& chart) {
     TetParameters result{};
     for (std::size_t c = 0; c < 4; ++c) {
       Vec3 u{};
@@ -178,7 +182,7 @@ class MapWriter {
   }
 
   const TetGrid& grid_;
-  std::vector<Transition> charts_;
+  std::vector<lattice::Transition> charts_;
   std::vector<Vec3> lengths_;
   ChartStyle style_;
   std::int64_t limit_;
@@ -192,7 +196,7 @@ class MapWriter {
 void addCharts(TetGrid&& grid, const BlockComplex& complex, const SampleOptions& options,
                TetMap& map) {
   Random random(options.seed, kChartStream);
-  std::vector<Transition> charts = blockCharts(complex, options, random);
+  std::vector<lattice::Transition> charts = blockCharts(complex, options, random);
   MapWriter writer(grid, std::move(charts), stretchedLengths(complex, options), options, random);
   map.tets.reserve(12 * grid.subBlockCount());
   map.parameters.reserve(12 * grid.subBlockCount());

@@ -34,7 +34,7 @@ constexpr std::uint64_t kDamageStream = 5;
 struct Site {
   struct Copy {
     Int3* parameter = nullptr;
-    Rotation fromFirst;
+    lattice::Rotation fromFirst;
   };
   Index vertex = 0;
   std::vector<Copy> copies;

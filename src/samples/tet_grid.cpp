@@ -46,8 +46,9 @@ Int3 TetGrid::gridPoint(const Occurrence& occurrence, std::size_t dimension,
   for (std::size_t a = 0; a < 3; ++a) result[a] = (occurrence.origin >> a & 1) == 1 ? refine_ : 0;
   auto rest = static_cast<std::int64_t>(point);
   for (std::size_t a = 0; a < dimension; ++a) {
-    const Direction axis = occurrence.axes[a];
-    result[static_cast<std::size_t>(axisOf(axis))] += signOf(axis) * (1 + rest % (refine_ - 1));
+    const lattice::Direction axis = occurrence.axes[a];
+    result[static_cast<std::size_t>(lattice::axisOf(axis))] +=
+        lattice::signOf(axis) * (1 + rest % (refine_ - 1));
     rest /= refine_ - 1;
   }
   return result;

@@ -1,24 +1,25 @@
 #include <base/workspaces.hpp>
 #include <sweep/cell_centers.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
-std::uint64_t countOwned(const TetTopology& topology, Index tet, std::span<const SweptLine> lines) {
+std::uint64_t countOwned(const adjacency::TetTopology& topology, Index tet,
+                         std::span<const lattice::SweptLine> lines) {
   CenterOwner owner(topology, tet);
   std::uint64_t count = 0;
-  for (const SweptLine& line : lines) count += owner.owned(line).count;
+  for (const lattice::SweptLine& line : lines) count += owner.owned(line).count;
   return count;
 }
 
-std::span<const SweptLine> CellCenters::linesOf(const ExactMap& map, Index tet,
-                                                std::vector<SweptLine>& scratch) const {
+std::span<const lattice::SweptLine> CellCenters::linesOf(
+    const igm::ExactMap& map, Index tet, std::vector<lattice::SweptLine>& scratch) const {
   if (lines) return lines->of(tet);
   scratch.clear();
-  TetRasterizer(map.corners[tet], map.unit).append(kCenterGrid, scratch);
+  lattice::TetRasterizer(map.corners[tet], map.unit).append(lattice::kCenterGrid, scratch);
   return scratch;
 }
 
-CellCenters findCells(const PreparedMap& map, Stage& stage) {
+CellCenters findCells(const igm::PreparedMap& map, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   CellCenters centers(tets, true);
   parallelBlocksWith(
@@ -27,7 +28,8 @@ CellCenters findCells(const PreparedMap& map, Stage& stage) {
         lines.clear();
         for (std::size_t t = first; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          TetRasterizer(map.exact.corners[t], map.exact.unit).append(kCenterGrid, lines.next());
+          lattice::TetRasterizer(map.exact.corners[t], map.exact.unit)
+              .append(lattice::kCenterGrid, lines.next());
           centers.begin[t] = countOwned(map.topology, tet, lines.last());
         }
         centers.lines->store(block, lines);
@@ -37,4 +39,4 @@ CellCenters findCells(const PreparedMap& map, Stage& stage) {
   return centers;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

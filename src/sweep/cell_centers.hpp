@@ -13,12 +13,13 @@
 #include <lattice/cell_corners.hpp>
 #include <sweep/tet_lines.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 /// Decides which centres a tet owns.
 class CenterOwner {
  public:
-  CenterOwner(const TetTopology& topology, Index tet) noexcept : topology_(topology), tet_(tet) {}
+  CenterOwner(const adjacency::TetTopology& topology, Index tet) noexcept
+      : topology_(topology), tet_(tet) {}
 
   struct Range {
     std::uint32_t first;
@@ -26,7 +27,7 @@ class CenterOwner {
   };
   /// The owned centres of one of the tet's lines; they are consecutive, because the owner of a
   /// simplex owns no less than that of a face of it.
-  [[nodiscard]] Range owned(const SweptLine& line) {
+  [[nodiscard]] Range owned(const lattice::SweptLine& line) {
     if (line.allInside()) return {0, line.count};
     const bool left = owns(line.left);
     const bool right = owns(line.right);
@@ -38,17 +39,17 @@ class CenterOwner {
   }
 
  private:
-  [[nodiscard]] bool owns(CornerMask simplex) {
-    if (simplex == kWholeTet) return true;
+  [[nodiscard]] bool owns(lattice::CornerMask simplex) {
+    if (simplex == lattice::kWholeTet) return true;
     const auto bit = 1U << simplex;
     if ((known_ & bit) == 0) {
       known_ |= bit;
-      if (ownsSimplex(topology_, tet_, simplex)) owned_ |= bit;
+      if (adjacency::ownsSimplex(topology_, tet_, simplex)) owned_ |= bit;
     }
     return (owned_ & bit) != 0;
   }
 
-  const TetTopology& topology_;
+  const adjacency::TetTopology& topology_;
   Index tet_;
   unsigned known_ = 0;
   unsigned owned_ = 0;
@@ -57,18 +58,18 @@ class CenterOwner {
 /// Calls visit(SweptLine, i) for each centre that a tet owns, point i of one of its lines, in the
 /// order of the cells.
 template <class Visit>
-void forEachOwnedCenter(const TetTopology& topology, Index tet, std::span<const SweptLine> lines,
-                        const Visit& visit) {
+void forEachOwnedCenter(const adjacency::TetTopology& topology, Index tet,
+                        std::span<const lattice::SweptLine> lines, const Visit& visit) {
   CenterOwner owner(topology, tet);
-  for (const SweptLine& line : lines) {
+  for (const lattice::SweptLine& line : lines) {
     const auto [first, count] = owner.owned(line);
     for (std::uint32_t i = first; i < first + count; ++i) visit(line, i);
   }
 }
 
 /// Number of centres that a tet owns.
-[[nodiscard]] std::uint64_t countOwned(const TetTopology& topology, Index tet,
-                                       std::span<const SweptLine> lines);
+[[nodiscard]] std::uint64_t countOwned(const adjacency::TetTopology& topology, Index tet,
+                                       std::span<const lattice::SweptLine> lines);
 
 /// Where the cells of each tet are.
 struct CellCenters {
@@ -82,11 +83,11 @@ struct CellCenters {
   [[nodiscard]] std::uint64_t count() const noexcept { return begin.back(); }
 
   /// The tet's lines, in `scratch` if they are not stored.
-  [[nodiscard]] std::span<const SweptLine> linesOf(const ExactMap& map, Index tet,
-                                                   std::vector<SweptLine>& scratch) const;
+  [[nodiscard]] std::span<const lattice::SweptLine> linesOf(
+      const igm::ExactMap& map, Index tet, std::vector<lattice::SweptLine>& scratch) const;
 };
 
 /// Sweeps the centres of all tets, and keeps their lines.
-[[nodiscard]] CellCenters findCells(const PreparedMap& map, Stage& stage);
+[[nodiscard]] CellCenters findCells(const igm::PreparedMap& map, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -4,35 +4,39 @@
 
 #include <sweep/cell_tracer.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 namespace {
 
 /// A face of a tet whose corners are given relative to any point.
 struct Face {
-  const LatticePoint& p;
-  const LatticePoint& q;
-  const LatticePoint& r;
+  const lattice::LatticePoint& p;
+  const lattice::LatticePoint& q;
+  const lattice::LatticePoint& r;
 
-  Face(const LatticeTet& tet, int face) noexcept
+  Face(const lattice::LatticeTet& tet, int face) noexcept
       : p(tet[corner(face, 0)]), q(tet[corner(face, 1)]), r(tet[corner(face, 2)]) {}
 
   /// On which side of the face a point lies; inside is positive.
-  [[nodiscard]] int side(const LatticePoint& z) const noexcept { return orientation(p, q, r, z); }
+  [[nodiscard]] int side(const lattice::LatticePoint& z) const noexcept {
+    return lattice::orientation(p, q, r, z);
+  }
   /// Sign of the inward normal's component along a direction.
-  [[nodiscard]] int dot(Direction d) const noexcept {
-    return sign(crossComponent(q - p, r - p, static_cast<std::size_t>(axisOf(d)))) * signOf(d);
+  [[nodiscard]] int dot(lattice::Direction d) const noexcept {
+    return lattice::sign(lattice::crossComponent(q - p, r - p,
+                                                 static_cast<std::size_t>(lattice::axisOf(d)))) *
+           lattice::signOf(d);
   }
   /// Sign of the inward normal's product with a vector of components +1 and -1.
   [[nodiscard]] int dot(const std::array<int, 3>& v) const noexcept {
-    Int128 sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += crossComponent(q - p, r - p, k) * v[k];
-    return sign(sum);
+    lattice::Int128 sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += lattice::crossComponent(q - p, r - p, k) * v[k];
+    return lattice::sign(sum);
   }
 
  private:
   static std::size_t corner(int face, std::size_t i) noexcept {
-    return static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i]);
+    return static_cast<std::size_t>(lattice::kFaceCorners[static_cast<std::size_t>(face)][i]);
   }
 };
 
@@ -46,7 +50,8 @@ void CellTracer::fail(Index tet, const char* what) {
               {PlaceKind::Tet, tet});
 }
 
-void CellTracer::enter(Index tet, const GridPoint& z, CornerMask generator) noexcept {
+void CellTracer::enter(Index tet, const lattice::GridPoint& z,
+                       lattice::CornerMask generator) noexcept {
   tet_ = tet;
   z_ = z;
   generator_ = generator;
@@ -58,17 +63,17 @@ void CellTracer::enter(Index tet, const GridPoint& z, CornerMask generator) noex
   }
 }
 
-CornerPlace CellTracer::trace(const GridPoint& offset, const TiltOrder& tilts) {
+CornerPlace CellTracer::trace(const lattice::GridPoint& offset, const TiltOrder& tilts) {
   Segment segment = begin(offset, tilts);
   int face = exitFromInside(segment);
-  for (std::size_t steps = 0; face != kNoExit && !endsBefore(segment, face); ++steps) {
-    if (topology_.isBoundary(halfFaceOf(segment.tet, face)))
+  for (std::size_t steps = 0; face != lattice::kNoExit && !endsBefore(segment, face); ++steps) {
+    if (topology_.isBoundary(adjacency::halfFaceOf(segment.tet, face)))
       fail(segment.tet, "the half diagonal leaves the mesh");
     if (steps > topology_.tetCount()) fail(segment.tet, "the half diagonal does not end");
     cross(segment, face);
     face = exitAfterEntry(segment);
   }
-  if (face == kNoExit) fail(segment.tet, "the half diagonal leaves a tet through no face");
+  if (face == lattice::kNoExit) fail(segment.tet, "the half diagonal leaves a tet through no face");
   CornerPlace place{segment.tet, {}, segment.rotation};
   for (std::size_t k = 0; k < 3; ++k) {
     place.z[k] =
@@ -77,15 +82,15 @@ CornerPlace CellTracer::trace(const GridPoint& offset, const TiltOrder& tilts) {
   return place;
 }
 
-CellTracer::Segment CellTracer::begin(const GridPoint& offset, const TiltOrder& tilts) {
+CellTracer::Segment CellTracer::begin(const lattice::GridPoint& offset, const TiltOrder& tilts) {
   Segment segment{tet_, -1, center_, {}, {}, {}, {}};
   for (std::size_t k = 0; k < 3; ++k) {
     segment.along[k] = 2 * offset[k] - 1;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    segment.tilts[k] = direction(tilts[k], -segment.along[tilts[k]]);
+    segment.tilts[k] = lattice::direction(tilts[k], -segment.along[tilts[k]]);
   }
-  if (generator_ == kWholeTet) {
+  if (generator_ == lattice::kWholeTet) {
     for (std::size_t i = 0; i < 4; ++i) segment.seen[i] = seenAs(segment, corners_[i]);
   } else {
     segment = startAroundCenter(segment);
@@ -94,11 +99,11 @@ CellTracer::Segment CellTracer::begin(const GridPoint& offset, const TiltOrder& 
   return segment;
 }
 
-LatticePoint CellTracer::relative(const Segment& segment, int corner) const noexcept {
+lattice::LatticePoint CellTracer::relative(const Segment& segment, int corner) const noexcept {
   return exact_.corners[segment.tet][static_cast<std::size_t>(corner)] - segment.center;
 }
 
-LatticeTet CellTracer::relativeTet(const Segment& segment) const noexcept {
+lattice::LatticeTet CellTracer::relativeTet(const Segment& segment) const noexcept {
   return {relative(segment, 0), relative(segment, 1), relative(segment, 2), relative(segment, 3)};
 }
 
@@ -112,7 +117,7 @@ CellTracer::Seen CellTracer::seenAs(const Segment& segment,
 }
 
 void CellTracer::look(Segment& segment, std::size_t corner) const noexcept {
-  const LatticePoint r = relative(segment, static_cast<int>(corner));
+  const lattice::LatticePoint r = relative(segment, static_cast<int>(corner));
   segment.seen[corner] = seenAs(
       segment, {static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
 }
@@ -137,14 +142,15 @@ int CellTracer::side(const Segment& segment, int i, int j) const noexcept {
 }
 
 int CellTracer::exactSide(const Segment& segment, int i, int j) const noexcept {
-  const LatticePoint p = relative(segment, i);
-  const LatticePoint q = relative(segment, j);
-  Int128 exact = 0;
-  for (std::size_t k = 0; k < 3; ++k) exact += crossComponent(p, q, k) * segment.along[k];
-  if (exact != 0) return sign(exact);
-  for (const Direction tilt : segment.tilts) {
-    const int tilted =
-        sign(crossComponent(p, q, static_cast<std::size_t>(axisOf(tilt)))) * signOf(tilt);
+  const lattice::LatticePoint p = relative(segment, i);
+  const lattice::LatticePoint q = relative(segment, j);
+  lattice::Int128 exact = 0;
+  for (std::size_t k = 0; k < 3; ++k) exact += lattice::crossComponent(p, q, k) * segment.along[k];
+  if (exact != 0) return lattice::sign(exact);
+  for (const lattice::Direction tilt : segment.tilts) {
+    const int tilted = lattice::sign(lattice::crossComponent(
+                           p, q, static_cast<std::size_t>(lattice::axisOf(tilt)))) *
+                       lattice::signOf(tilt);
     if (tilted != 0) return tilted;
   }
   return 0;
@@ -154,13 +160,13 @@ int CellTracer::exactSide(const Segment& segment, int i, int j) const noexcept {
 /// all three edges on the negative side.
 int CellTracer::exitFromInside(const Segment& segment) const noexcept {
   for (int face = 0; face < 4; ++face) {
-    const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+    const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
     if (side(segment, f[0], f[1]) < 0 && side(segment, f[1], f[2]) < 0 &&
         side(segment, f[2], f[0]) < 0) {
       return face;
     }
   }
-  return kNoExit;
+  return lattice::kNoExit;
 }
 
 /// The same for a tet that the segment entered: seen along the segment, the corners a, b, c of the
@@ -168,7 +174,7 @@ int CellTracer::exitFromInside(const Segment& segment) const noexcept {
 /// them and the fourth corner e which holds the direction opposite e.
 int CellTracer::exitAfterEntry(const Segment& segment) const noexcept {
   const int e = segment.entered;
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(e)];
+  const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(e)];
   if (side(segment, f[0], e) < 0) return side(segment, f[1], e) > 0 ? f[2] : f[0];
   return side(segment, f[2], e) < 0 ? f[1] : f[0];
 }
@@ -177,7 +183,7 @@ int CellTracer::exitAfterEntry(const Segment& segment) const noexcept {
 /// that of the face at the origin, which is the mean of its corners' depths, weighted by the areas
 /// of the triangles opposite them.
 bool CellTracer::endsBefore(const Segment& segment, int face) const noexcept {
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(face)];
+  const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
   const Seen& a = segment.seen[static_cast<std::size_t>(f[0])];
   const Seen& b = segment.seen[static_cast<std::size_t>(f[1])];
   const Seen& c = segment.seen[static_cast<std::size_t>(f[2])];
@@ -195,13 +201,13 @@ bool CellTracer::endsBefore(const Segment& segment, int face) const noexcept {
 }
 
 bool CellTracer::endsExactlyBefore(const Segment& segment, int face) const noexcept {
-  LatticePoint corner{};
+  lattice::LatticePoint corner{};
   for (std::size_t k = 0; k < 3; ++k) corner[k] = segment.along[k] * half_;
-  const LatticeTet tet = relativeTet(segment);
+  const lattice::LatticeTet tet = relativeTet(segment);
   const Face plane(tet, face);
   const int side = plane.side(corner);
   if (side != 0) return side > 0;
-  for (const Direction tilt : segment.tilts) {
+  for (const lattice::Direction tilt : segment.tilts) {
     const int tilted = plane.dot(tilt);
     if (tilted != 0) return tilted > 0;
   }
@@ -210,16 +216,16 @@ bool CellTracer::endsExactlyBefore(const Segment& segment, int face) const noexc
 
 /// Goes on into the neighbour across a face.
 void CellTracer::cross(Segment& segment, int face) const {
-  const HalfFace halfFace = halfFaceOf(segment.tet, face);
-  const HalfFace mate = topology_.mate[halfFace];
+  const adjacency::HalfFace halfFace = adjacency::halfFaceOf(segment.tet, face);
+  const adjacency::HalfFace mate = topology_.mate[halfFace];
   const Index before = segment.tet;
-  segment.tet = tetOf(mate);
-  segment.entered = localOf(mate);
+  segment.tet = adjacency::tetOf(mate);
+  segment.entered = adjacency::localOf(mate);
   if (exact_.transitions.isNonTrivial(halfFace)) {
-    const Transition& transition = exact_.transitions.across(halfFace);
+    const lattice::Transition& transition = exact_.transitions.across(halfFace);
     segment.center = transition(segment.center, exact_.unit);
     segment.along = transition.rotation(segment.along);
-    for (Direction& tilt : segment.tilts) tilt = transition(tilt);
+    for (lattice::Direction& tilt : segment.tilts) tilt = transition(tilt);
     segment.rotation = transition.rotation * segment.rotation;
     for (std::size_t i = 0; i < 4; ++i) look(segment, i);
     return;
@@ -240,12 +246,12 @@ void CellTracer::cross(Segment& segment, int face) const {
 /// may have it outside.
 CellTracer::Segment CellTracer::startAroundCenter(const Segment& segment) {
   const auto leadsInto = [this](const Segment& candidate) {
-    const LatticeTet tet = relativeTet(candidate);
+    const lattice::LatticeTet tet = relativeTet(candidate);
     for (int face = 0; face < 4; ++face) {
       const Face plane(tet, face);
       if (plane.side({}) != 0) continue;
       int side = plane.dot(candidate.along);
-      for (const Direction tilt : candidate.tilts) {
+      for (const lattice::Direction tilt : candidate.tilts) {
         if (side == 0) side = plane.dot(tilt);
       }
       if (side < 0) return false;
@@ -256,10 +262,10 @@ CellTracer::Segment CellTracer::startAroundCenter(const Segment& segment) {
   for (std::size_t head = 0; head < star_.size(); ++head) {
     const Segment here = star_[head];
     if (leadsInto(here)) return here;
-    const LatticeTet tet = relativeTet(here);
+    const lattice::LatticeTet tet = relativeTet(here);
     for (int face = 0; face < 4; ++face) {
       if (Face(tet, face).side({}) != 0) continue;
-      if (topology_.isBoundary(halfFaceOf(here.tet, face))) {
+      if (topology_.isBoundary(adjacency::halfFaceOf(here.tet, face))) {
         fail(here.tet, "a centre lies on the boundary");
       }
       Segment next = here;
@@ -272,4 +278,4 @@ CellTracer::Segment CellTracer::startAroundCenter(const Segment& segment) {
   fail(segment.tet, "no tet around a centre contains the beginning of a half diagonal");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -16,22 +16,22 @@
 
 #include <igm/prepare.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 /// The axes of a cell in the order in which segments are tilted along them: d1, d2, d3.
 using TiltOrder = std::array<std::uint8_t, 3>;
 
 /// Where a segment from a centre to a corner ends.
 struct CornerPlace {
-  Index tet;          ///< contains the corner, and the segment's end beside it
-  GridPoint z;        ///< the corner in that tet's chart
-  Rotation rotation;  ///< from the chart of the centre's owner to that of `tet`
+  Index tet;                   ///< contains the corner, and the segment's end beside it
+  lattice::GridPoint z;        ///< the corner in that tet's chart
+  lattice::Rotation rotation;  ///< from the chart of the centre's owner to that of `tet`
 };
 
 /// Traces the corners of one cell after the other. One per thread.
 class CellTracer {
  public:
-  explicit CellTracer(const PreparedMap& map) noexcept
+  explicit CellTracer(const igm::PreparedMap& map) noexcept
       : topology_(map.topology),
         exact_(map.exact),
         half_(map.exact.unit / 2),
@@ -39,11 +39,12 @@ class CellTracer {
 
   /// Chooses the cell with smallest corner z in the chart of a tet that contains the cell's centre.
   /// @param generator  the simplex of the tet in whose interior the centre lies
-  void enter(Index tet, const GridPoint& z, CornerMask generator) noexcept;
+  void enter(Index tet, const lattice::GridPoint& z, lattice::CornerMask generator) noexcept;
 
   /// Traces to one corner of the cell.
   /// @param offset  of the corner from z, each 0 or 1
-  [[nodiscard]] CornerPlace trace(const GridPoint& offset, const TiltOrder& tilts = {0, 1, 2});
+  [[nodiscard]] CornerPlace trace(const lattice::GridPoint& offset,
+                                  const TiltOrder& tilts = {0, 1, 2});
 
  private:
   /// A corner of a tet seen along a segment: as a point (x, y) of a plane with the segment at its
@@ -59,16 +60,16 @@ class CellTracer {
   struct Segment {
     Index tet;
     int entered;  ///< face through which it came, or -1
-    LatticePoint center;
-    std::array<int, 3> along;        ///< from the centre to the corner: +1 or -1 in each axis
-    std::array<Direction, 3> tilts;  ///< d1, d2, d3: the corner's edges
-    Rotation rotation;               ///< from the first tet's chart
+    lattice::LatticePoint center;
+    std::array<int, 3> along;  ///< from the centre to the corner: +1 or -1 in each axis
+    std::array<lattice::Direction, 3> tilts;  ///< d1, d2, d3: the corner's edges
+    lattice::Rotation rotation;               ///< from the first tet's chart
     std::array<Seen, 4> seen;
   };
 
-  [[nodiscard]] Segment begin(const GridPoint& offset, const TiltOrder& tilts);
-  [[nodiscard]] LatticePoint relative(const Segment& segment, int corner) const noexcept;
-  [[nodiscard]] LatticeTet relativeTet(const Segment& segment) const noexcept;
+  [[nodiscard]] Segment begin(const lattice::GridPoint& offset, const TiltOrder& tilts);
+  [[nodiscard]] lattice::LatticePoint relative(const Segment& segment, int corner) const noexcept;
+  [[nodiscard]] lattice::LatticeTet relativeTet(const Segment& segment) const noexcept;
   [[nodiscard]] static Seen seenAs(const Segment& segment, const std::array<double, 3>& r) noexcept;
   void look(Segment& segment, std::size_t corner) const noexcept;
   [[nodiscard]] int side(const Segment& segment, int i, int j) const noexcept;
@@ -81,18 +82,18 @@ class CellTracer {
   [[nodiscard]] Segment startAroundCenter(const Segment& segment);
   [[noreturn]] static void fail(Index tet, const char* what);
 
-  const TetTopology& topology_;
-  const ExactMap& exact_;
+  const adjacency::TetTopology& topology_;
+  const igm::ExactMap& exact_;
   std::int64_t half_;  ///< of a grid unit, in lattice units
   int shift_;          ///< the unit's binary logarithm
 
   // The cell:
   Index tet_ = 0;
-  GridPoint z_{};
-  CornerMask generator_ = kNoSimplex;
-  LatticePoint center_{};
+  lattice::GridPoint z_{};
+  lattice::CornerMask generator_ = lattice::kNoSimplex;
+  lattice::LatticePoint center_{};
   std::array<std::array<double, 3>, 4> corners_{};  ///< of the tet, from the centre
   std::vector<Segment> star_;                       ///< working memory
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -6,28 +6,29 @@
 #include <sweep/cell_centers.hpp>
 #include <sweep/tet_counts.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 namespace {
 
 /// Cells of some tets are counted, not numbered; no other tet has any vertices or cells.
-ElementCounts countSome(const PreparedMap& map, const ItemRange& range, Stage& stage) {
+ElementCounts countSome(const igm::PreparedMap& map, const ItemRange& range, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   ElementCounts counts;
   counts.cells.assign(tets + 1, 0);
   VertexCounter counter(map, counts.vertices);
   for (std::size_t t = 0; t < tets; ++t) counter.countNothing(static_cast<Index>(t));
   parallelBlocksWith(
-      stage, range.end - range.first, kSweepBlock, [] { return std::vector<SweptLine>(); },
-      [&](std::size_t begin, std::size_t end, std::size_t block, std::vector<SweptLine>& lines) {
+      stage, range.end - range.first, kSweepBlock, [] { return std::vector<lattice::SweptLine>(); },
+      [&](std::size_t begin, std::size_t end, std::size_t block,
+          std::vector<lattice::SweptLine>& lines) {
         for (std::size_t t = range.first + begin; t < range.first + end; ++t) {
           const auto tet = static_cast<Index>(t);
-          TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit);
+          lattice::TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit);
           lines.clear();
-          rasterizer.append(kVertexGrid, lines);
+          rasterizer.append(lattice::kVertexGrid, lines);
           counter.count(block, tet, lines);
           lines.clear();
-          rasterizer.append(kCenterGrid, lines);
+          rasterizer.append(lattice::kCenterGrid, lines);
           counts.cells[t] = lines.empty() ? 0 : countOwned(map.topology, tet, lines);
         }
       });
@@ -67,9 +68,9 @@ ElementCounts gatherCounts(ProcessTeam& team, const ElementCounts& some, const I
     vertices.generatorBegin[t] = generators;
     for (Index g = 0; g < generators; ++g, ++next) {
       const auto count = static_cast<Index>(*next >> kByte);
-      const auto simplex = static_cast<CornerMask>(*next & 0xff);
+      const auto simplex = static_cast<lattice::CornerMask>(*next & 0xff);
       vertices.generators.push_back({count, simplex});
-      add(static_cast<std::size_t>(dimension(simplex)), count);
+      add(static_cast<std::size_t>(lattice::dimension(simplex)), count);
       inside -= count;
     }
     add(3, inside);
@@ -86,8 +87,8 @@ ItemRange shareOf(const ProcessTeam* team, std::size_t items) {
   return {items * team->rank() / team->size(), items * (team->rank() + 1) / team->size()};
 }
 
-ElementCounts countElements(const PreparedMap& map, std::uint64_t expectedCells, ProcessTeam* team,
-                            Stage& stage) {
+ElementCounts countElements(const igm::PreparedMap& map, std::uint64_t expectedCells,
+                            ProcessTeam* team, Stage& stage) {
   const ItemRange range = shareOf(team, map.topology.tetCount());
   ElementCounts counts = countSome(map, range, stage);
   if (team != nullptr) counts = gatherCounts(*team, counts, range);
@@ -99,4 +100,4 @@ ElementCounts countElements(const PreparedMap& map, std::uint64_t expectedCells,
                   " cell centres were found. This is a bug; please report it with the map.");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -2,14 +2,13 @@
 // of a mesh need to know of each other.
 #pragma once
 
+#include <hexhex/team.hpp>
 #include <hexhex/types.hpp>
 
 #include <igm/prepare.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
-
-class ProcessTeam;
+namespace hexhex::sweep {
 
 struct ElementCounts {
   VertexNumbers vertices;
@@ -27,7 +26,7 @@ struct ItemRange {
 /// Sweeps all tets, and keeps nothing but counts.
 /// @param team  if not null, its processes, which all call this, share the work
 /// @throws Error Internal if there are not as many cells as the map's parametric volume
-[[nodiscard]] ElementCounts countElements(const PreparedMap& map, std::uint64_t expectedCells,
+[[nodiscard]] ElementCounts countElements(const igm::PreparedMap& map, std::uint64_t expectedCells,
                                           ProcessTeam* team, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -14,7 +14,7 @@
 #include <base/parallel.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 /// Tets are worked on in blocks of this many.
 inline constexpr std::size_t kSweepBlock = 256;
@@ -95,7 +95,7 @@ class TetLists {
   std::vector<Array<Item>> blocks_;
 };
 
-using BlockLines = BlockLists<SweptLine>;
-using TetLines = TetLists<SweptLine>;
+using BlockLines = BlockLists<lattice::SweptLine>;
+using TetLines = TetLists<lattice::SweptLine>;
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -4,14 +4,14 @@
 #include <base/vector3.hpp>
 #include <sweep/tet_positions.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 namespace {
 
 /// The affine form may lose this factor in precision; beyond, weights are computed exactly.
 constexpr double kMaxCondition = 0x1p20;
 
-Vec3 toVector(const LatticePoint& p, double scale) {
+Vec3 toVector(const lattice::LatticePoint& p, double scale) {
   return {static_cast<double>(p[0]) * scale, static_cast<double>(p[1]) * scale,
           static_cast<double>(p[2]) * scale};
 }
@@ -22,11 +22,11 @@ void addScaled(Vec3& sum, const Vec3& v, double factor) {
 
 }  // namespace
 
-TetPositions::TetPositions(const PreparedMap& map, Index tet, SweepAxes axes)
+TetPositions::TetPositions(const igm::PreparedMap& map, Index tet, lattice::SweepAxes axes)
     : corners_(map.exact.corners[tet]), unit_(map.exact.unit), axes_(axes()) {
-  const GridBox box = gridBox(corners_, unit_);
+  const lattice::GridBox box = lattice::gridBox(corners_, unit_);
   for (std::size_t i = 0; i < 4; ++i) points_[i] = map.input.view.points[map.topology.tets[tet][i]];
-  LatticePoint boxOrigin{};
+  lattice::LatticePoint boxOrigin{};
   Vec3 extent{};
   for (std::size_t k = 0; k < 3; ++k) {
     first_[k] = box.range[axes_[k]].first;
@@ -61,10 +61,10 @@ TetPositions::TetPositions(const PreparedMap& map, Index tet, SweepAxes axes)
   }
 }
 
-Vec3 TetPositions::at(CornerMask simplex, const GridPoint& z) const {
-  switch (dimension(simplex)) {
+Vec3 TetPositions::at(lattice::CornerMask simplex, const lattice::GridPoint& z) const {
+  switch (lattice::dimension(simplex)) {
     case 0:
-      return points_[firstCorner(simplex)];
+      return points_[lattice::firstCorner(simplex)];
     case 1:
       return onEdge(simplex, z);
     case 2:
@@ -99,7 +99,7 @@ Vec3 TetPositions::rowOrigin(std::int32_t level, std::int32_t row) const {
 
 Vec3 TetPositions::inside(std::int32_t level, std::int32_t row, std::int32_t point) const {
   if (illConditioned_) {
-    GridPoint z{};
+    lattice::GridPoint z{};
     z[axes_[0]] = level;
     z[axes_[1]] = row;
     z[axes_[2]] = point;
@@ -111,48 +111,51 @@ Vec3 TetPositions::inside(std::int32_t level, std::int32_t row, std::int32_t poi
   return p;
 }
 
-Vec3 TetPositions::insideExactly(const GridPoint& z) const {
-  const LatticePoint point = {z[0] * unit_, z[1] * unit_, z[2] * unit_};
+Vec3 TetPositions::insideExactly(const lattice::GridPoint& z) const {
+  const lattice::LatticePoint point = {z[0] * unit_, z[1] * unit_, z[2] * unit_};
   std::array<double, 4> weights{};
   for (std::size_t i = 0; i < 4; ++i) {
-    const std::array<int, 3>& face = kFaceCorners[i];
-    weights[i] = orientationDeterminant(corners_[static_cast<std::size_t>(face[0])],
-                                        corners_[static_cast<std::size_t>(face[1])],
-                                        corners_[static_cast<std::size_t>(face[2])], point)
+    const std::array<int, 3>& face = lattice::kFaceCorners[i];
+    weights[i] = lattice::orientationDeterminant(corners_[static_cast<std::size_t>(face[0])],
+                                                 corners_[static_cast<std::size_t>(face[1])],
+                                                 corners_[static_cast<std::size_t>(face[2])], point)
                      .toDouble();
   }
   return combine(weights);
 }
 
 /// Weights from areas in the projection along the axis in which the face is largest.
-Vec3 TetPositions::onFace(CornerMask face, const GridPoint& z) const {
-  const std::array<int, 3>& f = kFaceCorners[static_cast<std::size_t>(oppositeCorner(face))];
-  std::array<LatticePoint, 3> relative{};
+Vec3 TetPositions::onFace(lattice::CornerMask face, const lattice::GridPoint& z) const {
+  const std::array<int, 3>& f =
+      lattice::kFaceCorners[static_cast<std::size_t>(lattice::oppositeCorner(face))];
+  std::array<lattice::LatticePoint, 3> relative{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const LatticePoint& corner = corners_[static_cast<std::size_t>(f[i])];
+    const lattice::LatticePoint& corner = corners_[static_cast<std::size_t>(f[i])];
     relative[i] = {corner[0] - z[0] * unit_, corner[1] - z[1] * unit_, corner[2] - z[2] * unit_};
   }
   std::size_t axis = 0;
-  Int128 largest = 0;
+  lattice::Int128 largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Int128 area = crossComponent(relative[1] - relative[0], relative[2] - relative[0], k);
+    const lattice::Int128 area =
+        lattice::crossComponent(relative[1] - relative[0], relative[2] - relative[0], k);
     if ((area < 0 ? -area : area) <= largest) continue;
     largest = area < 0 ? -area : area;
     axis = k;
   }
   std::array<double, 4> weights{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const Int128 area = crossComponent(relative[(i + 1) % 3], relative[(i + 2) % 3], axis);
-    weights[static_cast<std::size_t>(f[i])] = toDouble(area < 0 ? -area : area);
+    const lattice::Int128 area =
+        lattice::crossComponent(relative[(i + 1) % 3], relative[(i + 2) % 3], axis);
+    weights[static_cast<std::size_t>(f[i])] = lattice::toDouble(area < 0 ? -area : area);
   }
   return combine(weights);
 }
 
 /// Weights from the edge's largest extent.
-Vec3 TetPositions::onEdge(CornerMask edge, const GridPoint& z) const {
-  const std::size_t a = firstCorner(edge);
-  const std::size_t b = lastCorner(edge);
-  const LatticePoint along = corners_[b] - corners_[a];
+Vec3 TetPositions::onEdge(lattice::CornerMask edge, const lattice::GridPoint& z) const {
+  const std::size_t a = lattice::firstCorner(edge);
+  const std::size_t b = lattice::lastCorner(edge);
+  const lattice::LatticePoint along = corners_[b] - corners_[a];
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k) {
     if (std::abs(along[k]) > std::abs(along[axis])) axis = k;
@@ -173,4 +176,4 @@ Vec3 TetPositions::combine(const std::array<double, 4>& weights) const {
   return p;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -7,17 +7,17 @@
 #include <igm/prepare.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 /// The inverse of the map in one tet.
 class TetPositions {
  public:
   /// @param axes  of the tet's sweep, which finds points
-  TetPositions(const PreparedMap& map, Index tet, SweepAxes axes);
+  TetPositions(const igm::PreparedMap& map, Index tet, lattice::SweepAxes axes);
 
   /// The preimage of a grid point in the interior of a simplex of the tet: a vertex itself, on the
   /// segment at edges, in the plane of the three corners at faces.
-  [[nodiscard]] Vec3 at(CornerMask simplex, const GridPoint& z) const;
+  [[nodiscard]] Vec3 at(lattice::CornerMask simplex, const lattice::GridPoint& z) const;
 
   /// Preimages of `count` grid points in the interior of the tet, along the third sweep axis.
   void alongLine(std::int32_t level, std::int32_t row, std::int32_t first, std::uint32_t count,
@@ -26,12 +26,12 @@ class TetPositions {
  private:
   [[nodiscard]] Vec3 inside(std::int32_t level, std::int32_t row, std::int32_t point) const;
   [[nodiscard]] Vec3 rowOrigin(std::int32_t level, std::int32_t row) const;
-  [[nodiscard]] Vec3 insideExactly(const GridPoint& z) const;
-  [[nodiscard]] Vec3 onFace(CornerMask face, const GridPoint& z) const;
-  [[nodiscard]] Vec3 onEdge(CornerMask edge, const GridPoint& z) const;
+  [[nodiscard]] Vec3 insideExactly(const lattice::GridPoint& z) const;
+  [[nodiscard]] Vec3 onFace(lattice::CornerMask face, const lattice::GridPoint& z) const;
+  [[nodiscard]] Vec3 onEdge(lattice::CornerMask edge, const lattice::GridPoint& z) const;
   [[nodiscard]] Vec3 combine(const std::array<double, 4>& weights) const;
 
-  const LatticeTet& corners_;
+  const lattice::LatticeTet& corners_;
   std::int64_t unit_;
   std::array<std::uint8_t, 3> axes_;
   std::array<std::int32_t, 3> first_;  ///< of the box, by sweep axis
@@ -41,4 +41,4 @@ class TetPositions {
   bool illConditioned_ = false;  ///< nearly flat in the map: the affine form would lose digits
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -1,30 +1,30 @@
 #include <base/workspaces.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 namespace {
 
 /// The proper simplices of a tet's boundary, by dimension, then corners.
-constexpr std::array<CornerMask, 14> kBoundarySimplices = {1, 2,  4,  8, 3,  5,  6,
-                                                           9, 10, 12, 7, 11, 13, 14};
+constexpr std::array<lattice::CornerMask, 14> kBoundarySimplices = {1, 2,  4,  8, 3,  5,  6,
+                                                                    9, 10, 12, 7, 11, 13, 14};
 
 }  // namespace
 
-std::uint64_t VertexNumbers::firstOf(Index owner, CornerMask simplex) const {
+std::uint64_t VertexNumbers::firstOf(Index owner, lattice::CornerMask simplex) const {
   std::uint64_t first = begin[owner];
   for (Index g = generatorBegin[owner]; g < generatorBegin[owner + 1]; ++g) {
     if (generators[g].simplex == simplex) return first;
     first += generators[g].count;
   }
-  if (simplex == kWholeTet) return first;
+  if (simplex == lattice::kWholeTet) return first;
   throw Error(ErrorCode::Internal,
               "A hex vertex is missing in the tet that owns it. The map passed all checks, so this "
               "is a bug; please report it with the map.",
               {PlaceKind::Tet, owner});
 }
 
-VertexCounter::VertexCounter(const PreparedMap& map, VertexNumbers& numbers)
+VertexCounter::VertexCounter(const igm::PreparedMap& map, VertexNumbers& numbers)
     : map_(map), numbers_(numbers), blocks_(blockCount(map.topology.tetCount(), kSweepBlock)) {
   numbers.begin.resize(map.topology.tetCount() + 1);
   numbers.generatorBegin.resize(map.topology.tetCount() + 1);
@@ -32,19 +32,20 @@ VertexCounter::VertexCounter(const PreparedMap& map, VertexNumbers& numbers)
   numbers.generatorBegin.back() = 0;
 }
 
-void VertexCounter::countSome(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+void VertexCounter::countSome(std::size_t block, Index tet,
+                              std::span<const lattice::SweptLine> lines) {
   Block& counts = blocks_[block];
   const std::size_t generatorsBefore = counts.generators.size();
   std::uint64_t inside = 0;
   bool boundary = false;
-  for (const SweptLine& line : lines) {
+  for (const lattice::SweptLine& line : lines) {
     if (line.allInside()) {
       inside += line.count;
     } else {
       boundary = true;
-      if (line.left == kWholeTet) ++inside;
-      if (line.count > 1 && line.right == kWholeTet) ++inside;
-      if (line.count > 2 && line.inner() == kWholeTet) inside += line.count - 2;
+      if (line.left == lattice::kWholeTet) ++inside;
+      if (line.count > 1 && line.right == lattice::kWholeTet) ++inside;
+      if (line.count > 2 && line.inner() == lattice::kWholeTet) inside += line.count - 2;
     }
   }
   if (inside > 0) {
@@ -62,18 +63,19 @@ void VertexCounter::countSome(std::size_t block, Index tet, std::span<const Swep
   numbers_.generatorBegin[tet] = static_cast<Index>(counts.generators.size() - generatorsBefore);
 }
 
-void VertexCounter::countBoundary(Block& block, Index tet, std::span<const SweptLine> lines) {
+void VertexCounter::countBoundary(Block& block, Index tet,
+                                  std::span<const lattice::SweptLine> lines) {
   if (block.generators.empty()) block.generators.reserve(kSweepBlock / 4);
   std::array<Index, 16> counts{};
-  for (const SweptLine& line : lines) {
+  for (const lattice::SweptLine& line : lines) {
     ++counts[line.left];
     if (line.count > 1) ++counts[line.right];
     if (line.count > 2) counts[line.inner()] += line.count - 2;
   }
-  for (const CornerMask simplex : kBoundarySimplices) {
-    if (counts[simplex] == 0 || !ownsSimplex(map_.topology, tet, simplex)) continue;
+  for (const lattice::CornerMask simplex : kBoundarySimplices) {
+    if (counts[simplex] == 0 || !adjacency::ownsSimplex(map_.topology, tet, simplex)) continue;
     block.generators.push_back({counts[simplex], simplex});
-    const auto kind = static_cast<std::size_t>(dimension(simplex));
+    const auto kind = static_cast<std::size_t>(lattice::dimension(simplex));
     ++block.generatorCounts[kind];
     block.vertexCounts[kind] += counts[simplex];
   }
@@ -94,7 +96,7 @@ void VertexCounter::finish() {
   blocks_ = {};
 }
 
-SweptVertices sweepVertices(const PreparedMap& map, Stage& stage, SweepObserver* observer,
+SweptVertices sweepVertices(const igm::PreparedMap& map, Stage& stage, SweepObserver* observer,
                             double epsilon) {
   const std::size_t tets = map.topology.tetCount();
   SweptVertices swept{TetLines(tets), {}};
@@ -105,8 +107,8 @@ SweptVertices sweepVertices(const PreparedMap& map, Stage& stage, SweepObserver*
         lines.clear();
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
-          TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit, epsilon);
-          rasterizer.append(kVertexGrid, lines.next());
+          lattice::TetRasterizer rasterizer(map.exact.corners[t], map.exact.unit, epsilon);
+          rasterizer.append(lattice::kVertexGrid, lines.next());
           counter.count(block, tet, lines.last());
           if (observer != nullptr) observer->add(block, tet, rasterizer);
         }
@@ -117,18 +119,19 @@ SweptVertices sweepVertices(const PreparedMap& map, Stage& stage, SweepObserver*
   return swept;
 }
 
-void TetNumbering::start(Counter& counter, CornerMask simplex) {
-  const Index owner = ownerTet(map_.topology, tet_, simplex);
+void TetNumbering::start(Counter& counter, lattice::CornerMask simplex) {
+  const Index owner = adjacency::ownerTet(map_.topology, tet_, simplex);
   counter.known = true;
   counter.owned = owner == tet_;
-  if (dimension(simplex) == 2 && !counter.owned) {
+  if (lattice::dimension(simplex) == 2 && !counter.owned) {
     counter.foreignFace = true;
-    foreignFaces_ |= 1U << oppositeCorner(simplex);
+    foreignFaces_ |= 1U << lattice::oppositeCorner(simplex);
     return;
   }
-  const CornerMask there = counter.owned ? simplex : map_.topology.translated(simplex, tet_, owner);
+  const lattice::CornerMask there =
+      counter.owned ? simplex : map_.topology.translated(simplex, tet_, owner);
   counter.next = numbers_.firstOf(owner, there);
-  if (dimension(simplex) != 1 || !sweepsBackward(simplex)) return;
+  if (lattice::dimension(simplex) != 1 || !sweepsBackward(simplex)) return;
   counter.backward = true;
   for (Index g = numbers_.generatorBegin[owner]; g < numbers_.generatorBegin[owner + 1]; ++g) {
     if (numbers_.generators[g].simplex == there) counter.next += numbers_.generators[g].count - 1;
@@ -136,16 +139,17 @@ void TetNumbering::start(Counter& counter, CornerMask simplex) {
 }
 
 /// Whether the sweep meets the points of an edge from the larger vertex to the smaller.
-bool TetNumbering::sweepsBackward(CornerMask edge) const noexcept {
-  const std::size_t a = firstCorner(edge);
-  const std::size_t b = lastCorner(edge);
-  const LatticeTet& corners = map_.exact.corners[tet_];
+bool TetNumbering::sweepsBackward(lattice::CornerMask edge) const noexcept {
+  const std::size_t a = lattice::firstCorner(edge);
+  const std::size_t b = lattice::lastCorner(edge);
+  const lattice::LatticeTet& corners = map_.exact.corners[tet_];
   const Tet& tet = map_.topology.tets[tet_];
-  const LatticePoint along = tet[a] < tet[b] ? corners[b] - corners[a] : corners[a] - corners[b];
+  const lattice::LatticePoint along =
+      tet[a] < tet[b] ? corners[b] - corners[a] : corners[a] - corners[b];
   for (const std::uint8_t axis : axes_()) {
     if (along[axis] != 0) return along[axis] < 0;
   }
   return false;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -12,12 +12,12 @@
 #include <igm/prepare.hpp>
 #include <sweep/tet_lines.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 /// A simplex with hex vertices on the boundary of its owner.
 struct BoundaryGenerator {
   Index count;  ///< hex vertices
-  CornerMask simplex;
+  lattice::CornerMask simplex;
 };
 
 struct VertexNumbers {
@@ -31,16 +31,16 @@ struct VertexNumbers {
 
   /// The first hex vertex in the interior of a simplex, by its owner and corners there.
   /// @throws Error Internal if the owner has none
-  [[nodiscard]] std::uint64_t firstOf(Index owner, CornerMask simplex) const;
+  [[nodiscard]] std::uint64_t firstOf(Index owner, lattice::CornerMask simplex) const;
 };
 
 /// What a block of tets owns; collected while it is swept.
 class VertexCounter {
  public:
-  VertexCounter(const PreparedMap& map, VertexNumbers& numbers);
+  VertexCounter(const igm::PreparedMap& map, VertexNumbers& numbers);
 
   /// Counts one tet's lines; tets of a block in order, blocks in any order and in parallel.
-  void count(std::size_t block, Index tet, std::span<const SweptLine> lines) {
+  void count(std::size_t block, Index tet, std::span<const lattice::SweptLine> lines) {
     countNothing(tet);
     if (!lines.empty()) countSome(block, tet, lines);
   }
@@ -58,10 +58,10 @@ class VertexCounter {
     std::array<std::uint64_t, 4> generatorCounts{};
     std::array<std::uint64_t, 4> vertexCounts{};
   };
-  void countSome(std::size_t block, Index tet, std::span<const SweptLine> lines);
-  void countBoundary(Block& block, Index tet, std::span<const SweptLine> lines);
+  void countSome(std::size_t block, Index tet, std::span<const lattice::SweptLine> lines);
+  void countBoundary(Block& block, Index tet, std::span<const lattice::SweptLine> lines);
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   VertexNumbers& numbers_;
   std::vector<Block> blocks_;
 };
@@ -85,7 +85,7 @@ class SweepObserver {
   virtual ~SweepObserver() = default;
 
   /// Tets of a block of kSweepBlock in order, blocks in any order and in parallel.
-  virtual void add(std::size_t block, Index tet, TetRasterizer& rasterizer) = 0;
+  virtual void add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer) = 0;
   /// At the end.
   virtual void take(SweptVertices vertices) = 0;
 };
@@ -93,15 +93,15 @@ class SweepObserver {
 /// Sweeps all tets for vertices, and numbers these.
 /// @param observer  sees every tet, if there is one; the result is the caller's to hand over
 /// @param epsilon   of TetRasterizer
-[[nodiscard]] SweptVertices sweepVertices(const PreparedMap& map, Stage& stage,
+[[nodiscard]] SweptVertices sweepVertices(const igm::PreparedMap& map, Stage& stage,
                                           SweepObserver* observer = nullptr, double epsilon = 0);
 
 /// Consecutive points of one line in the interior of one simplex, with consecutive numbers.
 struct VertexRun {
-  const SweptLine* line;
+  const lattice::SweptLine* line;
   std::uint32_t offset;  ///< of the first point in the line
   std::uint32_t count;
-  CornerMask simplex;
+  lattice::CornerMask simplex;
   bool owned;           ///< by the tet
   std::uint64_t first;  ///< number of the first point
 };
@@ -109,17 +109,17 @@ struct VertexRun {
 /// Numbers the vertices of one tet: all but those in faces that another tet owns.
 class TetNumbering {
  public:
-  TetNumbering(const PreparedMap& map, const VertexNumbers& numbers, Index tet,
-               SweepAxes axes) noexcept
+  TetNumbering(const igm::PreparedMap& map, const VertexNumbers& numbers, Index tet,
+               lattice::SweepAxes axes) noexcept
       : map_(map), numbers_(numbers), tet_(tet), axes_(axes) {}
 
   /// Calls visit(VertexRun) in sweep order.
   template <class Visit>
-  void run(std::span<const SweptLine> lines, const Visit& visit) {
-    Counter& inside = counter(kWholeTet);
-    for (const SweptLine& line : lines) {
+  void run(std::span<const lattice::SweptLine> lines, const Visit& visit) {
+    Counter& inside = counter(lattice::kWholeTet);
+    for (const lattice::SweptLine& line : lines) {
       if (line.allInside()) {
-        visit(VertexRun{&line, 0, line.count, kWholeTet, true, inside.next});
+        visit(VertexRun{&line, 0, line.count, lattice::kWholeTet, true, inside.next});
         inside.next += line.count;
         continue;
       }
@@ -141,17 +141,17 @@ class TetNumbering {
     bool foreignFace = false;
   };
 
-  Counter& counter(CornerMask simplex) {
+  Counter& counter(lattice::CornerMask simplex) {
     Counter& counter = counters_[simplex];
     if (!counter.known) start(counter, simplex);
     return counter;
   }
-  void start(Counter& counter, CornerMask simplex);
-  [[nodiscard]] bool sweepsBackward(CornerMask edge) const noexcept;
+  void start(Counter& counter, lattice::CornerMask simplex);
+  [[nodiscard]] bool sweepsBackward(lattice::CornerMask edge) const noexcept;
 
   template <class Visit>
-  void piece(const SweptLine& line, std::uint32_t offset, std::uint32_t count, CornerMask simplex,
-             const Visit& visit) {
+  void piece(const lattice::SweptLine& line, std::uint32_t offset, std::uint32_t count,
+             lattice::CornerMask simplex, const Visit& visit) {
     Counter& c = counter(simplex);
     if (c.foreignFace) return;
     if (!c.backward) {
@@ -164,12 +164,12 @@ class TetNumbering {
     }
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   const VertexNumbers& numbers_;
   Index tet_;
-  SweepAxes axes_;
+  lattice::SweepAxes axes_;
   unsigned foreignFaces_ = 0;
   std::array<Counter, 16> counters_{};
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -5,9 +5,9 @@
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
-VertexTables::VertexTables(const PreparedMap& map, SweptVertices swept, Stage& stage,
+VertexTables::VertexTables(const igm::PreparedMap& map, SweptVertices swept, Stage& stage,
                            std::uint64_t room)
     : map_(map), numbers_(std::move(swept.numbers)) {
   if (numbers_.count() >= kNone) {
@@ -38,19 +38,19 @@ void VertexTables::countLines(const TetLines& lines, Stage& stage) {
 void VertexTables::enterLines(TetLines& lines, Stage& stage) {
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   const Array<SweptLine> swept = lines.takeBlock(block);
+                   const Array<lattice::SweptLine> swept = lines.takeBlock(block);
                    const std::size_t first = lineBegin_[begin];
                    for (std::size_t i = 0; i < swept.size(); ++i) lines_[first + i] = {swept[i]};
                    for (std::size_t t = begin; t < end; ++t) {
                      if (lineBegin_[t] == lineBegin_[t + 1]) continue;
                      numberLines(static_cast<Index>(t),
-                                 std::span<const SweptLine>(swept).subspan(
+                                 std::span<const lattice::SweptLine>(swept).subspan(
                                      lineBegin_[t] - first, lineBegin_[t + 1] - lineBegin_[t]));
                    }
                  });
 }
 
-void VertexTables::numberLines(Index tet, std::span<const SweptLine> swept) {
+void VertexTables::numberLines(Index tet, std::span<const lattice::SweptLine> swept) {
   const std::size_t begin = lineBegin_[tet];
   TetNumbering(map_, numbers_, tet, swept.front().axes).run(swept, [&](const VertexRun& run) {
     lines_[begin + static_cast<std::size_t>(run.line - swept.data())].enter(run);
@@ -143,9 +143,9 @@ unsigned VertexTables::occupiedSimplices(Index tet) const noexcept {
 }
 
 /// The i-th vertex of a line, at grid point z.
-VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const GridPoint& z,
+VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const lattice::GridPoint& z,
                                           std::uint32_t i) const {
-  const CornerMask simplex = line.swept.simplex(i);
+  const lattice::CornerMask simplex = line.swept.simplex(i);
   const bool isLast = i + 1 == line.swept.count;
   Index vertex = i == 0 ? line.left : (isLast ? line.right : line.inner);
   if (vertex != kNone) {
@@ -155,35 +155,35 @@ VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const Gri
     return {vertex, simplex};
   }
   // The tet on the other side of a face owns it.
-  const HalfFace halfFace = halfFaceOf(tet, oppositeCorner(simplex));
-  const Index owner = tetOf(map_.topology.mate[halfFace]);
+  const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, lattice::oppositeCorner(simplex));
+  const Index owner = adjacency::tetOf(map_.topology.mate[halfFace]);
   return {find(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
 }
 
 void VertexTables::describe(const VertexDescriptions& to, Stage& stage) const {
-  parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
-                 [&](std::size_t begin, std::size_t end, std::size_t) {
-                   std::vector<SweptLine> swept;
-                   for (std::size_t t = begin; t < end; ++t) {
-                     const auto tet = static_cast<Index>(t);
-                     if (!hasVertices(tet)) continue;
-                     swept.clear();
-                     for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
-                     const SweepAxes axes = swept.front().axes;
-                     const TetPositions positions(map_, tet, axes);
-                     TetNumbering(map_, numbers_, tet, axes)
-                         .run(std::span<const SweptLine>(swept), [&](const VertexRun& run) {
-                           if (!run.owned) return;
-                           for (std::uint32_t i = 0; i < run.count; ++i) {
-                             const std::uint64_t v = run.first + i;
-                             to.points[v] =
-                                 positions.at(run.simplex, run.line->point(run.offset + i));
-                             to.tets[v] = tet;
-                             to.corners[v] = map_.input.callersCorners(run.simplex);
-                           }
-                         });
-                   }
-                 });
+  parallelBlocks(
+      stage, map_.topology.tetCount(), kSweepBlock,
+      [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<lattice::SweptLine> swept;
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto tet = static_cast<Index>(t);
+          if (!hasVertices(tet)) continue;
+          swept.clear();
+          for (const Line& line : linesOf(tet)) swept.push_back(line.swept);
+          const lattice::SweepAxes axes = swept.front().axes;
+          const TetPositions positions(map_, tet, axes);
+          TetNumbering(map_, numbers_, tet, axes)
+              .run(std::span<const lattice::SweptLine>(swept), [&](const VertexRun& run) {
+                if (!run.owned) return;
+                for (std::uint32_t i = 0; i < run.count; ++i) {
+                  const std::uint64_t v = run.first + i;
+                  to.points[v] = positions.at(run.simplex, run.line->point(run.offset + i));
+                  to.tets[v] = tet;
+                  to.corners[v] = map_.input.callersCorners(run.simplex);
+                }
+              });
+        }
+      });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -13,7 +13,7 @@
 #include <igm/prepare.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
+namespace hexhex::sweep {
 
 /// Where vertices are described, by number.
 struct VertexDescriptions {
@@ -26,7 +26,7 @@ struct VertexDescriptions {
 /// which may end before it; nullptr if there is none.
 /// @param hint  which line may be the one: searches in the order of a sweep repeat the one before
 template <class Line>
-[[nodiscard]] const Line* findLine(std::span<const Line> lines, const GridPoint& z,
+[[nodiscard]] const Line* findLine(std::span<const Line> lines, const lattice::GridPoint& z,
                                    std::size_t hint = 0) {
   if (lines.empty()) return nullptr;
   const std::array<std::uint8_t, 3>& axes = lines.front().swept.axes();
@@ -57,10 +57,10 @@ class VertexTables {
   /// @param room  how many places the table of a tet may have for each of its lines: thin tets
   ///              across the axes would leave most of theirs empty
   /// @throws Error TooLarge for more vertices than an Index can number
-  VertexTables(const PreparedMap& map, SweptVertices swept, Stage& stage,
+  VertexTables(const igm::PreparedMap& map, SweptVertices swept, Stage& stage,
                std::uint64_t room = kRoomPerLine);
   /// Sweeps the map.
-  VertexTables(const PreparedMap& map, Stage& stage, std::uint64_t room = kRoomPerLine)
+  VertexTables(const igm::PreparedMap& map, Stage& stage, std::uint64_t room = kRoomPerLine)
       : VertexTables(map, sweepVertices(map, stage), stage, room) {}
 
   [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
@@ -77,11 +77,11 @@ class VertexTables {
   [[nodiscard]] unsigned occupiedSimplices(Index tet) const noexcept;
 
   struct Found {
-    Index vertex = kNone;             ///< kNone if the closed tet does not contain the point
-    CornerMask simplex = kNoSimplex;  ///< of the tet, in whose interior it lies
+    Index vertex = kNone;  ///< kNone if the closed tet does not contain the point
+    lattice::CornerMask simplex = lattice::kNoSimplex;  ///< of the tet, in whose interior it lies
   };
   /// The vertex at a grid point in the chart of a tet.
-  [[nodiscard]] Found find(Index tet, const GridPoint& z) const {
+  [[nodiscard]] Found find(Index tet, const lattice::GridPoint& z) const {
     if (!hasVertices(tet)) return {};
     const Box& box = boxes_[boxOf_[tet]];
     const std::array<std::uint8_t, 3>& axes = box.axes();
@@ -101,7 +101,7 @@ class VertexTables {
   template <class Visit>
   void forEach(Index tet, const Visit& visit) const {
     for (const Line& line : linesOf(tet)) {
-      GridPoint z = line.swept.point(0);
+      lattice::GridPoint z = line.swept.point(0);
       for (std::uint32_t i = 0; i < line.swept.count; ++i) {
         visit(std::as_const(z), foundOn(tet, line, z, i));
         ++z[line.swept.axes()[2]];
@@ -112,7 +112,7 @@ class VertexTables {
  private:
   /// A swept line with the numbers of its points.
   struct Line {
-    SweptLine swept;
+    lattice::SweptLine swept;
     Index left = kNone;  ///< kNone in faces that another tet owns
     Index right = kNone;
     Index inner = kNone;    ///< of the second point
@@ -125,7 +125,7 @@ class VertexTables {
     std::uint64_t begin = 0;  ///< in the tables, or kNoTable
     std::array<std::int32_t, 2> first{};
     std::array<std::uint32_t, 2> size{};
-    SweepAxes axes;
+    lattice::SweepAxes axes;
 
     [[nodiscard]] std::uint64_t places() const noexcept { return std::uint64_t{size[0]} * size[1]; }
   };
@@ -137,20 +137,20 @@ class VertexTables {
   }
   void countLines(const TetLines& lines, Stage& stage);
   void enterLines(TetLines& lines, Stage& stage);
-  void numberLines(Index tet, std::span<const SweptLine> swept);
+  void numberLines(Index tet, std::span<const lattice::SweptLine> swept);
   void makeTables(std::uint64_t room, Stage& stage);
   [[nodiscard]] Box measureBox(Index tet, std::uint64_t room) const;
   void fillTable(Index tet, const Box& box);
   /// The vertex at grid point z of a line, if there is that line.
-  [[nodiscard]] Found foundOn(Index tet, const Line* line, const GridPoint& z) const {
+  [[nodiscard]] Found foundOn(Index tet, const Line* line, const lattice::GridPoint& z) const {
     if (line == nullptr) return {};
     const std::uint32_t i = line->swept.indexOf(z);
     return i < line->swept.count ? foundOn(tet, *line, z, i) : Found{};
   }
-  [[nodiscard]] Found foundOn(Index tet, const Line& line, const GridPoint& z,
+  [[nodiscard]] Found foundOn(Index tet, const Line& line, const lattice::GridPoint& z,
                               std::uint32_t i) const;
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   VertexNumbers numbers_;
   Array<std::uint64_t> lineBegin_;  ///< per tet (+1)
   Array<Line> lines_;
@@ -160,4 +160,4 @@ class VertexTables {
   Array<Index> tables_;  ///< which of its tet's lines; or kNone
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::sweep

@@ -10,7 +10,7 @@
 #include <lattice/cell_corners.hpp>
 #include <sweep/cell_centers.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// Which vertices are at the corners of the cells of one tet, by coordinates in its chart. Cells
 /// whose centres are in one tet agree about that: a point that both half diagonals can be bent to,
@@ -21,13 +21,13 @@ class CornerTable {
   static constexpr Number kUnknown = std::numeric_limits<Number>::max();
 
   /// @param lines  of the centres of a tet
-  void begin(std::span<const SweptLine> lines) {
+  void begin(std::span<const lattice::SweptLine> lines) {
     std::size_t centers = 0;
-    GridPoint last{};
+    lattice::GridPoint last{};
     for (std::size_t l = 0; l < lines.size(); ++l) {
       centers += lines[l].count;
       for (const std::uint32_t i : {std::uint32_t{0}, lines[l].count - 1}) {
-        const GridPoint z = lines[l].point(i);
+        const lattice::GridPoint z = lines[l].point(i);
         for (std::size_t k = 0; k < 3; ++k) {
           first_[k] = l == 0 && i == 0 ? z[k] : std::min(first_[k], z[k]);
           last[k] = l == 0 && i == 0 ? z[k] : std::max(last[k], z[k]);
@@ -55,7 +55,7 @@ class CornerTable {
   [[nodiscard]] const std::array<std::size_t, 3>& strides() const noexcept { return strides_; }
 
   /// Where the vertex at a corner is: kUnknown if it is not known yet.
-  [[nodiscard]] Number* at(const GridPoint& z) noexcept {
+  [[nodiscard]] Number* at(const lattice::GridPoint& z) noexcept {
     std::size_t place = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       place += static_cast<std::size_t>(z[k] - first_[k]) * strides_[k];
@@ -79,7 +79,7 @@ class CornerTable {
       }
     }
     if (begin >= end) return;
-    GridPoint z = run.z;
+    lattice::GridPoint z = run.z;
     z[run.axis] += static_cast<std::int32_t>(begin);
     Number* place = at(z);
     for (std::int64_t i = begin; i < end; ++i, place += strides_[run.axis]) {
@@ -89,7 +89,7 @@ class CornerTable {
 
  private:
   bool isUsed_ = false;
-  GridPoint first_{};
+  lattice::GridPoint first_{};
   std::array<std::size_t, 3> size_{};
   std::array<std::size_t, 3> strides_{};
   std::vector<Number> vertices_;
@@ -130,8 +130,8 @@ struct NumberedCells {
 template <class Cell>
 class CellProver {
  public:
-  CellProver(const PreparedMap& map, const CellCenters& centers, const LatticePlaces& places,
-             Faults& hints, Faults& wrong)
+  CellProver(const igm::PreparedMap& map, const sweep::CellCenters& centers,
+             const LatticePlaces& places, Faults& hints, Faults& wrong)
       : map_(map),
         centers_(centers),
         places_(places),
@@ -143,7 +143,7 @@ class CellProver {
   ///               the tet, ascending
   template <class Cells>
   void prove(Index tet, Cells cells) {
-    const std::span<const SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);
+    const std::span<const lattice::SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);
     std::uint64_t cell = centers_.begin[tet];
     const std::uint64_t end = centers_.begin[tet + 1];
     if (cell == end) return;
@@ -151,13 +151,15 @@ class CellProver {
     const FaceSides sides(map_.exact.corners[tet], map_.exact.unit / 2);
     bool right = areInTet(map_, sides, lines, map_.exact.unit / 2);
     begin(tet, lines);
-    forEachOwnedCenter(map_.topology, tet, lines, [&](const SweptLine& line, std::uint32_t i) {
-      right = right && cell < end;
-      if (!right) return;
-      const std::uint64_t number = cell++;
-      const Cell* const given = cells.find(number);
-      if (given != nullptr && !isRight(tet, sides, line.point(i), *given)) wrong_.add(number);
-    });
+    sweep::forEachOwnedCenter(map_.topology, tet, lines,
+                              [&](const lattice::SweptLine& line, std::uint32_t i) {
+                                right = right && cell < end;
+                                if (!right) return;
+                                const std::uint64_t number = cell++;
+                                const Cell* const given = cells.find(number);
+                                if (given != nullptr && !isRight(tet, sides, line.point(i), *given))
+                                  wrong_.add(number);
+                              });
     if (!right || cell != end) hints_.add(tet);
   }
 
@@ -165,13 +167,14 @@ class CellProver {
   using Number = typename Cell::value_type;
   static constexpr Number kUnknown = CornerTable<Number>::kUnknown;
 
-  void begin(Index tet, std::span<const SweptLine> lines) {
+  void begin(Index tet, std::span<const lattice::SweptLine> lines) {
     known_.begin(lines);
     if (!known_.isUsed()) return;
     const std::array<std::size_t, 3>& strides = known_.strides();
     for (std::size_t c = 0; c < 8; ++c) {
       steps_[c] = 0;
-      for (std::size_t k = 0; k < 3; ++k) steps_[c] += kCellCorners[c][k] != 0 ? strides[k] : 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        steps_[c] += lattice::kCellCorners[c][k] != 0 ? strides[k] : 0;
     }
     // A lattice point of the tet is one that the half diagonal comes to within the tet.
     for (const PlaceRun& run : places_.runsOf(tet)) {
@@ -179,7 +182,7 @@ class CellProver {
     }
   }
 
-  bool isRight(Index tet, const FaceSides& sides, const GridPoint& z, const Cell& cell) {
+  bool isRight(Index tet, const FaceSides& sides, const lattice::GridPoint& z, const Cell& cell) {
     if (!known_.isUsed()) {
       for (std::size_t c = 0; c < 8; ++c) {
         if (!isCorner(tet, sides, z, c, cell[c])) return false;
@@ -203,14 +206,14 @@ class CellProver {
     return true;
   }
 
-  bool isCorner(Index tet, const FaceSides& sides, const GridPoint& z, std::size_t corner,
+  bool isCorner(Index tet, const FaceSides& sides, const lattice::GridPoint& z, std::size_t corner,
                 Number vertex) {
     if (vertex >= places_.count()) return false;
     const std::int64_t unit = map_.exact.unit;
-    const GridPoint& offset = kCellCorners[corner];
-    GridPoint end;
-    LatticePoint start;
-    LatticePoint stop;
+    const lattice::GridPoint& offset = lattice::kCellCorners[corner];
+    lattice::GridPoint end;
+    lattice::LatticePoint start;
+    lattice::LatticePoint stop;
     for (std::size_t k = 0; k < 3; ++k) {
       end[k] = z[k] + offset[k];
       start[k] = z[k] * unit + unit / 2;
@@ -221,15 +224,15 @@ class CellProver {
     return diagonals_.endsAt({tet, start, stop}, sides.exit(start, where), vertex);
   }
 
-  const PreparedMap& map_;
-  const CellCenters& centers_;
+  const igm::PreparedMap& map_;
+  const sweep::CellCenters& centers_;
   const LatticePlaces& places_;
   HalfDiagonals diagonals_;
   Faults& hints_;
   Faults& wrong_;
   CornerTable<Number> known_;
   std::array<std::size_t, 8> steps_{};  ///< in the table, from a cell's smallest corner to each
-  std::vector<SweptLine> lines_;
+  std::vector<lattice::SweptLine> lines_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

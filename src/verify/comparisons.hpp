@@ -7,7 +7,7 @@
 
 #include <hexhex/verify.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 class Comparisons {
  public:
@@ -41,4 +41,4 @@ class Comparisons {
   return "cell " + std::to_string(cell);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

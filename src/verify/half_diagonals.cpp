@@ -4,26 +4,27 @@
 
 #include <verify/half_diagonals.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 namespace {
 
-LatticePoint scaled(const GridPoint& z, std::int64_t unit) {
+lattice::LatticePoint scaled(const lattice::GridPoint& z, std::int64_t unit) {
   return {z[0] * unit, z[1] * unit, z[2] * unit};
 }
 
 /// Sum of distances along the axes, which all transitions keep.
-std::int64_t distance(const LatticePoint& a, const LatticePoint& b) {
+std::int64_t distance(const lattice::LatticePoint& a, const lattice::LatticePoint& b) {
   return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
 }
 
 /// A simplex of one tet as that of another one, or kNoSimplex if that does not have it.
-CornerMask simplexIn(const TetTopology& topology, Index from, CornerMask simplex, Index to) {
+lattice::CornerMask simplexIn(const adjacency::TetTopology& topology, Index from,
+                              lattice::CornerMask simplex, Index to) {
   const Tet& there = topology.tets[to];
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!contains(simplex, static_cast<int>(i))) continue;
+    if (!lattice::contains(simplex, static_cast<int>(i))) continue;
     if (std::find(there.begin(), there.end(), topology.tets[from][i]) == there.end()) {
-      return kNoSimplex;
+      return lattice::kNoSimplex;
     }
   }
   return topology.translated(simplex, from, to);
@@ -38,8 +39,8 @@ constexpr auto kFaceEdges = [] {
   std::array<std::array<std::size_t, 3>, 4> edges{};
   for (std::size_t face = 0; face < 4; ++face) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::size_t>(kFaceCorners[face][(k + 1) % 3]);
-      const auto b = static_cast<std::size_t>(kFaceCorners[face][(k + 2) % 3]);
+      const auto a = static_cast<std::size_t>(lattice::kFaceCorners[face][(k + 1) % 3]);
+      const auto b = static_cast<std::size_t>(lattice::kFaceCorners[face][(k + 2) % 3]);
       for (std::size_t e = 0; e < 6; ++e) {
         if (kEdges[e] == std::pair(std::min(a, b), std::max(a, b))) edges[face][k] = e;
       }
@@ -53,11 +54,12 @@ constexpr auto kFaceEdges = [] {
 constexpr auto kExits = [] {
   std::array<int, 64> exits{};
   for (unsigned negative = 0; negative < 64; ++negative) {
-    exits[negative] = kNoExit;
+    exits[negative] = lattice::kNoExit;
     for (std::size_t face = 0; face < 4; ++face) {
       bool isExit = true;
       for (std::size_t k = 0; k < 3; ++k) {
-        const bool ascends = kFaceCorners[face][(k + 1) % 3] < kFaceCorners[face][(k + 2) % 3];
+        const bool ascends =
+            lattice::kFaceCorners[face][(k + 1) % 3] < lattice::kFaceCorners[face][(k + 2) % 3];
         isExit = isExit && ((negative >> kFaceEdges[face][k] & 1U) != 0) == ascends;
       }
       if (isExit) exits[negative] = static_cast<int>(face);
@@ -68,20 +70,21 @@ constexpr auto kExits = [] {
 
 }  // namespace
 
-bool areSamePoint(const PreparedMap& map, const LatticePlace& a, const LatticePlace& b) {
+bool areSamePoint(const igm::PreparedMap& map, const LatticePlace& a, const LatticePlace& b) {
   if (a.tet == b.tet && a.z == b.z) return true;
-  const int kind = dimension(a.simplex);
-  if (kind == 3 || kind != dimension(b.simplex)) return false;
-  const TetTopology& topology = map.topology;
-  const ExactMap& exact = map.exact;
+  const int kind = lattice::dimension(a.simplex);
+  if (kind == 3 || kind != lattice::dimension(b.simplex)) return false;
+  const adjacency::TetTopology& topology = map.topology;
+  const igm::ExactMap& exact = map.exact;
   if (kind == 2) {
-    const HalfFace face = halfFaceOf(a.tet, oppositeCorner(a.simplex));
-    if (topology.isBoundary(face) || tetOf(topology.mate[face]) != b.tet) return false;
+    const adjacency::HalfFace face =
+        adjacency::halfFaceOf(a.tet, lattice::oppositeCorner(a.simplex));
+    if (topology.isBoundary(face) || adjacency::tetOf(topology.mate[face]) != b.tet) return false;
     return exact.transitions.across(face)(a.z) == b.z;
   }
   // The same vertex, or the same edge, as far from its vertices.
   if (simplexIn(topology, a.tet, a.simplex, b.tet) != b.simplex) return false;
-  const std::size_t corner = firstCorner(a.simplex);
+  const std::size_t corner = lattice::firstCorner(a.simplex);
   const Index vertex = topology.tets[a.tet][corner];
   const auto cornerThere = static_cast<std::size_t>(topology.localCorner(b.tet, vertex));
   return distance(exact.corners[a.tet][corner], scaled(a.z, exact.unit)) ==
@@ -90,10 +93,12 @@ bool areSamePoint(const PreparedMap& map, const LatticePlace& a, const LatticePl
 
 bool HalfDiagonals::isAt(const LatticePlace& place, std::uint64_t point) {
   // Points in the interior of a face belong to one of two tets.
-  if (dimension(place.simplex) == 2) {
-    const HalfFace mate = map_.topology.mate[halfFaceOf(place.tet, oppositeCorner(place.simplex))];
-    owner_ = places_.owns(place.tet, point) || mate == kNone ? place.tet : tetOf(mate);
-  } else if (place.simplex == kWholeTet) {
+  if (lattice::dimension(place.simplex) == 2) {
+    const adjacency::HalfFace mate =
+        map_.topology
+            .mate[adjacency::halfFaceOf(place.tet, lattice::oppositeCorner(place.simplex))];
+    owner_ = places_.owns(place.tet, point) || mate == kNone ? place.tet : adjacency::tetOf(mate);
+  } else if (place.simplex == lattice::kWholeTet) {
     owner_ = place.tet;
   }
   if (!places_.owns(owner_, point)) owner_ = places_.ownerOf(point);
@@ -103,11 +108,11 @@ bool HalfDiagonals::isAt(const LatticePlace& place, std::uint64_t point) {
 bool HalfDiagonals::endsAt(Segment segment, int exit, std::uint64_t point) {
   // Tets may be passed more than once only if the map is not what preparation says.
   for (std::size_t steps = 0; steps <= map_.topology.tetCount(); ++steps) {
-    if (exit == kNoExit) {
+    if (exit == lattice::kNoExit) {
       const Step step = look(segment, exit);
       if (step == Step::IsUncertain) break;
       if (step == Step::EndsInside) {
-        return isAt(endOf(segment, kWholeTet), point);
+        return isAt(endOf(segment, lattice::kWholeTet), point);
       }
     }
     if (!cross(segment, exit)) return false;
@@ -116,13 +121,13 @@ bool HalfDiagonals::endsAt(Segment segment, int exit, std::uint64_t point) {
         isAtEnd(segment, places_.placeIn(segment.tet, point).z)) {
       return true;
     }
-    exit = kNoExit;
+    exit = lattice::kNoExit;
   }
   const std::optional<LatticePlace> end = followExactly(segment);
   return end && isAt(*end, point);
 }
 
-bool HalfDiagonals::isAtEnd(const Segment& segment, const GridPoint& z) const noexcept {
+bool HalfDiagonals::isAtEnd(const Segment& segment, const lattice::GridPoint& z) const noexcept {
   const std::int64_t unit = map_.exact.unit;
   return segment.end[0] == z[0] * unit && segment.end[1] == z[1] * unit &&
          segment.end[2] == z[2] * unit;
@@ -136,7 +141,7 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
   std::array<double, 4> y;
   std::array<double, 4> depth;
   std::array<double, 4> size;
-  const LatticeTet& tet = map_.exact.corners[segment.tet];
+  const lattice::LatticeTet& tet = map_.exact.corners[segment.tet];
   std::array<double, 3> along;
   for (std::size_t k = 0; k < 3; ++k) along[k] = segment.end[k] > segment.start[k] ? 1 : -1;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -159,7 +164,7 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
     negative |= (areas[e] < 0 ? 1U : 0U) << e;
   }
   exit = kExits[negative];
-  if (exit == kNoExit) return Step::IsUncertain;
+  if (exit == lattice::kNoExit) return Step::IsUncertain;
   // Both coordinates carry a conversion and a subtraction, so areas err by less than 12 * 2^-53 of
   // the product of sizes. The depth of the triangle at the origin is the mean of those of its
   // corners, weighted by the areas opposite to them; each product errs by less than 2^-48 of its
@@ -170,7 +175,8 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
   double sum = 0;
   bool isCertain = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto corner = static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(exit)][k]);
+    const auto corner =
+        static_cast<std::size_t>(lattice::kFaceCorners[static_cast<std::size_t>(exit)][k]);
     const auto [i, j] = kEdges[edges[k]];
     const double area = std::abs(areas[edges[k]]);
     isCertain = isCertain && area > 0x1p-49 * size[i] * size[j];
@@ -185,12 +191,12 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
 
 /// Goes on into the neighbour across a face, if there is one.
 bool HalfDiagonals::cross(Segment& segment, int face) const noexcept {
-  const HalfFace halfFace = halfFaceOf(segment.tet, face);
+  const adjacency::HalfFace halfFace = adjacency::halfFaceOf(segment.tet, face);
   if (map_.topology.isBoundary(halfFace)) return false;
-  segment.tet = tetOf(map_.topology.mate[halfFace]);
-  const ExactMap& exact = map_.exact;
+  segment.tet = adjacency::tetOf(map_.topology.mate[halfFace]);
+  const igm::ExactMap& exact = map_.exact;
   if (exact.transitions.isNonTrivial(halfFace)) {
-    const Transition& transition = exact.transitions.across(halfFace);
+    const lattice::Transition& transition = exact.transitions.across(halfFace);
     segment.start = transition(segment.start, exact.unit);
     segment.end = transition(segment.end, exact.unit);
   }
@@ -202,9 +208,9 @@ std::optional<LatticePlace> HalfDiagonals::followExactly(const Segment& segment)
   segments_.assign(1, segment);
   for (std::size_t head = 0; head < segments_.size(); ++head) {
     const Segment here = segments_[head];
-    const LatticeTet& tet = map_.exact.corners[here.tet];
-    const CornerMask simplex = simplexOf(tet, here.end);
-    if (simplex != kNoSimplex) return endOf(here, simplex);
+    const lattice::LatticeTet& tet = map_.exact.corners[here.tet];
+    const lattice::CornerMask simplex = lattice::simplexOf(tet, here.end);
+    if (simplex != lattice::kNoSimplex) return endOf(here, simplex);
     for (int face = 0; face < 4; ++face) {
       if (!crossesFirst(here, tet, face)) continue;
       Segment next = here;
@@ -220,18 +226,22 @@ std::optional<LatticePlace> HalfDiagonals::followExactly(const Segment& segment)
 
 /// Whether the segment goes from the inner side of a face, or from its plane, to the outer side,
 /// and meets the closed triangle in one point.
-bool HalfDiagonals::crossesFirst(const Segment& segment, const LatticeTet& tet, int face) {
+bool HalfDiagonals::crossesFirst(const Segment& segment, const lattice::LatticeTet& tet, int face) {
   const auto f = static_cast<std::size_t>(face);
-  if (sideOfFace(tet, f, segment.end) >= 0 || sideOfFace(tet, f, segment.start) < 0) return false;
+  if (lattice::sideOfFace(tet, f, segment.end) >= 0 ||
+      lattice::sideOfFace(tet, f, segment.start) < 0)
+    return false;
   for (std::size_t i = 0; i < 3; ++i) {
-    const LatticePoint& p = tet[static_cast<std::size_t>(kFaceCorners[f][i])];
-    const LatticePoint& q = tet[static_cast<std::size_t>(kFaceCorners[f][(i + 1) % 3])];
-    if (orientation(segment.start, segment.end, p, q) > 0) return false;
+    const lattice::LatticePoint& p = tet[static_cast<std::size_t>(lattice::kFaceCorners[f][i])];
+    const lattice::LatticePoint& q =
+        tet[static_cast<std::size_t>(lattice::kFaceCorners[f][(i + 1) % 3])];
+    if (lattice::orientation(segment.start, segment.end, p, q) > 0) return false;
   }
   return true;
 }
 
-LatticePlace HalfDiagonals::endOf(const Segment& segment, CornerMask simplex) const noexcept {
+LatticePlace HalfDiagonals::endOf(const Segment& segment,
+                                  lattice::CornerMask simplex) const noexcept {
   LatticePlace place{segment.tet, {}, simplex};
   for (std::size_t k = 0; k < 3; ++k) {
     place.z[k] = static_cast<std::int32_t>(segment.end[k] / map_.exact.unit);
@@ -239,4 +249,4 @@ LatticePlace HalfDiagonals::endOf(const Segment& segment, CornerMask simplex) co
   return place;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -14,24 +14,24 @@
 
 #include <verify/lattice_places.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// Whether two places are the same point of the map.
-[[nodiscard]] bool areSamePoint(const PreparedMap& map, const LatticePlace& a,
+[[nodiscard]] bool areSamePoint(const igm::PreparedMap& map, const LatticePlace& a,
                                 const LatticePlace& b);
 
 /// One per thread.
 class HalfDiagonals {
  public:
   /// @param places  proven
-  HalfDiagonals(const PreparedMap& map, const LatticePlaces& places) noexcept
+  HalfDiagonals(const igm::PreparedMap& map, const LatticePlaces& places) noexcept
       : map_(map), places_(places), half_(map.exact.unit / 2) {}
 
   /// A half diagonal, or what is left of it, as a tet sees it, in lattice units.
   struct Segment {
     Index tet;
-    LatticePoint start;  ///< in the tet, or, seen from farther tets, before it
-    LatticePoint end;
+    lattice::LatticePoint start;  ///< in the tet, or, seen from farther tets, before it
+    lattice::LatticePoint end;
   };
 
   /// Whether a half diagonal ends at a lattice point.
@@ -45,17 +45,19 @@ class HalfDiagonals {
   /// What floating point proves about a tet on the way.
   enum class Step : std::uint8_t { EndsInside, Leaves, IsUncertain };
   [[nodiscard]] Step look(const Segment& segment, int& exit) const noexcept;
-  [[nodiscard]] bool isAtEnd(const Segment& segment, const GridPoint& z) const noexcept;
-  [[nodiscard]] static bool crossesFirst(const Segment& segment, const LatticeTet& tet, int face);
+  [[nodiscard]] bool isAtEnd(const Segment& segment, const lattice::GridPoint& z) const noexcept;
+  [[nodiscard]] static bool crossesFirst(const Segment& segment, const lattice::LatticeTet& tet,
+                                         int face);
   [[nodiscard]] bool cross(Segment& segment, int face) const noexcept;
   [[nodiscard]] std::optional<LatticePlace> followExactly(const Segment& segment);
-  [[nodiscard]] LatticePlace endOf(const Segment& segment, CornerMask simplex) const noexcept;
+  [[nodiscard]] LatticePlace endOf(const Segment& segment,
+                                   lattice::CornerMask simplex) const noexcept;
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   const LatticePlaces& places_;
   std::int64_t half_;              ///< of a grid unit, in lattice units
   Index owner_ = 0;                ///< of the point that was looked for last
   std::vector<Segment> segments_;  ///< working memory
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

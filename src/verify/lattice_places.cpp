@@ -7,18 +7,18 @@
 
 #include <base/workspaces.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
-bool areInTet(const PreparedMap& map, const FaceSides& sides, std::span<const SweptLine> lines,
-              std::int64_t shift) {
-  const auto simplexOf = [&](const SweptLine& line, std::uint32_t i) {
-    const GridPoint z = line.point(i);
-    LatticePoint point;
+bool areInTet(const igm::PreparedMap& map, const FaceSides& sides,
+              std::span<const lattice::SweptLine> lines, std::int64_t shift) {
+  const auto simplexOf = [&](const lattice::SweptLine& line, std::uint32_t i) {
+    const lattice::GridPoint z = line.point(i);
+    lattice::LatticePoint point;
     for (std::size_t k = 0; k < 3; ++k) point[k] = z[k] * map.exact.unit + shift;
     return sides.simplexOf(point);
   };
-  const SweptLine* before = nullptr;
-  for (const SweptLine& line : lines) {
+  const lattice::SweptLine* before = nullptr;
+  for (const lattice::SweptLine& line : lines) {
     if (before != nullptr &&
         std::pair(before->level, before->row) >= std::pair(line.level, line.row)) {
       return false;
@@ -40,31 +40,32 @@ std::pair<std::size_t, std::size_t> tetsWith(const Array<std::uint64_t>& begin, 
           static_cast<std::size_t>(high - begin.begin())};
 }
 
-LatticePlaces::LatticePlaces(const PreparedMap& map, bool indexed, Stage& stage)
+LatticePlaces::LatticePlaces(const igm::PreparedMap& map, bool indexed, Stage& stage)
     : map_(map),
       indexed_(indexed),
-      swept_(sweepVertices(map, stage)),
+      swept_(sweep::sweepVertices(map, stage)),
       begin_(swept_.numbers.begin),
       runs_(0) {}
 
-LatticePlaces::LatticePlaces(const PreparedMap& map, const VertexNumbers& numbers)
+LatticePlaces::LatticePlaces(const igm::PreparedMap& map, const sweep::VertexNumbers& numbers)
     : map_(map),
       indexed_(false),
-      swept_{TetLines(0), {}},
+      swept_{sweep::TetLines(0), {}},
       given_(&numbers),
       begin_(numbers.begin),
       runs_(0) {}
 
-void LatticePlaces::collectRuns(Index tet, const VertexNumbers& numbers,
-                                std::span<const SweptLine> lines,
+void LatticePlaces::collectRuns(Index tet, const sweep::VertexNumbers& numbers,
+                                std::span<const lattice::SweptLine> lines,
                                 std::vector<PlaceRun>& runs) const {
   if (lines.empty()) return;
   const auto firstRun = static_cast<std::ptrdiff_t>(runs.size());
-  TetNumbering(map_, numbers, tet, lines.front().axes).run(lines, [&](const VertexRun& run) {
-    if (!run.owned) return;
-    runs.push_back({static_cast<Index>(run.first - begin_[tet]), run.count,
-                    run.line->point(run.offset), run.simplex, run.line->axes()[2]});
-  });
+  sweep::TetNumbering(map_, numbers, tet, lines.front().axes)
+      .run(lines, [&](const sweep::VertexRun& run) {
+        if (!run.owned) return;
+        runs.push_back({static_cast<Index>(run.first - begin_[tet]), run.count,
+                        run.line->point(run.offset), run.simplex, run.line->axes()[2]});
+      });
   // Points in the interior of the tet are in order, those on its boundary come in between.
   std::sort(runs.begin() + firstRun, runs.end(),
             [](const PlaceRun& a, const PlaceRun& b) { return a.first < b.first; });
@@ -78,9 +79,9 @@ void LatticePlaces::enterInIndex(Index tet, std::span<const PlaceRun> runs) {
   }
 }
 
-void LatticePlaces::proveTet(Index tet, const VertexNumbers& numbers,
-                             std::span<const SweptLine> lines, BlockLists<PlaceRun>& runs,
-                             Faults& wrong) {
+void LatticePlaces::proveTet(Index tet, const sweep::VertexNumbers& numbers,
+                             std::span<const lattice::SweptLine> lines,
+                             sweep::BlockLists<PlaceRun>& runs, Faults& wrong) {
   collectRuns(tet, numbers, lines, runs.next());
   bool right = areInTet(map_, FaceSides(map_.exact.corners[tet], map_.exact.unit), lines, 0);
   Index next = 0;
@@ -95,10 +96,12 @@ void LatticePlaces::proveTet(Index tet, const VertexNumbers& numbers,
 
 void LatticePlaces::prove(Stage& stage, Faults& wrong) {
   if (indexed_) runOf_.resize(count());
-  runs_ = TetLists<PlaceRun>(map_.topology.tetCount());
+  runs_ = sweep::TetLists<PlaceRun>(map_.topology.tetCount());
   parallelBlocksWith(
-      stage, map_.topology.tetCount(), kSweepBlock, [] { return BlockLists<PlaceRun>(true); },
-      [&](std::size_t begin, std::size_t end, std::size_t block, BlockLists<PlaceRun>& runs) {
+      stage, map_.topology.tetCount(), sweep::kSweepBlock,
+      [] { return sweep::BlockLists<PlaceRun>(true); },
+      [&](std::size_t begin, std::size_t end, std::size_t block,
+          sweep::BlockLists<PlaceRun>& runs) {
         runs.clear();
         for (std::size_t t = begin; t < end; ++t) {
           const auto tet = static_cast<Index>(t);
@@ -107,17 +110,17 @@ void LatticePlaces::prove(Stage& stage, Faults& wrong) {
         runs_.store(block, runs);
         runs.shrink();
       });
-  swept_ = {TetLines(0), {}};
+  swept_ = {sweep::TetLines(0), {}};
 }
 
 void LatticePlaces::proveOnly(std::span<const Index> tets, Stage& stage, Faults& wrong) {
-  runs_ = TetLists<PlaceRun>(map_.topology.tetCount());
+  runs_ = sweep::TetLists<PlaceRun>(map_.topology.tetCount());
   struct Working {
-    BlockLists<PlaceRun> runs{true};
-    std::vector<SweptLine> lines;
+    sweep::BlockLists<PlaceRun> runs{true};
+    std::vector<lattice::SweptLine> lines;
   };
   parallelBlocksWith(
-      stage, map_.topology.tetCount(), kSweepBlock, [] { return Working(); },
+      stage, map_.topology.tetCount(), sweep::kSweepBlock, [] { return Working(); },
       [&](std::size_t begin, std::size_t end, std::size_t block, Working& working) {
         auto next = std::lower_bound(tets.begin(), tets.end(), begin);
         working.runs.clear();
@@ -129,8 +132,8 @@ void LatticePlaces::proveOnly(std::span<const Index> tets, Stage& stage, Faults&
           }
           ++next;
           working.lines.clear();
-          TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
-              .append(kVertexGrid, working.lines);
+          lattice::TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
+              .append(lattice::kVertexGrid, working.lines);
           proveTet(tet, *given_, working.lines, working.runs, wrong);
         }
         runs_.store(block, working.runs);
@@ -141,7 +144,7 @@ void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, S
                             Faults& wrong) const {
   const std::uint64_t end = first + points.size();
   const auto [begin, endTet] = tetsWith(begin_, first, end);
-  parallelFor(stage, endTet - begin, kSweepBlock, [&, begin = begin](std::size_t i) {
+  parallelFor(stage, endTet - begin, sweep::kSweepBlock, [&, begin = begin](std::size_t i) {
     const auto tet = static_cast<Index>(begin + i);
     if (begin_[tet] == begin_[tet + 1]) return;
     const SpaceOfTet space(map_, tet);
@@ -150,7 +153,7 @@ void LatticePlaces::compare(std::uint64_t first, std::span<const Vec3> points, S
       const std::uint64_t low = std::max(number, first);
       const std::uint64_t high = std::min(number + run.count, end);
       if (low >= high) continue;
-      GridPoint z = run.z;
+      lattice::GridPoint z = run.z;
       z[run.axis] += static_cast<std::int32_t>(low - number);
       space.compare(z, run.axis, points.subspan(low - first, high - low),
                     [&](std::size_t k) { wrong.add(low + k); });
@@ -179,7 +182,7 @@ void LatticePlaces::compare(std::span<const std::uint64_t> numbers, std::span<co
                             numbers[behind] == first + (behind - at)) {
                        ++behind;
                      }
-                     GridPoint z = run.z;
+                     lattice::GridPoint z = run.z;
                      z[run.axis] += static_cast<std::int32_t>(offset);
                      space->compare(z, run.axis, points.subspan(at, behind - at),
                                     [&](std::size_t k) { wrong.add(first + k); });
@@ -209,4 +212,4 @@ LatticePlace LatticePlaces::placeIn(Index owner, std::uint64_t number) const {
   return place;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

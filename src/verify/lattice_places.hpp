@@ -13,7 +13,7 @@
 #include <base/parallel.hpp>
 #include <sweep/vertex_numbers.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// Things that are wrong, found by several threads: how many, and the first.
 class Faults {
@@ -33,8 +33,9 @@ class Faults {
 /// A lattice point of a closed tet, in the tet's chart.
 struct LatticePlace {
   Index tet = kNone;
-  GridPoint z{};
-  CornerMask simplex = kNoSimplex;  ///< of the tet: the one that has the point in its interior
+  lattice::GridPoint z{};
+  lattice::CornerMask simplex =
+      lattice::kNoSimplex;  ///< of the tet: the one that has the point in its interior
 };
 
 /// Lattice points of a tet in the interior of one of its simplices, along an axis, with consecutive
@@ -42,18 +43,18 @@ struct LatticePlace {
 struct PlaceRun {
   Index first;  ///< number of the first point, counted from the first that the tet owns
   Index count;
-  GridPoint z;  ///< the first point
-  CornerMask simplex;
+  lattice::GridPoint z;  ///< the first point
+  lattice::CornerMask simplex;
   std::uint8_t axis;
 };
 
 class LatticePlaces {
  public:
   /// @param indexed  whether to keep two bytes per lattice point, with which each is found at once
-  LatticePlaces(const PreparedMap& map, bool indexed, Stage& stage);
+  LatticePlaces(const igm::PreparedMap& map, bool indexed, Stage& stage);
   /// For parts of a mesh: lattice points are known of the tets that were proven last.
   /// @param numbers  hints; outlives this
-  LatticePlaces(const PreparedMap& map, const VertexNumbers& numbers);
+  LatticePlaces(const igm::PreparedMap& map, const sweep::VertexNumbers& numbers);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
 
@@ -88,19 +89,20 @@ class LatticePlaces {
   /// In the index: a run is to be searched.
   static constexpr std::uint16_t kUnknownRun = 0xffff;
 
-  void proveTet(Index tet, const VertexNumbers& numbers, std::span<const SweptLine> lines,
-                BlockLists<PlaceRun>& runs, Faults& wrong);
-  void collectRuns(Index tet, const VertexNumbers& numbers, std::span<const SweptLine> lines,
-                   std::vector<PlaceRun>& runs) const;
+  void proveTet(Index tet, const sweep::VertexNumbers& numbers,
+                std::span<const lattice::SweptLine> lines, sweep::BlockLists<PlaceRun>& runs,
+                Faults& wrong);
+  void collectRuns(Index tet, const sweep::VertexNumbers& numbers,
+                   std::span<const lattice::SweptLine> lines, std::vector<PlaceRun>& runs) const;
   [[nodiscard]] const PlaceRun& runWith(Index owner, std::uint64_t number) const;
   void enterInIndex(Index tet, std::span<const PlaceRun> runs);
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   bool indexed_;
-  SweptVertices swept_;  ///< until they are proven
-  const VertexNumbers* given_ = nullptr;
+  sweep::SweptVertices swept_;  ///< until they are proven
+  const sweep::VertexNumbers* given_ = nullptr;
   Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point that it owns
-  TetLists<PlaceRun> runs_;
+  sweep::TetLists<PlaceRun> runs_;
   Array<std::uint16_t> runOf_;  ///< per lattice point: its run among those of the tet; or empty
 };
 
@@ -112,7 +114,7 @@ class LatticePlaces {
 /// Whether lines of a tet are in order, and the simplices at their ends are right; then, by
 /// convexity, so are those of all points between.
 /// @param shift  of the points, in lattice units along each axis: a half grid unit for centres
-[[nodiscard]] bool areInTet(const PreparedMap& map, const FaceSides& sides,
-                            std::span<const SweptLine> lines, std::int64_t shift);
+[[nodiscard]] bool areInTet(const igm::PreparedMap& map, const FaceSides& sides,
+                            std::span<const lattice::SweptLine> lines, std::int64_t shift);
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -11,7 +11,7 @@
 #include <base/parallel.hpp>
 #include <lattice/cell_corners.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 namespace {
 
@@ -22,8 +22,8 @@ class PointFinder {
  public:
   PointFinder(const Array<Vec3>& points, double tolerance, Stage& stage)
       : points_(points), tolerance_(tolerance), spacing_(tolerance > 0 ? 16 * tolerance : 1) {
-    buckets_ =
-        VertexLists<Index>(std::max<std::size_t>(points.size(), 1), stage, [&](const auto& add) {
+    buckets_ = adjacency::VertexLists<Index>(
+        std::max<std::size_t>(points.size(), 1), stage, [&](const auto& add) {
           parallelFor(stage, points.size(), kGrain, [&](std::size_t v) {
             add(bucketOf(gridCell(points[v], {})), static_cast<Index>(v));
           });
@@ -77,16 +77,16 @@ class PointFinder {
   const Array<Vec3>& points_;
   double tolerance_;
   double spacing_;
-  VertexLists<Index> buckets_;
+  adjacency::VertexLists<Index> buckets_;
 };
 
 /// The three orders of corners that begin with each corner: rotations of a cell.
 constexpr auto kOrders = [] {
   std::array<std::array<std::array<std::uint8_t, 8>, 3>, 8> orders{};
   std::array<std::size_t, 8> count{};
-  for (int r = 0; r < Rotation::kCount; ++r) {
+  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
     std::array<std::uint8_t, 8> order{};
-    for (std::uint8_t c = 0; c < 8; ++c) order[turnedCorner(Rotation(r), c)] = c;
+    for (std::uint8_t c = 0; c < 8; ++c) order[lattice::turnedCorner(lattice::Rotation(r), c)] = c;
     orders[order[0]][count[order[0]]++] = order;
   }
   return orders;
@@ -207,7 +207,7 @@ class Matching {
   }
 
   void matchCells() {
-    byFirstPlace_ = VertexLists<Index>(
+    byFirstPlace_ = adjacency::VertexLists<Index>(
         std::max<std::size_t>(right_.points.size(), 1), stage_, [&](const auto& add) {
           parallelFor(stage_, right_.cells.size(), kGrain, [&](std::size_t c) {
             add(turnedFirst(right_.cells[c], rightPlaces_).places[0], static_cast<Index>(c));
@@ -235,7 +235,7 @@ class Matching {
   /// Where several cells are at one place, e.g. in components that lie in each other, those are the
   /// same whose neighbours are: from cells that were matched to their neighbours.
   void matchContestedCells() {
-    const VertexCells around = cellsAroundVertices(found_, stage_);
+    const adjacency::VertexCells around = adjacency::cellsAroundVertices(found_, stage_);
     Array<Index> rightOf;
     fill(rightOf, found_.points.size(), kNone);
     std::vector<Index> settled;
@@ -306,8 +306,9 @@ class Matching {
   Stage& stage_;
   Array<Index> rightPlaces_;  ///< per vertex: the first vertex of the right mesh at its place
   Array<Index> foundPlaces_;  ///< the same; or kNone
-  VertexLists<Index> byFirstPlace_;  ///< cells of the right mesh, by the first of their places
-  Array<Index> cells_;               ///< per cell found: which it is, or kNone
+  adjacency::VertexLists<Index>
+      byFirstPlace_;      ///< cells of the right mesh, by the first of their places
+  Array<Index> cells_;    ///< per cell found: which it is, or kNone
   Array<Index> finders_;  ///< per cell of the right mesh: the first that is this one, or kNone
   Array<std::uint8_t> isGlued_;
   Array<std::uint8_t> isSplit_;
@@ -319,4 +320,4 @@ Mismatch matchMeshes(const HexMesh& right, const HexMesh& found, double toleranc
   return Matching(right, found, tolerance, stage).result();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -12,7 +12,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// How many there are, and the smallest.
 struct Odd {
@@ -35,4 +35,4 @@ struct Mismatch {
 [[nodiscard]] Mismatch matchMeshes(const HexMesh& right, const HexMesh& found, double tolerance,
                                    Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -6,7 +6,7 @@
 #include <verify/mesh_sums.hpp>
 #include <verify/proof.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 namespace {
 
@@ -34,16 +34,16 @@ void compareValences(const char* name, const std::map<int, std::uint64_t>& expec
 }
 
 /// "cell 3, vertices 1 4 9 7"
-std::string faceName(const HexMesh& mesh, const CellFace<Hex>& face) {
+std::string faceName(const HexMesh& mesh, const adjacency::CellFace<Hex>& face) {
   if (face.cell == kNone) return "";
   std::string text = cellName(face.cell) + ", vertices";
-  for (const Index v : faceVertices(mesh.cells[face.cell], face.face)) {
+  for (const Index v : adjacency::faceVertices(mesh.cells[face.cell], face.face)) {
     text += ' ' + std::to_string(v);
   }
   return text;
 }
 
-std::string edgeName(const MeshEdge& edge) {
+std::string edgeName(const adjacency::MeshEdge& edge) {
   return "edge " + std::to_string(edge.vertex0) + '-' + std::to_string(edge.vertex1);
 }
 
@@ -51,9 +51,9 @@ std::string edgeName(const MeshEdge& edge) {
 
 void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
                  Comparisons& comparisons) {
-  const VertexCells around = cellsAroundVertices(mesh, stage);
-  const HexFaces faces = findFaces(mesh, around, stage);
-  const HexEdges edges = findEdges(mesh, around, faces, stage);
+  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
+  const adjacency::HexFaces faces = adjacency::findFaces(mesh, around, stage);
+  const adjacency::HexEdges edges = adjacency::findEdges(mesh, around, faces, stage);
   const ExpectedElements all = expectedElements(expected);
   if (mesh.cells.size() == expected.cells && faces.usedVertices == all.vertices &&
       edges.count <= all.edges && faces.count <= all.faces &&
@@ -73,7 +73,7 @@ void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
   comparisons.addNone("faces_with_wrong_direction", faces.sameDirection.count,
                       faceName(mesh, faces.sameDirection.first));
   comparisons.addEqual("euler_characteristic", expected.eulerCharacteristic,
-                       eulerCharacteristic(mesh, faces, edges));
+                       adjacency::eulerCharacteristic(mesh, faces, edges));
   comparisons.addEqual("components", expected.components, faces.components);
   comparisons.add("boundary_closed", "yes",
                   edges.openCount == 0 ? "yes" : "no (first: " + edgeName(edges.firstOpen) + ")",
@@ -82,4 +82,4 @@ void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
                        edges.boundaryComponents);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

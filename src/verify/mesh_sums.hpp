@@ -9,7 +9,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// Compares a mesh, with corners in range, with what is expected of it. Says nothing where a map is
 /// so coarse that different edges or faces have the same vertices: where cells meet themselves, or
@@ -17,4 +17,4 @@ namespace hexhex {
 void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
                  Comparisons& comparisons);
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -10,7 +10,7 @@
 
 #include <base/workspaces.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 namespace {
 
@@ -56,8 +56,8 @@ void requireNone(const Faults& wrong, std::uint32_t part, const char* what) {
 
 }  // namespace
 
-PartProof::PartProof(const PreparedMap& map, const Expectation& expected,
-                     const ElementCounts& counts)
+PartProof::PartProof(const igm::PreparedMap& map, const Expectation& expected,
+                     const sweep::ElementCounts& counts)
     : map_(map), places_(map, counts.vertices), centers_(map.topology.tetCount(), false) {
   centers_.begin = counts.cells;
   if (places_.count() == expectedElements(expected).vertices &&
@@ -134,4 +134,4 @@ void PartProof::compareCells(const MeshPart& part, Stage& stage, Faults& hints,
   });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -16,7 +16,7 @@
 #include <sweep/cell_centers.hpp>
 #include <sweep/tet_counts.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 class PartProof {
  public:
@@ -24,7 +24,8 @@ class PartProof {
   /// @param expected  of the scaled map
   /// @param counts    hints
   /// @throws Error VerificationFailed if there are more or fewer vertices or cells than expected
-  PartProof(const PreparedMap& map, const Expectation& expected, const ElementCounts& counts);
+  PartProof(const igm::PreparedMap& map, const Expectation& expected,
+            const sweep::ElementCounts& counts);
 
   /// Looks at all vertices and cells of a part, ghosts too.
   /// @throws Error VerificationFailed, naming the first that is wrong
@@ -36,9 +37,9 @@ class PartProof {
   void comparePoints(const MeshPart& part, Stage& stage, Faults& wrong) const;
   void compareCells(const MeshPart& part, Stage& stage, Faults& hints, Faults& wrong) const;
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   LatticePlaces places_;
-  CellCenters centers_;
+  sweep::CellCenters centers_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -6,11 +6,11 @@
 #include <base/workspaces.hpp>
 #include <igm/measures.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
-Expectation expectationOf(PreparedMap& map, Stage& stage) {
-  addStars(map.topology, stage);
-  return computeExpectation(map, countEdges(map.topology, stage), map.exact.scale);
+Expectation expectationOf(igm::PreparedMap& map, Stage& stage) {
+  adjacency::addStars(map.topology, stage);
+  return igm::computeExpectation(map, adjacency::countEdges(map.topology, stage), map.exact.scale);
 }
 
 ExpectedElements expectedElements(const Expectation& expected) noexcept {
@@ -39,8 +39,8 @@ ExpectedElements expectedElements(const Expectation& expected) noexcept {
   return counts;
 }
 
-Proof::Proof(const PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage)
-    : map_(map), places_(map, indexed, stage), centers_(findCells(map, stage)) {
+Proof::Proof(const igm::PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage)
+    : map_(map), places_(map, indexed, stage), centers_(sweep::findCells(map, stage)) {
   if (places_.count() == expectedElements(expected).vertices &&
       centers_.count() == expected.cells) {
     places_.prove(stage, hints_);
@@ -53,7 +53,7 @@ template <class Cell>
 void Proof::compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage) {
   const auto [begin, end] = tetsWith(centers_.begin, first, first + cells.size());
   parallelForWith(
-      stage, end - begin, kSweepBlock / 8,
+      stage, end - begin, sweep::kSweepBlock / 8,
       [&] { return CellProver<Cell>(map_, centers_, places_, hints_, cells_); },
       [&, begin = begin](std::size_t i, CellProver<Cell>& prover) {
         prover.prove(static_cast<Index>(begin + i), ConsecutiveCells<Cell>{first, cells});
@@ -62,7 +62,7 @@ void Proof::compare(std::uint64_t first, std::span<const Cell> cells, Stage& sta
 template void Proof::compare(std::uint64_t first, std::span<const Hex> cells, Stage& stage);
 template void Proof::compare(std::uint64_t first, std::span<const Hex64> cells, Stage& stage);
 
-bool isProven(const PreparedMap& map, const Expectation& expected, const HexMesh& mesh,
+bool isProven(const igm::PreparedMap& map, const Expectation& expected, const HexMesh& mesh,
               Stage& stage) {
   if (mesh.cells.size() != expected.cells ||
       mesh.points.size() != expectedElements(expected).vertices) {
@@ -75,4 +75,4 @@ bool isProven(const PreparedMap& map, const Expectation& expected, const HexMesh
   return proof.passed();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

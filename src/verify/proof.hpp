@@ -22,10 +22,10 @@
 
 #include <sweep/cell_centers.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// What follows from a scaled map, whose topology gets stars.
-[[nodiscard]] Expectation expectationOf(PreparedMap& map, Stage& stage);
+[[nodiscard]] Expectation expectationOf(igm::PreparedMap& map, Stage& stage);
 
 /// How many vertices, edges and faces the mesh of a map has.
 struct ExpectedElements {
@@ -41,7 +41,7 @@ class Proof {
   /// @param map       scaled; must outlive this
   /// @param expected  of the scaled map
   /// @param indexed   as of LatticePlaces
-  Proof(const PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage);
+  Proof(const igm::PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage);
 
   /// Points from number `first` on. To be called only as long as the hints are right.
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
@@ -60,16 +60,16 @@ class Proof {
   }
 
  private:
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   LatticePlaces places_;
-  CellCenters centers_;
+  sweep::CellCenters centers_;
   Faults hints_;
   Faults positions_;
   Faults cells_;
 };
 
 /// Looks at a whole mesh. Only one in canonical order can pass.
-[[nodiscard]] bool isProven(const PreparedMap& map, const Expectation& expected,
+[[nodiscard]] bool isProven(const igm::PreparedMap& map, const Expectation& expected,
                             const HexMesh& mesh, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

@@ -5,7 +5,7 @@
 
 #include <base/vector3.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 namespace {
 
@@ -18,7 +18,7 @@ constexpr double kMaxCondition = 0x1p23;
 
 }  // namespace
 
-SpaceOfTet::SpaceOfTet(const PreparedMap& map, Index tet)
+SpaceOfTet::SpaceOfTet(const igm::PreparedMap& map, Index tet)
     : corners_(map.exact.corners[tet]), unit_(map.exact.unit) {
   const double perUnit = 1.0 / static_cast<double>(unit_);
   double largest = 0;
@@ -63,7 +63,7 @@ SpaceOfTet::SpaceOfTet(const PreparedMap& map, Index tet)
   }
 }
 
-Vec3 SpaceOfTet::preimage(const GridPoint& z) const {
+Vec3 SpaceOfTet::preimage(const lattice::GridPoint& z) const {
   Vec3 q = atOrigin_;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto offset = static_cast<double>(z[k] - origin_[k]);
@@ -73,15 +73,15 @@ Vec3 SpaceOfTet::preimage(const GridPoint& z) const {
 }
 
 /// With exact weights, each rounded once.
-Vec3 SpaceOfTet::exactly(const GridPoint& z) const {
-  const LatticePoint u = {z[0] * unit_, z[1] * unit_, z[2] * unit_};
+Vec3 SpaceOfTet::exactly(const lattice::GridPoint& z) const {
+  const lattice::LatticePoint u = {z[0] * unit_, z[1] * unit_, z[2] * unit_};
   std::array<double, 4> weights{};
   double sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const std::array<int, 3>& f = kFaceCorners[i];
-    weights[i] = orientationDeterminant(corners_[static_cast<std::size_t>(f[0])],
-                                        corners_[static_cast<std::size_t>(f[1])],
-                                        corners_[static_cast<std::size_t>(f[2])], u)
+    const std::array<int, 3>& f = lattice::kFaceCorners[i];
+    weights[i] = lattice::orientationDeterminant(corners_[static_cast<std::size_t>(f[0])],
+                                                 corners_[static_cast<std::size_t>(f[1])],
+                                                 corners_[static_cast<std::size_t>(f[2])], u)
                      .toDouble();
     sum += weights[i];
   }
@@ -92,4 +92,4 @@ Vec3 SpaceOfTet::exactly(const GridPoint& z) const {
   return q;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::verification

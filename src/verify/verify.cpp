@@ -18,11 +18,11 @@
 #include <base/parallel.hpp>
 #include <extract/prepared_extractor.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 
 /// A scaled map, and what follows from it.
 struct Truth {
-  PreparedMap map;
+  igm::PreparedMap map;
   Expectation expected;
 };
 
@@ -95,14 +95,14 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
 /// Adds "map_valid"; nothing if it did not pass.
 std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options, Context& context,
                              Comparisons& comparisons) {
-  DefectCollector defects;
-  PreparedMap prepared =
-      prepareMap(map, options.tolerance, options.scale, context, defects, ChartChoice::Unfolded);
+  igm::DefectCollector defects;
+  igm::PreparedMap prepared = igm::prepareMap(map, options.tolerance, options.scale, context,
+                                              defects, igm::ChartChoice::Unfolded);
   const bool valid = defects.empty();
   comparisons.add("map_valid", "yes", valid ? "yes" : describe(defects.defects()), valid);
   if (!valid) return std::nullopt;
   Stage stage(context, "verification");
-  scaleMap(prepared.exact, options.scale, stage);
+  igm::scaleMap(prepared.exact, options.scale, stage);
   Expectation expected = expectationOf(prepared, stage);
   return Truth{std::move(prepared), std::move(expected)};
 }
@@ -123,7 +123,7 @@ void addWrongExtraction(Comparisons& comparisons) {
 class Verification {
  public:
   /// @param map  scaled
-  Verification(PreparedMap& map, const Expectation& expected, const VerifyOptions& options,
+  Verification(igm::PreparedMap& map, const Expectation& expected, const VerifyOptions& options,
                Context& context, Stage& stage)
       : map_(map), options_(options), context_(context), stage_(stage), expected_(expected) {}
 
@@ -134,7 +134,7 @@ class Verification {
       compareCounts(expected_, mesh.cells.size(), mesh.points.size(), comparisons);
       addNothingWrong(comparisons);
     } else {
-      const std::size_t bad = firstCellOutOfRange(mesh, stage_);
+      const std::size_t bad = adjacency::firstCellOutOfRange(mesh, stage_);
       if (!addIndicesInRange(bad, mesh.cells.size(), comparisons)) return;
       compareCells(mesh, comparisons);
     }
@@ -161,14 +161,15 @@ class Verification {
     options.scale = options_.scale;
     options.tolerance = options_.tolerance;
     ExtractStatistics statistics;
-    const HexMesh right = runEngine(map_, expected_.cells, options, context_, statistics);
+    const HexMesh right =
+        extraction::runEngine(map_, expected_.cells, options, context_, statistics);
     if (!isProven(map_, expected_, right, stage_)) {
       addWrongExtraction(comparisons);
     }
     compareMeshes(right, mesh, options_.digits, stage_, comparisons);
   }
 
-  PreparedMap& map_;
+  igm::PreparedMap& map_;
   const VerifyOptions& options_;
   Context& context_;
   Stage& stage_;
@@ -177,18 +178,24 @@ class Verification {
 
 }  // namespace
 
+}  // namespace hexhex::verification
+
+namespace hexhex {
+
 VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOptions& options,
                     Context& context) {
   constexpr std::array<WorkStep, 3> kSteps = {
       {{"prepare", 0.1}, {"verification", 0.01}, {"verification", 2.5}}};
-  checkOptions(options);
+  verification::checkOptions(options);
   WorkSteps steps(context, "verify", kSteps);
-  Comparisons comparisons;
+  verification::Comparisons comparisons;
   withThreads(context.threads(), [&] {
-    std::optional<Truth> truth = truthOf(map, options, context, comparisons);
+    std::optional<verification::Truth> truth =
+        verification::truthOf(map, options, context, comparisons);
     if (!truth) return;
     Stage stage(context, "verification");
-    Verification(truth->map, truth->expected, options, context, stage).compare(mesh, comparisons);
+    verification::Verification(truth->map, truth->expected, options, context, stage)
+        .compare(mesh, comparisons);
   });
   steps.finish();
   return comparisons.take();
@@ -196,17 +203,19 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
 
 VerifyReport Extractor::verify(const HexMesh& mesh, const VerifyOptions& options,
                                Context& context) {
-  checkOptions(options);
-  Comparisons comparisons;
+  verification::checkOptions(options);
+  verification::Comparisons comparisons;
   ExtractOptions scaling;
   scaling.scale = options.scale;
-  prepared_->run({"Extractor::verify", kCompareSteps}, scaling, {1, kMaxCountedCells}, context,
-                 nullptr, [&](std::uint64_t /*cells*/, ExtractStatistics& /*filled*/) {
+  prepared_->run({"Extractor::verify", verification::kCompareSteps}, scaling,
+                 {1, igm::kMaxCountedCells}, context, nullptr,
+                 [&](std::uint64_t /*cells*/, ExtractStatistics& /*filled*/) {
                    comparisons.add("map_valid", "yes", "yes", true);
                    Stage stage(context, "verification");
-                   PreparedMap& map = prepared_->map();
-                   const Expectation expected = expectationOf(map, stage);
-                   Verification(map, expected, options, context, stage).compare(mesh, comparisons);
+                   igm::PreparedMap& map = prepared_->map();
+                   const Expectation expected = verification::expectationOf(map, stage);
+                   verification::Verification(map, expected, options, context, stage)
+                       .compare(mesh, comparisons);
                  });
   return comparisons.take();
 }
@@ -223,7 +232,7 @@ class VerifySink::Prover {
     constexpr std::array<WorkStep, 2> kSteps = {{{"prepare", 1}, {"verification", 0.1}}};
     WorkSteps steps(context, "VerifySink", kSteps);
     withThreads(context.threads(), [&] {
-      truth_ = truthOf(map, options, context, comparisons_);
+      truth_ = verification::truthOf(map, options, context, comparisons_);
       if (!truth_) return;
       Stage stage(context, "verification");
       proof_.emplace(truth_->map, truth_->expected, false, stage);
@@ -233,7 +242,8 @@ class VerifySink::Prover {
 
   void points(const PointPiece& piece) {
     if (truth_)
-      compare(piece.first, piece.points, expectedElements(truth_->expected).vertices, points_);
+      compare(piece.first, piece.points, verification::expectedElements(truth_->expected).vertices,
+              points_);
   }
   template <class Cell>
   void cells(std::uint64_t first, std::span<const Cell> cells) {
@@ -241,12 +251,14 @@ class VerifySink::Prover {
   }
 
   void end() {
-    if (!truth_ || !compareCounts(truth_->expected, cells_, points_, comparisons_)) return;
-    if (proof_->hints().count() > 0) addWrongExtraction(comparisons_);
-    const Faults& positions = proof_->positions();
-    const Faults& cells = proof_->cells();
-    comparisons_.addNone("vertices_off_lattice", positions.count(), vertexName(positions.first()));
-    comparisons_.addNone("wrong_cells", cells.count(), cellName(cells.first()));
+    if (!truth_ || !verification::compareCounts(truth_->expected, cells_, points_, comparisons_))
+      return;
+    if (proof_->hints().count() > 0) verification::addWrongExtraction(comparisons_);
+    const verification::Faults& positions = proof_->positions();
+    const verification::Faults& cells = proof_->cells();
+    comparisons_.addNone("vertices_off_lattice", positions.count(),
+                         verification::vertexName(positions.first()));
+    comparisons_.addNone("wrong_cells", cells.count(), verification::cellName(cells.first()));
   }
 
   [[nodiscard]] const VerifyReport& report() const noexcept { return comparisons_.report(); }
@@ -265,9 +277,9 @@ class VerifySink::Prover {
   }
 
   Context quiet_;  ///< pieces come while somebody else reports progress
-  Comparisons comparisons_;
-  std::optional<Truth> truth_;
-  std::optional<Proof> proof_;
+  verification::Comparisons comparisons_;
+  std::optional<verification::Truth> truth_;
+  std::optional<verification::Proof> proof_;
   std::uint64_t points_ = 0;
   std::uint64_t cells_ = 0;
 };

@@ -17,7 +17,7 @@
 #include <mesh/lagrange_check.hpp>
 #include <view/mesh_tables.hpp>
 
-namespace hexhex {
+namespace hexhex::view {
 namespace {
 
 // How a chunk is packed: the row above is subtracted from each row (modulo 2^32), signs go to the
@@ -145,7 +145,7 @@ std::vector<std::size_t> placesOnFaces(int order) {
 }  // namespace
 
 SurfaceNodes surfaceNodesOf(const LagrangeMesh& mesh) {
-  requireConsistent(mesh);
+  mesh::requireConsistent(mesh);
   const std::vector<std::size_t> places = placesOnFaces(mesh.order);
   SurfaceNodes result;
   result.order = mesh.order;
@@ -281,7 +281,7 @@ std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quant
     return std::ranges::copy(mesh.cells[c], to).out;
   });
   addQuality(quality, "");
-  const std::vector<std::uint64_t> skin = boundaryPlaces(mesh, stage);
+  const std::vector<std::uint64_t> skin = adjacency::boundaryPlaces(mesh, stage);
   list.addColumn("skin", skin.size(), [&](std::size_t i) { return skin[i] / 8 * 6 + skin[i] % 8; });
   list.add("nodes", nodes.perCell > 0 ? mesh.cells.size() : 0, nodes.perCell,
            [&](std::size_t c, std::uint32_t* to) {
@@ -311,4 +311,4 @@ std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quant
   return list.take();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::view

@@ -16,7 +16,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::view {
 
 /// A table in compressed chunks of consecutive rows.
 struct PackedTable {
@@ -95,4 +95,4 @@ inline constexpr double kQualitySteps = 65534;
                                                 Stage& stage, const SurfaceNodes& nodes = {},
                                                 const StateBefore& before = {});
 
-}  // namespace hexhex
+}  // namespace hexhex::view

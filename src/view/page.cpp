@@ -21,7 +21,7 @@
 #include <view/mesh_tables.hpp>
 #include <view/page_template.hpp>
 
-namespace hexhex {
+namespace hexhex::view {
 namespace {
 
 /// Textures of 4096 by 4096 texels, which phones have, too; and their memory ends about here.
@@ -288,7 +288,7 @@ template <class Mesh>
 void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOptions& options,
                Context& context) {
   WorkSteps steps(context, "writeViewPage", kPageSteps);
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  io::OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const PageContent content = makeContent(mesh, options, context);
   const Stage stage(context, "write page");
   output.write(pageHead(content, options, "'none'"));
@@ -322,24 +322,28 @@ ServedPage makePage(const Mesh& mesh, const std::string& dataUrl, const ViewOpti
 
 }  // namespace
 
+}  // namespace hexhex::view
+
+namespace hexhex {
+
 void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context) {
-  writePage(mesh, file, options, context);
+  view::writePage(mesh, file, options, context);
 }
 
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context) {
-  writePage(mesh, file, options, context);
+  view::writePage(mesh, file, options, context);
 }
 
 ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
                           const ViewOptions& options, Context& context) {
-  return makePage(mesh, dataUrl, options, context);
+  return view::makePage(mesh, dataUrl, options, context);
 }
 
 ServedPage makeServedPage(const LagrangeMesh& mesh, const std::string& dataUrl,
                           const ViewOptions& options, Context& context) {
-  return makePage(mesh, dataUrl, options, context);
+  return view::makePage(mesh, dataUrl, options, context);
 }
 
 }  // namespace hexhex

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace hexhex {
+namespace hexhex::view {
 
 /// The parts of the page around what is filled in, in this order.
 struct PageTemplate {
@@ -16,4 +16,4 @@ struct PageTemplate {
 
 [[nodiscard]] const PageTemplate* pageTemplate();
 
-}  // namespace hexhex
+}  // namespace hexhex::view

@@ -8,7 +8,7 @@
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 namespace {
 
 using testing::gridMesh;
@@ -103,4 +103,4 @@ TEST(BoundaryQuads, AreSortedByCellAndFaceOutwards) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -10,7 +10,7 @@
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 namespace {
 
 using testing::gridMesh;
@@ -243,4 +243,4 @@ TEST(HexTopology, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -6,7 +6,7 @@
 #include <adjacency/key_table.hpp>
 #include <gtest/gtest.h>
 
-namespace hexhex {
+namespace hexhex::adjacency {
 namespace {
 
 TEST(KeyTable, NumbersKeysInTheOrderInWhichTheyCome) {
@@ -36,4 +36,4 @@ TEST(KeyTable, NumbersKeysInTheOrderInWhichTheyCome) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::adjacency

@@ -19,6 +19,8 @@
 
 namespace hexhex::test {
 
+using namespace atlas;
+
 namespace {
 
 Sample sampleOf(SampleKind kind, int cells, int refine, int valence = 5, double jitter = 0.3) {
@@ -31,10 +33,10 @@ Sample sampleOf(SampleKind kind, int cells, int refine, int valence = 5, double 
   return generateSample(kind, o);
 }
 
-PreparedMap prepared(const TetMap& map) {
+igm::PreparedMap prepared(const TetMap& map) {
   Context context;
-  DefectCollector defects;
-  PreparedMap result = prepareMap(map, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  igm::PreparedMap result = igm::prepareMap(map, 1e-2, 1, context, defects);
   EXPECT_TRUE(defects.empty());
   return result;
 }
@@ -71,11 +73,12 @@ TEST(Stream, ManyPieces) {
 TEST(Stream, WideIdsGiveTheSameMesh) {
   for (const SampleKindName& entry : sampleKinds()) {
     const Sample sample = sampleOf(entry.kind, 6, 2, 7);
-    const PreparedMap map = prepared(sample.map);
+    const igm::PreparedMap map = prepared(sample.map);
     CollectingSink sink;
     Context context(2);
     ExtractStatistics statistics;
-    streamAtlas(map, parametricVolume(map.exact), sink, context, statistics, {.wideIds = true});
+    streamAtlas(map, igm::parametricVolume(map.exact), sink, context, statistics,
+                {.wideIds = true});
     EXPECT_GT(sink.wide, 0);
     EXPECT_TRUE(sameBits(sink.mesh, extract(sample.map))) << entry.name;
   }
@@ -172,11 +175,11 @@ TEST_P(Overlaps, AreResolved) {
 /// the search would have no test.
 TEST_P(Overlaps, WouldSpoilTheMeshIfNobodyLooked) {
   const TetMap tets = GetParam().map();
-  const PreparedMap map = prepared(tets);
+  const igm::PreparedMap map = prepared(tets);
   Context context(1);
   ExtractStatistics statistics;
-  const HexMesh mesh =
-      runAtlas(map, parametricVolume(map.exact), context, statistics, {.resolveOverlaps = false});
+  const HexMesh mesh = runAtlas(map, igm::parametricVolume(map.exact), context, statistics,
+                                {.resolveOverlaps = false});
   EXPECT_FALSE(sameBits(mesh, propellerMesh(tets)));
 }
 
@@ -195,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, Overlaps,
 /// Beyond a cut the chart shows nothing, or another sheet: that is when marks matter.
 TEST(Cuts, WouldSpoilTheMeshIfTheyWereNotMarked) {
   const TetMap tets = sampleOf(SampleKind::Star, 7, 2, 9, 0.8).map;
-  const PreparedMap map = prepared(tets);
+  const igm::PreparedMap map = prepared(tets);
   Context context(1);
   ExtractStatistics statistics;
   const HexMesh right = extract(tets, {}, context, &statistics);
@@ -205,20 +208,20 @@ TEST(Cuts, WouldSpoilTheMeshIfTheyWereNotMarked) {
   EXPECT_EQ(extract(tets, {}, threads, &inParallel).cells, right.cells);
   EXPECT_EQ(inParallel.tracedCells, statistics.tracedCells);
   const HexMesh wrong =
-      runAtlas(map, parametricVolume(map.exact), context, statistics, {.markCuts = false});
+      runAtlas(map, igm::parametricVolume(map.exact), context, statistics, {.markCuts = false});
   EXPECT_FALSE(sameBits(right, wrong));
 }
 
 /// A tet that claims one place for two vertices fits no chart, not even an empty one.
 TEST(Overlaps, OfATetWithItself) {
   const Sample sample = sampleOf(SampleKind::Star, 2, 1);
-  const PreparedMap map = prepared(sample.map);
+  const igm::PreparedMap map = prepared(sample.map);
   Context context(1);
   Stage stage(context, "test");
   Charts charts = buildCharts(map, stage);
   const Charts before = charts;
   constexpr Index kTet = 3;
-  const ChartRow row{charts.chart[kTet], {1, 2, 3}, direction(0, 1), 1};
+  const ChartRow row{charts.chart[kTet], {1, 2, 3}, lattice::direction(0, 1), 1};
   BrickGrid<Index> grid;
   const std::vector<std::vector<BrickKey>> keys = {{brickKey(row.chart, row.start)}};
   grid.build(keys, stage);
@@ -241,25 +244,26 @@ TEST(Property, PointsOfTetsBelongToTheirOwnVertices) {
                                         SampleKind::HandleBody);
     const Sample sample =
         sampleOf(kind, *rc::gen::inRange(1, 6), *rc::gen::inRange(1, 4), valence, jitter);
-    const PreparedMap map = prepared(sample.map);
+    const igm::PreparedMap map = prepared(sample.map);
     Context context(1);
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
-    VertexNumbers numbers;
+    sweep::VertexNumbers numbers;
     VertexGrid<Index> grid(map, charts, numbers, true);
-    CellCenters cells(map.topology.tetCount(), false);
+    sweep::CellCenters cells(map.topology.tetCount(), false);
     grid.sweep(cells, stage);
     grid.fill({}, stage);
     static_cast<void>(grid.resolveOverlaps(stage));
     BrickCache<Index> cache(grid.grid());
     for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
       if (charts.chart[tet] == Charts::kNoChart) continue;
-      std::vector<SweptLine> lines;
-      TetRasterizer(map.exact.corners[tet], map.exact.unit).append(kVertexGrid, lines);
-      for (const SweptLine& line : lines) {
+      std::vector<lattice::SweptLine> lines;
+      lattice::TetRasterizer(map.exact.corners[tet], map.exact.unit)
+          .append(lattice::kVertexGrid, lines);
+      for (const lattice::SweptLine& line : lines) {
         for (std::uint32_t i = 0; i < line.count; ++i) {
-          const GridPoint z = line.point(i);
-          const ChartPoint c = charts.gauge(tet)(z);
+          const lattice::GridPoint z = line.point(i);
+          const lattice::ChartPoint c = charts.gauge(tet)(z);
           const Brick<Index>* const brick = cache.find(charts.chart[tet], c);
           RC_ASSERT(brick != nullptr);
           RC_ASSERT(std::uint64_t{brick->ids[placeInBrick(c)]} == grid.exactNumber(tet, z));

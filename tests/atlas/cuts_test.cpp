@@ -17,44 +17,47 @@
 
 namespace hexhex::test {
 
+using namespace atlas;
+
 namespace {
 
-Gauge anyGauge() {
-  Gauge gauge{Rotation(*rc::gen::inRange(0, Rotation::kCount)), {}};
+lattice::Gauge anyGauge() {
+  lattice::Gauge gauge{lattice::Rotation(*rc::gen::inRange(0, lattice::Rotation::kCount)), {}};
   for (std::uint32_t& t : gauge.translation) t = *rc::gen::arbitrary<std::uint32_t>();
   return gauge;
 }
 
-ChartPoint anyPoint() {
+lattice::ChartPoint anyPoint() {
   return {*rc::gen::arbitrary<std::uint32_t>(), *rc::gen::arbitrary<std::uint32_t>(),
           *rc::gen::arbitrary<std::uint32_t>()};
 }
 
 TEST(Gauge, QuotientTakesTheOneChartToTheOther) {
   EXPECT_TRUE(rc::check("(a / b)(b(u)) = a(u)", [] {
-    const Gauge a = anyGauge();
-    const Gauge b = anyGauge();
-    const ChartPoint u = anyPoint();
+    const lattice::Gauge a = anyGauge();
+    const lattice::Gauge b = anyGauge();
+    const lattice::ChartPoint u = anyPoint();
     RC_ASSERT((a / b)(b(u)) == a(u));
   }));
 }
 
 TEST(Gauge, CornersOfACellAreCornersOfItsImage) {
   EXPECT_TRUE(rc::check("a cell's corners turn with it", [] {
-    const Gauge gauge = anyGauge();
-    const ChartPoint cell = anyPoint();
+    const lattice::Gauge gauge = anyGauge();
+    const lattice::ChartPoint cell = anyPoint();
     const auto corner = *rc::gen::inRange<std::size_t>(0, 8);
-    const CellCornerSet image = turned(gauge.rotation, CellCornerSet{1} << corner);
+    const lattice::CellCornerSet image =
+        lattice::turned(gauge.rotation, lattice::CellCornerSet{1} << corner);
     RC_ASSERT(std::popcount(image) == 1);
     const auto imageCorner = static_cast<std::size_t>(std::countr_zero(image));
-    RC_ASSERT(plus(gauge.cell(cell), kCellCorners[imageCorner]) ==
-              gauge(plus(cell, kCellCorners[corner])));
+    RC_ASSERT(lattice::plus(gauge.cell(cell), lattice::kCellCorners[imageCorner]) ==
+              gauge(lattice::plus(cell, lattice::kCellCorners[corner])));
   }));
 }
 
 /// One cut in front of some corners.
 struct Added {
-  CellCornerSet corners;
+  lattice::CellCornerSet corners;
   CutTransitionId transition;
 };
 
@@ -71,7 +74,7 @@ CutTransitionId commonTransition(const std::vector<Added>& cuts, std::size_t cor
 std::vector<Added> anyCuts(int transitions) {
   std::vector<Added> cuts;
   for (int i = *rc::gen::inRange(0, 12); i > 0; --i) {
-    cuts.push_back({*rc::gen::inRange<CellCornerSet>(1, 256),
+    cuts.push_back({*rc::gen::inRange<lattice::CellCornerSet>(1, 256),
                     static_cast<CutTransitionId>(*rc::gen::inRange(1, transitions + 1))});
   }
   return cuts;
@@ -122,25 +125,25 @@ TEST(CutTransitions, TakeChartsToEachOther) {
     options.charts = ChartStyle::Random;
     const Sample sample = generateSample(kind, options);
     Context context(1);
-    DefectCollector defects;
-    const PreparedMap map = prepareMap(sample.map, 1e-2, 1, context, defects);
+    igm::DefectCollector defects;
+    const igm::PreparedMap map = igm::prepareMap(sample.map, 1e-2, 1, context, defects);
     Stage stage(context, "charts");
     const Charts charts = buildCharts(map, stage);
     CutTransitions transitions;
     std::set<CutTransitionId> ids;
     for (std::size_t h = 0; h < map.topology.mate.size(); ++h) {
-      const auto halfFace = static_cast<HalfFace>(h);
-      const HalfFace mate = map.topology.mate[h];
+      const auto halfFace = static_cast<adjacency::HalfFace>(h);
+      const adjacency::HalfFace mate = map.topology.mate[h];
       if (mate == kNone || charts.isGlued(map.topology, map.exact.transitions, halfFace)) continue;
       const CutTransitionId id = transitions.across(map, charts, halfFace);
       ASSERT_NE(id, kNoCut);
       ASSERT_NE(id, kAnyCuts);
       ids.insert(id);
       EXPECT_EQ(transitions[id].inverse, transitions.across(map, charts, mate));
-      const GridPoint u = {3, -5, 8};
-      const GridPoint across = map.exact.transitions.across(halfFace)(u);
-      EXPECT_EQ(transitions[id].map(charts.gauge(tetOf(halfFace))(u)),
-                charts.gauge(tetOf(mate))(across));
+      const lattice::GridPoint u = {3, -5, 8};
+      const lattice::GridPoint across = map.exact.transitions.across(halfFace)(u);
+      EXPECT_EQ(transitions[id].map(charts.gauge(adjacency::tetOf(halfFace))(u)),
+                charts.gauge(adjacency::tetOf(mate))(across));
     }
     EXPECT_FALSE(ids.empty());
     EXPECT_LT(ids.size(), 100U);

@@ -10,11 +10,13 @@
 
 namespace hexhex::test {
 
+using namespace atlas;
+
 namespace {
 
 struct Prepared {
   Sample sample;
-  PreparedMap map;
+  igm::PreparedMap map;
 };
 
 /// Draws a map; keeps the sample, to which the prepared map refers.
@@ -31,8 +33,8 @@ std::unique_ptr<Prepared> anyMap() {
   auto prepared = std::make_unique<Prepared>();
   prepared->sample = generateSample(kind, o);
   Context context(1);
-  DefectCollector defects;
-  prepared->map = prepareMap(prepared->sample.map, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  prepared->map = igm::prepareMap(prepared->sample.map, 1e-2, 1, context, defects);
   RC_ASSERT(defects.empty());
   return prepared;
 }
@@ -40,12 +42,13 @@ std::unique_ptr<Prepared> anyMap() {
 /// Calls visit(tet, line, i) for every cell: its centre is point i of a line of the tet that owns
 /// it.
 template <class Visit>
-void forEachCell(const PreparedMap& map, const Visit& visit) {
+void forEachCell(const igm::PreparedMap& map, const Visit& visit) {
   for (Index tet = 0; tet < map.topology.tetCount(); ++tet) {
-    std::vector<SweptLine> lines;
-    TetRasterizer(map.exact.corners[tet], map.exact.unit).append(kCenterGrid, lines);
-    CenterOwner owner(map.topology, tet);
-    for (const SweptLine& line : lines) {
+    std::vector<lattice::SweptLine> lines;
+    lattice::TetRasterizer(map.exact.corners[tet], map.exact.unit)
+        .append(lattice::kCenterGrid, lines);
+    sweep::CenterOwner owner(map.topology, tet);
+    for (const lattice::SweptLine& line : lines) {
       const auto [first, count] = owner.owned(line);
       for (std::uint32_t i = first; i < first + count; ++i) {
         visit(tet, line, i);
@@ -59,13 +62,14 @@ void forEachCell(const PreparedMap& map, const Visit& visit) {
 TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
   EXPECT_TRUE(rc::check("traced corners are grid points of their tets", [] {
     const auto prepared = anyMap();
-    const PreparedMap& map = prepared->map;
-    CellTracer tracer(map);
-    forEachCell(map, [&](Index tet, const SweptLine& line, std::uint32_t i) {
+    const igm::PreparedMap& map = prepared->map;
+    sweep::CellTracer tracer(map);
+    forEachCell(map, [&](Index tet, const lattice::SweptLine& line, std::uint32_t i) {
       tracer.enter(tet, line.point(i), line.simplex(i));
-      for (const GridPoint& offset : kCellCorners) {
-        const CornerPlace place = tracer.trace(offset);
-        RC_ASSERT(simplexOf(map.exact.corners[place.tet], place.z, map.exact.unit) != kNoSimplex);
+      for (const lattice::GridPoint& offset : lattice::kCellCorners) {
+        const sweep::CornerPlace place = tracer.trace(offset);
+        RC_ASSERT(lattice::simplexOf(map.exact.corners[place.tet], place.z, map.exact.unit) !=
+                  lattice::kNoSimplex);
       }
     });
   }));
@@ -75,13 +79,13 @@ TEST(Property, TracedCornersAreGridPointsOfTheirTets) {
 TEST(Property, TheResolverFindsTheTracedCorners) {
   EXPECT_TRUE(rc::check("the resolver finds the traced corners", [] {
     const auto prepared = anyMap();
-    const PreparedMap& map = prepared->map;
+    const igm::PreparedMap& map = prepared->map;
     Context context(1);
     Stage stage(context, "test");
     Charts charts = buildCharts(map, stage);
-    VertexNumbers numbers;
+    sweep::VertexNumbers numbers;
     VertexGrid<Index> vertices(map, charts, numbers, true);
-    CellCenters cells(map.topology.tetCount(), false);
+    sweep::CellCenters cells(map.topology.tetCount(), false);
     vertices.sweep(cells, stage);
     vertices.fill({}, stage);
     static_cast<void>(vertices.resolveOverlaps(stage));
@@ -89,18 +93,19 @@ TEST(Property, TheResolverFindsTheTracedCorners) {
     BrickCache<Index> cache(vertices.grid());
     CornerResolver<Index> looking(map, vertices, cuts.transitions, true);
     CornerResolver<Index> tracing(map, vertices, cuts.transitions, false);
-    CellTracer tracer(map);
-    forEachCell(map, [&](Index tet, const SweptLine& line, std::uint32_t i) {
+    sweep::CellTracer tracer(map);
+    forEachCell(map, [&](Index tet, const lattice::SweptLine& line, std::uint32_t i) {
       tracer.enter(tet, line.point(i), line.simplex(i));
       Hex traced{};
       Hex shown{};
-      const ChartPoint place = charts.gauge(tet).cell(line.point(i));
-      const Rotation rotation = charts.gauge(tet).rotation;
+      const lattice::ChartPoint place = charts.gauge(tet).cell(line.point(i));
+      const lattice::Rotation rotation = charts.gauge(tet).rotation;
       for (std::size_t c = 0; c < 8; ++c) {
-        const CornerPlace end = tracer.trace(kCellCorners[c]);
+        const sweep::CornerPlace end = tracer.trace(lattice::kCellCorners[c]);
         traced[c] = static_cast<Index>(vertices.exactNumber(end.tet, end.z));
-        shown[c] =
-            cache.idAt(charts.chart[tet], plus(place, kCellCorners[turnedCorner(rotation, c)]));
+        shown[c] = cache.idAt(
+            charts.chart[tet],
+            lattice::plus(place, lattice::kCellCorners[lattice::turnedCorner(rotation, c)]));
       }
       CutCell cut;
       if (const CutCells* const known = cache.at(charts.chart[tet], place).cuts; known != nullptr) {
@@ -108,7 +113,8 @@ TEST(Property, TheResolverFindsTheTracedCorners) {
       }
       // A corner without a cut in front of it is shown.
       for (std::size_t c = 0; c < 8; ++c) {
-        if (cut.transition(turnedCorner(rotation, c)) == kNoCut) RC_ASSERT(shown[c] == traced[c]);
+        if (cut.transition(lattice::turnedCorner(rotation, c)) == kNoCut)
+          RC_ASSERT(shown[c] == traced[c]);
       }
       for (CornerResolver<Index>* const resolver : {&looking, &tracing}) {
         Hex cell = shown;
@@ -118,7 +124,7 @@ TEST(Property, TheResolverFindsTheTracedCorners) {
       // Without a chart, nothing is known of any corner.
       Hex cell{};
       cell.fill(Brick<Index>::kEmpty);
-      const CutCell unknown = CutCell().with(kAllCellCorners, kAnyCuts);
+      const CutCell unknown = CutCell().with(lattice::kAllCellCorners, kAnyCuts);
       RC_ASSERT(looking.resolve({tet, &line, i, {}, unknown}, cell, cache));
       RC_ASSERT(cell == traced);
     });

@@ -54,9 +54,10 @@ std::vector<std::array<Index, 3>> sheetsOf(const BlockComplex& complex) {
       if (!other) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (axis == face / 2) continue;
-        const Direction there = other->transition(direction(static_cast<int>(axis), 1));
+        const lattice::Direction there =
+            other->transition(lattice::direction(static_cast<int>(axis), 1));
         sets.unite(number(block, axis),
-                   number(other->block, static_cast<std::size_t>(axisOf(there))));
+                   number(other->block, static_cast<std::size_t>(lattice::axisOf(there))));
       }
     }
   }
@@ -101,25 +102,25 @@ Lengths drawLengths(const BlockComplex& complex, std::uint64_t cells, std::uint6
 
 /// The transition between two blocks that are unit cubes, for boxes.
 /// @param here, there  lengths of both
-Transition stretched(const Transition& across, std::size_t axis, int side,
-                     const std::array<std::int64_t, 3>& here,
-                     const std::array<std::int64_t, 3>& there) {
-  GridPoint corner{};
+lattice::Transition stretched(const lattice::Transition& across, std::size_t axis, int side,
+                              const std::array<std::int64_t, 3>& here,
+                              const std::array<std::int64_t, 3>& there) {
+  lattice::GridPoint corner{};
   corner[axis] = side;
-  GridPoint image = across(corner);
+  lattice::GridPoint image = across(corner);
   for (std::size_t a = 0; a < 3; ++a) {
     corner[a] *= static_cast<std::int32_t>(here[a]);
     image[a] *= static_cast<std::int32_t>(there[a]);
   }
-  Transition result{across.rotation, image};
-  const GridPoint turned = across.rotation(corner);
+  lattice::Transition result{across.rotation, image};
+  const lattice::GridPoint turned = across.rotation(corner);
   for (std::size_t a = 0; a < 3; ++a) result.translation[a] -= turned[a];
   return result;
 }
 
 /// Per block: the chart in which most neighbours agree.
-std::vector<Transition> alignedCharts(const BlockComplex& complex, const Lengths& boxes) {
-  std::vector<Transition> charts(complex.blockCount());
+std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, const Lengths& boxes) {
+  std::vector<lattice::Transition> charts(complex.blockCount());
   std::vector<bool> hasChart(charts.size(), false);
   for (std::size_t root = 0; root < charts.size(); ++root) {
     if (hasChart[root]) continue;
@@ -132,7 +133,7 @@ std::vector<Transition> alignedCharts(const BlockComplex& complex, const Lengths
         const std::optional<Neighbour> other = complex.neighbour(block, face / 2, side);
         if (!other || hasChart[other->block]) continue;
         hasChart[other->block] = true;
-        const Transition across =
+        const lattice::Transition across =
             stretched(other->transition, face / 2, side, boxes[block], boxes[other->block]);
         charts[other->block] = charts[block] * across.inverse();
         reached.push_back(other->block);
@@ -145,7 +146,7 @@ std::vector<Transition> alignedCharts(const BlockComplex& complex, const Lengths
 /// The tets of a grid: of each sub-block 12 around its centre, or 6 from one corner.
 class TetWriter {
  public:
-  TetWriter(const TetGrid& grid, const Lengths& lengths, std::vector<Transition> charts,
+  TetWriter(const TetGrid& grid, const Lengths& lengths, std::vector<lattice::Transition> charts,
             double shareOfSix, Random& random)
       : grid_(grid),
         lengths_(lengths),
@@ -221,7 +222,7 @@ class TetWriter {
 
   const TetGrid& grid_;
   const Lengths& lengths_;
-  std::vector<Transition> charts_;
+  std::vector<lattice::Transition> charts_;
   double shareOfSix_;
   Random& random_;
 };
@@ -322,11 +323,11 @@ DrawnMap drawBlockMap(Random& random) {
   for (auto& box : boxes) {
     for (std::int64_t& length : box) length *= cells;
   }
-  std::vector<Transition> charts(blocks);
+  std::vector<lattice::Transition> charts(blocks);
   if (random.below(2) == 0) {
     charts = alignedCharts(complex, boxes);
   } else {
-    for (Transition& chart : charts) chart = drawChart(20, random);
+    for (lattice::Transition& chart : charts) chart = drawChart(20, random);
   }
   const bool tagged = manifold && random.below(3) == 0;
   if (tagged) samples::addFeatures(grid, complex, drawn.map);

@@ -57,7 +57,7 @@ std::int64_t eulerCharacteristicOfLink(const BlockComplex& complex, const Coarse
 /// The same blocks, each with its frame turned in one of 24 ways.
 void turnBlocks(BlockModel& model, Random& random) {
   for (std::size_t block = 0; block < model.blocks.size(); ++block) {
-    const Rotation rotation(static_cast<int>(random.below(Rotation::kCount)));
+    const lattice::Rotation rotation(static_cast<int>(random.below(lattice::Rotation::kCount)));
     const samples::BlockCorners corners = model.blocks[block];
     const std::array<Vec3, 8> shape = model.shapes[block];
     for (std::size_t c = 0; c < 8; ++c) {

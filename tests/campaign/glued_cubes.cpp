@@ -25,21 +25,21 @@ using samples::BlockPart;
 constexpr std::array<std::array<std::size_t, 4>, 6> kFaces = {
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
-GridPoint cornerOf(const GridPoint& cube, std::size_t corner) {
-  GridPoint point = cube;
+lattice::GridPoint cornerOf(const lattice::GridPoint& cube, std::size_t corner) {
+  lattice::GridPoint point = cube;
   for (std::size_t a = 0; a < 3; ++a) point[a] += static_cast<std::int32_t>(corner >> a & 1);
   return point;
 }
 
 /// Blocks on the integer grid that share the vertices with the same number.
 template <class NumberOf>
-BlockModel cubesOnGrid(const std::set<GridPoint>& cubes, const NumberOf& numberOf) {
+BlockModel cubesOnGrid(const std::set<lattice::GridPoint>& cubes, const NumberOf& numberOf) {
   BlockModel model;
-  for (const GridPoint& cube : cubes) {
+  for (const lattice::GridPoint& cube : cubes) {
     BlockCorners& block = model.blocks.emplace_back();
     std::array<Vec3, 8>& shape = model.shapes.emplace_back();
     for (std::size_t c = 0; c < 8; ++c) {
-      const GridPoint corner = cornerOf(cube, c);
+      const lattice::GridPoint corner = cornerOf(cube, c);
       block[c] = numberOf(corner);
       for (std::size_t a = 0; a < 3; ++a) shape[c][a] = corner[a];
     }
@@ -176,14 +176,15 @@ class Gluer {
 }  // namespace
 
 BlockStructure drawPolycube(Random& random) {
-  std::set<GridPoint> cubes = {{0, 0, 0}};
+  std::set<lattice::GridPoint> cubes = {{0, 0, 0}};
   const std::size_t count = 1 + random.below(random.below(10) == 0 ? 40 : 12);
   while (cubes.size() < count) {
     auto cube = cubes.begin();
     std::advance(cube, static_cast<std::ptrdiff_t>(random.below(cubes.size())));
-    cubes.insert(step(*cube, static_cast<Direction>(random.below(kDirections))));
+    cubes.insert(
+        lattice::step(*cube, static_cast<lattice::Direction>(random.below(lattice::kDirections))));
   }
-  return {"polycube", cubesOnGrid(cubes, [](const GridPoint& corner) {
+  return {"polycube", cubesOnGrid(cubes, [](const lattice::GridPoint& corner) {
             constexpr int kMiddle = 64;
             return static_cast<Index>(corner[0] + kMiddle + 2 * kMiddle * (corner[1] + kMiddle) +
                                       4 * kMiddle * kMiddle * (corner[2] + kMiddle));
@@ -202,16 +203,16 @@ BlockStructure drawGluedCubes(Random& random) {
 
 BlockStructure drawClosedManifold(Random& random) {
   if (random.below(2) == 0) {
-    GridPoint size{};
+    lattice::GridPoint size{};
     for (std::int32_t& length : size)
       length = static_cast<std::int32_t>(3 + random.below(oftenOr(1, 3, random)));
-    std::set<GridPoint> cubes;
-    for (GridPoint cube{}; cube[2] < size[2]; ++cube[2]) {
+    std::set<lattice::GridPoint> cubes;
+    for (lattice::GridPoint cube{}; cube[2] < size[2]; ++cube[2]) {
       for (cube[1] = 0; cube[1] < size[1]; ++cube[1]) {
         for (cube[0] = 0; cube[0] < size[0]; ++cube[0]) cubes.insert(cube);
       }
     }
-    return {"torus of three dimensions", cubesOnGrid(cubes, [&](const GridPoint& corner) {
+    return {"torus of three dimensions", cubesOnGrid(cubes, [&](const lattice::GridPoint& corner) {
               return static_cast<Index>(
                   corner[0] % size[0] +
                   size[0] * (corner[1] % size[1] + size[1] * (corner[2] % size[2])));

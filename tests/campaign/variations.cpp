@@ -41,8 +41,8 @@ void splitSomeEdges(TetMap& map, Random& random) {
     const std::size_t a = random.below(4);
     edges.push_back({tet[a], tet[(a + 1 + random.below(3)) % 4]});
   }
-  MapBackup backup(map);
-  splitEdges(map, topology.topology, edges, backup);
+  repairs::MapBackup backup(map);
+  repairs::splitEdges(map, topology.topology, edges, backup);
 }
 
 /// Cuts some tets into four around a vertex inside.
@@ -83,7 +83,7 @@ void cutSomeTets(TetMap& map, Random& random) {
 void changeCharts(TetMap& map, std::uint64_t oneIn, std::int64_t limit, Random& random) {
   for (std::size_t t = 0; t < map.tets.size(); ++t) {
     if (random.below(oneIn) > 0) continue;
-    const Transition chart = drawChart(limit, random);
+    const lattice::Transition chart = drawChart(limit, random);
     for (Vec3& u : map.parameters[t]) u = chart(u, 1.0);
     // Two swaps are an even permutation.
     for (int swap = 0; swap < 2; ++swap) {
@@ -153,8 +153,9 @@ void changeSpace(TetMap& map, Random& random) {
 
 }  // namespace
 
-Transition drawChart(std::int64_t limit, Random& random) {
-  Transition chart{Rotation(static_cast<int>(random.below(Rotation::kCount))), {}};
+lattice::Transition drawChart(std::int64_t limit, Random& random) {
+  lattice::Transition chart{
+      lattice::Rotation(static_cast<int>(random.below(lattice::Rotation::kCount))), {}};
   for (std::int32_t& coordinate : chart.translation) {
     coordinate = static_cast<std::int32_t>(random.integerUpTo(limit));
   }

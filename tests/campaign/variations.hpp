@@ -8,7 +8,7 @@
 namespace hexhex::campaign {
 
 /// Any rotation, and a translation by up to `limit` along each axis.
-[[nodiscard]] Transition drawChart(std::int64_t limit, Random& random);
+[[nodiscard]] lattice::Transition drawChart(std::int64_t limit, Random& random);
 
 /// Draws which changes to make: other charts, more tets, other numbers, a mirror image, noise,
 /// unused vertices, another place and size in space.

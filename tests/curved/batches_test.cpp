@@ -8,6 +8,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 /// Element i makes i % 3 numbers, all of them i.

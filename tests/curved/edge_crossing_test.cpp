@@ -13,6 +13,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -20,8 +22,8 @@ using testing::Random;
 
 /// Corners on opposite sides of the line, with all of it in one plane.
 struct EdgeCorners {
-  LatticePoint a;
-  LatticePoint b;
+  lattice::LatticePoint a;
+  lattice::LatticePoint b;
 };
 
 EdgeCorners cornersBesideLine(std::int64_t unit, Random& random) {
@@ -41,15 +43,16 @@ Rational exactPlace(const EdgeCorners& corners, std::int64_t unit) {
 }
 
 /// Permutes axes cyclically, and changes signs across the line.
-LatticePoint inOtherChart(const LatticePoint& point, std::size_t axis, bool flipped) {
-  LatticePoint result;
+lattice::LatticePoint inOtherChart(const lattice::LatticePoint& point, std::size_t axis,
+                                   bool flipped) {
+  lattice::LatticePoint result;
   for (std::size_t k = 0; k < 3; ++k) {
     result[(k + axis) % 3] = flipped && k > 0 ? -point[k] : point[k];
   }
   return result;
 }
 
-LatticePoint fromOtherEnd(LatticePoint point, std::int64_t unit) {
+lattice::LatticePoint fromOtherEnd(lattice::LatticePoint point, std::int64_t unit) {
   point[0] = unit - point[0];
   return point;
 }

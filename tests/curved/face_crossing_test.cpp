@@ -12,16 +12,18 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 using testing::Random;
 
 /// Corners on the half-integer grid, anywhere, or nearly on a line: all of them around the origin.
-LatticeTet randomCorners(std::int64_t unit, Random& random) {
-  LatticeTet corners{};
+lattice::LatticeTet randomCorners(std::int64_t unit, Random& random) {
+  lattice::LatticeTet corners{};
   const bool onGrid = random.oneIn(3);
   const std::int64_t thickness = random.oneIn(3) ? 3 : 4 * unit;
-  for (LatticePoint& corner : corners) {
+  for (lattice::LatticePoint& corner : corners) {
     for (std::int64_t& coordinate : corner) {
       coordinate = onGrid ? unit / 2 * random.between(-6, 6) : random.between(-4, 4) * unit;
       if (!onGrid) coordinate += random.between(-thickness, thickness);
@@ -32,14 +34,14 @@ LatticeTet randomCorners(std::int64_t unit, Random& random) {
 
 /// Whether the line meets the closed face in one point, by exact arithmetic.
 bool meets(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit) {
-  LatticePoint line;
+  lattice::LatticePoint line;
   for (std::size_t k = 0; k < 3; ++k) line[k] = edge.z[k] * unit;
   int positive = 0;
   int negative = 0;
-  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   for (std::size_t i = 0; i < 3; ++i) {
-    const Int128 weight =
-        crossComponent(face.corner((i + 1) % 3) - line, face.corner((i + 2) % 3) - line, axis);
+    const lattice::Int128 weight = lattice::crossComponent(face.corner((i + 1) % 3) - line,
+                                                           face.corner((i + 2) % 3) - line, axis);
     positive += weight > 0 ? 1 : 0;
     negative += weight < 0 ? 1 : 0;
   }
@@ -47,7 +49,7 @@ bool meets(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit) {
 }
 
 ChartEdge reversed(const ChartEdge& edge) {
-  return {step(edge.z, edge.along), opposite(edge.along)};
+  return {lattice::step(edge.z, edge.along), lattice::opposite(edge.along)};
 }
 
 /// What occurred: tests that miss a case say nothing.
@@ -60,10 +62,11 @@ struct CrossingCounts {
 /// The place along the edge of a point with these shares.
 double placeOf(const FaceShares& shares, const OwnersFace& face, const ChartEdge& edge,
                std::int64_t unit) {
-  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   double place = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const std::int64_t at = signOf(edge.along) * (face.corner(c)[axis] - edge.z[axis] * unit);
+    const std::int64_t at =
+        lattice::signOf(edge.along) * (face.corner(c)[axis] - edge.z[axis] * unit);
     place += shares.of[c] * static_cast<double>(at);
   }
   return place / static_cast<double>(unit);
@@ -71,9 +74,9 @@ double placeOf(const FaceShares& shares, const OwnersFace& face, const ChartEdge
 
 /// For the parameter of a crossing whose shares are known to 2^-37.
 double errorBound(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit) {
-  const auto axis = static_cast<std::size_t>(axisOf(edge.along));
+  const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   const double reach = std::abs(face.second(axis)) + std::abs(face.third(axis));
-  const std::int64_t begin = std::int64_t{edge.z[axis]} - (signOf(edge.along) < 0 ? 1 : 0);
+  const std::int64_t begin = std::int64_t{edge.z[axis]} - (lattice::signOf(edge.along) < 0 ? 1 : 0);
   const auto first = static_cast<double>(face.corner(0)[axis] - begin * unit);
   return (0x1p-36 * reach + 0x1p-50 * std::abs(first)) / static_cast<double>(unit) + 0x1p-52;
 }
@@ -110,9 +113,9 @@ TEST(FaceCrossing, IsTheSameByBothArithmeticsAndFromBothEnds) {
   for (int i = 0; i < testing::cases(200000) + 5000 && !HasFailure(); ++i) {
     // Where products fit 53 bits, and where they are rounded.
     const std::int64_t unit = std::int64_t{1} << (random.oneIn(2) ? 18 : 44);
-    const LatticeTet corners = randomCorners(unit, random);
+    const lattice::LatticeTet corners = randomCorners(unit, random);
     const OwnersFace face(corners, static_cast<int>(random.between(0, 3)));
-    ChartEdge edge{{}, static_cast<Direction>(random.between(0, 5))};
+    ChartEdge edge{{}, static_cast<lattice::Direction>(random.between(0, 5))};
     for (std::int32_t& z : edge.z) z = static_cast<std::int32_t>(random.between(-4, 4));
     if (meets(face, edge, unit)) compareCrossing(face, edge, unit, counts);
   }

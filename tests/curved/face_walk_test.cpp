@@ -14,6 +14,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 /// What occurred: tests that miss a case say nothing.
@@ -24,43 +26,44 @@ struct Counts {
 
 class Walker {
  public:
-  Walker(const PreparedMap& map, Counts& counts) : map_(map), walk_(map), counts_(counts) {}
+  Walker(const igm::PreparedMap& map, Counts& counts) : map_(map), walk_(map), counts_(counts) {}
 
   /// Walks from a midpoint to the boundary or to where the walk ends, at most a few tets beyond the
   /// end of the edge.
   void walk(const SimplexInTet& middle, Heading heading) {
     SimplexInTet at = middle;
-    const LatticeTet ahead = see(middle);
+    const lattice::LatticeTet ahead = see(middle);
     if (heading == Heading::Backward) at.frame = middle.frame.reversed();
     bool walks = walk_.start(at, ahead, EdgeSides(ahead), heading);
     for (int i = 0; i < 6; ++i) {
-      const LatticeTet seen = see(at);
-      const SimplexPoint expected = exitPoint(seen, kWholeTet, 0);
+      const lattice::LatticeTet seen = see(at);
+      const SimplexPoint expected = exitPoint(seen, lattice::kWholeTet, 0);
       if (!walks) {
         ++counts_.refused;
         // After the start, refusals mean that the exit is no inner point of a face.
         if (i > 0) {
-          ASSERT_NE(dimension(expected.simplex()), 2);
+          ASSERT_NE(lattice::dimension(expected.simplex()), 2);
         }
         return;
       }
-      ASSERT_EQ(dimension(expected.simplex()), 2);
+      ASSERT_EQ(lattice::dimension(expected.simplex()), 2);
       ASSERT_NO_FATAL_FAILURE(compare(at, seen, expected));
-      const int face = oppositeCorner(expected.simplex());
-      const HalfFace mate = map_.topology.mate[halfFaceOf(at.tet, face)];
+      const int face = lattice::oppositeCorner(expected.simplex());
+      const adjacency::HalfFace mate = map_.topology.mate[adjacency::halfFaceOf(at.tet, face)];
       ASSERT_EQ(walk_.cross(at), mate != kNone);
       if (mate == kNone) return;
-      ASSERT_EQ(at.tet, tetOf(mate));
+      ASSERT_EQ(at.tet, adjacency::tetOf(mate));
       walks = walk_.leave(at);
     }
   }
 
  private:
-  [[nodiscard]] LatticeTet see(const SimplexInTet& at) const {
+  [[nodiscard]] lattice::LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(map_.exact.corners[at.tet], map_.exact.unit);
   }
 
-  void compare(const SimplexInTet& at, const LatticeTet& seen, const SimplexPoint& expected) {
+  void compare(const SimplexInTet& at, const lattice::LatticeTet& seen,
+               const SimplexPoint& expected) {
     ++counts_.steps;
     const ArcExit exit = exitThrough(map_, at.tet, walk_.face(), at.frame.edge());
     const OwnedSimplex owned = ownedBy(map_.topology, at.tet, expected.simplex());
@@ -79,7 +82,7 @@ class Walker {
     for (std::size_t k = 0; k < 3; ++k) ASSERT_NEAR(exit.point[k], point[k], 1e-12);
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   FaceWalk walk_;
   Counts& counts_;
 };
@@ -89,8 +92,8 @@ TEST(FaceWalk, GoesWhereExactArithmeticGoes) {
   for (const SampleOptions& options : curvedOptions()) {
     const TetMap map = generateSample(SampleKind::Sphere, options).map;
     Context context(1);
-    DefectCollector defects;
-    const PreparedMap prepared = prepareMap(map, 1e-3, 1, context, defects);
+    igm::DefectCollector defects;
+    const igm::PreparedMap prepared = igm::prepareMap(map, 1e-3, 1, context, defects);
     defects.throwIfAny();
     Stage stage(context, "numbers");
     const ElementNumbers edges(prepared, ElementKind::Edges, stage);
@@ -98,8 +101,8 @@ TEST(FaceWalk, GoesWhereExactArithmeticGoes) {
     for (std::size_t t = 0; t < prepared.topology.tetCount(); ++t) {
       const auto tet = static_cast<Index>(t);
       edges.forEach(tet, [&](const Element& edge) {
-        if (edge.simplex != kWholeTet) return;
-        const SimplexInTet middle{tet, kWholeTet, Frame::along(edge.z, edge.axis)};
+        if (edge.simplex != lattice::kWholeTet) return;
+        const SimplexInTet middle{tet, lattice::kWholeTet, Frame::along(edge.z, edge.axis)};
         for (const Heading heading : {Heading::Forward, Heading::Backward}) {
           walker.walk(middle, heading);
         }

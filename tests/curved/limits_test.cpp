@@ -15,6 +15,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 /// A unit cube in space that is a bar in the map, along some axis.

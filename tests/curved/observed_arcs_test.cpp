@@ -21,6 +21,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 using testing::Random;
@@ -33,28 +35,30 @@ struct PointKinds {
 
   void count(const Arcs& arcs) {
     for (const CornerSet corners : arcs.generatorCorners) {
-      ++(dimension(corners) == 2 ? inFaces : elsewhere);
+      ++(lattice::dimension(corners) == 2 ? inFaces : elsewhere);
     }
-    for (const CornerSet corners : arcs.segmentCorners) flatSegments += corners != kWholeTet;
+    for (const CornerSet corners : arcs.segmentCorners)
+      flatSegments += corners != lattice::kWholeTet;
   }
 };
 
-PreparedMap prepareAt(const TetMap& given, int scale, Context& context) {
-  DefectCollector defects;
-  PreparedMap map = prepareMap(given, 1e-3, scale, context, defects);
+igm::PreparedMap prepareAt(const TetMap& given, int scale, Context& context) {
+  igm::DefectCollector defects;
+  igm::PreparedMap map = igm::prepareMap(given, 1e-3, scale, context, defects);
   defects.throwIfAny();
   Stage stage(context, "topology");
-  addStars(map.topology, stage);
+  adjacency::addStars(map.topology, stage);
   return map;
 }
 
 /// Of the lines that the atlas engine has swept.
 /// @param mesh  that it makes if nobody observes it
-Arcs arcsOfObservedAtlas(const PreparedMap& map, const HexMesh& mesh, Context& context,
+Arcs arcsOfObservedAtlas(const igm::PreparedMap& map, const HexMesh& mesh, Context& context,
                          Stage& stage) {
   ExtractStatistics statistics;
   EdgeObserver observer(map);
-  const HexMesh observed = runAtlas(map, mesh.cells.size(), context, statistics, {}, &observer);
+  const HexMesh observed =
+      atlas::runAtlas(map, mesh.cells.size(), context, statistics, {}, &observer);
   EXPECT_TRUE(observed.points == mesh.points && observed.cells == mesh.cells);
   EXPECT_TRUE(observed.generatorTet == mesh.generatorTet &&
               observed.generatorCorners == mesh.generatorCorners);
@@ -66,16 +70,16 @@ Arcs arcsOfObservedAtlas(const PreparedMap& map, const HexMesh& mesh, Context& c
 /// With several numbers of threads.
 void compareWithSweptAnew(const TetMap& given, int scale, PointKinds& kinds) {
   Context context(2);
-  PreparedMap map = prepareAt(given, scale, context);
+  igm::PreparedMap map = prepareAt(given, scale, context);
   const std::uint64_t cells =
-      parametricVolume(map.exact) * static_cast<std::uint64_t>(scale * scale * scale);
+      igm::parametricVolume(map.exact) * static_cast<std::uint64_t>(scale * scale * scale);
   Stage stage(context, "arcs");
-  if (scale != 1) scaleMap(map.exact, scale, stage);
+  if (scale != 1) igm::scaleMap(map.exact, scale, stage);
   const GridNumbers numbers = numberVerticesAndEdges(map, stage);
   const Arcs expected = traceArcs(map, numbers.vertices, numbers.edges, stage);
   kinds.count(expected);
   ExtractStatistics statistics;
-  const HexMesh mesh = runAtlas(map, cells, context, statistics);
+  const HexMesh mesh = atlas::runAtlas(map, cells, context, statistics);
   for (const int threads : {1, 2, 5}) {
     SCOPED_TRACE(std::to_string(threads) + " threads");
     withThreads(threads,

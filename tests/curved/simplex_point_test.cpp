@@ -8,6 +8,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 using testing::Random;
@@ -35,23 +37,24 @@ TEST(SimplexPoint, IsWhereALineCrossesAFace) {
   int met = 0;
   int missed = 0;
   for (int n = 0; n < cases(20000); ++n) {
-    LatticeTet corners{};
-    for (LatticePoint& corner : corners) {
+    lattice::LatticeTet corners{};
+    for (lattice::LatticePoint& corner : corners) {
       for (std::int64_t& x : corner) x = random.between(-5, 5);
     }
     const auto face = static_cast<int>(random.between(0, 3));
     const auto along = static_cast<std::size_t>(random.between(0, 2));
     std::array<Point2, 3> seen{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto f = static_cast<std::size_t>(kFaceCorners[static_cast<std::size_t>(face)][i]);
+      const auto f =
+          static_cast<std::size_t>(lattice::kFaceCorners[static_cast<std::size_t>(face)][i]);
       seen[i] = Point2{corners[f][(along + 1) % 3], corners[f][(along + 2) % 3]};
     }
     const std::int64_t area = (seen[1][0] - seen[0][0]) * (seen[2][1] - seen[0][1]) -
                               (seen[1][1] - seen[0][1]) * (seen[2][0] - seen[0][0]);
     if (area == 0) continue;  // the face is parallel to the line
     const SimplexPoint point = crossingOfFace(corners, face, along);
-    ASSERT_EQ(point.simplex() == kNoSimplex, isBeside(seen));
-    if (point.simplex() == kNoSimplex) {
+    ASSERT_EQ(point.simplex() == lattice::kNoSimplex, isBeside(seen));
+    if (point.simplex() == lattice::kNoSimplex) {
       ++missed;
       continue;
     }

@@ -15,6 +15,8 @@
 
 namespace hexhex::test {
 
+using namespace curved;
+
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -22,15 +24,15 @@ using Point = std::array<Rational, 3>;
 
 constexpr std::int64_t kUnit = 8;
 
-Point toPoint(const LatticePoint& p) { return {p[0], p[1], p[2]}; }
+Point toPoint(const lattice::LatticePoint& p) { return {p[0], p[1], p[2]}; }
 
 /// Corners from a small range, so that all kinds of coincidences occur.
-LatticeTet anyTet(std::mt19937& random) {
+lattice::LatticeTet anyTet(std::mt19937& random) {
   std::uniform_int_distribution<std::int64_t> any(-6, 14);
   for (;;) {
-    LatticeTet tet{};
-    for (LatticePoint& p : tet) p = {any(random), any(random), any(random) - 4};
-    if (orientation(tet[0], tet[1], tet[2], tet[3]) > 0) return tet;
+    lattice::LatticeTet tet{};
+    for (lattice::LatticePoint& p : tet) p = {any(random), any(random), any(random) - 4};
+    if (lattice::orientation(tet[0], tet[1], tet[2], tet[3]) > 0) return tet;
   }
 }
 
@@ -67,11 +69,11 @@ Rational areaAlong(const std::vector<Point>& polygon, std::size_t axis) {
 }
 
 /// The square without what lies outside the tet: from the other side than sliceSquare() goes.
-std::vector<Point> squareInTet(const LatticeTet& tet) {
+std::vector<Point> squareInTet(const lattice::LatticeTet& tet) {
   std::vector<Point> polygon = {{0, 0, 0}, {kUnit, 0, 0}, {kUnit, kUnit, 0}, {0, kUnit, 0}};
   for (std::size_t face = 0; face < 4; ++face) {
     const auto corner = [&](std::size_t i) {
-      return toPoint(tet[static_cast<std::size_t>(kFaceCorners[face][i])]);
+      return toPoint(tet[static_cast<std::size_t>(lattice::kFaceCorners[face][i])]);
     };
     const Point o = corner(0);
     const Point a = corner(1);
@@ -116,12 +118,12 @@ TEST(SquareSlice, AsManyCornersAsTheClippedSquare) {
   std::mt19937 random(7);
   int withArea = 0;
   for (int i = 0; i < cases(3000); ++i) {
-    const LatticeTet tet = anyTet(random);
+    const lattice::LatticeTet tet = anyTet(random);
     const SeenTet seen(tet, kUnit);
-    const CornerMask carrier = seen.carrier();
+    const lattice::CornerMask carrier = seen.carrier();
     const std::vector<Point> expected = squareInTet(tet);
     const bool hasArea = expected.size() >= 3 && areaAlong(expected, 2) > 0;
-    if (carrier == kNoSimplex) {
+    if (carrier == lattice::kNoSimplex) {
       EXPECT_FALSE(hasArea);
       continue;
     }
@@ -159,24 +161,24 @@ TEST(SquareSlice, AsManyCornersAsTheClippedSquare) {
 }
 
 /// A corner of a large lattice.
-LatticePoint anyPoint(std::mt19937_64& random, std::int64_t reach) {
+lattice::LatticePoint anyPoint(std::mt19937_64& random, std::int64_t reach) {
   std::uniform_int_distribution<std::int64_t> any(-reach, reach);
   return {any(random), any(random), any(random)};
 }
 
 /// A tet so close to a special position that rounded numbers cannot tell: corners are moved so that
 /// an edge meets the plane, or a face a border, within a few units of the lattice.
-LatticeTet nearlySpecialTet(std::mt19937_64& random, std::int64_t unit) {
+lattice::LatticeTet nearlySpecialTet(std::mt19937_64& random, std::int64_t unit) {
   std::uniform_int_distribution<std::int64_t> few(-2, 2);
   std::uniform_int_distribution<int> quarter(0, 3);
   for (;;) {
-    LatticeTet tet{};
-    for (LatticePoint& p : tet) p = anyPoint(random, 2 * unit);
+    lattice::LatticeTet tet{};
+    for (lattice::LatticePoint& p : tet) p = anyPoint(random, 2 * unit);
     // Corner 1 is behind a corner or a side of the square, as corner 0 sees it.
-    const LatticePoint target = {quarter(random) < 2 ? 0 : unit,
-                                 quarter(random) < 2 ? unit : anyPoint(random, unit)[0], 0};
+    const lattice::LatticePoint target = {
+        quarter(random) < 2 ? 0 : unit, quarter(random) < 2 ? unit : anyPoint(random, unit)[0], 0};
     for (std::size_t k = 0; k < 3; ++k) tet[1][k] = 2 * target[k] - tet[0][k] + few(random);
-    const int side = orientation(tet[0], tet[1], tet[2], tet[3]);
+    const int side = lattice::orientation(tet[0], tet[1], tet[2], tet[3]);
     if (side < 0) std::swap(tet[2], tet[3]);
     if (side != 0) return tet;
   }
@@ -187,15 +189,15 @@ TEST(SquareSlice, ExactFlagsWhereRoundedNumbersCannotTell) {
   std::mt19937_64 random(5);
   int near = 0;
   for (int i = 0; i < cases(2000); ++i) {
-    const LatticeTet tet = nearlySpecialTet(random, kFine);
+    const lattice::LatticeTet tet = nearlySpecialTet(random, kFine);
     const SeenTet seen(tet, static_cast<double>(kFine));
-    if (seen.carrier() != kWholeTet) continue;
-    const Section section = sectionOf(seen, kWholeTet, kFine);
+    if (seen.carrier() != lattice::kWholeTet) continue;
+    const Section section = sectionOf(seen, lattice::kWholeTet, kFine);
     for (std::size_t k = 0; k < section.size; ++k) {
       const SectionPoint& point = section.points[k];
-      if (dimension(point.simplex) != 1) continue;
-      const LatticePoint& a = tet[firstCorner(point.simplex)];
-      const LatticePoint& b = tet[lastCorner(point.simplex)];
+      if (lattice::dimension(point.simplex) != 1) continue;
+      const lattice::LatticePoint& a = tet[lattice::firstCorner(point.simplex)];
+      const lattice::LatticePoint& b = tet[lattice::lastCorner(point.simplex)];
       unsigned expected = 0;
       for (std::size_t axis = 0; axis < 2; ++axis) {
         const Rational x = Rational(a[axis]) +
@@ -225,12 +227,12 @@ TEST(SquareSlice, SidesOneByOneAndClippingAgree) {
   int sliced = 0;
   for (int i = 0; i < cases(20000); ++i) {
     const std::int64_t reach = kFine * (1 + i % 5);
-    LatticeTet tet{};
-    for (LatticePoint& p : tet) p = anyPoint(random, reach);
-    if (orientation(tet[0], tet[1], tet[2], tet[3]) < 0) std::swap(tet[2], tet[3]);
+    lattice::LatticeTet tet{};
+    for (lattice::LatticePoint& p : tet) p = anyPoint(random, reach);
+    if (lattice::orientation(tet[0], tet[1], tet[2], tet[3]) < 0) std::swap(tet[2], tet[3]);
     const SeenTet seen(tet, kFine);
-    if (seen.carrier() != kWholeTet || seen.inPlane != 0) continue;
-    const Section section = sectionOf(seen, kWholeTet, kFine);
+    if (seen.carrier() != lattice::kWholeTet || seen.inPlane != 0) continue;
+    const Section section = sectionOf(seen, lattice::kWholeTet, kFine);
     const Slice slice = sliceOf(seen, section, kFine);
     const Slice clipped = clipSquare(seen, section, kFine);
     ASSERT_EQ(slice.size() < 3, clipped.size() < 3);
@@ -239,13 +241,13 @@ TEST(SquareSlice, SidesOneByOneAndClippingAgree) {
     ASSERT_NO_FATAL_FAILURE(expectSame(slice, clipped));
     // Midpoints of sides that the slice is sure to have: the tet contains them.
     for (std::size_t side = 0; side < 4; ++side) {
-      const LatticePoint middle = {side == 1 ? kFine : (side == 3 ? 0 : kFine / 2),
-                                   side == 2 ? kFine : (side == 0 ? 0 : kFine / 2), 0};
+      const lattice::LatticePoint middle = {side == 1 ? kFine : (side == 3 ? 0 : kFine / 2),
+                                            side == 2 ? kFine : (side == 0 ? 0 : kFine / 2), 0};
       bool inside = true;
-      for (const auto& f : kFaceCorners) {
-        inside = inside && orientation(tet[static_cast<std::size_t>(f[0])],
-                                       tet[static_cast<std::size_t>(f[1])],
-                                       tet[static_cast<std::size_t>(f[2])], middle) > 0;
+      for (const auto& f : lattice::kFaceCorners) {
+        inside = inside && lattice::orientation(tet[static_cast<std::size_t>(f[0])],
+                                                tet[static_cast<std::size_t>(f[1])],
+                                                tet[static_cast<std::size_t>(f[2])], middle) > 0;
       }
       const bool isCertain = ((slice.midpoints >> side) & 1U) != 0;
       const bool isPossible = ((slice.possibleMidpoints >> side) & 1U) != 0;
@@ -262,37 +264,38 @@ TEST(SquareSlice, BehindAFace) {
   std::array<std::size_t, 4> order = {0, 1, 2, 3};
   int crossed = 0;
   for (int i = 0; i < cases(20000); ++i) {
-    LatticeTet tet{};
-    for (LatticePoint& p : tet) p = anyPoint(random, 2 * kFine);
-    const LatticePoint apex = anyPoint(random, 2 * kFine);
-    if (orientation(tet[0], tet[1], tet[2], tet[3]) < 0) std::swap(tet[2], tet[3]);
+    lattice::LatticeTet tet{};
+    for (lattice::LatticePoint& p : tet) p = anyPoint(random, 2 * kFine);
+    const lattice::LatticePoint apex = anyPoint(random, 2 * kFine);
+    if (lattice::orientation(tet[0], tet[1], tet[2], tet[3]) < 0) std::swap(tet[2], tet[3]);
     const SeenTet seen(tet, kFine);
-    if (seen.carrier() != kWholeTet || seen.inPlane != 0) continue;
-    const Section section = sectionOf(seen, kWholeTet, kFine);
+    if (seen.carrier() != lattice::kWholeTet || seen.inPlane != 0) continue;
+    const Section section = sectionOf(seen, lattice::kWholeTet, kFine);
     SectionCuts cuts;
     Slice slice;
     sliceSquare(seen, section, kFine, {}, cuts, slice);
     for (std::size_t side = 0; side < section.size && cuts.areKnown; ++side) {
-      const auto face = static_cast<std::size_t>(oppositeCorner(section.sideSimplex(side)));
-      LatticeTet behind = tet;
+      const auto face =
+          static_cast<std::size_t>(lattice::oppositeCorner(section.sideSimplex(side)));
+      lattice::LatticeTet behind = tet;
       behind[face] = apex;
       // In another order of corners.
       std::shuffle(order.begin(), order.end(), random);
-      LatticeTet shuffled{};
+      lattice::LatticeTet shuffled{};
       for (std::size_t k = 0; k < 4; ++k) shuffled[order[k]] = behind[k];
-      if (orientation(shuffled[0], shuffled[1], shuffled[2], shuffled[3]) < 0) continue;
+      if (lattice::orientation(shuffled[0], shuffled[1], shuffled[2], shuffled[3]) < 0) continue;
       // On the same side of the face:
-      if (orientation(behind[0], behind[1], behind[2], behind[3]) >= 0) continue;
+      if (lattice::orientation(behind[0], behind[1], behind[2], behind[3]) >= 0) continue;
       SeenTet there(shuffled, kFine);
       if (there.inPlane != 0) continue;
       ++crossed;
       there.reach = std::max(there.reach, seen.reach);
-      const Section expected = sectionOf(there, kWholeTet, kFine);
+      const Section expected = sectionOf(there, lattice::kWholeTet, kFine);
       std::size_t entry = 4;
       const Section found =
           sectionBehind(there, static_cast<int>(order[face]), section, side, kFine, entry);
       ASSERT_EQ(found.size, expected.size);
-      ASSERT_EQ(found.sideSimplex(entry), faceMask(static_cast<int>(order[face])));
+      ASSERT_EQ(found.sideSimplex(entry), lattice::faceMask(static_cast<int>(order[face])));
       for (std::size_t k = 0; k < found.size; ++k) {
         ASSERT_EQ(found.points[k].at, expected.points[k].at);
         ASSERT_EQ(found.points[k].simplex, expected.points[k].simplex);
@@ -313,10 +316,10 @@ TEST(CubeMeetsFace, AsTheClippedTriangle) {
   std::mt19937 random(11);
   int met = 0;
   for (int i = 0; i < cases(3000); ++i) {
-    const LatticeTet tet = anyTet(random);
+    const lattice::LatticeTet tet = anyTet(random);
     for (int face = 0; face < 4; ++face) {
       std::vector<Point> polygon;
-      for (const int corner : kFaceCorners[static_cast<std::size_t>(face)]) {
+      for (const int corner : lattice::kFaceCorners[static_cast<std::size_t>(face)]) {
         polygon.push_back(toPoint(tet[static_cast<std::size_t>(corner)]));
       }
       for (std::size_t k = 0; k < 3; ++k) {

@@ -24,7 +24,7 @@ struct PointCounts {
 /// Finds the same points in several ways.
 class TableExaminer {
  public:
-  TableExaminer(const PreparedMap& map, PointCounts& counts, Stage& stage)
+  TableExaminer(const igm::PreparedMap& map, PointCounts& counts, Stage& stage)
       : map_(map),
         counts_(counts),
         lines_(map, stage, 0),  // no box has room
@@ -34,8 +34,8 @@ class TableExaminer {
 
   /// All points of the bounding box and a little around it.
   void examine(Index tet) {
-    const GridBox box = gridBox(map_.exact.corners[tet], map_.exact.unit);
-    GridPoint z;
+    const lattice::GridBox box = lattice::gridBox(map_.exact.corners[tet], map_.exact.unit);
+    lattice::GridPoint z;
     for (z[0] = box.range[0].first - 2; z[0] <= box.range[0].last + 2; ++z[0]) {
       for (z[1] = box.range[1].first - 2; z[1] <= box.range[1].last + 2; ++z[1]) {
         for (z[2] = box.range[2].first - 2; z[2] <= box.range[2].last + 2; ++z[2]) {
@@ -50,32 +50,33 @@ class TableExaminer {
   }
 
  private:
-  void examine(Index tet, const GridPoint& z) {
-    const CornerMask simplex = simplexOf(map_.exact.corners[tet], z, map_.exact.unit);
-    const VertexTables::Found found = tables_.find(tet, z);
+  void examine(Index tet, const lattice::GridPoint& z) {
+    const lattice::CornerMask simplex =
+        lattice::simplexOf(map_.exact.corners[tet], z, map_.exact.unit);
+    const sweep::VertexTables::Found found = tables_.find(tet, z);
     EXPECT_EQ(found.simplex, simplex);
-    EXPECT_EQ(found.vertex == kNone, simplex == kNoSimplex);
-    for (const VertexTables* numbers : {&lines_, &some_}) {
-      const VertexTables::Found other = numbers->find(tet, z);
+    EXPECT_EQ(found.vertex == kNone, simplex == lattice::kNoSimplex);
+    for (const sweep::VertexTables* numbers : {&lines_, &some_}) {
+      const sweep::VertexTables::Found other = numbers->find(tet, z);
       EXPECT_EQ(found.simplex, other.simplex);
       EXPECT_EQ(found.vertex, other.vertex);
     }
-    ++(simplex == kNoSimplex ? counts_.missed : counts_.found);
+    ++(simplex == lattice::kNoSimplex ? counts_.missed : counts_.found);
     if (found.vertex != kNone) seen_[found.vertex] = true;
   }
 
-  const PreparedMap& map_;
+  const igm::PreparedMap& map_;
   PointCounts& counts_;
-  VertexTables lines_;
-  VertexTables some_;
-  VertexTables tables_;
+  sweep::VertexTables lines_;
+  sweep::VertexTables some_;
+  sweep::VertexTables tables_;
   std::vector<bool> seen_;
 };
 
 void compareTables(const TetMap& given, PointCounts& counts) {
   Context context(2);
-  DefectCollector defects;
-  const PreparedMap map = prepareMap(given, 1e-3, 1, context, defects);
+  igm::DefectCollector defects;
+  const igm::PreparedMap map = igm::prepareMap(given, 1e-3, 1, context, defects);
   defects.throwIfAny();
   Stage stage(context, "numbers");
   TableExaminer examiner(map, counts, stage);

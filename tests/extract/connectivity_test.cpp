@@ -21,25 +21,26 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// All stages of one map, kept.
 struct Stages {
   Context context;
-  DefectCollector defects;
-  PreparedMap map;
-  Array<NormalSigns> signs;
-  std::optional<HexVertices> swept;
-  LocalConnectivity local;
-  GlobalConnectivity global;
+  igm::DefectCollector defects;
+  igm::PreparedMap map;
+  Array<lattice::NormalSigns> signs;
+  std::optional<propeller::HexVertices> swept;
+  propeller::LocalConnectivity local;
+  propeller::GlobalConnectivity global;
 
   explicit Stages(const TetMapView& input, double epsilon = 1e-6) {
-    map = prepareMap(input, 1e-2, 1, context, defects);
+    map = igm::prepareMap(input, 1e-2, 1, context, defects);
     defects.throwIfAny();
     Stage stage(context, "test");
-    addStars(map.topology, stage);
+    adjacency::addStars(map.topology, stage);
     signs.resize(map.exact.corners.size());
-    for (std::size_t t = 0; t < signs.size(); ++t) signs[t] = NormalSigns(map.exact.corners[t]);
-    HexVertices& vertices = swept.emplace(map, epsilon, stage);
-    local = extractLocalConnectivity(map, signs, vertices, stage);
-    global = traceOpposites(map, signs, vertices, local, stage);
+    for (std::size_t t = 0; t < signs.size(); ++t)
+      signs[t] = lattice::NormalSigns(map.exact.corners[t]);
+    propeller::HexVertices& vertices = swept.emplace(map, epsilon, stage);
+    local = propeller::extractLocalConnectivity(map, signs, vertices, stage);
+    global = propeller::traceOpposites(map, signs, vertices, local, stage);
   }
-  [[nodiscard]] const HexVertices& vertices() const { return *swept; }
+  [[nodiscard]] const propeller::HexVertices& vertices() const { return *swept; }
 };
 
 Sample sampleOf(SampleKind kind) {
@@ -57,21 +58,23 @@ class Connectivity : public ::testing::TestWithParam<SampleKind> {};
 TEST_P(Connectivity, LocalStructureIsASphereOrADisk) {
   const Sample sample = sampleOf(GetParam());
   const Stages stages(sample.map);
-  const LocalConnectivity& local = stages.local;
+  const propeller::LocalConnectivity& local = stages.local;
   for (std::size_t c = 0; c < local.configurations.size(); ++c) {
-    const Configuration& configuration = local.configurations[c];
+    const propeller::Configuration& configuration = local.configurations[c];
     std::size_t slots = 0;
     bool closed = true;
     for (std::size_t p = 0; p < configuration.propellerCount; ++p) {
-      const Propeller& propeller = local.propeller(configuration, p);
+      const propeller::Propeller& propeller = local.propeller(configuration, p);
       slots += propeller.slotCount;
       closed = closed && propeller.closed;
       for (std::size_t i = 0; i < propeller.slotCount; ++i) {
-        const Slot& slot = local.slot(propeller, i);
-        const Slot& back = local.slot(local.propeller(configuration, slot.blade), slot.back);
+        const propeller::Slot& slot = local.slot(propeller, i);
+        const propeller::Slot& back =
+            local.slot(local.propeller(configuration, slot.blade), slot.back);
         EXPECT_EQ(back.blade, p);
         EXPECT_EQ(back.back, i);
-        EXPECT_EQ(slot.corner == kNoCorner, !propeller.closed && i + 1 == propeller.slotCount);
+        EXPECT_EQ(slot.corner == propeller::kNoCorner,
+                  !propeller.closed && i + 1 == propeller.slotCount);
       }
     }
     // Euler characteristic of the small surface around the vertex.
@@ -87,22 +90,22 @@ TEST_P(Connectivity, OppositesAreMutual) {
   const auto entry = [&](Index vertex, std::size_t propeller) {
     const Index g = stages.vertices().generatorOf[vertex];
     const std::size_t count = stages.local.configuration(g).propellerCount;
-    return GlobalConnectivity::unpack(
+    return propeller::GlobalConnectivity::unpack(
         stages.global
             .opposites[stages.global.begin[g] +
                        (vertex - stages.vertices().generators[g].firstVertex) * count + propeller]);
   };
   for (Index v = 0; v < stages.vertices().tables.count(); ++v) {
-    const Configuration& configuration =
+    const propeller::Configuration& configuration =
         stages.local.configuration(stages.vertices().generatorOf[v]);
     for (std::uint16_t p = 0; p < configuration.propellerCount; ++p) {
-      const Opposite there = entry(v, p);
-      const Opposite back = entry(there.vertex, there.propeller);
+      const propeller::Opposite there = entry(v, p);
+      const propeller::Opposite back = entry(there.vertex, there.propeller);
       ASSERT_EQ(back.vertex, v);
       ASSERT_EQ(back.propeller, p);
       ASSERT_EQ(back.offset, there.offset);
       // Both ends see the same number of faces around the edge.
-      const Configuration& other =
+      const propeller::Configuration& other =
           stages.local.configuration(stages.vertices().generatorOf[there.vertex]);
       ASSERT_EQ(stages.local.propeller(other, there.propeller).slotCount,
                 stages.local.propeller(configuration, p).slotCount);
@@ -118,10 +121,10 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Connectivity,
 TEST(ConstantConfigurations, AreThoseOfTheRegularGrid) {
   const Sample sample = generateSample(SampleKind::Box);
   const Stages stages(sample.map);
-  ASSERT_GE(stages.local.configurations.size(), kConstantConfigurations);
+  ASSERT_GE(stages.local.configurations.size(), propeller::kConstantConfigurations);
   EXPECT_EQ(stages.local.configurations[0].propellerCount, 6);
   EXPECT_EQ(stages.local.configurations[0].cornerCount, 8);
-  for (std::size_t c = 1; c < kConstantConfigurations; ++c) {
+  for (std::size_t c = 1; c < propeller::kConstantConfigurations; ++c) {
     EXPECT_EQ(stages.local.configurations[c].propellerCount, 5);
     EXPECT_EQ(stages.local.configurations[c].cornerCount, 4);
   }

@@ -169,7 +169,7 @@ TEST(Extract, GeneratorsNameSimplicesOfTheInput) {
       std::array<Vec3, 4> part = {corner(0), corner(1), corner(2), corner(3)};
       part[i] = mesh.points[v];
       const double weight = volume(part[0], part[1], part[2], part[3]) / whole;
-      if (contains(corners, static_cast<int>(i))) {
+      if (lattice::contains(corners, static_cast<int>(i))) {
         ASSERT_GT(weight, 0);
       } else {
         ASSERT_NEAR(weight, 0, 1e-9);
@@ -180,7 +180,7 @@ TEST(Extract, GeneratorsNameSimplicesOfTheInput) {
       const Tet& other = sample.map.tets[t];
       bool all = true;
       for (std::size_t i = 0; i < 4; ++i) {
-        if (!contains(corners, static_cast<int>(i))) continue;
+        if (!lattice::contains(corners, static_cast<int>(i))) continue;
         all = all && std::find(other.begin(), other.end(), sample.map.tets[tet][i]) != other.end();
       }
       ASSERT_FALSE(all);
@@ -193,10 +193,10 @@ TEST(Extract, GivenValencesAreUsed) {
   const Sample sample = sphere();
   const HexMesh reference = verifiedExtraction(sample.map);
   Context context;
-  DefectCollector defects;
-  const PreparedMap prepared = prepareMap(sample.map, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  const igm::PreparedMap prepared = igm::prepareMap(sample.map, 1e-2, 1, context, defects);
   std::vector<EdgeValence> known;
-  for (const SingularEdge& edge : prepared.singularities.edges) {
+  for (const igm::SingularEdge& edge : prepared.singularities.edges) {
     known.push_back({edge.vertex1, edge.vertex0, edge.valence - (edge.boundary ? 2 : 4)});
   }
   ASSERT_FALSE(known.empty());

@@ -251,18 +251,19 @@ TEST(Features, InnerFacesAndEdges) {
 /// Tags boundary triangles and singular boundary edges, all with 1.
 void tagBoundary(TetMap& map) {
   Context context;
-  DefectCollector defects;
-  const PreparedMap prepared = prepareMap(map, 0.01, 1, context, defects);
-  for (HalfFace h = 0; h < prepared.topology.mate.size(); ++h) {
+  igm::DefectCollector defects;
+  const igm::PreparedMap prepared = igm::prepareMap(map, 0.01, 1, context, defects);
+  for (adjacency::HalfFace h = 0; h < prepared.topology.mate.size(); ++h) {
     if (!prepared.topology.isBoundary(h)) continue;
     FeatureFace face{{}, 1};
     for (std::size_t i = 0; i < 3; ++i) {
-      const int corner = kFaceCorners[static_cast<std::size_t>(localOf(h))][i];
-      face.vertices[i] = prepared.topology.vertex(4 * tetOf(h) + static_cast<Index>(corner));
+      const int corner = lattice::kFaceCorners[static_cast<std::size_t>(adjacency::localOf(h))][i];
+      face.vertices[i] =
+          prepared.topology.vertex(4 * adjacency::tetOf(h) + static_cast<Index>(corner));
     }
     map.features.faces.push_back(face);
   }
-  for (const SingularEdge& edge : prepared.singularities.edges) {
+  for (const igm::SingularEdge& edge : prepared.singularities.edges) {
     if (edge.boundary) map.features.edges.push_back({{edge.vertex0, edge.vertex1}, 1});
   }
 }

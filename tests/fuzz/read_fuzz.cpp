@@ -36,6 +36,7 @@ extern "C" std::size_t LLVMFuzzerMutate(unsigned char* data, std::size_t size, s
 namespace {
 
 using namespace hexhex;
+using namespace hexhex::io;
 
 /// What one allocation may take. The constants hold tables and buffers of fixed size; the factor,
 /// the widest element over its shortest spelling: 96 bytes of a tet's parameters over 32.

@@ -15,7 +15,7 @@
 #include "map_samples.hpp"
 #include "support/error_of.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::moveParameters;
@@ -124,11 +124,13 @@ TEST_P(CheckKind, CountsIsolatedVertices) {
 
 /// Whether a vertex is the middle of a sub-block: it has 12 tets, all in one chart, and none of
 /// them has a boundary face at the vertex.
-bool isCentre(const TetTopology& topology, Index v) {
-  const std::span<const CornerIndex> star = topology.star(v);
-  return star.size() == 12 && std::all_of(star.begin(), star.end(), [&](CornerIndex corner) {
+bool isCentre(const adjacency::TetTopology& topology, Index v) {
+  const std::span<const adjacency::CornerIndex> star = topology.star(v);
+  return star.size() == 12 &&
+         std::all_of(star.begin(), star.end(), [&](adjacency::CornerIndex corner) {
            for (int face = 0; face < 4; ++face) {
-             if (face != localOf(corner) && topology.isBoundary(halfFaceOf(corner / 4, face))) {
+             if (face != adjacency::localOf(corner) &&
+                 topology.isBoundary(adjacency::halfFaceOf(corner / 4, face))) {
                return false;
              }
            }
@@ -254,18 +256,18 @@ struct WallVertex {
 };
 
 std::vector<WallVertex> wallVertices(const TetMap& map, const Prepared& prepared) {
-  const TetTopology& topology = prepared.topology();
+  const adjacency::TetTopology& topology = prepared.topology();
   std::vector<WallVertex> found;
   for (Index v = 0; v < map.points.size(); ++v) {
     if (prepared.singularities().degree(v) != 0) continue;
     WallVertex wall;
-    for (const CornerIndex corner : topology.star(v)) {
-      for (const HalfFace face : {0U, 1U, 2U, 3U}) {
+    for (const adjacency::CornerIndex corner : topology.star(v)) {
+      for (const adjacency::HalfFace face : {0U, 1U, 2U, 3U}) {
         if (face == corner % 4 || !topology.isBoundary(4 * (corner / 4) + face)) continue;
         wall.vertex = v;
         ++wall.faces;
         const TetParameters& u = map.parameters[corner / 4];
-        const std::array<int, 3>& local = kFaceCorners[face];
+        const std::array<int, 3>& local = lattice::kFaceCorners[face];
         const auto at = [&](std::size_t k, std::size_t a) {
           return u[static_cast<std::size_t>(local[k])][a];
         };
@@ -301,7 +303,7 @@ TEST(Check, FindsEveryVertexOffItsWall) {
 TEST(Check, FindsTheBoundaryOffTheLattice) {
   TetMap map = generateSample(SampleKind::Box).map;
   const Prepared before(map);
-  const TetTopology& topology = before.topology();
+  const adjacency::TetTopology& topology = before.topology();
   const std::vector<WallVertex> walls = wallVertices(map, before);
   ASSERT_FALSE(walls.empty());
   const auto& [vertex, axis, faces] = walls.front();
@@ -323,8 +325,8 @@ TEST(Check, FindsTheBoundaryOffTheLattice) {
     }
     ASSERT_EQ(found.place.kind, PlaceKind::Face);
     EXPECT_NE(map.tets[found.place.index][found.place.second], vertex);
-    EXPECT_TRUE(
-        topology.isBoundary(static_cast<HalfFace>(4 * found.place.index + found.place.second)));
+    EXPECT_TRUE(topology.isBoundary(
+        static_cast<adjacency::HalfFace>(4 * found.place.index + found.place.second)));
   }
   EXPECT_EQ(vertices, 1U);
   EXPECT_TRUE(check(map, {.tolerance = 0.11}).valid());
@@ -420,28 +422,28 @@ StarLine lineOfStar(const TetMap& map) {
   const Prepared prepared(map);
   StarLine line;
   bool first = true;
-  std::vector<EdgeCorner> scratch;
+  std::vector<adjacency::EdgeCorner> scratch;
   for (const SingularEdge& edge : prepared.singularities().edges) {
     if (edge.boundary) continue;
-    forEachEdge(prepared.topology(), edge.vertex0, scratch,
-                [&](Index w, std::span<const EdgeCorner> fan) {
-                  if (w != edge.vertex1) return;
-                  for (const EdgeCorner& at : fan) {
-                    const Vec3& p = map.parameters[at.tet][at.corner0];
-                    const Vec3& q = map.parameters[at.tet][at.corner1];
-                    std::size_t along = 0;
-                    while (p[along] == q[along]) ++along;
-                    Vec3 position = p;
-                    position[along] = 0;
-                    if (first) {
-                      line.along = along;
-                      line.position = position;
-                    }
-                    first = false;
-                    line.sameInAllCharts =
-                        line.sameInAllCharts && line.along == along && line.position == position;
-                  }
-                });
+    adjacency::forEachEdge(prepared.topology(), edge.vertex0, scratch,
+                           [&](Index w, std::span<const adjacency::EdgeCorner> fan) {
+                             if (w != edge.vertex1) return;
+                             for (const adjacency::EdgeCorner& at : fan) {
+                               const Vec3& p = map.parameters[at.tet][at.corner0];
+                               const Vec3& q = map.parameters[at.tet][at.corner1];
+                               std::size_t along = 0;
+                               while (p[along] == q[along]) ++along;
+                               Vec3 position = p;
+                               position[along] = 0;
+                               if (first) {
+                                 line.along = along;
+                                 line.position = position;
+                               }
+                               first = false;
+                               line.sameInAllCharts = line.sameInAllCharts && line.along == along &&
+                                                      line.position == position;
+                             }
+                           });
   }
   return line;
 }
@@ -596,4 +598,4 @@ TEST(Check, RealDefectiveMapsHaveDefects) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

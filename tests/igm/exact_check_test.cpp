@@ -14,6 +14,8 @@
 
 namespace hexhex::test {
 
+using namespace igm;
+
 namespace {
 
 constexpr double kTolerance = 1e-2;

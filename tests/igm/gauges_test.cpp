@@ -12,15 +12,15 @@
 
 #include "map_samples.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::Prepared;
 
-Array<Gauge> gaugesOf(const Prepared& prepared, std::size_t blockSize, int threads = 1) {
+Array<lattice::Gauge> gaugesOf(const Prepared& prepared, std::size_t blockSize, int threads = 1) {
   Context context(threads);
   Stage stage(context, "test");
-  Array<Gauge> gauges;
+  Array<lattice::Gauge> gauges;
   withThreads(threads, [&] {
     const LocalParameters parameters(prepared.map().input);
     gauges = computeGauges(prepared.topology(), parameters, stage, blockSize);
@@ -55,17 +55,20 @@ TetMap twice(TetMap map) {
   return map;
 }
 
-bool agree(const Prepared& prepared, const Array<Gauge>& gauges, HalfFace halfFace) {
-  const Index there = tetOf(prepared.topology().mate[halfFace]);
-  return gauges[there] * prepared.transitions().across(halfFace) == gauges[tetOf(halfFace)];
+bool agree(const Prepared& prepared, const Array<lattice::Gauge>& gauges,
+           adjacency::HalfFace halfFace) {
+  const Index there = adjacency::tetOf(prepared.topology().mate[halfFace]);
+  return gauges[there] * prepared.transitions().across(halfFace) ==
+         gauges[adjacency::tetOf(halfFace)];
 }
 
 /// How many parts the faces on which gauges agree connect tets to.
-std::size_t connectedParts(const Prepared& prepared, const Array<Gauge>& gauges) {
-  const Array<HalfFace>& mate = prepared.topology().mate;
+std::size_t connectedParts(const Prepared& prepared, const Array<lattice::Gauge>& gauges) {
+  const Array<adjacency::HalfFace>& mate = prepared.topology().mate;
   DisjointSets agreeing(gauges.size());
-  for (HalfFace h = 0; h < mate.size(); ++h) {
-    if (mate[h] != kNone && agree(prepared, gauges, h)) agreeing.unite(tetOf(h), tetOf(mate[h]));
+  for (adjacency::HalfFace h = 0; h < mate.size(); ++h) {
+    if (mate[h] != kNone && agree(prepared, gauges, h))
+      agreeing.unite(adjacency::tetOf(h), adjacency::tetOf(mate[h]));
   }
   return agreeing.count();
 }
@@ -77,7 +80,7 @@ void expectGoodGauges(const TetMap& map, std::size_t copies) {
   const Prepared prepared(map);
   ASSERT_TRUE(prepared.defects().empty());
   for (const std::size_t blockSize : {std::size_t{500}, kGaugeBlock}) {
-    const Array<Gauge> gauges = gaugesOf(prepared, blockSize);
+    const Array<lattice::Gauge> gauges = gaugesOf(prepared, blockSize);
     EXPECT_EQ(connectedParts(prepared, gauges), copies);
     EXPECT_EQ(gauges, gaugesOf(prepared, blockSize, 3));
   }
@@ -103,10 +106,10 @@ TEST(Gauges, AgreeEverywhereInABox) {
   for (const TetMap& other : {map, shuffled(map, 4)}) {
     const Prepared prepared(other);
     ASSERT_GT(prepared.transitions().nonTrivial, prepared.topology().tetCount());
-    const Array<Gauge> gauges = gaugesOf(prepared, 1000);
-    const Array<HalfFace>& mate = prepared.topology().mate;
+    const Array<lattice::Gauge> gauges = gaugesOf(prepared, 1000);
+    const Array<adjacency::HalfFace>& mate = prepared.topology().mate;
     std::size_t disagreements = 0;
-    for (HalfFace h = 0; h < mate.size(); ++h) {
+    for (adjacency::HalfFace h = 0; h < mate.size(); ++h) {
       disagreements += mate[h] != kNone && !agree(prepared, gauges, h) ? 1 : 0;
     }
     EXPECT_EQ(disagreements, 0U);
@@ -123,14 +126,15 @@ TEST(Gauges, JoinBlocksThatHaveOneTriangleInCommon) {
   Context context(1);
   Stage stage(context, "test");
   const LocalParameters parameters(read.input);
-  const Array<Gauge> gauges = computeGauges(read.topology, parameters, stage, 1);
-  HalfFace shared = 0;
+  const Array<lattice::Gauge> gauges = computeGauges(read.topology, parameters, stage, 1);
+  adjacency::HalfFace shared = 0;
   while (read.topology.mate[shared] == kNone) ++shared;
-  const Transition across =
+  const lattice::Transition across =
       fitTransition(SharedTriangle(read.topology, parameters, shared)).transition;
   EXPECT_FALSE(across.isIdentity());
-  EXPECT_EQ(gauges[tetOf(read.topology.mate[shared])] * across, gauges[tetOf(shared)]);
+  EXPECT_EQ(gauges[adjacency::tetOf(read.topology.mate[shared])] * across,
+            gauges[adjacency::tetOf(shared)]);
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

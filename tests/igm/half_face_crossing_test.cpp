@@ -3,17 +3,17 @@
 
 #include <igm/half_face_crossing.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 TEST(HalfFaceCrossing, KeepsItsRotation) {
-  for (int r = 0; r < Rotation::kCount; ++r) {
+  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
     for (const bool isExact : {false, true}) {
-      const HalfFaceCrossing crossing = HalfFaceCrossing::inner(Rotation(r), isExact);
+      const HalfFaceCrossing crossing = HalfFaceCrossing::inner(lattice::Rotation(r), isExact);
       EXPECT_EQ(crossing.isInexact(), !isExact);
       EXPECT_EQ(crossing.isTrivial(), isExact && r == 0);
       EXPECT_FALSE(crossing.isBoundary());
-      EXPECT_EQ(crossing.rotation(), Rotation(r));
+      EXPECT_EQ(crossing.rotation(), lattice::Rotation(r));
       EXPECT_EQ(crossing.plane(), 0U);
     }
   }
@@ -27,7 +27,7 @@ TEST(HalfFaceCrossing, AtTheBoundaryKeepsItsAxis) {
       EXPECT_FALSE(crossing.isTrivial());
       EXPECT_EQ(crossing.isInexact(), !isConstant);
       EXPECT_EQ(crossing.plane(), 1U << axis);
-      EXPECT_EQ(crossing.rotation(), Rotation());
+      EXPECT_EQ(crossing.rotation(), lattice::Rotation());
     }
   }
 }
@@ -36,13 +36,13 @@ TEST(HalfFaceCrossing, IsTrivialByDefault) {
   const HalfFaceCrossing crossing;
   EXPECT_TRUE(crossing.isTrivial());
   EXPECT_FALSE(crossing.isInexact());
-  EXPECT_EQ(crossing.rotation(), Rotation());
+  EXPECT_EQ(crossing.rotation(), lattice::Rotation());
 }
 
 TEST(HalfFaceCrossing, LeadsToCornersThatAreFoundByTheirVertex) {
   const Tet tet = {7, 3, 0, 9};
-  for (Index i = 0; i < 4; ++i) EXPECT_EQ(localCorner(tet, tet[i]), i);
+  for (Index i = 0; i < 4; ++i) EXPECT_EQ(adjacency::localCorner(tet, tet[i]), i);
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -15,6 +15,8 @@
 
 namespace hexhex::test {
 
+using namespace igm;
+
 /// The preprocessing of a map, in the charts that it has, and what it complains about. The map must
 /// outlive it.
 class Prepared {
@@ -25,10 +27,10 @@ class Prepared {
     withThreads(threads, [&] {
       map_ = prepareMap(view, tolerance, maxScale, context, defects_, charts);
       Stage stage(context, "edges");
-      if (map_.singularities.areKnown()) addStars(map_.topology, stage);
+      if (map_.singularities.areKnown()) adjacency::addStars(map_.topology, stage);
     });
   }
-  [[nodiscard]] const TetTopology& topology() const { return map_.topology; }
+  [[nodiscard]] const adjacency::TetTopology& topology() const { return map_.topology; }
   [[nodiscard]] const Singularities& singularities() const { return map_.singularities; }
   [[nodiscard]] const ExactMap& exact() const { return map_.exact; }
   [[nodiscard]] const Transitions& transitions() const { return map_.exact.transitions; }
@@ -46,7 +48,7 @@ struct Topology {
   Stage stage{context, "test"};
   DefectCollector defects;
   OrientedMap input;
-  TetTopology topology;
+  adjacency::TetTopology topology;
 
   explicit Topology(const TetMapView& map)
       : input(readInput(map, stage, defects)),

@@ -15,7 +15,7 @@
 
 #include "map_samples.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::Prepared;
@@ -29,7 +29,7 @@ struct Survey : test::Topology {
       : Topology(map),
         parameters(input),
         regular(findRegularVertices(topology, parameters, stage)) {
-    addStars(topology, stage);
+    adjacency::addStars(topology, stage);
   }
 };
 
@@ -63,9 +63,9 @@ struct Stars {
 };
 
 /// The sum of dihedral angles around an edge in right angles, by trigonometry.
-double rightAngles(const TetMapView& map, std::span<const EdgeCorner> fan) {
+double rightAngles(const TetMapView& map, std::span<const adjacency::EdgeCorner> fan) {
   double sum = 0;
-  for (const EdgeCorner& at : fan) {
+  for (const adjacency::EdgeCorner& at : fan) {
     const TetParameters& u = map.parameters[at.tet];
     std::vector<Vec3> normals;
     const Vec3 edge = minus(u[at.corner1], u[at.corner0]);
@@ -82,15 +82,16 @@ double rightAngles(const TetMapView& map, std::span<const EdgeCorner> fan) {
 
 /// Everything that being regular promises about edges.
 std::size_t expectRegularEdges(const Survey& survey) {
-  std::vector<EdgeCorner> scratch;
+  std::vector<adjacency::EdgeCorner> scratch;
   std::size_t edges = 0;
   for (Index v = 0; v < survey.topology.pointCount; ++v) {
-    forEachEdge(survey.topology, v, scratch, [&](Index w, std::span<const EdgeCorner> fan) {
-      if (survey.regular.isIrregular[v] != 0 && survey.regular.isIrregular[w] != 0) return;
-      const double regular = boundaryFacesAt(survey.topology, fan) > 0 ? 2 : 4;
-      EXPECT_NEAR(rightAngles(survey.input.view, fan), regular, 1e-6);
-      ++edges;
-    });
+    adjacency::forEachEdge(
+        survey.topology, v, scratch, [&](Index w, std::span<const adjacency::EdgeCorner> fan) {
+          if (survey.regular.isIrregular[v] != 0 && survey.regular.isIrregular[w] != 0) return;
+          const double regular = adjacency::boundaryFacesAt(survey.topology, fan) > 0 ? 2 : 4;
+          EXPECT_NEAR(rightAngles(survey.input.view, fan), regular, 1e-6);
+          ++edges;
+        });
   }
   return edges;
 }
@@ -119,10 +120,10 @@ TEST_P(RegularVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
       if (survey.regular.isIrregular[v] != 0) continue;
       EXPECT_EQ(prepared.singularities().degree(v), 0);
       bool boundary = false;
-      for (const CornerIndex corner : prepared.topology().star(v)) {
+      for (const adjacency::CornerIndex corner : prepared.topology().star(v)) {
         for (int face = 0; face < 4; ++face) {
-          if (face == localOf(corner)) continue;
-          const HalfFace halfFace = halfFaceOf(corner / 4, face);
+          if (face == adjacency::localOf(corner)) continue;
+          const adjacency::HalfFace halfFace = adjacency::halfFaceOf(corner / 4, face);
           boundary = boundary || survey.topology.isBoundary(halfFace);
           EXPECT_FALSE(prepared.transitions().isNonTrivial(halfFace));
         }
@@ -416,4 +417,4 @@ TEST(TetSides, NegativeTetsAreUncertain) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -13,7 +13,7 @@
 
 #include "map_samples.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::Prepared;
@@ -22,21 +22,23 @@ class SanitizeKind : public test::EveryKind {};
 
 bool isInteger(std::int64_t coordinate, std::int64_t unit) { return coordinate % unit == 0; }
 
-const LatticePoint& cornerOf(const ExactMap& map, Index tet, int corner) {
+const lattice::LatticePoint& cornerOf(const ExactMap& map, Index tet, int corner) {
   return map.corners[tet][static_cast<std::size_t>(corner)];
 }
 
 /// (IGM1) on inner faces, without any tolerance.
-std::size_t openFaces(const TetTopology& topology, const ExactMap& map) {
+std::size_t openFaces(const adjacency::TetTopology& topology, const ExactMap& map) {
   std::size_t count = 0;
-  for (HalfFace here = 0; here < topology.mate.size(); ++here) {
-    const HalfFace there = topology.mate[here];
+  for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
+    const adjacency::HalfFace there = topology.mate[here];
     if (there == kNone) continue;
     bool open = false;
-    for (const int corner : kFaceCorners[here % 4]) {
-      const Index vertex = topology.vertex(4 * tetOf(here) + static_cast<Index>(corner));
-      open = open || map.transitions.across(here)(cornerOf(map, tetOf(here), corner), map.unit) !=
-                         cornerOf(map, tetOf(there), topology.localCorner(tetOf(there), vertex));
+    for (const int corner : lattice::kFaceCorners[here % 4]) {
+      const Index vertex = topology.vertex(4 * adjacency::tetOf(here) + static_cast<Index>(corner));
+      open = open || map.transitions.across(here)(cornerOf(map, adjacency::tetOf(here), corner),
+                                                  map.unit) !=
+                         cornerOf(map, adjacency::tetOf(there),
+                                  topology.localCorner(adjacency::tetOf(there), vertex));
     }
     count += open ? 1 : 0;
   }
@@ -44,16 +46,17 @@ std::size_t openFaces(const TetTopology& topology, const ExactMap& map) {
 }
 
 /// (IGM2): boundary triangles that are on no integer plane.
-std::size_t boundaryOffPlanes(const TetTopology& topology, const ExactMap& map) {
+std::size_t boundaryOffPlanes(const adjacency::TetTopology& topology, const ExactMap& map) {
   std::size_t count = 0;
-  for (HalfFace here = 0; here < topology.mate.size(); ++here) {
+  for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
     if (!topology.isBoundary(here)) continue;
-    const std::array<int, 3>& face = kFaceCorners[here % 4];
+    const std::array<int, 3>& face = lattice::kFaceCorners[here % 4];
     bool onPlane = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::int64_t x = cornerOf(map, tetOf(here), face[0])[k];
-      onPlane = onPlane || (isInteger(x, map.unit) && cornerOf(map, tetOf(here), face[1])[k] == x &&
-                            cornerOf(map, tetOf(here), face[2])[k] == x);
+      const std::int64_t x = cornerOf(map, adjacency::tetOf(here), face[0])[k];
+      onPlane = onPlane ||
+                (isInteger(x, map.unit) && cornerOf(map, adjacency::tetOf(here), face[1])[k] == x &&
+                 cornerOf(map, adjacency::tetOf(here), face[2])[k] == x);
     }
     count += onPlane ? 0 : 1;
   }
@@ -64,8 +67,8 @@ std::size_t boundaryOffPlanes(const TetTopology& topology, const ExactMap& map) 
 std::size_t singularEdgesOffLines(const Singularities& singularities, const ExactMap& map) {
   std::size_t count = 0;
   for (const SingularEdge& edge : singularities.edges) {
-    const LatticePoint& p = cornerOf(map, edge.tet, edge.corner0);
-    const LatticePoint& q = cornerOf(map, edge.tet, edge.corner1);
+    const lattice::LatticePoint& p = cornerOf(map, edge.tet, edge.corner0);
+    const lattice::LatticePoint& q = cornerOf(map, edge.tet, edge.corner1);
     int onPlanes = 0;
     for (std::size_t k = 0; k < 3; ++k) onPlanes += p[k] == q[k] && isInteger(p[k], map.unit);
     count += onPlanes == 2 ? 0 : 1;
@@ -74,13 +77,13 @@ std::size_t singularEdgesOffLines(const Singularities& singularities, const Exac
 }
 
 /// (IGM3): corners at singular nodes that are on no integer point.
-std::size_t nodesOffPoints(const TetTopology& topology, const Singularities& singularities,
-                           const ExactMap& map) {
+std::size_t nodesOffPoints(const adjacency::TetTopology& topology,
+                           const Singularities& singularities, const ExactMap& map) {
   std::size_t count = 0;
   for (Index v = 0; v < topology.pointCount; ++v) {
     if (!singularities.isNode(v)) continue;
-    for (const CornerIndex corner : topology.star(v)) {
-      const LatticePoint& p = cornerOf(map, corner / 4, localOf(corner));
+    for (const adjacency::CornerIndex corner : topology.star(v)) {
+      const lattice::LatticePoint& p = cornerOf(map, corner / 4, adjacency::localOf(corner));
       const bool onPoint =
           std::all_of(p.begin(), p.end(), [&](std::int64_t x) { return isInteger(x, map.unit); });
       count += onPoint ? 0 : 1;
@@ -95,16 +98,16 @@ void expectExact(const Prepared& prepared, const ExactMap& map) {
   EXPECT_EQ(singularEdgesOffLines(prepared.singularities(), map), 0U);
   EXPECT_EQ(nodesOffPoints(prepared.topology(), prepared.singularities(), map), 0U);
   // Where possible, tets were found positive in floating point.
-  for (const LatticeTet& tet : map.corners) {
-    EXPECT_GT(orientationDeterminant(tet[0], tet[1], tet[2], tet[3]).sign(), 0);
+  for (const lattice::LatticeTet& tet : map.corners) {
+    EXPECT_GT(lattice::orientationDeterminant(tet[0], tet[1], tet[2], tet[3]).sign(), 0);
   }
 }
 
 /// The volume was summed over faces.
 void expectVolumeOfTets(const ExactMap& map) {
-  Int192 difference = -map.sixfoldVolume;
-  for (const LatticeTet& tet : map.corners) {
-    difference += orientationDeterminant(tet[0], tet[1], tet[2], tet[3]);
+  lattice::Int192 difference = -map.sixfoldVolume;
+  for (const lattice::LatticeTet& tet : map.corners) {
+    difference += lattice::orientationDeterminant(tet[0], tet[1], tet[2], tet[3]);
   }
   EXPECT_EQ(difference.sign(), 0);
 }
@@ -303,4 +306,4 @@ TEST(Sanitize, ScaleThatDoesNotFitIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -8,7 +8,7 @@
 #include "map_samples.hpp"
 #include "support/error_of.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::Prepared;
@@ -60,9 +60,10 @@ TEST_P(SingularitiesOfKind, AreListedInOrderWithTheirCorners) {
     EXPECT_LT(edges[e].vertex0, edges[e].vertex1);
     EXPECT_EQ(map.tets[edges[e].tet][edges[e].corner0], edges[e].vertex0);
     EXPECT_EQ(map.tets[edges[e].tet][edges[e].corner1], edges[e].vertex1);
-    EXPECT_EQ(edges[e].tet, ownerTet(prepared.topology(), edges[e].tet,
-                                     static_cast<CornerMask>(cornerBit(edges[e].corner0) |
-                                                             cornerBit(edges[e].corner1))));
+    EXPECT_EQ(edges[e].tet, adjacency::ownerTet(prepared.topology(), edges[e].tet,
+                                                static_cast<lattice::CornerMask>(
+                                                    lattice::cornerBit(edges[e].corner0) |
+                                                    lattice::cornerBit(edges[e].corner1))));
     if (e == 0) continue;
     EXPECT_LT(std::pair(edges[e - 1].vertex0, edges[e - 1].vertex1),
               std::pair(edges[e].vertex0, edges[e].vertex1));
@@ -128,13 +129,15 @@ TEST(Singularities, GivenValenceIsBelieved) {
   const TetMap map = generateSample(SampleKind::Box).map;
   const Prepared before(map);
   std::vector<EdgeValence> offsets = offsetsOf(before.singularities());
-  const TetTopology& topology = before.topology();
-  std::vector<EdgeCorner> scratch;
+  const adjacency::TetTopology& topology = before.topology();
+  std::vector<adjacency::EdgeCorner> scratch;
   std::vector<EdgeValence> inner;
   for (Index v = 0; v < map.points.size() && inner.empty(); ++v) {
-    forEachEdge(topology, v, scratch, [&](Index w, std::span<const EdgeCorner> fan) {
-      if (inner.empty() && boundaryFacesAt(topology, fan) == 0) inner.push_back({v, w, 1});
-    });
+    adjacency::forEachEdge(topology, v, scratch,
+                           [&](Index w, std::span<const adjacency::EdgeCorner> fan) {
+                             if (inner.empty() && adjacency::boundaryFacesAt(topology, fan) == 0)
+                               inner.push_back({v, w, 1});
+                           });
   }
   ASSERT_EQ(inner.size(), 1U);
   offsets.push_back(inner[0]);
@@ -192,4 +195,4 @@ TEST(Singularities, NodesAreWhereHandsCountThem) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -16,17 +16,17 @@
 
 #include "map_samples.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::identityMap;
 using test::Prepared;
 
 /// The vertices of a simplex of a tet, ascending.
-std::vector<Index> verticesOf(const Tet& tet, CornerMask simplex) {
+std::vector<Index> verticesOf(const Tet& tet, lattice::CornerMask simplex) {
   std::vector<Index> vertices;
   for (int i = 0; i < 4; ++i) {
-    if (contains(simplex, i)) vertices.push_back(tet[static_cast<std::size_t>(i)]);
+    if (lattice::contains(simplex, i)) vertices.push_back(tet[static_cast<std::size_t>(i)]);
   }
   std::sort(vertices.begin(), vertices.end());
   return vertices;
@@ -36,7 +36,7 @@ std::vector<Index> verticesOf(const Tet& tet, CornerMask simplex) {
 std::map<std::vector<Index>, std::vector<Index>> tetsBySimplex(const std::vector<Tet>& tets) {
   std::map<std::vector<Index>, std::vector<Index>> result;
   for (Index t = 0; t < tets.size(); ++t) {
-    for (CornerMask simplex = 1; simplex <= kWholeTet; ++simplex) {
+    for (lattice::CornerMask simplex = 1; simplex <= lattice::kWholeTet; ++simplex) {
       result[verticesOf(tets[t], simplex)].push_back(t);
     }
   }
@@ -54,20 +54,23 @@ class TopologyOfKind : public test::EveryKind {};
 TEST_P(TopologyOfKind, MatesAreTheTwoTetsAtATriangle) {
   const TetMap map = sampleOf(kind()).map;
   const Prepared prepared(map);
-  const TetTopology& topology = prepared.topology();
+  const adjacency::TetTopology& topology = prepared.topology();
   const auto simplices = tetsBySimplex(map.tets);
   ASSERT_EQ(topology.mate.size(), 4 * map.tets.size());
-  for (HalfFace here = 0; here < topology.mate.size(); ++here) {
-    const Index tet = tetOf(here);
-    const std::vector<Index> triangle = verticesOf(map.tets[tet], faceMask(localOf(here)));
+  for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
+    const Index tet = adjacency::tetOf(here);
+    const std::vector<Index> triangle =
+        verticesOf(map.tets[tet], lattice::faceMask(adjacency::localOf(here)));
     const std::vector<Index>& around = simplices.at(triangle);
-    const HalfFace there = topology.mate[here];
+    const adjacency::HalfFace there = topology.mate[here];
     ASSERT_EQ(there == kNone, around.size() == 1);
     ASSERT_EQ(topology.isBoundary(here), around.size() == 1);
     if (there == kNone) continue;
     EXPECT_EQ(topology.mate[there], here);
-    EXPECT_EQ(tetOf(there), around[0] == tet ? around[1] : around[0]);
-    EXPECT_EQ(verticesOf(map.tets[tetOf(there)], faceMask(localOf(there))), triangle);
+    EXPECT_EQ(adjacency::tetOf(there), around[0] == tet ? around[1] : around[0]);
+    EXPECT_EQ(
+        verticesOf(map.tets[adjacency::tetOf(there)], lattice::faceMask(adjacency::localOf(there))),
+        triangle);
   }
 }
 
@@ -77,7 +80,7 @@ TEST_P(TopologyOfKind, StarsAreCompleteAndSorted) {
   const auto simplices = tetsBySimplex(map.tets);
   for (Index v = 0; v < map.points.size(); ++v) {
     std::vector<Index> tets;
-    for (const CornerIndex corner : prepared.topology().star(v)) {
+    for (const adjacency::CornerIndex corner : prepared.topology().star(v)) {
       EXPECT_EQ(prepared.topology().vertex(corner), v);
       tets.push_back(corner / 4);
     }
@@ -98,36 +101,37 @@ TEST_P(TopologyOfKind, EdgesAreCountedOnce) {
   const TetMap map = sampleOf(kind()).map;
   Context context;
   Stage stage(context, "test");
-  EXPECT_EQ(countEdges(Prepared(map).topology(), stage), edgesOf(map).size());
+  EXPECT_EQ(adjacency::countEdges(Prepared(map).topology(), stage), edgesOf(map).size());
 }
 
 TEST_P(TopologyOfKind, FansOfEdgesAreComplete) {
   const TetMap map = sampleOf(kind()).map;
   const Prepared prepared(map);
-  const TetTopology& topology = prepared.topology();
+  const adjacency::TetTopology& topology = prepared.topology();
   const auto simplices = tetsBySimplex(map.tets);
   const std::vector<std::array<Index, 2>> edges = edgesOf(map);
-  std::vector<EdgeCorner> scratch;
+  std::vector<adjacency::EdgeCorner> scratch;
   std::size_t edge = 0;
   for (Index v = 0; v < map.points.size(); ++v) {
-    forEachEdge(topology, v, scratch, [&](Index w, std::span<const EdgeCorner> fan) {
-      EXPECT_EQ((std::array<Index, 2>{v, w}), edges.at(edge++));
-      std::vector<Index> tets;
-      std::size_t boundaryFaces = 0;
-      for (const EdgeCorner& at : fan) {
-        EXPECT_EQ(at.other, w);
-        EXPECT_EQ(map.tets[at.tet][at.corner0], v);
-        EXPECT_EQ(map.tets[at.tet][at.corner1], w);
-        tets.push_back(at.tet);
-        for (int face = 0; face < 4; ++face) {
-          if (face == at.corner0 || face == at.corner1) continue;
-          const auto triangle = verticesOf(map.tets[at.tet], faceMask(face));
-          boundaryFaces += simplices.at(triangle).size() == 1 ? 1 : 0;
-        }
-      }
-      EXPECT_EQ(tets, simplices.at({v, w}));
-      EXPECT_EQ(boundaryFacesAt(topology, fan), boundaryFaces);
-    });
+    adjacency::forEachEdge(
+        topology, v, scratch, [&](Index w, std::span<const adjacency::EdgeCorner> fan) {
+          EXPECT_EQ((std::array<Index, 2>{v, w}), edges.at(edge++));
+          std::vector<Index> tets;
+          std::size_t boundaryFaces = 0;
+          for (const adjacency::EdgeCorner& at : fan) {
+            EXPECT_EQ(at.other, w);
+            EXPECT_EQ(map.tets[at.tet][at.corner0], v);
+            EXPECT_EQ(map.tets[at.tet][at.corner1], w);
+            tets.push_back(at.tet);
+            for (int face = 0; face < 4; ++face) {
+              if (face == at.corner0 || face == at.corner1) continue;
+              const auto triangle = verticesOf(map.tets[at.tet], lattice::faceMask(face));
+              boundaryFaces += simplices.at(triangle).size() == 1 ? 1 : 0;
+            }
+          }
+          EXPECT_EQ(tets, simplices.at({v, w}));
+          EXPECT_EQ(adjacency::boundaryFacesAt(topology, fan), boundaryFaces);
+        });
   }
   EXPECT_EQ(edge, edges.size());
 }
@@ -137,10 +141,10 @@ TEST_P(TopologyOfKind, OwnerIsTheSmallestTet) {
   const Prepared prepared(map);
   const auto simplices = tetsBySimplex(map.tets);
   for (Index t = 0; t < map.tets.size(); ++t) {
-    for (CornerMask simplex = 1; simplex <= kWholeTet; ++simplex) {
+    for (lattice::CornerMask simplex = 1; simplex <= lattice::kWholeTet; ++simplex) {
       const Index owner = simplices.at(verticesOf(map.tets[t], simplex)).front();
-      EXPECT_EQ(ownerTet(prepared.topology(), t, simplex), owner);
-      EXPECT_EQ(ownsSimplex(prepared.topology(), t, simplex), owner == t);
+      EXPECT_EQ(adjacency::ownerTet(prepared.topology(), t, simplex), owner);
+      EXPECT_EQ(adjacency::ownsSimplex(prepared.topology(), t, simplex), owner == t);
     }
   }
 }
@@ -148,16 +152,17 @@ TEST_P(TopologyOfKind, OwnerIsTheSmallestTet) {
 TEST_P(TopologyOfKind, SimplicesOfAFaceAreThoseOfTheNeighbour) {
   const TetMap map = sampleOf(kind()).map;
   const Prepared prepared(map);
-  const TetTopology& topology = prepared.topology();
-  for (HalfFace here = 0; here < topology.mate.size(); ++here) {
+  const adjacency::TetTopology& topology = prepared.topology();
+  for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
     if (topology.isBoundary(here)) continue;
-    const CornerMask face = faceMask(localOf(here));
-    const Index there = tetOf(topology.mate[here]);
-    for (CornerMask simplex = 1; simplex <= face; ++simplex) {
+    const lattice::CornerMask face = lattice::faceMask(adjacency::localOf(here));
+    const Index there = adjacency::tetOf(topology.mate[here]);
+    for (lattice::CornerMask simplex = 1; simplex <= face; ++simplex) {
       if ((simplex & face) != simplex) continue;
-      const CornerMask across = acrossFace(topology, here, simplex);
-      ASSERT_EQ(verticesOf(map.tets[there], across), verticesOf(map.tets[tetOf(here)], simplex));
-      ASSERT_EQ(across, topology.translated(simplex, tetOf(here), there));
+      const lattice::CornerMask across = adjacency::acrossFace(topology, here, simplex);
+      ASSERT_EQ(verticesOf(map.tets[there], across),
+                verticesOf(map.tets[adjacency::tetOf(here)], simplex));
+      ASSERT_EQ(across, topology.translated(simplex, adjacency::tetOf(here), there));
     }
   }
 }
@@ -272,16 +277,17 @@ TEST(Topology, BallsThatShareAnInnerVertex) {
   const Prepared before(box);
   Index inner = 0;
   const auto onBoundary = [&](Index v) {
-    return std::any_of(before.topology().star(v).begin(), before.topology().star(v).end(),
-                       [&](CornerIndex corner) {
-                         for (int face = 0; face < 4; ++face) {
-                           if (face != localOf(corner) &&
-                               before.topology().isBoundary(halfFaceOf(corner / 4, face))) {
-                             return true;
-                           }
-                         }
-                         return false;
-                       });
+    return std::any_of(
+        before.topology().star(v).begin(), before.topology().star(v).end(),
+        [&](adjacency::CornerIndex corner) {
+          for (int face = 0; face < 4; ++face) {
+            if (face != adjacency::localOf(corner) &&
+                before.topology().isBoundary(adjacency::halfFaceOf(corner / 4, face))) {
+              return true;
+            }
+          }
+          return false;
+        });
   };
   while (onBoundary(inner)) ++inner;
   TetMap map = box;
@@ -322,7 +328,7 @@ TEST(Topology, FastAndSlowChecksAgree) {
     Context context;
     Stage stage(context, "test");
     DefectCollector slow;
-    TetTopology topology;
+    adjacency::TetTopology topology;
     topology.tets = map.tets;
     topology.pointCount = map.points.size();
     collectTopologyDefects(topology, stage, slow);
@@ -351,18 +357,18 @@ TEST(Topology, FastAndSlowChecksAgree) {
 }
 
 TEST(CornerOrder, ListsTheCornersOfEachFaceByVertex) {
-  std::set<CornerOrder> orders;
+  std::set<adjacency::CornerOrder> orders;
   Tet tet = {2, 3, 5, 0xfffffff0};
   do {
-    const CornerOrder order = cornerOrder(tet);
-    ASSERT_LT(order, kCornerOrders);
+    const adjacency::CornerOrder order = adjacency::cornerOrder(tet);
+    ASSERT_LT(order, adjacency::kCornerOrders);
     orders.insert(order);
     for (std::size_t face = 0; face < 4; ++face) {
       Tet expected = tet;
       expected[face] = kNone;
       std::sort(expected.begin(), expected.end());
       for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_EQ(tet[kAscendingFaceCorners[order][face][k]], expected[k]);
+        EXPECT_EQ(tet[adjacency::kAscendingFaceCorners[order][face][k]], expected[k]);
       }
     }
   } while (std::next_permutation(tet.begin(), tet.end()));
@@ -385,11 +391,12 @@ TEST(Topology, VertexWithManyTets) {
   const Prepared prepared(map);
   EXPECT_FALSE(prepared.defects().has(ErrorCode::NonManifoldVertex));
   for (Index t = 0; t < kCorners; ++t) {
-    EXPECT_EQ(prepared.topology().mate[halfFaceOf(t, 1)], halfFaceOf((t + 1) % kCorners, 2));
-    EXPECT_EQ(prepared.topology().mate[halfFaceOf(t, 2)],
-              halfFaceOf((t + kCorners - 1) % kCorners, 1));
-    EXPECT_TRUE(prepared.topology().isBoundary(halfFaceOf(t, 0)));
-    EXPECT_TRUE(prepared.topology().isBoundary(halfFaceOf(t, 3)));
+    EXPECT_EQ(prepared.topology().mate[adjacency::halfFaceOf(t, 1)],
+              adjacency::halfFaceOf((t + 1) % kCorners, 2));
+    EXPECT_EQ(prepared.topology().mate[adjacency::halfFaceOf(t, 2)],
+              adjacency::halfFaceOf((t + kCorners - 1) % kCorners, 1));
+    EXPECT_TRUE(prepared.topology().isBoundary(adjacency::halfFaceOf(t, 0)));
+    EXPECT_TRUE(prepared.topology().isBoundary(adjacency::halfFaceOf(t, 3)));
   }
 }
 
@@ -399,7 +406,7 @@ TEST(Topology, TetThatListsItsCornersInReverse) {
   Index inner = 0;
   const auto touchesBoundary = [&](Index t) {
     return std::any_of(&before.topology().mate[4 * t], &before.topology().mate[4 * t] + 4,
-                       [](HalfFace mate) { return mate == kNone; });
+                       [](adjacency::HalfFace mate) { return mate == kNone; });
   };
   while (touchesBoundary(inner)) ++inner;
   std::swap(map.tets[inner][2], map.tets[inner][3]);
@@ -450,4 +457,4 @@ TEST(Topology, NoTets) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -8,7 +8,7 @@
 #include <base/vector3.hpp>
 #include <igm/transition_fit.hpp>
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 /// Small multiples of 1/8, so that ties, zeros and parallel vectors are frequent.
@@ -18,16 +18,18 @@ Vec3 coarseVector() {
   return v;
 }
 
-Rotation anyRotation() { return Rotation(*rc::gen::inRange(0, Rotation::kCount)); }
+lattice::Rotation anyRotation() {
+  return lattice::Rotation(*rc::gen::inRange(0, lattice::Rotation::kCount));
+}
 
-VectorPair rotated(Rotation rotation, const VectorPair& vectors) {
+VectorPair rotated(lattice::Rotation rotation, const VectorPair& vectors) {
   return {rotation(vectors[0]), rotation(vectors[1])};
 }
 
 TEST(BestRotation, IsTheOneThatWasApplied) {
   const bool passed = rc::check([] {
     const VectorPair vectors = {coarseVector(), coarseVector()};
-    const Rotation rotation = anyRotation();
+    const lattice::Rotation rotation = anyRotation();
     const VectorPair images = rotated(rotation, vectors);
     const bool isParallel = cross(vectors[0], vectors[1]) == Vec3{};
     // If vectors are parallel, several rotations fit.
@@ -59,8 +61,8 @@ TEST(BestRotation, IsTheBestOfAll) {
 }
 
 TEST(BestRotation, OfVectorsThatVanishIsTheIdentity) {
-  EXPECT_EQ(bestRotation({Vec3{}, Vec3{}}, {Vec3{}, Vec3{}}), Rotation());
+  EXPECT_EQ(bestRotation({Vec3{}, Vec3{}}, {Vec3{}, Vec3{}}), lattice::Rotation());
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -14,7 +14,7 @@
 
 #include "map_samples.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::Prepared;
@@ -39,16 +39,17 @@ std::vector<SampleOptions> chartOptions() {
 }
 
 /// Largest distance between a shared corner in the neighbour's chart and its image there.
-double worstImage(const TetTopology& topology, const LocalParameters& parameters,
+double worstImage(const adjacency::TetTopology& topology, const LocalParameters& parameters,
                   const Transitions& transitions) {
   double worst = 0;
-  for (HalfFace here = 0; here < topology.mate.size(); ++here) {
-    const HalfFace there = topology.mate[here];
+  for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
+    const adjacency::HalfFace there = topology.mate[here];
     if (there == kNone) continue;
-    for (const int corner : kFaceCorners[here % 4]) {
-      const Index vertex = topology.vertex(4 * tetOf(here) + static_cast<Index>(corner));
-      const Vec3 image = transitions.across(here)(parameters(tetOf(here), corner), 1.0);
-      const Vec3 actual = parameters(tetOf(there), topology.localCorner(tetOf(there), vertex));
+    for (const int corner : lattice::kFaceCorners[here % 4]) {
+      const Index vertex = topology.vertex(4 * adjacency::tetOf(here) + static_cast<Index>(corner));
+      const Vec3 image = transitions.across(here)(parameters(adjacency::tetOf(here), corner), 1.0);
+      const Vec3 actual = parameters(adjacency::tetOf(there),
+                                     topology.localCorner(adjacency::tetOf(there), vertex));
       for (std::size_t k = 0; k < 3; ++k) {
         worst = std::max(worst, std::abs(image[k] - actual[k]));
       }
@@ -72,12 +73,12 @@ TEST_P(TransitionsOfKind, OfMatesAreInverse) {
   for (const SampleOptions& options : chartOptions()) {
     const TetMap map = generateSample(kind(), options).map;
     const Prepared prepared(map);
-    const TetTopology& topology = prepared.topology();
+    const adjacency::TetTopology& topology = prepared.topology();
     const Transitions& transitions = prepared.transitions();
     std::uint64_t count = 0;
     std::uint64_t innerFaces = 0;
-    for (HalfFace here = 0; here < topology.mate.size(); ++here) {
-      const HalfFace there = topology.mate[here];
+    for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
+      const adjacency::HalfFace there = topology.mate[here];
       EXPECT_EQ(transitions.isNonTrivial(here), !transitions.across(here).isIdentity());
       if (there == kNone) {
         EXPECT_FALSE(transitions.isNonTrivial(here));
@@ -93,11 +94,11 @@ TEST_P(TransitionsOfKind, OfMatesAreInverse) {
 }
 
 /// AlgoHex's index of every rotation of this library.
-std::array<std::int8_t, Rotation::kCount> algoHexIndices() {
-  std::array<std::int8_t, Rotation::kCount> indices{};
+std::array<std::int8_t, lattice::Rotation::kCount> algoHexIndices() {
+  std::array<std::int8_t, lattice::Rotation::kCount> indices{};
   indices.fill(-1);
-  for (std::int8_t index = 0; index < Rotation::kCount; ++index) {
-    indices[static_cast<std::size_t>(rotationFromAlgoHex(index).index())] = index;
+  for (std::int8_t index = 0; index < lattice::Rotation::kCount; ++index) {
+    indices[static_cast<std::size_t>(lattice::rotationFromAlgoHex(index).index())] = index;
   }
   return indices;
 }
@@ -112,7 +113,7 @@ TEST_P(TransitionsOfKind, GivenRotationsAreTheComputedOnes) {
   std::vector<std::array<std::int8_t, 4>> rotations(map.tets.size());
   for (std::size_t t = 0; t < map.tets.size(); ++t) {
     for (int face = 0; face < 4; ++face) {
-      const HalfFace halfFace = halfFaceOf(static_cast<Index>(t), face);
+      const adjacency::HalfFace halfFace = adjacency::halfFaceOf(static_cast<Index>(t), face);
       // Some remain unknown.
       rotations[t][static_cast<std::size_t>(face)] =
           halfFace % 7 == 0 ? std::int8_t{-1}
@@ -179,19 +180,20 @@ void addNoise(TetMap& map, double noise) {
 }
 
 /// Compares the transition across a half-face with what its corners say.
-void expectBest(const TetTopology& topology, const Transitions& transitions,
-                const LocalParameters& parameters, HalfFace here) {
-  const HalfFace there = topology.mate[here];
-  const SharedFace face(topology, here, there);
+void expectBest(const adjacency::TetTopology& topology, const Transitions& transitions,
+                const LocalParameters& parameters, adjacency::HalfFace here) {
+  const adjacency::HalfFace there = topology.mate[here];
+  const adjacency::SharedFace face(topology, here, there);
   std::array<Vec3, 3> u{};
   std::array<Vec3, 3> v{};
   for (std::size_t k = 0; k < 3; ++k) {
-    ASSERT_EQ(topology.tets[tetOf(here)][face.here(k)], topology.tets[tetOf(there)][face.there(k)]);
-    u[k] = parameters.at(tetOf(here), face.here(k));
-    v[k] = parameters.at(tetOf(there), face.there(k));
+    ASSERT_EQ(topology.tets[adjacency::tetOf(here)][face.here(k)],
+              topology.tets[adjacency::tetOf(there)][face.there(k)]);
+    u[k] = parameters.at(adjacency::tetOf(here), face.here(k));
+    v[k] = parameters.at(adjacency::tetOf(there), face.there(k));
   }
-  const Rotation rotation = bestRotationOfAll({minus(u[1], u[0]), minus(u[2], u[0])},
-                                              {minus(v[1], v[0]), minus(v[2], v[0])});
+  const lattice::Rotation rotation = bestRotationOfAll({minus(u[1], u[0]), minus(u[2], u[0])},
+                                                       {minus(v[1], v[0]), minus(v[2], v[0])});
   ASSERT_EQ(transitions.across(here).rotation, rotation);
   bool isExact = true;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -219,10 +221,10 @@ TEST(Transitions, AreTheBestRotationAndTheMeanTranslation) {
     TetMap map = generateSample(SampleKind::Cylinder, options).map;
     addNoise(map, noise);
     const Prepared prepared(map, 0.2);
-    const TetTopology& topology = prepared.topology();
+    const adjacency::TetTopology& topology = prepared.topology();
     if (prepared.transitions().ofFace.empty()) continue;  // a defect of the mesh in the map
     const LocalParameters parameters(prepared.map().input);
-    for (HalfFace here = 0; here < topology.mate.size(); ++here) {
+    for (adjacency::HalfFace here = 0; here < topology.mate.size(); ++here) {
       if (topology.mate[here] == kNone || topology.mate[here] < here) continue;
       ASSERT_NO_FATAL_FAILURE(expectBest(topology, prepared.transitions(), parameters, here));
     }
@@ -236,7 +238,7 @@ TEST(Transitions, ResidualAboveTheToleranceIsReported) {
   Index tet = 0;
   const auto isInner = [&](Index t) {
     for (int face = 0; face < 4; ++face) {
-      if (before.topology().isBoundary(halfFaceOf(t, face))) return false;
+      if (before.topology().isBoundary(adjacency::halfFaceOf(t, face))) return false;
     }
     return true;
   };
@@ -267,4 +269,4 @@ TEST(Transitions, HugeParametersAreTooLarge) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

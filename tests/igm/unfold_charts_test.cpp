@@ -10,7 +10,7 @@
 
 #include "map_samples.hpp"
 
-namespace hexhex {
+namespace hexhex::igm {
 namespace {
 
 using test::Prepared;
@@ -19,7 +19,7 @@ using test::Prepared;
 struct Unfolded : test::Topology {
   OrientedMap given;
   bool needed;
-  Array<Gauge> gauges;
+  Array<lattice::Gauge> gauges;
 
   explicit Unfolded(const TetMapView& map)
       : Topology(map),
@@ -33,8 +33,8 @@ struct Unfolded : test::Topology {
   [[nodiscard]] std::size_t unequalFaces() const {
     const LocalParameters parameters(input);
     std::size_t count = 0;
-    for (HalfFace h = 0; h < topology.mate.size(); ++h) {
-      const HalfFace mate = topology.mate[h];
+    for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+      const adjacency::HalfFace mate = topology.mate[h];
       if (mate != kNone && h < mate && !agree(topology, parameters, h)) ++count;
     }
     return count;
@@ -44,11 +44,11 @@ struct Unfolded : test::Topology {
 /// Whether a rotation and an integer translation carry four corners over without rounding, as
 /// trying all rotations tells.
 bool areCongruent(const TetParameters& from, const TetParameters& to) {
-  for (int r = 0; r < Rotation::kCount; ++r) {
+  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
     bool fits = true;
     std::array<long double, 3> shift{};
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      const Vec3 turned = Rotation(r)(from[corner]);
+      const Vec3 turned = lattice::Rotation(r)(from[corner]);
       for (std::size_t k = 0; k < 3; ++k) {
         // Exact: samples have 20 bits before and 30 behind the point.
         const long double difference = static_cast<long double>(to[corner][k]) - turned[k];
@@ -204,4 +204,4 @@ TEST(UnfoldCharts, KeepTetsThatWouldBeRounded) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::igm

@@ -16,6 +16,8 @@
 
 namespace hexhex::test {
 
+using namespace improvement;
+
 namespace {
 
 using hexhex::testing::Random;

@@ -433,7 +433,7 @@ double distanceToBoundary(const HexMesh& mesh, std::span<const Quad> quads, cons
 std::vector<Quad> boundaryOf(const HexMesh& mesh) {
   std::map<Quad, std::vector<Quad>> quads;
   for (const Hex& cell : mesh.cells) {
-    for (const auto& face : kHexFaces) {
+    for (const auto& face : adjacency::kHexFaces) {
       const Quad quad = {cell[face[0]], cell[face[1]], cell[face[2]], cell[face[3]]};
       Quad key = quad;
       std::sort(key.begin(), key.end());

@@ -14,6 +14,8 @@
 
 namespace hexhex::test {
 
+using namespace improvement;
+
 namespace {
 
 using hexhex::testing::Random;

@@ -13,6 +13,8 @@
 
 namespace hexhex::test {
 
+using namespace improvement;
+
 namespace {
 
 using hexhex::testing::Random;
@@ -28,12 +30,12 @@ std::array<Vec3, 8> randomCell(Random& random, double amount) {
   return corners;
 }
 
-CellMeasures measured(const std::array<Vec3, 8>& corners) {
+mesh::CellMeasures measured(const std::array<Vec3, 8>& corners) {
   std::array<Vec3, 8> points;
-  for (std::size_t place = 0; place < 8; ++place) points[kVtkCorner[place]] = corners[place];
+  for (std::size_t place = 0; place < 8; ++place) points[mesh::kVtkCorner[place]] = corners[place];
   const Hex cell = {0, 1, 2, 3, 4, 5, 6, 7};
-  CellMeasures measures;
-  measuresOfCells().back()(points.data(), std::span(&cell, 1), measures);
+  mesh::CellMeasures measures;
+  mesh::measuresOfCells().back()(points.data(), std::span(&cell, 1), measures);
   return measures;
 }
 

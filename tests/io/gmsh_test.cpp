@@ -17,6 +17,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 HexMesh parse(const std::string& text) {

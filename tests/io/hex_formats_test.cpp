@@ -16,6 +16,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 void write(const HexMesh& mesh, const std::filesystem::path& file, std::string_view format = {},

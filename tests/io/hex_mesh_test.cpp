@@ -14,6 +14,8 @@
 #include <io/vtk/vtk.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 HexMesh mesh(const std::string& text) {

@@ -10,6 +10,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 // Lines 1 to 6: four vertices; line 7: one tet.

@@ -15,6 +15,8 @@
 #include <io/vtk/vtk.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 TetMap vtu(const std::string& text, std::string_view array = "igm") {

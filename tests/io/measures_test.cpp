@@ -228,10 +228,12 @@ Measures expected(const LagrangeMesh& mesh, double& smallest) {
     add("vertices", nameOf("point", vertex.tag), 0);
   }
   for (const FeatureEdge& edge : mesh.features.edges) {
-    add("edges", nameOf("curve", edge.tag), sizeOf(mesh, straight, edge.vertices, kHexEdges));
+    add("edges", nameOf("curve", edge.tag),
+        sizeOf(mesh, straight, edge.vertices, adjacency::kHexEdges));
   }
   for (const FeatureQuad& quad : mesh.features.quads) {
-    add("quads", nameOf("surface", quad.tag), sizeOf(mesh, straight, quad.vertices, kHexFaces));
+    add("quads", nameOf("surface", quad.tag),
+        sizeOf(mesh, straight, quad.vertices, adjacency::kHexFaces));
   }
   smallest = 1e300;
   for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
@@ -261,9 +263,9 @@ LagrangeMesh taggedMesh(int order) {
   for (std::size_t i = 0; i < mesh.features.quads.size(); ++i) {
     mesh.features.quads[i].tag = static_cast<std::int32_t>(1 + i % 3);
   }
-  const Quad inside = faceVertices(straight.cells[0], [&] {
+  const Quad inside = adjacency::faceVertices(straight.cells[0], [&] {
     for (std::size_t face = 0;; ++face) {
-      const Quad quad = faceVertices(straight.cells[0], face);
+      const Quad quad = adjacency::faceVertices(straight.cells[0], face);
       const bool tagged = std::any_of(
           mesh.features.quads.begin(), mesh.features.quads.end(), [&](const FeatureQuad& other) {
             return std::is_permutation(quad.begin(), quad.end(), other.vertices.begin());

@@ -42,6 +42,8 @@ std::atomic<std::size_t> largestAllocation{0};
 }
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 // The files here have a few kilobytes; a reader may want a small multiple of that.

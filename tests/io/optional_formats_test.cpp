@@ -22,6 +22,8 @@
 #include <io/solvers/solvers.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 /// With two regions.
@@ -192,7 +194,8 @@ TEST(OpenFoam, FacesKeepTheRules) {
     for (std::size_t turn = 0; turn < 4; ++turn) {
       std::rotate(quad.begin(), quad.begin() + 1, quad.end());
       for (std::size_t side = 0; side < 6; ++side) {
-        if (faceVertices(mesh.cells[static_cast<std::size_t>(cell)], side) == quad) return true;
+        if (adjacency::faceVertices(mesh.cells[static_cast<std::size_t>(cell)], side) == quad)
+          return true;
       }
     }
     return false;

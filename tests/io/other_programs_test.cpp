@@ -15,6 +15,8 @@
 #include <io/other_programs.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 struct Check {

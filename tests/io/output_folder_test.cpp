@@ -9,6 +9,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 void fill(const OutputFolder& folder, const std::string& text) {

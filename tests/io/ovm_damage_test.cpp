@@ -14,6 +14,8 @@
 #include "ovm_test_support.hpp"
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 /// While it lives, the program can take but little more memory: then an allocation out of

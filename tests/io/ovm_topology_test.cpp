@@ -13,6 +13,8 @@
 #include <io/ovm/ovm_cells.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 template <class Cells>

@@ -15,6 +15,8 @@
 #include "ovm_test_support.hpp"
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 TetMap map(const std::string& bytes) {

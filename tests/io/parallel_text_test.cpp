@@ -13,6 +13,8 @@
 #include <io/medit/medit.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 /// A text of words and gaps, long enough for many blocks of an index.

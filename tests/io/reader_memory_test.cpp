@@ -26,6 +26,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 constexpr std::size_t kFactor = 20;

@@ -12,6 +12,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 /// 24 cells with tags of all kinds. Regions are sorted, as some formats list cells by region.

@@ -15,6 +15,8 @@
 #include "mesh/grid_meshes.hpp"
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 constexpr int kSide = 4;

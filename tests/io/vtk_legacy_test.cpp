@@ -11,6 +11,8 @@
 #include <io/vtk/vtk.hpp>
 
 namespace hexhex::test {
+
+using namespace io;
 namespace {
 
 HexMesh parse(const std::string& text) {

@@ -10,6 +10,8 @@
 #include "tet_patch.hpp"
 
 namespace hexhex::testing {
+
+using namespace lattice;
 namespace {
 
 template <class Function>

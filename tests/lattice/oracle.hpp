@@ -11,6 +11,8 @@
 
 namespace hexhex::testing {
 
+using namespace lattice;
+
 template <unsigned kBits>
 using FixedInteger = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<kBits, kBits, boost::multiprecision::signed_magnitude,

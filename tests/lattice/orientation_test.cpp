@@ -10,6 +10,8 @@
 #include "random.hpp"
 
 namespace hexhex::testing {
+
+using namespace lattice;
 namespace {
 
 constexpr std::int64_t kFullRange = (std::int64_t{1} << 60) - 1;

@@ -11,6 +11,8 @@
 
 namespace hexhex::testing {
 
+using namespace lattice;
+
 /// splitmix64 (Steele, Lea, Flood 2014).
 class Random {
  public:

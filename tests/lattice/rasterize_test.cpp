@@ -15,6 +15,8 @@
 #include "random.hpp"
 
 namespace hexhex::testing {
+
+using namespace lattice;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

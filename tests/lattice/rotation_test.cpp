@@ -6,7 +6,7 @@
 
 #include <lattice/rotation.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 namespace {
 
 using Vector = std::array<int, 3>;
@@ -150,4 +150,4 @@ TEST(RotationFromAlgoHex, IsTheInverseOfTheQuaternionsRotation) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::lattice

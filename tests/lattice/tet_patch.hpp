@@ -12,6 +12,8 @@
 
 namespace hexhex::testing {
 
+using namespace lattice;
+
 /// A conforming mesh of positive tets with face neighbours.
 class TetPatch {
  public:

@@ -7,7 +7,7 @@
 #include <lattice/tet_geometry.hpp>
 #include <lattice/transition.hpp>
 
-namespace hexhex {
+namespace hexhex::lattice {
 namespace {
 
 // Far from the ends of int32, so that a few compositions stay in range.
@@ -86,4 +86,4 @@ RC_GTEST_PROP(Transition, CommutesWithSteps, ()) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::lattice

@@ -14,6 +14,8 @@
 #include "random.hpp"
 
 namespace hexhex::testing {
+
+using namespace lattice;
 namespace {
 
 using Triangle = std::array<LatticePoint, 3>;

@@ -11,6 +11,8 @@
 #include "random.hpp"
 
 namespace hexhex::testing {
+
+using namespace lattice;
 namespace {
 
 constexpr std::int64_t kMin64 = std::numeric_limits<std::int64_t>::min();

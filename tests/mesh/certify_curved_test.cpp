@@ -15,7 +15,7 @@
 
 #include "support/effort.hpp"
 
-namespace hexhex {
+namespace hexhex::mesh {
 namespace {
 
 using testing::Random;
@@ -227,4 +227,4 @@ TEST(Certificates, OfCurvedCellsAreRight) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::mesh

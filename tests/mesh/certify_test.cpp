@@ -20,7 +20,7 @@
 
 #include "support/effort.hpp"
 
-namespace hexhex {
+namespace hexhex::mesh {
 namespace {
 
 using testing::gridMesh;
@@ -572,4 +572,4 @@ TEST(CertifyMesh, WithoutCellsOrWithBadOnes) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::mesh

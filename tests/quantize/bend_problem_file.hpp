@@ -20,7 +20,7 @@
 
 #include <quantize/bend.hpp>
 
-namespace hexhex {
+namespace hexhex::quantization {
 
 inline void writeBendProblem(const std::string& path, const BendProblem& problem) {
   std::ofstream out(path);
@@ -74,7 +74,7 @@ inline BendProblem readBendProblem(const std::string& path) {
     for (std::size_t h = 4 * t; h < 4 * t + 4; ++h) {
       int rotation = 0;
       in >> rotation;
-      problem.transitions[h].rotation = Rotation(rotation);
+      problem.transitions[h].rotation = lattice::Rotation(rotation);
       vector(problem.transitions[h].translation);
     }
     for (std::size_t h = 4 * t; h < 4 * t + 4; ++h) {
@@ -93,4 +93,4 @@ inline BendProblem readBendProblem(const std::string& path) {
   return problem;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::quantization

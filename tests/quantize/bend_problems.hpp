@@ -17,6 +17,8 @@
 
 namespace hexhex::test {
 
+using namespace quantization;
+
 inline double volumeOf(const TetMap& map) {
   double volume = 0;
   for (const TetParameters& u : map.parameters) {
@@ -36,10 +38,10 @@ inline TetMap oriented(TetMap map) {
 }
 
 /// The one that carries a triangle's corners over exactly.
-inline Transition transitionBetween(const std::array<Vec3, 3>& here,
-                                    const std::array<Vec3, 3>& there) {
-  for (int r = 0; r < Rotation::kCount; ++r) {
-    Transition transition{Rotation(r), {}};
+inline lattice::Transition transitionBetween(const std::array<Vec3, 3>& here,
+                                             const std::array<Vec3, 3>& there) {
+  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
+    lattice::Transition transition{lattice::Rotation(r), {}};
     for (std::size_t k = 0; k < 3; ++k) {
       transition.translation[k] =
           static_cast<std::int32_t>(std::lround(there[0][k] - transition.rotation(here[0])[k]));
@@ -82,27 +84,28 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
   problem.planes.resize(4 * problem.tets.size());
   Context context;
   Stage stage(context, "test");
-  TetTopology topology;
+  adjacency::TetTopology topology;
   topology.tets = problem.tets;
   topology.pointCount = problem.points.size();
-  if (!matchFaces(topology, stage)) throw std::runtime_error("no manifold");
-  addStars(topology, stage);
+  if (!adjacency::matchFaces(topology, stage)) throw std::runtime_error("no manifold");
+  adjacency::addStars(topology, stage);
   problem.irregularEdges = irregularEdges(EdgeFans(topology), topology.tets,
                                           std::span<const TetParameters>(reference.parameters));
-  for (HalfFace h = 0; h < problem.transitions.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < problem.transitions.size(); ++h) {
     std::array<Vec3, 3> here{};
     std::array<Vec3, 3> there{};
     if (topology.isBoundary(h)) {
       for (std::size_t k = 0; k < 3; ++k) {
-        here[k] = target.parameters[tetOf(h)][static_cast<std::size_t>(kFaceCorners[h % 4][k])];
+        here[k] = target.parameters[adjacency::tetOf(h)]
+                                   [static_cast<std::size_t>(lattice::kFaceCorners[h % 4][k])];
       }
       problem.planes[h] = planeOf(here);
       continue;
     }
-    const SharedFace face(topology, h, topology.mate[h]);
+    const adjacency::SharedFace face(topology, h, topology.mate[h]);
     for (std::size_t k = 0; k < 3; ++k) {
-      here[k] = target.parameters[tetOf(h)][face.here(k)];
-      there[k] = target.parameters[tetOf(topology.mate[h])][face.there(k)];
+      here[k] = target.parameters[adjacency::tetOf(h)][face.here(k)];
+      there[k] = target.parameters[adjacency::tetOf(topology.mate[h])][face.there(k)];
     }
     problem.transitions[h] = transitionBetween(here, there);
   }

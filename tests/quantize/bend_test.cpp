@@ -16,6 +16,8 @@
 
 namespace hexhex::test {
 
+using namespace quantization;
+
 namespace {
 
 TetMap sample(SampleKind kind, int cells, double jitter, ChartStyle charts = ChartStyle::Blocks,
@@ -91,14 +93,14 @@ TEST(Bend, DoesNotDependOnThreads) {
 TEST(Bend, NamesVerticesWithoutAnyPlace) {
   const TetMap map = sample(SampleKind::Cylinder, 3, 0);
   BendProblem problem = problemFrom(map, map);
-  HalfFace moved = 0;
+  adjacency::HalfFace moved = 0;
   while (problem.planes[moved].axis < 0) ++moved;
   ++problem.planes[moved].coordinate;
   const BentMap result = bent(problem);
   EXPECT_FALSE(result.isValid());
   EXPECT_TRUE(result.parameters.empty());
-  for (const int corner : kFaceCorners[moved % 4]) {
-    const Index v = problem.tets[tetOf(moved)][static_cast<std::size_t>(corner)];
+  for (const int corner : lattice::kFaceCorners[moved % 4]) {
+    const Index v = problem.tets[adjacency::tetOf(moved)][static_cast<std::size_t>(corner)];
     EXPECT_TRUE(std::binary_search(result.contradictions.begin(), result.contradictions.end(), v));
   }
 }
@@ -126,11 +128,11 @@ TEST(Bend, FindsEdgesThatAreWoundTwice) {
   const TetMap map = oriented(generateSample(SampleKind::Star, options).map);
   Context context;
   Stage stage(context, "test");
-  TetTopology topology;
+  adjacency::TetTopology topology;
   topology.tets = map.tets;
   topology.pointCount = map.points.size();
-  ASSERT_TRUE(matchFaces(topology, stage));
-  addStars(topology, stage);
+  ASSERT_TRUE(adjacency::matchFaces(topology, stage));
+  adjacency::addStars(topology, stage);
   const IrregularEdges irregular = irregularEdges(EdgeFans(topology), topology.tets,
                                                   std::span<const TetParameters>(map.parameters));
   EXPECT_EQ(irregular.begin()->second, 8);

@@ -20,6 +20,8 @@
 #include "support/error_of.hpp"
 
 namespace hexhex::test {
+
+using namespace quantization;
 namespace {
 
 using Numbers = std::span<std::int64_t>;

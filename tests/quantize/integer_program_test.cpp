@@ -9,6 +9,8 @@
 #include "lattice/random.hpp"
 
 namespace hexhex::test {
+
+using namespace quantization;
 namespace {
 
 std::vector<IntegerSolver> solvers() {

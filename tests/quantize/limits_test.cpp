@@ -20,6 +20,8 @@
 
 namespace hexhex::test {
 
+using namespace quantization;
+
 using testing::Random;
 
 namespace {
@@ -37,7 +39,7 @@ TetMap withChartsUpTo(double distance, TetMap map) {
     return distance * static_cast<double>(random.between(-1000, 1000)) / 999;
   };
   for (TetParameters& tet : map.parameters) {
-    const Rotation rotation(static_cast<int>(random.index(Rotation::kCount)));
+    const lattice::Rotation rotation(static_cast<int>(random.index(lattice::Rotation::kCount)));
     const Vec3 move = {draw(), draw(), draw()};
     for (Vec3& u : tet) {
       u = rotation(u);

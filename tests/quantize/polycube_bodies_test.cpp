@@ -15,6 +15,8 @@
 
 namespace hexhex::test {
 
+using namespace quantization;
+
 namespace {
 
 using Cell = CubeBody::Cell;

@@ -27,20 +27,21 @@ Labelled labelled(const TetMap& map) {
   Labelled result{{map.points, map.tets}, {}};
   Context context;
   Stage stage(context, "test");
-  TetTopology topology;
+  adjacency::TetTopology topology;
   topology.tets = map.tets;
   topology.pointCount = map.points.size();
-  EXPECT_TRUE(matchFaces(topology, stage));
+  EXPECT_TRUE(adjacency::matchFaces(topology, stage));
   result.flags.assign(map.tets.size(), {-1, -1, -1, -1});
-  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (!topology.isBoundary(h)) continue;
-    const TetParameters& u = map.parameters[tetOf(h)];
-    const auto& c = kFaceCorners[h % 4];
+    const TetParameters& u = map.parameters[adjacency::tetOf(h)];
+    const auto& c = lattice::kFaceCorners[h % 4];
     const auto corner = [&](std::size_t k) { return u[static_cast<std::size_t>(c[k])]; };
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (corner(0)[axis] != corner(1)[axis] || corner(0)[axis] != corner(2)[axis]) continue;
       const bool isUpwards = u[h % 4][axis] < corner(0)[axis];
-      result.flags[tetOf(h)][h % 4] = static_cast<std::int8_t>(2 * axis + (isUpwards ? 0 : 1));
+      result.flags[adjacency::tetOf(h)][h % 4] =
+          static_cast<std::int8_t>(2 * axis + (isUpwards ? 0 : 1));
     }
   }
   return result;
@@ -170,7 +171,8 @@ class FlagFiles : public ::testing::Test {
         if (input_.flags[t][face] < 0) continue;
         std::array<Index, 3> vertices{};
         for (std::size_t k = 0; k < 3; ++k) {
-          vertices[k] = input_.tets.tets[t][static_cast<std::size_t>(kFaceCorners[face][k])];
+          vertices[k] =
+              input_.tets.tets[t][static_cast<std::size_t>(lattice::kFaceCorners[face][k])];
         }
         visit(int{input_.flags[t][face]}, vertices);
       }

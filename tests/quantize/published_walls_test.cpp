@@ -31,7 +31,7 @@ Sample seamlessSample(SampleKind kind) {
 
 TetMap parse(const PublishedMap& published, bool keepWalls = false) {
   Context context;
-  return readHexex({published.text, "published.hexex"}, {.keepWalls = keepWalls}, context);
+  return io::readHexex({published.text, "published.hexex"}, {.keepWalls = keepWalls}, context);
 }
 
 /// What `extract --quantize --improve` makes of a map.

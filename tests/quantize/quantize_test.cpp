@@ -29,6 +29,8 @@
 
 namespace hexhex::test {
 
+using namespace quantization;
+
 namespace {
 
 /// A chart of its own for each tet.
@@ -38,7 +40,7 @@ TetMap withMovedCharts(TetMap map, std::uint64_t seed) {
     return (state = state * 6364136223846793005U + 1442695040888963407U) >> 33;
   };
   for (TetParameters& tet : map.parameters) {
-    const Rotation rotation(static_cast<int>(next() % Rotation::kCount));
+    const lattice::Rotation rotation(static_cast<int>(next() % lattice::Rotation::kCount));
     const Vec3 move = {static_cast<double>(next() % 1000) / 7,
                        static_cast<double>(next() % 1000) / 7,
                        static_cast<double>(next() % 1000) / 7};
@@ -255,7 +257,7 @@ TEST(Quantize, TagsAndSingularEdgesGoToBothHalvesOfASplitEdge) {
     const SeamlessMap seamless = makeSeamless(map, {1e-5, 1e-5}, context);
     const IrregularEdges irregular =
         irregularEdges(EdgeFans(seamless.topology), seamless.topology.tets,
-                       std::span<const LatticeTet>(seamless.corners));
+                       std::span<const lattice::LatticeTet>(seamless.corners));
     const QuantizedMap result = finishQuantization(irregular, map, bent, {}, context);
     const Expectation after = check(result.map).expected;
     EXPECT_EQ(after.cells, before.expected.cells);

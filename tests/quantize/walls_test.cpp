@@ -38,9 +38,9 @@ NearlyIntegerBox nearlyInteger(const TetMap& map, double distance, std::uint64_t
     for (std::size_t i = 0; i < 4; ++i) box.parameters[map.tets[t][i]] = map.parameters[t][i];
   }
   const std::vector<Vec3> whole = box.parameters;
-  const auto [low, high] = std::minmax_element(whole.begin(), whole.end());
+  const auto ends = std::minmax_element(whole.begin(), whole.end());
   const auto isInner = [&](Index v, std::size_t k) {
-    return whole[v][k] != (*low)[k] && whole[v][k] != (*high)[k];
+    return whole[v][k] != (*ends.first)[k] && whole[v][k] != (*ends.second)[k];
   };
   for (Index v = 0; v < whole.size(); ++v) {
     for (std::size_t k = 0; k < 3; ++k) {

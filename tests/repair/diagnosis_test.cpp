@@ -14,6 +14,8 @@
 
 namespace hexhex::test {
 
+using namespace repairs;
+
 namespace {
 
 /// Each of its corners may move by the noise, along all axes at once, and towards each other.
@@ -59,8 +61,8 @@ std::vector<Index> tetsOfCubes(const testing::CellFilter& isIn) {
 TEST(InvertedRegions, AreManyTetsAroundOneWithoutAnyGoodTetNear) {
   const TetMap map = testing::identityMap(6);
   Context context;
-  DefectCollector defects;
-  const PreparedMap prepared = prepareMap(map, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  const igm::PreparedMap prepared = igm::prepareMap(map, 1e-2, 1, context, defects);
   ASSERT_TRUE(defects.empty());
   const auto ball = [](std::size_t last) {
     return tetsOfCubes([last](std::size_t x, std::size_t y, std::size_t z) {
@@ -75,10 +77,11 @@ TEST(InvertedRegions, AreManyTetsAroundOneWithoutAnyGoodTetNear) {
   std::vector<Index> some = ball(3);
   const auto addNeighbour = [&] {
     const auto isIn = [&](Index t) { return std::binary_search(some.begin(), some.end(), t); };
-    for (HalfFace face = 0; face < prepared.topology.mate.size(); ++face) {
-      const HalfFace mate = prepared.topology.mate[face];
-      if (mate == kNone || !isIn(tetOf(face)) || isIn(tetOf(mate))) continue;
-      some.insert(std::upper_bound(some.begin(), some.end(), tetOf(mate)), tetOf(mate));
+    for (adjacency::HalfFace face = 0; face < prepared.topology.mate.size(); ++face) {
+      const adjacency::HalfFace mate = prepared.topology.mate[face];
+      if (mate == kNone || !isIn(adjacency::tetOf(face)) || isIn(adjacency::tetOf(mate))) continue;
+      some.insert(std::upper_bound(some.begin(), some.end(), adjacency::tetOf(mate)),
+                  adjacency::tetOf(mate));
       return;
     }
   };

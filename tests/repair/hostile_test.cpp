@@ -17,6 +17,8 @@
 
 namespace hexhex::test {
 
+using namespace repairs;
+
 namespace {
 
 TetMap sphere(int refine, int defects = 0, std::uint64_t seed = 1) {
@@ -132,8 +134,8 @@ TEST(MapBackup, RestoresEveryArray) {
   map.edgeValences = {{map.tets[0][0], map.tets[0][1], 1}};
   const TetMap before = map;
   Context context;
-  DefectCollector defects;
-  const PreparedMap prepared = prepareMap(before, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  const igm::PreparedMap prepared = igm::prepareMap(before, 1e-2, 1, context, defects);
   MapBackup backup(map);
   const std::vector<std::array<Index, 2>> edges = {{map.tets[0][0], map.tets[0][1]},
                                                    {map.tets[60][1], map.tets[60][2]}};

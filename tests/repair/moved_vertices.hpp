@@ -16,8 +16,8 @@ class VertexMover {
   /// @param map  valid; must outlive this object, and may be damaged meanwhile
   explicit VertexMover(const TetMap& map) : sound_(map) {
     Context context;
-    DefectCollector defects;
-    prepared_ = prepareMap(sound_, 1e-2, 1, context, defects);
+    igm::DefectCollector defects;
+    prepared_ = igm::prepareMap(sound_, 1e-2, 1, context, defects);
     EXPECT_TRUE(defects.empty());
   }
 
@@ -25,15 +25,15 @@ class VertexMover {
 
   /// @param by  in the chart of the vertex's smallest tet
   void move(TetMap& map, Index vertex, const Vec3& by) {
-    VertexStar star;
+    igm::VertexStar star;
     star.collect(prepared_.topology, vertex);
-    std::vector<Rotation> rotations(star.members().size());
+    std::vector<lattice::Rotation> rotations(star.members().size());
     std::size_t reached = 1;
     for (std::size_t i = 0; i < star.members().size(); ++i) {
-      const VertexStar::Member& member = star.members()[i];
+      const igm::VertexStar::Member& member = star.members()[i];
       for (std::size_t k = 0; k < 3; ++k) {
         if (member.neighbour[k] != reached) continue;
-        const Transition& across = prepared_.exact.transitions.across(member.halfFace(k));
+        const lattice::Transition& across = prepared_.exact.transitions.across(member.halfFace(k));
         rotations[reached++] = across.rotation * rotations[i];
       }
       Vec3& u = map.parameters[member.tet()][member.corner % 4];
@@ -44,7 +44,7 @@ class VertexMover {
 
  private:
   TetMap sound_;
-  PreparedMap prepared_;
+  igm::PreparedMap prepared_;
 };
 
 }  // namespace hexhex::test

@@ -15,6 +15,8 @@
 
 namespace hexhex::test {
 
+using namespace repairs;
+
 namespace {
 
 std::int64_t cellsAtHoles(const PartialMesh& partial) {
@@ -39,17 +41,18 @@ TEST(CubeClip, MeasuresPiecesOfTheUnitCube) {
 TEST(CellFlood, FindsNoCornerThatNoTetHolds) {
   const TetMap cube = testing::identityMap(1);
   Context context;
-  DefectCollector defects;
-  PreparedMap prepared = prepareMap(cube, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  igm::PreparedMap prepared = igm::prepareMap(cube, 1e-2, 1, context, defects);
   ASSERT_TRUE(defects.empty());
   const std::vector<std::uint8_t> valid(cube.tets.size(), 1);
   CellFlood flood(prepared, valid);
   ASSERT_TRUE(flood.run(0, {0, 0, 0}));
   for (std::size_t i = 0; i < 8; ++i) EXPECT_TRUE(flood.corner(i).has_value());
   // All tets meet in corner 6.
-  for (LatticeTet& corners : prepared.exact.corners) {
-    for (LatticePoint& corner : corners) {
-      if (corner == LatticePoint{prepared.exact.unit, prepared.exact.unit, prepared.exact.unit}) {
+  for (lattice::LatticeTet& corners : prepared.exact.corners) {
+    for (lattice::LatticePoint& corner : corners) {
+      if (corner ==
+          lattice::LatticePoint{prepared.exact.unit, prepared.exact.unit, prepared.exact.unit}) {
         for (std::int64_t& x : corner) --x;
       }
     }

@@ -13,15 +13,17 @@
 
 namespace hexhex::test {
 
+using namespace repairs;
+
 namespace {
 
 /// All edges of the patches around the bad tets of a map.
 std::vector<PatchEdge> edgesAroundDamage(const TetMap& map) {
   Context context;
   Stage stage(context, "test");
-  DefectCollector defects;
-  const PreparedMap prepared = prepareMap(map, 1e-2, 1, context, defects);
-  const LocalParameters parameters(prepared.input);
+  igm::DefectCollector defects;
+  const igm::PreparedMap prepared = igm::prepareMap(map, 1e-2, 1, context, defects);
+  const igm::LocalParameters parameters(prepared.input);
   const std::vector<Index> bad = findBadTets(map.tets.size(), parameters, stage);
   EXPECT_FALSE(bad.empty());
   std::vector<PatchEdge> edges;

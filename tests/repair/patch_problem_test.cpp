@@ -14,6 +14,8 @@
 
 namespace hexhex::test {
 
+using namespace repairs;
+
 namespace {
 
 class PatchSolution : public ::testing::Test {
@@ -32,10 +34,10 @@ TEST_F(PatchSolution, LeavesAPatchWithoutDefectsAsItIs) {
   for (Vec3& p : map.points) {
     for (double& x : p) x *= 0.7;
   }
-  DefectCollector defects;
-  const PreparedMap prepared = prepareMap(map, 1e-2, 1, context, defects);
+  igm::DefectCollector defects;
+  const igm::PreparedMap prepared = igm::prepareMap(map, 1e-2, 1, context, defects);
   ASSERT_TRUE(defects.empty());
-  const LocalParameters parameters(prepared.input);
+  const igm::LocalParameters parameters(prepared.input);
   const std::array<Index, 1> start = {7};
   const Patch patch = growPatch(prepared.topology, start, 2);
   const PatchCharts charts(map, prepared.topology, parameters, patch, 1e-2);

@@ -19,6 +19,8 @@
 
 namespace hexhex::test {
 
+using namespace repairs;
+
 namespace {
 
 /// Every corner at a vertex; in maps with one chart they have one parameter.

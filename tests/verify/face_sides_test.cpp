@@ -4,7 +4,7 @@
 
 #include <mesh/grid_meshes.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 namespace {
 
 TEST(FaceSides, AreThoseOfTheExactPredicate) {
@@ -16,26 +16,26 @@ TEST(FaceSides, AreThoseOfTheExactPredicate) {
     const std::int64_t unit = std::int64_t{1} << (i % 3 * 15);
     const std::int64_t origin = i % 2 == 0 ? 0 : std::int64_t{1} << 45;
     const auto draw = [&] {
-      LatticePoint point;
+      lattice::LatticePoint point;
       for (std::size_t k = 0; k < 3; ++k) {
         point[k] = origin + unit * static_cast<std::int64_t>(random.below(4));
       }
       return point;
     };
-    LatticeTet tet = {draw(), draw(), draw(), draw()};
-    const int sign = orientation(tet[0], tet[1], tet[2], tet[3]);
+    lattice::LatticeTet tet = {draw(), draw(), draw(), draw()};
+    const int sign = lattice::orientation(tet[0], tet[1], tet[2], tet[3]);
     if (sign == 0) continue;
-    if (sideOfFace(tet, 0, tet[0]) < 0) std::swap(tet[0], tet[1]);
+    if (lattice::sideOfFace(tet, 0, tet[0]) < 0) std::swap(tet[0], tet[1]);
     const FaceSides sides(tet, unit);
     for (int p = 0; p < 20; ++p) {
-      const LatticePoint point = draw();
-      const CornerMask simplex = sides.simplexOf(point);
-      ASSERT_EQ(simplex, simplexOf(tet, point)) << "tet " << i;
-      if (simplex != kNoSimplex) ++found[simplex];
+      const lattice::LatticePoint point = draw();
+      const lattice::CornerMask simplex = sides.simplexOf(point);
+      ASSERT_EQ(simplex, lattice::simplexOf(tet, point)) << "tet " << i;
+      if (simplex != lattice::kNoSimplex) ++found[simplex];
     }
   }
   for (std::size_t simplex = 1; simplex < 16; ++simplex) EXPECT_GT(found[simplex], 0) << simplex;
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::verification

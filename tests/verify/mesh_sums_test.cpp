@@ -12,7 +12,7 @@
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
 
-namespace hexhex {
+namespace hexhex::verification {
 namespace {
 
 using testing::gridMesh;
@@ -206,4 +206,4 @@ TEST(MeshSums, SurviveAnyIndices) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::verification

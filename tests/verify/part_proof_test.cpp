@@ -10,6 +10,8 @@
 #include "verify/mutations.hpp"
 
 namespace hexhex::test {
+
+using namespace verification;
 namespace {
 
 /// How many maps of each test, at HEXHEX_TEST_EFFORT 1.
@@ -22,7 +24,7 @@ class Truth {
       : map_(prepare(map)),
         stage_(context_, "verification"),
         expected_(expectationOf(map_, stage_)),
-        counts_(countElements(map_, expected_.cells, nullptr, stage_)),
+        counts_(sweep::countElements(map_, expected_.cells, nullptr, stage_)),
         proof_(map_, expected_, counts_) {}
 
   [[nodiscard]] bool passes(const MeshPart& part) {
@@ -36,16 +38,17 @@ class Truth {
   }
 
  private:
-  PreparedMap prepare(const TetMapView& map) {
-    DefectCollector defects;
-    return prepareMap(map, ExtractOptions().tolerance, 1, context_, defects, ChartChoice::Unfolded);
+  igm::PreparedMap prepare(const TetMapView& map) {
+    igm::DefectCollector defects;
+    return igm::prepareMap(map, ExtractOptions().tolerance, 1, context_, defects,
+                           igm::ChartChoice::Unfolded);
   }
 
   Context context_{1};
-  PreparedMap map_;
+  igm::PreparedMap map_;
   Stage stage_;
   Expectation expected_;
-  ElementCounts counts_;
+  sweep::ElementCounts counts_;
   PartProof proof_;
 };
 
@@ -123,11 +126,13 @@ TEST(PartProof, RefusesOtherNumbers) {
 TEST(PartProof, WantsAsManyElementsAsTheMapHas) {
   const TetMap map = generateSample(SampleKind::Box).map;
   Context context(1);
-  DefectCollector defects;
-  PreparedMap prepared = prepareMap(map, 1e-2, 1, context, defects, ChartChoice::Unfolded);
+  igm::DefectCollector defects;
+  igm::PreparedMap prepared =
+      igm::prepareMap(map, 1e-2, 1, context, defects, igm::ChartChoice::Unfolded);
   Stage stage(context, "verification");
   Expectation expected = expectationOf(prepared, stage);
-  const ElementCounts counts = countElements(prepared, expected.cells, nullptr, stage);
+  const sweep::ElementCounts counts =
+      sweep::countElements(prepared, expected.cells, nullptr, stage);
   EXPECT_NO_THROW(PartProof(prepared, expected, counts));
   ++expected.cells;
   EXPECT_THROW(PartProof(prepared, expected, counts), Error);

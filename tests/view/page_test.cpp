@@ -25,7 +25,7 @@
 
 #include "support/error_of.hpp"
 
-namespace hexhex {
+namespace hexhex::view {
 namespace {
 
 using testing::gridMesh;
@@ -447,4 +447,4 @@ TEST(ServedPage, HasTheMeshApart) {
 }
 
 }  // namespace
-}  // namespace hexhex
+}  // namespace hexhex::view

@@ -13,7 +13,7 @@
 
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// A size that a file tells, which may have more bits than sizes have here.
 [[nodiscard]] inline std::size_t memorySize(std::uint64_t bytes) {
@@ -85,4 +85,4 @@ class ByteCursor {
   const std::string& fileName_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -5,7 +5,7 @@
 
 #include <io/core/cell_counts.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// The type with this number; null if there is none.
@@ -93,4 +93,4 @@ void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,
                   std::string(kind.plural) + ". " + std::string(advice));
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -14,7 +14,7 @@
 
 #include <io/core/cell_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// A type of volume cells, and what formats call it; 0 where they do not know it.
 struct VolumeCells {
@@ -88,4 +88,4 @@ class CellCounts {
   std::map<std::int64_t, std::uint64_t> unknown_;  ///< of VTK, by type
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Tetrahedra with their points. Corners are in the order of VTK.
 struct TetCells {
@@ -49,4 +49,4 @@ inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexa
 inline constexpr CellKind kTriangleKind = {
     .corners = 3, .singular = "triangle", .plural = "triangles", .vtkType = 5};
 
-}  // namespace hexhex
+}  // namespace hexhex::io

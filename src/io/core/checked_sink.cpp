@@ -13,7 +13,7 @@
 #include <io/core/checked_sink.hpp>
 #include <mesh/smooth_patches.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Refuses an optional array that is there but has another size than what it describes.
@@ -66,11 +66,11 @@ void requireWritable(const TetMap& map, Stage& stage) {
 }
 
 void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& stage) {
-  requireCornersInRange(mesh, stage);
+  adjacency::requireCornersInRange(mesh, stage);
   requireSize(mesh.generatorCorners.size(), mesh.points.size(), "vertices", "generators");
   requireSize(mesh.generatorTet.size(), mesh.points.size(), "vertices", "generators");
   requireSize(mesh.regions.size(), mesh.cells.size(), "cells", "regions");
-  requirePatchAngle(options.patchAngle);
+  mesh::requirePatchAngle(options.patchAngle);
   requireSize(options.scaledJacobians.size(), mesh.cells.size(), "cells", "scaled Jacobians");
   requireFinite(mesh.points, stage);
 }
@@ -235,4 +235,4 @@ void sendTo(MeshSink& sink, const HexMesh& mesh) {
   sink.end();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -19,7 +19,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// The first point with a coordinate that is infinite or no number, or the number of points.
 [[nodiscard]] std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage);
@@ -137,4 +137,4 @@ template <class Writer>
 /// Hands a mesh over, from begin() to end(). Generators go along if there are as many as vertices.
 void sendTo(MeshSink& sink, const HexMesh& mesh);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -16,7 +16,7 @@
 #include <locale.h>  // NOLINT(modernize-deprecated-headers): POSIX has more in it than C++
 #endif
 
-namespace hexhex {
+namespace hexhex::io {
 
 #if !defined(_WIN32)
 namespace detail {
@@ -60,4 +60,4 @@ std::from_chars_result doubleFromChars(const char* first, const char* last, T& v
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -15,7 +15,7 @@
 #include <io/core/registry.hpp>
 #include <io/core/zlib_blocks.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::array<WorkStep, 1> kReadMap = {{{"read map", 1}}};
@@ -117,11 +117,15 @@ class SettledSink final : public MeshSink {
 
 }  // namespace
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 TetMap readMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
-  const Format& format = findFormat(file, options.format, FileContent::Map);
-  if (format.maps.read == nullptr) failToRead(file, format);
-  return inSteps(context, "readMap", kReadMap,
-                 [&] { return readMapOf(file, format, options, context); });
+  const io::Format& format = io::findFormat(file, options.format, io::FileContent::Map);
+  if (format.maps.read == nullptr) io::failToRead(file, format);
+  return inSteps(context, "readMap", io::kReadMap,
+                 [&] { return io::readMapOf(file, format, options, context); });
 }
 
 TetMap readMap(const std::filesystem::path& file, Context& context) {
@@ -135,11 +139,11 @@ TetMap readMap(const std::filesystem::path& file) {
 
 TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& options,
                     Context& context) {
-  const Format& format = findFormat(file, options.format, FileContent::Tets);
-  return inSteps(context, "readTetMesh", kReadTets, [&] {
-    const Input input(file);
-    const TetCells tets = format.readTets(input, context);
-    settleCells(input, kCellKind<4>, options, false);
+  const io::Format& format = io::findFormat(file, options.format, io::FileContent::Tets);
+  return inSteps(context, "readTetMesh", io::kReadTets, [&] {
+    const io::Input input(file);
+    const io::TetCells tets = format.readTets(input, context);
+    io::settleCells(input, io::kCellKind<4>, options, false);
     TetMesh mesh;
     mesh.points.assign(tets.points.begin(), tets.points.end());
     mesh.tets.assign(tets.cells.begin(), tets.cells.end());
@@ -149,9 +153,9 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
 
 HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                     Context& context) {
-  const Format& format = readableFormat(file, options.format);
-  return inSteps(context, "readHexMesh", kReadMesh,
-                 [&] { return readMeshOf(file, format, options, context); });
+  const io::Format& format = io::readableFormat(file, options.format);
+  return inSteps(context, "readHexMesh", io::kReadMesh,
+                 [&] { return io::readMeshOf(file, format, options, context); });
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
@@ -165,37 +169,37 @@ HexMesh readHexMesh(const std::filesystem::path& file) {
 
 std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file,
                                                const ReadOptions& options, Context& context) {
-  const Format& format = findFormat(file, options.format, FileContent::MapOrHexMesh);
-  if (format.meshes.read == nullptr && format.maps.read == nullptr) failToRead(file, format);
+  const io::Format& format = io::findFormat(file, options.format, io::FileContent::MapOrHexMesh);
+  if (format.meshes.read == nullptr && format.maps.read == nullptr) io::failToRead(file, format);
   using Content = std::variant<TetMap, HexMesh>;
-  return inSteps(context, "readMapOrHexMesh", kReadAny, [&]() -> Content {
-    if (format.meshes.read == nullptr) return readMapOf(file, format, options, context);
-    const Input input(file);
-    if (format.maps.read == nullptr) return readMeshOf(input, format, options, context);
+  return inSteps(context, "readMapOrHexMesh", io::kReadAny, [&]() -> Content {
+    if (format.meshes.read == nullptr) return io::readMapOf(file, format, options, context);
+    const io::Input input(file);
+    if (format.maps.read == nullptr) return io::readMeshOf(input, format, options, context);
     try {
-      return readMeshOf(input, format, options, context);
+      return io::readMeshOf(input, format, options, context);
     } catch (const Error& error) {
       // That there are no hexahedra; what else is wrong, the other reader will find, too.
-      const CellCounts& counts = *input.counts();
+      const io::CellCounts& counts = *input.counts();
       const bool hasOthers = !counts.list().empty();
-      if (error.code() != ErrorCode::FileUnsupported || counts.of(kCellKind<8>) > 0 ||
-          (hasOthers && counts.of(kCellKind<4>) == 0)) {
+      if (error.code() != ErrorCode::FileUnsupported || counts.of(io::kCellKind<8>) > 0 ||
+          (hasOthers && counts.of(io::kCellKind<4>) == 0)) {
         throw;
       }
-      return readMapOf(file, format, options, context);
+      return io::readMapOf(file, format, options, context);
     }
   });
 }
 
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const ReadOptions& options,
                    Context& context) {
-  const Format& format = readableFormat(file, options.format);
-  inSteps(context, "readHexMeshTo", kReadMesh, [&] {
+  const io::Format& format = io::readableFormat(file, options.format);
+  inSteps(context, "readHexMeshTo", io::kReadMesh, [&] {
     withThreads(context.threads(), [&] {
-      const Input input(file);
-      SettledSink settled(sink, input, options);
+      const io::Input input(file);
+      io::SettledSink settled(sink, input, options);
       if (format.pieces.read != nullptr) return format.pieces.read(settled, input, context);
-      sendTo(settled, format.meshes.read(input, context));
+      io::sendTo(settled, format.meshes.read(input, context));
     });
   });
 }
@@ -206,8 +210,9 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& c
 
 void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
               Context& context) {
-  const Format& format = writableFormat(file, options, FileContent::Map);
-  inSteps(context, "writeMap", kWriteMap, [&] { format.maps.write(map, file, options, context); });
+  const io::Format& format = io::writableFormat(file, options, io::FileContent::Map);
+  inSteps(context, "writeMap", io::kWriteMap,
+          [&] { format.maps.write(map, file, options, context); });
 }
 
 void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
@@ -221,11 +226,11 @@ void writeMap(const TetMap& map, const std::filesystem::path& file) {
 
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context) {
-  const Format& format = writableFormat(file, options, FileContent::HexMesh);
-  inSteps(context, "writeHexMesh", kWriteMesh, [&] {
+  const io::Format& format = io::writableFormat(file, options, io::FileContent::HexMesh);
+  inSteps(context, "writeHexMesh", io::kWriteMesh, [&] {
     {
       Stage stage(context, "write mesh");
-      withThreads(context.threads(), [&] { requireWritable(mesh, options, stage); });
+      withThreads(context.threads(), [&] { io::requireWritable(mesh, options, stage); });
     }
     format.meshes.write(mesh, file, options, context);
   });
@@ -242,11 +247,11 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file) {
 
 std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                        const WriteOptions& options, Context& context) {
-  const Format& format = findFormat(file, options.format, FileContent::HexMesh);
-  if (options.compress) refuse(file, "a mesh in pieces cannot be written with compression.");
+  const io::Format& format = io::findFormat(file, options.format, io::FileContent::HexMesh);
+  if (options.compress) io::refuse(file, "a mesh in pieces cannot be written with compression.");
   if (format.pieces.openSink == nullptr) {
-    refuse(file, "a mesh in pieces cannot be written in this format. Formats that can: " +
-                     streamingFormats() + ".");
+    io::refuse(file, "a mesh in pieces cannot be written in this format. Formats that can: " +
+                         io::streamingFormats() + ".");
   }
   return format.pieces.openSink(file, context);
 }
@@ -256,7 +261,7 @@ std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file, Contex
 }
 
 void requireHexMeshFormat(const std::filesystem::path& file, const WriteOptions& options) {
-  static_cast<void>(writableFormat(file, options, FileContent::HexMesh));
+  static_cast<void>(io::writableFormat(file, options, io::FileContent::HexMesh));
 }
 
 void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format) {
@@ -264,7 +269,7 @@ void requireHexMeshFormat(const std::filesystem::path& file, std::string_view fo
 }
 
 void requireMapFormat(const std::filesystem::path& file, const WriteOptions& options) {
-  static_cast<void>(writableFormat(file, options, FileContent::Map));
+  static_cast<void>(io::writableFormat(file, options, io::FileContent::Map));
 }
 
 }  // namespace hexhex

@@ -15,7 +15,7 @@
 #include <io/core/triangle_labels.hpp>
 #include <lattice/tet_geometry.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 using Flags = std::vector<std::array<std::int8_t, 4>>;
@@ -43,7 +43,7 @@ class TetBoundary {
       for (std::size_t face = 0; face < 4; ++face) {
         SurfaceTriangle corners{};
         for (std::size_t k = 0; k < 3; ++k) {
-          corners[k] = tets.tets[t][static_cast<std::size_t>(kFaceCorners[face][k])];
+          corners[k] = tets.tets[t][static_cast<std::size_t>(lattice::kFaceCorners[face][k])];
         }
         const auto [found, isNew] = faces_.try_emplace(sortedCorners(corners), Face{t, face});
         if (!isNew) found->second.isInner = true;
@@ -64,7 +64,7 @@ class TetBoundary {
   [[nodiscard]] bool isOn(Index tet, std::size_t face, const TetMesh& tets) const {
     SurfaceTriangle corners{};
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = tets.tets[tet][static_cast<std::size_t>(kFaceCorners[face][k])];
+      corners[k] = tets.tets[tet][static_cast<std::size_t>(lattice::kFaceCorners[face][k])];
     }
     return !find(corners)->isInner;
   }
@@ -271,18 +271,22 @@ Flags perFace(const std::vector<std::int64_t>& numbers, const FlagsFile& flags, 
 
 }  // namespace
 
-Flags readFlags(const FlagsFile& flags, const TetMesh& tets, Context& context) {
-  const std::string extension = lowerCaseExtension(flags.file);
-  const TetBoundary boundary(tets);
+}  // namespace hexhex::io
+
+namespace hexhex {
+
+io::Flags readFlags(const FlagsFile& flags, const TetMesh& tets, Context& context) {
+  const std::string extension = io::lowerCaseExtension(flags.file);
+  const io::TetBoundary boundary(tets);
   if (extension == ".vtu" || extension == ".vtk") {
-    const auto read = extension == ".vtu" ? readVtuLabels : readVtkLegacyLabels;
-    return placed(read(flags.file, flags.array, context), tets, boundary, flags.file);
+    const auto read = extension == ".vtu" ? io::readVtuLabels : io::readVtkLegacyLabels;
+    return io::placed(read(flags.file, flags.array, context), tets, boundary, flags.file);
   }
-  return inStage(context, "read labels", [&](Stage& stage) {
-    std::vector<std::int64_t> numbers = readLabelNumbers(flags.file, stage);
-    if (flags.surface.empty()) return perFace(numbers, flags, tets, boundary);
-    return placed(onSurface(flags, std::move(numbers), tets, boundary, stage), tets, boundary,
-                  flags.file);
+  return io::inStage(context, "read labels", [&](Stage& stage) {
+    std::vector<std::int64_t> numbers = io::readLabelNumbers(flags.file, stage);
+    if (flags.surface.empty()) return io::perFace(numbers, flags, tets, boundary);
+    return io::placed(io::onSurface(flags, std::move(numbers), tets, boundary, stage), tets,
+                      boundary, flags.file);
   });
 }
 

@@ -13,7 +13,7 @@
 #include <io/core/hdf_file.hpp>
 #endif
 
-namespace hexhex {
+namespace hexhex::io {
 
 #if defined(HEXHEX_HDF5_NAME)
 namespace {
@@ -64,4 +64,4 @@ void requireHdf5(const std::filesystem::path& file) {
 }
 #endif
 
-}  // namespace hexhex
+}  // namespace hexhex::io

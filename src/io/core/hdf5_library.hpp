@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Loads the library if it is not yet.
 /// @param file  which needs it
@@ -17,4 +17,4 @@ void requireHdf5(const std::filesystem::path& file);
 /// What the library calls so. @pre  requireHdf5() was successful
 [[nodiscard]] void* hdf5Symbol(const char* name);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -10,7 +10,7 @@
 #include <H5FDdevelop.h>
 #endif
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// What HDF5 knows as an open file; the first member is its own.
@@ -257,4 +257,4 @@ HdfObject HdfFile::text(std::size_t bytes, H5T_str_t padding) const {
   return type;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

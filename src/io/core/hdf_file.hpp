@@ -20,7 +20,7 @@
 #if defined(HEXHEX_HDF5_NAME)
 #define HDF5(name)                                                                             \
   (*[] {                                                                                       \
-    static const auto symbol = reinterpret_cast<decltype(&::name)>(hexhex::hdf5Symbol(#name)); \
+    static const auto symbol = reinterpret_cast<decltype(&::name)>(hexhex::io::hdf5Symbol(#name)); \
     return symbol;                                                                             \
   }())
 // Constants of its headers call it to see whether it is ready.
@@ -32,7 +32,7 @@
 #define HDF5(name) ::name
 #endif
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Where HDF5 writes, and what went wrong there.
 struct HdfTarget {
@@ -129,4 +129,4 @@ class HdfFile {
   HdfObject file_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

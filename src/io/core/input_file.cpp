@@ -11,7 +11,7 @@
 #include <io/core/system_call.hpp>
 #include <io/core/text_scanner.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // Files without a known size (pipes) are read in steps of at least this many bytes: large enough
@@ -120,4 +120,4 @@ Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::
   return bytes;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -17,7 +17,7 @@
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// An open file. Every function throws Error FileNotFound, with the file and the system's reason,
 /// if it fails.
@@ -139,4 +139,4 @@ template <class Reader, class... More>
   });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -13,7 +13,7 @@
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Writes runs of lines to a file.
 class LineWriter {
@@ -70,4 +70,4 @@ class LineWriter {
   std::vector<std::size_t> sizes_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -13,7 +13,7 @@
 #include <io/core/mesh_groups.hpp>
 #include <mesh/smooth_patches.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 12;
@@ -117,8 +117,8 @@ struct TaggedQuads {
 
 /// Tags boundary quads by smooth patch, with numbers behind the tags that there are.
 void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& stage) {
-  const SmoothPatches patches =
-      findSmoothPatches(mesh.points, found.quads, angle, mesh.features.edges, stage);
+  const mesh::SmoothPatches patches =
+      mesh::findSmoothPatches(mesh.points, found.quads, angle, mesh.features.edges, stage);
   Tag last = 0;
   for (const FeatureQuad& quad : mesh.features.quads) last = std::max(last, quad.tag);
   const bool haveRoom = patches.count < static_cast<Index>(found.lastTag - last);
@@ -133,9 +133,9 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
                       const std::function<bool(std::uint64_t)>& isInside) {
   const std::vector<FeatureQuad>& features = mesh.features.quads;
   TaggedQuads found;
-  found.places = boundaryPlaces(mesh, stage);
+  found.places = adjacency::boundaryPlaces(mesh, stage);
   if (isInside) std::erase_if(found.places, isInside);
-  found.quads = quadsAt(mesh, found.places);
+  found.quads = adjacency::quadsAt(mesh, found.places);
   found.tags.resize(found.quads.size());
   std::fill(found.tags.begin(), found.tags.end(), Tag{0});
   std::vector<std::pair<Quad, std::size_t>> table;  // by vertices, in whatever order
@@ -272,4 +272,4 @@ Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups, Untag
   return numbers;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -16,7 +16,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// "No face of a cell": see QuadGroups.
 inline constexpr std::uint64_t kNoPlace = ~std::uint64_t{0};
@@ -55,8 +55,9 @@ struct QuadGroups : ElementGroups<4> {
 
 /// Names are "surface_TAG", and "boundary" for boundary quads without a tag. If no
 /// boundary quad has a tag, they are in the smooth patches of boundaryPatches(), "patch_1" and so
-/// on, unless there is only one; their numbers come behind the tags of quads inside. Groups are in order of their tags, quads of a group in order of (cell, face), then
-/// those inside as the features list them.
+/// on, unless there is only one; their numbers come behind the tags of quads inside. Groups are in
+/// order of their tags, quads of a group in order of (cell, face), then those inside as the
+/// features list them.
 /// @param patchAngle  in degrees; 0: no patches
 /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
 /// @param isInside  of a place: whether its quad is inside the mesh though it has one cell only, as
@@ -148,4 +149,4 @@ enum class Untagged : std::uint8_t { Numbered, Zero };
 [[nodiscard]] Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups,
                                                 Untagged untagged = Untagged::Numbered);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 
 #include <io/core/text_scanner.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -223,4 +223,4 @@ double nearestQuotient(std::string_view numerator, std::string_view denominator)
   return divideExactly(p, fromDecimal(denominator));
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -21,7 +21,7 @@
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// How many numbers of each kind a record has.
 struct RecordShape {
@@ -258,4 +258,4 @@ void requireIndexable(const Source& source, std::uint64_t n, std::string_view wh
                                        "; at most " + std::to_string(kNone) + " are supported.");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -11,7 +11,7 @@
 #include <io/core/output_file.hpp>
 #include <io/core/system_call.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// A name that no other file of this process uses; other processes are kept out by O_EXCL. It does
@@ -84,11 +84,19 @@ void giveName(const std::filesystem::path& finished, const std::filesystem::path
 
 }  // namespace
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target) {
-  const ChangedFolder folder(target);
-  giveName(finished, target);
+  const io::ChangedFolder folder(target);
+  io::giveName(finished, target);
   folder.sync();
 }
+
+}  // namespace hexhex
+
+namespace hexhex::io {
 
 OutputFile::OutputFile(std::filesystem::path target, Target kind)
     : target_(std::move(target)), buffer_(new char[kBufferSize]) {
@@ -227,8 +235,12 @@ void OutputFile::fail(const std::string& reason, int error) const {
   failToWrite(target_, reason, error);
 }
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 TextFile::TextFile(const std::filesystem::path& file)
-    : output_(std::make_unique<OutputFile>(file)) {}
+    : output_(std::make_unique<io::OutputFile>(file)) {}
 
 TextFile::~TextFile() = default;
 

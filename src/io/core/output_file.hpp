@@ -17,7 +17,7 @@
 
 #include <io/core/bytes.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Room for any number: the longest, -1.2345678901234567e-308, has 24 characters.
 inline constexpr std::size_t kNumberRoom = 24;
@@ -250,4 +250,4 @@ class FilePart {
   std::size_t used_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -8,7 +8,7 @@
 #include <io/core/output_folder.hpp>
 #include <io/core/system_call.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ void OutputFolder::takeBack() noexcept {
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

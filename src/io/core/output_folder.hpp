@@ -7,7 +7,7 @@
 
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// The same error, with the name of the target in place of that of a temporary.
 [[nodiscard]] Error inTermsOf(const std::filesystem::path& target,
@@ -56,4 +56,4 @@ class OutputFolder {
   bool committed_ = false;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -7,7 +7,7 @@
 #include <io/core/checked_sink.hpp>
 #include <io/core/plain_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// A file turned out to be wrong when some pieces of it had been sent.
@@ -91,4 +91,4 @@ std::uint64_t vertexOfNumber(std::uint64_t number, std::uint64_t points) {
                                               " vertices are numbered from 1.");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

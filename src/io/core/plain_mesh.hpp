@@ -17,7 +17,7 @@
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// An open file of that form. Its calls come in order; each throws an Error for what is wrong.
 class PlainMesh {
@@ -59,4 +59,4 @@ void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input
 /// What a file numbers from 1. @throws Error IndexOutOfRange
 [[nodiscard]] std::uint64_t vertexOfNumber(std::uint64_t number, std::uint64_t points);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -21,7 +21,7 @@
 #include <io/solvers/solvers.hpp>
 #include <io/vtk/vtk.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // Of formats whose maps need no options.
@@ -231,16 +231,20 @@ std::string streamingFormats() {
                 &FormatLabel::name);
 }
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 std::span<const FileFormat> fileFormats() {
   static const std::vector<FileFormat> list = [] {
     std::vector<FileFormat> result;
-    for (const Format& format : kFormatTable) {
+    for (const io::Format& format : io::kFormatTable) {
       if (format.overHdf5 && format.meshes.write == nullptr) continue;  // not in this build
       result.push_back({format.label.name, format.label.extension, format.label.description,
                         format.maps.read != nullptr, format.maps.write != nullptr,
                         format.readTets != nullptr, format.meshes.read != nullptr,
                         format.meshes.write != nullptr, format.pieces.openSink != nullptr,
-                        format.compresses && hasZlib()});
+                        format.compresses && io::hasZlib()});
     }
     return result;
   }();

@@ -16,7 +16,7 @@
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// What a format is called.
 struct FormatLabel {
@@ -66,4 +66,4 @@ enum class FileContent : std::uint8_t { Map, HexMesh, MapOrHexMesh, Tets };
 /// "vtu, mesh": the names of all formats that take meshes in pieces.
 [[nodiscard]] std::string streamingFormats();
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -8,7 +8,7 @@
 #include <base/parallel.hpp>
 #include <io/core/checked_sink.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
@@ -88,7 +88,11 @@ class SurveyWriter {
   MeshSurvey result_;
 };
 
-class SurveySink::Adder final : public CheckedSink<SurveyWriter> {
+}  // namespace hexhex::io
+
+namespace hexhex {
+
+class SurveySink::Adder final : public io::CheckedSink<io::SurveyWriter> {
   using CheckedSink::CheckedSink;
 };
 
@@ -111,7 +115,7 @@ const MeshSurvey& SurveySink::result() const noexcept { return adder_->writer().
 
 MeshSurvey survey(const HexMesh& mesh, Context& context) {
   SurveySink sink(context);
-  withThreads(context.threads(), [&] { sendTo(sink, mesh); });
+  withThreads(context.threads(), [&] { io::sendTo(sink, mesh); });
   return sink.result();
 }
 

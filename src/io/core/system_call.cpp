@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace hexhex::system_call {
+namespace hexhex::io::system_call {
 namespace {
 
 // Less what the user's umask takes away.
@@ -81,7 +81,7 @@ int remove(const Path& file) noexcept { return ::unlink(file.c_str()); }
 
 long processId() noexcept { return ::getpid(); }
 
-}  // namespace hexhex::system_call
+}  // namespace hexhex::io::system_call
 
 #else
 
@@ -100,7 +100,7 @@ long processId() noexcept { return ::getpid(); }
 #endif
 #include <windows.h>
 
-namespace hexhex::system_call {
+namespace hexhex::io::system_call {
 namespace {
 
 constexpr int kFlags = _O_BINARY | _O_NOINHERIT;
@@ -242,6 +242,6 @@ int remove(const Path& file) noexcept { return ::_wunlink(file.c_str()); }
 
 long processId() noexcept { return ::_getpid(); }
 
-}  // namespace hexhex::system_call
+}  // namespace hexhex::io::system_call
 
 #endif

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Calls a function of the system again if a signal interrupted it.
 /// @param call  returns a negative number if it fails
@@ -67,4 +67,4 @@ int remove(const Path& file) noexcept;
 
 }  // namespace system_call
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -10,7 +10,7 @@
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 13;
@@ -77,12 +77,16 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
 
 }  // namespace
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context) {
-  const PairNames names = {"The mesh", "the polycube", ErrorCode::InvalidArgument};
+  const io::PairNames names = {"The mesh", "the polycube", ErrorCode::InvalidArgument};
   constexpr std::array<WorkStep, 1> kOnly = {{{"pair meshes", 1}}};
   return inSteps(context, "mapFromPair", kOnly, [&] {
-    return inStage(context, "pair meshes",
-                   [&](Stage& stage) { return combine(tets, polycube, names, stage); });
+    return io::inStage(context, "pair meshes",
+                       [&](Stage& stage) { return io::combine(tets, polycube, names, stage); });
   });
 }
 
@@ -93,9 +97,9 @@ TetMap readMapPair(const std::filesystem::path& tets, const std::filesystem::pat
   return inSteps(context, "readMapPair", kSteps, [&] {
     const TetMesh first = readTetMesh(tets, {}, context);
     const TetMesh second = readTetMesh(polycube, {}, context);
-    const PairNames names = {tets.string(), polycube.string(), ErrorCode::FileUnsupported};
-    return inStage(context, "pair meshes",
-                   [&](Stage& stage) { return combine(first, second, names, stage); });
+    const io::PairNames names = {tets.string(), polycube.string(), ErrorCode::FileUnsupported};
+    return io::inStage(context, "pair meshes",
+                       [&](Stage& stage) { return io::combine(first, second, names, stage); });
   });
 }
 

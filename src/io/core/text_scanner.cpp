@@ -6,7 +6,7 @@
 #include <base/parallel.hpp>
 #include <io/core/text_scanner.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 std::string lowerCase(std::string_view word) {
   std::string result(word);
@@ -233,4 +233,4 @@ std::size_t TokenIndex::find(std::size_t token) const {
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

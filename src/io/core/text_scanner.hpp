@@ -20,7 +20,7 @@
 #include <base/stage.hpp>
 #include <io/core/double_from_chars.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// White space of all text formats.
 [[nodiscard]] constexpr bool isSpace(char c) noexcept {
@@ -317,4 +317,4 @@ void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, s
   for (std::size_t i = wrong; i < n; ++i) read(scanner, i);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

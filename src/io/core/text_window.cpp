@@ -6,7 +6,7 @@
 #include <base/parallel.hpp>
 #include <io/core/text_window.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kReadAtOnce = std::size_t{1} << 20;
@@ -100,4 +100,4 @@ bool TextWindow::skipLineBreak() {
   return true;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

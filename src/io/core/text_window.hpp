@@ -15,7 +15,7 @@
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 class TextWindow {
  public:
@@ -80,4 +80,4 @@ class TextWindow {
   bool sawComments_ = false;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

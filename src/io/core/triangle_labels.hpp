@@ -10,7 +10,7 @@
 
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 struct TriangleLabels {
   std::vector<std::array<Index, 3>> triangles;
@@ -25,4 +25,4 @@ struct TriangleLabels {
 [[nodiscard]] TriangleLabels readVtkLegacyLabels(const Input& input, std::string_view array,
                                                  Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

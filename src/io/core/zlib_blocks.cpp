@@ -5,7 +5,7 @@
 #include <new>
 #include <zlib.h>
 
-namespace hexhex {
+namespace hexhex::io {
 
 bool hasZlib() noexcept { return true; }
 
@@ -32,7 +32,7 @@ void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
   compressed.resize(before + size);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io
 
 #else
 

@@ -7,7 +7,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Whether the functions below work.
 [[nodiscard]] bool hasZlib() noexcept;
@@ -22,4 +22,4 @@ inline constexpr std::size_t kLargestZlibRatio = 1032;
 /// @throws std::bad_alloc
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

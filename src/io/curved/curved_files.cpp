@@ -13,7 +13,7 @@
 #include <io/vtk/vtk.hpp>
 #include <mesh/lagrange_check.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 namespace {
 
@@ -70,66 +70,71 @@ constexpr std::array<WorkStep, 1> kWriteSteps = {{{"write mesh", 1}}};
 
 }  // namespace
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context) {
-  const auto write = find(kArcFormats, file, kArcs);
-  inSteps(context, "writeArcs", kArcsSteps, [&] { write(mesh, nullptr, file, context); });
+  const auto write = io::find(io::kArcFormats, file, io::kArcs);
+  inSteps(context, "writeArcs", io::kArcsSteps, [&] { write(mesh, nullptr, file, context); });
 }
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                const std::filesystem::path& file, Context& context) {
-  const auto write = find(kArcFormats, file, kArcs);
-  inSteps(context, "writeArcs", kArcsSteps, [&] { write(mesh, &map, file, context); });
+  const auto write = io::find(io::kArcFormats, file, io::kArcs);
+  inSteps(context, "writeArcs", io::kArcsSteps, [&] { write(mesh, &map, file, context); });
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context) {
-  const auto write = find(kPatchFormats, file, kPatches);
-  inSteps(context, "writePatches", kPatchesSteps, [&] { write(mesh, nullptr, file, context); });
+  const auto write = io::find(io::kPatchFormats, file, io::kPatches);
+  inSteps(context, "writePatches", io::kPatchesSteps, [&] { write(mesh, nullptr, file, context); });
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                   const std::filesystem::path& file, Context& context) {
-  const auto write = find(kPatchFormats, file, kPatches);
-  inSteps(context, "writePatches", kPatchesSteps, [&] { write(mesh, &map, file, context); });
+  const auto write = io::find(io::kPatchFormats, file, io::kPatches);
+  inSteps(context, "writePatches", io::kPatchesSteps, [&] { write(mesh, &map, file, context); });
 }
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
-  const LagrangeWriter write = find(kLagrangeFormats, file, kCells);
-  requireConsistent(mesh);
+  const io::LagrangeWriter write = io::find(io::kLagrangeFormats, file, io::kCells);
+  mesh::requireConsistent(mesh);
   if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
     throw Error(ErrorCode::InvalidArgument,
                 "There are " + std::to_string(options.scaledJacobians.size()) +
                     " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
                     " cells. Give one for each, or none.");
   }
-  inSteps(context, "writeLagrangeMesh", kWriteSteps, [&] { write(mesh, file, options, context); });
+  inSteps(context, "writeLagrangeMesh", io::kWriteSteps,
+          [&] { write(mesh, file, options, context); });
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
-  return lowerCaseExtension(file) == ".vtu" && holdsLagrangeVtu(file, context);
+  return io::lowerCaseExtension(file) == ".vtu" && io::holdsLagrangeVtu(file, context);
 }
 
 LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
-  if (lowerCaseExtension(file) != ".vtu") {
+  if (io::lowerCaseExtension(file) != ".vtu") {
     throw Error(ErrorCode::FileUnsupported,
                 file.string() + ": cells of higher order are read from .vtu files only.");
   }
-  return inSteps(context, "readLagrangeMesh", kReadSteps,
-                 [&] { return readLagrangeVtu(file, context); });
+  return inSteps(context, "readLagrangeMesh", io::kReadSteps,
+                 [&] { return io::readLagrangeVtu(file, context); });
 }
 
 void requireArcFormat(const std::filesystem::path& file) {
-  static_cast<void>(find(kArcFormats, file, kArcs));
+  static_cast<void>(io::find(io::kArcFormats, file, io::kArcs));
 }
 
 void requirePatchFormat(const std::filesystem::path& file) {
-  static_cast<void>(find(kPatchFormats, file, kPatches));
+  static_cast<void>(io::find(io::kPatchFormats, file, io::kPatches));
 }
 
 void requireLagrangeFormat(const std::filesystem::path& file) {
-  static_cast<void>(find(kLagrangeFormats, file, kCells));
+  static_cast<void>(io::find(io::kLagrangeFormats, file, io::kCells));
 }
 
 }  // namespace hexhex

@@ -5,7 +5,7 @@
 
 #include <hexhex/curved.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Whether a `.vtu` file has cells of type 72, which is VTK_LAGRANGE_HEXAHEDRON.
 [[nodiscard]] bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context);
@@ -29,4 +29,4 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

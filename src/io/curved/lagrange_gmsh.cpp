@@ -16,7 +16,7 @@
 #include <io/gmsh/gmsh.hpp>
 #include <io/gmsh/msh41_writer.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // Gmsh's types of elements of order 1 to 9.
@@ -61,7 +61,7 @@ void appendGmshHex(std::vector<Node>& nodes, int low, int high) {
     return;
   }
   for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, low, high));
-  auto edges = kHexEdges;  // ascending, from the smaller corner to the larger one
+  auto edges = adjacency::kHexEdges;  // ascending, from the smaller corner to the larger one
   for (auto& edge : edges) edge = {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
   std::sort(edges.begin(), edges.end());
   for (const auto& [a, b] : edges) {
@@ -97,7 +97,7 @@ class ElementFinder {
   ElementPlace find(const std::array<Index, n>& element,
                     const std::array<std::array<std::uint8_t, n>, slots>& corners,
                     const char* what) {
-    if (around_.empty()) around_ = cellsAroundVertices(mesh_, stage_);
+    if (around_.empty()) around_ = adjacency::cellsAroundVertices(mesh_, stage_);
     for (const Index cell : around_(element[0])) {
       for (std::size_t slot = 0; slot < slots; ++slot) {
         std::array<Index, n> vertices{};
@@ -115,7 +115,7 @@ class ElementFinder {
  private:
   const HexMesh& mesh_;
   Stage& stage_;
-  VertexCells around_;  ///< found when it is needed
+  adjacency::VertexCells around_;  ///< found when it is needed
 };
 
 /// Appends the nodes from + i * stepI + j * stepJ of a cell, where (i, j, 0) are the nodes of a
@@ -152,8 +152,8 @@ Array<Index> gmshEdgeNodes(const LagrangeMesh& mesh, const HexMesh& straight,
   Array<Index> nodes;
   nodes.reserve(edges.elements.size() * list.size());
   for (const std::array<Index, 2>& edge : edges.elements) {
-    const auto [cell, slot] = finder.find(edge, kHexEdges, "edge");
-    auto [a, b] = kHexEdges[slot];
+    const auto [cell, slot] = finder.find(edge, adjacency::kHexEdges, "edge");
+    auto [a, b] = adjacency::kHexEdges[slot];
     if (straight.cells[cell][a] != edge[0]) std::swap(a, b);
     appendNodes(mesh, cell, {a, b, b}, list, nodes);
   }
@@ -173,9 +173,9 @@ Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const QuadGroups& quads,
   for (std::size_t i = 0; i < quads.elements.size(); ++i) {
     const std::uint64_t place = quads.places[i];
     const auto [cell, face] = place == kNoPlace
-                                  ? finder.find(quads.elements[i], kHexFaces, "quad")
+                                  ? finder.find(quads.elements[i], adjacency::kHexFaces, "quad")
                                   : ElementPlace{place / 8, static_cast<std::size_t>(place % 8)};
-    const auto& corners = kHexFaces[face];
+    const auto& corners = adjacency::kHexFaces[face];
     appendNodes(mesh, cell, {corners[0], corners[1], corners[3]}, list, nodes);
   }
   return nodes;
@@ -217,4 +217,4 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   writer.write(mesh.points, groups, forEachKind, stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

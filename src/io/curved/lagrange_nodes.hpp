@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Where a node is in a cell, from 0 to the order along each axis.
 using Node = std::array<int, 3>;
@@ -43,4 +43,4 @@ inline void append(std::vector<Node>& nodes, const std::vector<Node>& more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -15,7 +15,7 @@
 #include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Lagrange hexahedra with so many nodes.
@@ -30,7 +30,7 @@ CellKind lagrangeCells(std::size_t nodes) {
 /// along x and y around the bottom, then around the top, then those along z, counter-clockwise
 /// (since VTK 9); faces across x, y, z, the lower of each pair first.
 std::vector<std::uint32_t> vtkNodeOrder(int order) {
-  auto edges = kHexEdges;
+  auto edges = adjacency::kHexEdges;
   std::swap(edges[10], edges[11]);  // where VTK 9 differs
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, 0, order));
@@ -220,4 +220,4 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
   writeVtkXml(output, data, false, stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

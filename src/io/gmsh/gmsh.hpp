@@ -13,7 +13,7 @@
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Reads nodes and hexahedra (element type 5) of MSH 2.x and 4.1, ASCII and binary. Other elements
 /// and sections are ignored. Vertices are in the order of the file, whatever their tags.
@@ -50,4 +50,4 @@ inline constexpr unsigned kGmshQuad = 3;
 inline constexpr unsigned kGmshHexahedron = 5;
 inline constexpr unsigned kGmshPoint = 15;
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -20,7 +20,7 @@
 #include <io/gmsh/gmsh.hpp>
 #include <io/gmsh/gmsh_tags.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// The number of nodes, or 0 if it is not known.
 [[nodiscard]] constexpr std::size_t nodesOfGmshType(std::int64_t type) noexcept {
@@ -339,4 +339,4 @@ class GmshElements {
   bool hasOthers_ = false;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -20,7 +20,7 @@
 #include <io/gmsh/gmsh_elements.hpp>
 #include <io/gmsh/gmsh_tags.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// The frame of a file: its version and encoding, and its sections one after the other.
@@ -379,4 +379,4 @@ TetCells readGmshTets(const Input& input, Context& context) {
   return readWith<GmshReader<4>>(input, "read tets", context, input.counts());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

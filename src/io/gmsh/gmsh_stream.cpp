@@ -9,7 +9,7 @@
 #include <io/core/text_window.hpp>
 #include <io/gmsh/gmsh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr RecordShape kTag{.sizes = 1};
@@ -187,4 +187,4 @@ void readGmshTo(MeshSink& sink, const Input& input, Context& context) {
   readPlainMesh({openGmsh, readGmsh}, sink, input, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

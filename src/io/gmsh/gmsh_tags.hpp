@@ -17,7 +17,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Dimension of elements, and the number of a physical group.
 using GmshGroup = std::pair<std::int64_t, std::int64_t>;
@@ -120,4 +120,4 @@ class NodeTags {
   Array<Entry> sorted_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

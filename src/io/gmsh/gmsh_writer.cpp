@@ -11,7 +11,7 @@
 #include <io/gmsh/gmsh.hpp>
 #include <io/gmsh/msh41_writer.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 template <std::size_t n>
@@ -136,4 +136,4 @@ std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file
   return openWriterSink<GmshStream>(file, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -20,7 +20,7 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Elements of one kind that belong together.
 struct GmshEntity {
@@ -309,4 +309,4 @@ class Msh41Writer {
   std::uint64_t boxPosition_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

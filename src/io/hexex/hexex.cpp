@@ -19,7 +19,7 @@
 #include <io/core/text_scanner.hpp>
 #include <io/hexex/hexex.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // The shortest that a vertex ("0 0 0") and a tet ("0 1 2 3" and twelve digits) can be, with
@@ -54,19 +54,21 @@ void removeRepeated(std::vector<Feature>& features) {
 /// The triangles of one tet alone, the vertices of each ascending, in lexicographic order.
 std::vector<std::array<Index, 3>> boundaryTriangles(const TetMap& map, Stage& stage) {
   constexpr std::size_t kGrain = 4096;  // vertices per block: some tenths of a millisecond
-  const VertexLists<Index, std::uint64_t> tetsAt(map.points.size(), stage, [&map](const auto& add) {
-    for (std::size_t t = 0; t < map.tets.size(); ++t) {
-      for (const Index v : map.tets[t]) add(v, static_cast<Index>(t));
-    }
-  });
+  const adjacency::VertexLists<Index, std::uint64_t> tetsAt(
+      map.points.size(), stage, [&map](const auto& add) {
+        for (std::size_t t = 0; t < map.tets.size(); ++t) {
+          for (const Index v : map.tets[t]) add(v, static_cast<Index>(t));
+        }
+      });
   return collectFromBlocks<std::array<Index, 3>>(
       stage, map.points.size(), kGrain,
       [&](std::size_t begin, std::size_t end, std::vector<std::array<Index, 3>>& boundary) {
-        forEachFace(std::span<const Tet>(map.tets), begin, end, tetsAt, [&](const auto& tets) {
-          if (tets.size() > 1) return;
-          boundary.push_back(faceVertices(map.tets[tets[0].cell], tets[0].face));
-          std::sort(boundary.back().begin(), boundary.back().end());
-        });
+        adjacency::forEachFace(
+            std::span<const Tet>(map.tets), begin, end, tetsAt, [&](const auto& tets) {
+              if (tets.size() > 1) return;
+              boundary.push_back(adjacency::faceVertices(map.tets[tets[0].cell], tets[0].face));
+              std::sort(boundary.back().begin(), boundary.back().end());
+            });
       });
 }
 
@@ -285,4 +287,4 @@ void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& c
   output.commit();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -23,7 +23,7 @@
 
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 inline constexpr std::int32_t kHexexFeatureTag = 1;
 inline constexpr std::int32_t kHexexWallTag = 2;
@@ -36,4 +36,4 @@ inline constexpr std::int32_t kHexexWallTag = 2;
 /// @throws Error FileWrite; InvalidArgument if arrays disagree; NotFinite
 void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

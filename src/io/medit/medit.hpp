@@ -23,7 +23,7 @@
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Reads vertices, hexahedra, edges, quads and corners; other sections and comments ('#') are
 /// ignored.
@@ -94,4 +94,4 @@ inline constexpr std::array<std::pair<MeditSection, std::string_view>, 9> kMedit
      {MeditSection::RequiredVertices, "RequiredVertices"},
      {MeditSection::End, "End"}}};
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -16,7 +16,7 @@
 #include <io/medit/medit.hpp>
 #include <io/medit/vertex_tags.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
@@ -441,4 +441,4 @@ TetCells readMeshbTets(const Input& input, Context& context) {
   return readWith<MeditReader<MeditBytes, 4>>(input, "read tets", context, input.counts());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 #include <io/core/text_window.hpp>
 #include <io/medit/medit.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Whether a section of cells that are no hexahedra is meant.
@@ -187,4 +187,4 @@ void readMeshbTo(MeshSink& sink, const Input& input, Context& context) {
   readPlainMesh({openMedit<MeditBytePieces>, readMeshb}, sink, input, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -15,7 +15,7 @@
 #include <io/core/output_file.hpp>
 #include <io/medit/medit.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 struct MeditCounts {
@@ -35,8 +35,8 @@ struct MeditGroups {
   Array<std::uint32_t> cellReferences;  ///< empty: all are 1
 
   MeditGroups(const HexMesh& mesh, bool withEdges, double patchAngle, Stage& stage)
-      : vertexReferences(hexhex::vertexReferences(mesh, groupVertices(mesh))),
-        cellReferences(hexhex::cellReferences(mesh, Untagged::Zero)) {
+      : vertexReferences(io::vertexReferences(mesh, groupVertices(mesh))),
+        cellReferences(io::cellReferences(mesh, Untagged::Zero)) {
     if (withEdges) edges = groupEdges(mesh);
     edgeReferences = groupNumbers(edges.groups);
     withThreads(stage.context().threads(), [&] { quads = groupQuads(mesh, patchAngle, stage); });
@@ -253,4 +253,4 @@ std::unique_ptr<MeshSink> openMeshbSink(const std::filesystem::path& file, Conte
   return openWriterSink<MeditWriter<MeditRecords>>(file, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -4,7 +4,7 @@
 
 #include <io/medit/vertex_tags.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// References of which a vertex has two neighbours along edges of cells, ascending.
@@ -16,7 +16,7 @@ std::vector<std::int32_t> crowdedReferences(const Array<std::int32_t>& reference
     known = known == kNone || known == other ? other : vertex;
   };
   for (const Hex& cell : cells) {
-    for (const auto& edge : kHexEdges) {
+    for (const auto& edge : adjacency::kHexEdges) {
       const Index a = cell[edge[0]];
       const Index b = cell[edge[1]];
       if (references[a] == 0 || references[a] != references[b]) continue;
@@ -63,4 +63,4 @@ std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
   return tags;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

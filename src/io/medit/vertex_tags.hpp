@@ -11,7 +11,7 @@
 
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// @param corners     vertices in those sections, in any order; empty: there are none
 /// @param references  per vertex; or empty: they say nothing
@@ -21,4 +21,4 @@ namespace hexhex {
                                                     const Array<std::int32_t>& references,
                                                     const Array<Hex>& cells);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

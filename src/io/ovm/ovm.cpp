@@ -4,7 +4,7 @@
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 using Parse = OvmMesh (*)(std::string_view bytes, const std::string& fileName, Stage& stage);
@@ -70,4 +70,4 @@ void writeOvmbHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
   write(mesh, file, context, "write mesh", writeOvmb);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -20,7 +20,7 @@
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Read maps.
 /// @throws Error FileNotFound; FileSyntax, with byte or line, also for a binary file without its
@@ -69,4 +69,4 @@ void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
 void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
                       const std::filesystem::path& file, Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

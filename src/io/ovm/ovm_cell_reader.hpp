@@ -23,7 +23,7 @@
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Makes cells of what was read.
 /// @tparam orders  how many orders of a cell's corners the property CornerOrder numbers
@@ -31,8 +31,8 @@ template <std::size_t corners, std::size_t orders>
 class OvmCellReader {
   using Cell = std::array<Index, corners>;
   static constexpr CellKind kKind = kCellKind<corners>;
-  static constexpr std::size_t kFaces = kFaceCount<Cell>;
-  static constexpr std::size_t kFaceCorners = kFaceSize<Cell>;
+  static constexpr std::size_t kFaces = adjacency::kFaceCount<Cell>;
+  static constexpr std::size_t kFaceCorners = adjacency::kFaceSize<Cell>;
 
  public:
   /// @param fileName  outlives this
@@ -177,4 +177,4 @@ class OvmCellReader {
   Array<std::array<Index, kFaceCorners>> loops_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

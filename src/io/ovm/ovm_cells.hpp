@@ -19,7 +19,7 @@
 #include <io/core/cell_mesh.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// The map of a tet mesh.
 /// @param fileName  for error messages
@@ -138,8 +138,8 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
 /// The part of buildOvmTopology() that numbers hexahedra, once their faces are matched.
 /// @return nothing if a cell has a vertex twice
 [[nodiscard]] std::optional<OvmTopology> numberHexes(std::size_t vertexCount,
-                                                     std::span<const Hex> cells, HexMates mates,
-                                                     Stage& stage);
+                                                     std::span<const Hex> cells,
+                                                     adjacency::HexMates mates, Stage& stage);
 
 /// @param what  e.g. "edges"
 /// @throws Error TooLarge if there are more than the format can hold
@@ -162,4 +162,4 @@ class OvmEdgeFinder {
   Array<Index> begins_;  ///< per vertex (+1): its edges to larger vertices
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -17,7 +17,7 @@
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Gives one element its value, which must be there and not have one yet.
 /// @param element  index, or kNone; @param what  e.g. "feature edge 3-17", for the message
@@ -115,4 +115,4 @@ void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
   properties[OvmInteger::Region].assign(regions.begin(), regions.end());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -14,7 +14,7 @@
 #include <base/parallel.hpp>
 #include <io/ovm/ovm_cells.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = 2048;
@@ -64,18 +64,18 @@ constexpr std::array<std::array<std::uint8_t, 12>, 2> kFacesAtEdges = {
 
 /// The edges between vertices on seams, which cells cannot tell by themselves to be new.
 Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
-                          const HexMates& mates, Stage& stage) {
+                          const adjacency::HexMates& mates, Stage& stage) {
   // Of the cells at an edge, the first one lists it, and few others.
   const auto isFirst = [&mates](std::size_t cell, std::size_t edge) {
     return std::all_of(kFacesAtEdges.begin(), kFacesAtEdges.end(), [&](const auto& faces) {
       return mates.mates[6 * cell + faces[edge]] > 6 * cell;  // kNone is larger than all
     });
   };
-  const VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
+  const adjacency::VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
     parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
       const unsigned seams = mates.seamCorners[c];
       for (std::size_t e = 0; seams != 0 && e < 12; ++e) {
-        const auto& [i, k] = kHexEdges[e];
+        const auto& [i, k] = adjacency::kHexEdges[e];
         if ((seams >> i & seams >> k & 1U) == 0 || !isFirst(c, e)) continue;
         add(std::min(cells[c][i], cells[c][k]), std::max(cells[c][i], cells[c][k]));
       }
@@ -94,8 +94,8 @@ Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
 
 class HexTopologyBuilder {
  public:
-  HexTopologyBuilder(std::size_t vertexCount, std::span<const Hex> cells, HexMates&& mates,
-                     Stage& stage)
+  HexTopologyBuilder(std::size_t vertexCount, std::span<const Hex> cells,
+                     adjacency::HexMates&& mates, Stage& stage)
       : cells_(cells),
         stage_(stage),
         seamEdges_(listSeamEdges(vertexCount, cells, mates, stage)),
@@ -134,7 +134,7 @@ class HexTopologyBuilder {
     if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
     unsigned edges = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      edges |= (seams & seams >> kNextCorner[axis] & 1U) == 0 ? 1U << axis : 0U;
+      edges |= (seams & seams >> adjacency::kNextCorner[axis] & 1U) == 0 ? 1U << axis : 0U;
     }
     unsigned faces = 0;
     for (std::size_t slot = 0; slot < 6; ++slot) {
@@ -167,7 +167,7 @@ class HexTopologyBuilder {
       Edge* edge = topology_.edges.data() + own_[c].firstEdge;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if ((own_[c].edges >> axis & 1U) != 0)
-          *edge++ = {cells_[c][0], cells_[c][kNextCorner[axis]]};
+          *edge++ = {cells_[c][0], cells_[c][adjacency::kNextCorner[axis]]};
       }
     });
   }
@@ -253,8 +253,8 @@ class HexTopologyBuilder {
 }  // namespace
 
 std::optional<OvmTopology> numberHexes(std::size_t vertexCount, std::span<const Hex> cells,
-                                       HexMates mates, Stage& stage) {
+                                       adjacency::HexMates mates, Stage& stage) {
   return HexTopologyBuilder(vertexCount, cells, std::move(mates), stage).build();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -228,4 +228,4 @@ OvmOutput toOvm(const HexMesh& mesh, Stage& stage) {
   return {mesh.points, std::move(topology), std::move(properties).listed()};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -24,7 +24,7 @@
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// What a property belongs to; the numbers are those of `.ovmb`.
 enum class OvmEntity : std::uint8_t { Vertex, Edge, Face, Cell, HalfEdge, HalfFace, Mesh };
@@ -218,4 +218,4 @@ struct OvmOutput {
 void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -10,7 +10,7 @@
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_features.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -55,7 +55,8 @@ bool assembleTet(const TriangleLoops& loops, AssembledTet& tet) {
     const auto opposite = static_cast<std::size_t>(
         std::find_if_not(tet.corners.begin(), tet.corners.end(), inLoop) - tet.corners.begin());
     // All half-faces run the same way round, seen from inside.
-    if (!areOpposite(loopOfHalfFace(loops[s], 1), faceVertices(tet.corners, opposite)))
+    if (!adjacency::areOpposite(loopOfHalfFace(loops[s], 1),
+                                adjacency::faceVertices(tet.corners, opposite)))
       return false;
     tet.opposite[s] = static_cast<std::uint8_t>(opposite);
     seen |= 1U << opposite;
@@ -295,4 +296,4 @@ OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tet
   return topologyOf(points.size(), tets, kTetOrders[writtenOrder(points, tets, stage)], stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -12,7 +12,7 @@
 #include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovmb_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::array<std::string_view, 6> kIntegerTypes = {"int",  "uint",  "short",
@@ -332,4 +332,4 @@ OvmMesh parseOvmText(std::string_view text, const std::string& fileName, Stage& 
   return OvmTextReader(text, fileName, stage).read();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -3,7 +3,7 @@
 #include <io/core/line_writer.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// A number and what separates it from the next.
@@ -96,4 +96,4 @@ void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
   OvmTextWriter(mesh, output, stage).write();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

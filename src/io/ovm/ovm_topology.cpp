@@ -18,7 +18,7 @@
 
 #include <base/parallel.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what) {
   if (count <= limit) return;
@@ -50,10 +50,11 @@ void requireDifferentVertices(std::span<const Cell> cells, Stage& stage) {
 
 /// Throws if this is a face of more than two cells, or of two that are not beside each other.
 template <class Cell>
-void requireManifold(std::span<const Cell> cells, std::span<const CellFace<Cell>> halfFaces) {
+void requireManifold(std::span<const Cell> cells,
+                     std::span<const adjacency::CellFace<Cell>> halfFaces) {
   if (halfFaces.size() == 1) return;
-  const CellFace<Cell>& a = halfFaces[0];
-  const CellFace<Cell>& b = halfFaces[1];
+  const adjacency::CellFace<Cell>& a = halfFaces[0];
+  const adjacency::CellFace<Cell>& b = halfFaces[1];
   const std::string names = "cells " + std::to_string(a.cell) + " and " + std::to_string(b.cell);
   const Place place{PlaceKind::Cell, a.cell};
   if (halfFaces.size() > 2) {
@@ -62,7 +63,9 @@ void requireManifold(std::span<const Cell> cells, std::span<const CellFace<Cell>
                     " share a face; files of OpenVolumeMesh cannot hold that.",
                 place);
   }
-  if (areOpposite(faceVertices(cells[a.cell], a.face), faceVertices(cells[b.cell], b.face))) return;
+  if (adjacency::areOpposite(adjacency::faceVertices(cells[a.cell], a.face),
+                             adjacency::faceVertices(cells[b.cell], b.face)))
+    return;
   throw Error(ErrorCode::Orientation,
               "The " + names +
                   " list the corners of the face that they share in the same direction, so one of "
@@ -74,14 +77,16 @@ void requireManifold(std::span<const Cell> cells, std::span<const CellFace<Cell>
 template <class Cell>
 [[noreturn]] void throwFaceFault(std::size_t vertexCount, std::span<const Cell> cells,
                                  Stage& stage) {
-  const VertexLists<Index, std::uint64_t> around(vertexCount, stage, [&](const auto& add) {
-    parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
-      for (const Index v : cells[c]) add(v, static_cast<Index>(c));
-    });
-  });
-  forEachFace(cells, 0, vertexCount, around, [cells](std::span<const CellFace<Cell>> halfFaces) {
-    requireManifold(cells, halfFaces);
-  });
+  const adjacency::VertexLists<Index, std::uint64_t> around(
+      vertexCount, stage, [&](const auto& add) {
+        parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+          for (const Index v : cells[c]) add(v, static_cast<Index>(c));
+        });
+      });
+  adjacency::forEachFace(cells, 0, vertexCount, around,
+                         [cells](std::span<const adjacency::CellFace<Cell>> halfFaces) {
+                           requireManifold(cells, halfFaces);
+                         });
   throw Error(ErrorCode::Internal, "A fault of a face was found, but not again.");
 }
 
@@ -89,12 +94,12 @@ using Edge = std::array<Index, 2>;
 
 /// The edges from a vertex to larger ones, in the order in which its tets have them.
 /// @param others  reused between calls
-void appendEdges(const TetTopology& tets, Index vertex, KeyTable& others,
+void appendEdges(const adjacency::TetTopology& tets, Index vertex, adjacency::KeyTable& others,
                  std::vector<Edge>& edges) {
   others.clear();
-  for (const CornerIndex corner : tets.star(vertex)) {
+  for (const adjacency::CornerIndex corner : tets.star(vertex)) {
     const Index t = corner / 4;
-    for (const std::uint8_t i : kAscendingCorners[tets.order[t]]) {
+    for (const std::uint8_t i : adjacency::kAscendingCorners[tets.order[t]]) {
       const Index other = tets.tets[t][i];
       if (other <= vertex) continue;
       const std::size_t known = others.size();
@@ -103,11 +108,11 @@ void appendEdges(const TetTopology& tets, Index vertex, KeyTable& others,
   }
 }
 
-std::vector<Edge> listEdges(const TetTopology& tets, Stage& stage) {
+std::vector<Edge> listEdges(const adjacency::TetTopology& tets, Stage& stage) {
   return collectFromBlocks<Edge>(
       stage, tets.pointCount, kGrain,
       [&tets](std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
-        KeyTable others;
+        adjacency::KeyTable others;
         for (std::size_t v = begin; v < end; ++v) {
           appendEdges(tets, static_cast<Index>(v), others, edges);
         }
@@ -115,13 +120,14 @@ std::vector<Edge> listEdges(const TetTopology& tets, Stage& stage) {
 }
 
 /// The faces whose smallest vertex this is, as half-faces of the first tet that has them.
-void appendFaces(const TetTopology& tets, Index vertex, std::vector<HalfFace>& faces) {
-  const auto addIfFirst = [&](HalfFace halfFace) {
+void appendFaces(const adjacency::TetTopology& tets, Index vertex,
+                 std::vector<adjacency::HalfFace>& faces) {
+  const auto addIfFirst = [&](adjacency::HalfFace halfFace) {
     if (tets.mate[halfFace] > halfFace) faces.push_back(halfFace);  // kNone is larger than all
   };
-  for (const CornerIndex corner : tets.star(vertex)) {
+  for (const adjacency::CornerIndex corner : tets.star(vertex)) {
     const Index t = corner / 4;
-    const std::array<std::uint8_t, 4>& ascending = kAscendingCorners[tets.order[t]];
+    const std::array<std::uint8_t, 4>& ascending = adjacency::kAscendingCorners[tets.order[t]];
     if (ascending[0] == corner % 4) {
       // The order of slots, if the tet lists its vertices in ascending order.
       for (const std::size_t opposite : {3U, 1U, 2U}) addIfFirst(4 * t + ascending[opposite]);
@@ -134,13 +140,13 @@ void appendFaces(const TetTopology& tets, Index vertex, std::vector<HalfFace>& f
 /// Numbers the faces of tets and lists the half-edges of each.
 class TetFaceLister {
  public:
-  TetFaceLister(const TetTopology& tets, OvmTopology& topology)
+  TetFaceLister(const adjacency::TetTopology& tets, OvmTopology& topology)
       : tets_(tets), topology_(topology), edges_(tets.pointCount, topology.edges) {}
 
   void run(Stage& stage) {
-    const std::vector<HalfFace> faces = collectFromBlocks<HalfFace>(
+    const std::vector<adjacency::HalfFace> faces = collectFromBlocks<adjacency::HalfFace>(
         stage, tets_.pointCount, kGrain,
-        [this](std::size_t begin, std::size_t end, std::vector<HalfFace>& list) {
+        [this](std::size_t begin, std::size_t end, std::vector<adjacency::HalfFace>& list) {
           for (std::size_t v = begin; v < end; ++v) appendFaces(tets_, static_cast<Index>(v), list);
         });
     requireOvmCount(kMaxOvmEntities, faces.size(), "faces");
@@ -153,20 +159,20 @@ class TetFaceLister {
   }
 
  private:
-  static Index slotOf(HalfFace halfFace) { return kOvmTetOpposite[halfFace % 4]; }
-  Index& handleOf(HalfFace halfFace) {
-    return topology_.cells.handles[4 * std::size_t{tetOf(halfFace)} + slotOf(halfFace)];
+  static Index slotOf(adjacency::HalfFace halfFace) { return kOvmTetOpposite[halfFace % 4]; }
+  Index& handleOf(adjacency::HalfFace halfFace) {
+    return topology_.cells.handles[4 * std::size_t{adjacency::tetOf(halfFace)} + slotOf(halfFace)];
   }
 
-  void listFace(Index face, HalfFace halfFace) {
-    const HalfFace mate = tets_.mate[halfFace];
+  void listFace(Index face, adjacency::HalfFace halfFace) {
+    const adjacency::HalfFace mate = tets_.mate[halfFace];
     // The corners of a cell begin with its first slot, so a reader finds them in their order if the
     // face begins where that does.
     const bool mateOwns = mate != kNone && slotOf(mate) < slotOf(halfFace);
-    const HalfFace owner = mateOwns ? mate : halfFace;
+    const adjacency::HalfFace owner = mateOwns ? mate : halfFace;
     handleOf(owner) = 2 * face;
     if (mate != kNone) handleOf(mateOwns ? halfFace : mate) = 2 * face + 1;
-    const Tet& tet = tets_.tets[tetOf(owner)];
+    const Tet& tet = tets_.tets[adjacency::tetOf(owner)];
     const std::array<std::uint8_t, 3>& loop = kOvmTetFaces[slotOf(owner)];
     for (std::size_t i = 0; i < 3; ++i) {
       topology_.faces.handles[3 * std::size_t{face} + i] =
@@ -174,7 +180,7 @@ class TetFaceLister {
     }
   }
 
-  const TetTopology& tets_;
+  const adjacency::TetTopology& tets_;
   OvmTopology& topology_;
   OvmEdgeFinder edges_;
 };
@@ -203,11 +209,11 @@ Index OvmEdgeFinder::find(Index a, Index b) const noexcept {
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells, Stage& stage) {
   requireCounts(vertexCount, cells.size(), 4);
   requireDifferentVertices(cells, stage);
-  TetTopology tets;
+  adjacency::TetTopology tets;
   tets.tets = cells;
   tets.pointCount = vertexCount;
-  if (!matchFaces(tets, stage)) throwFaceFault(vertexCount, cells, stage);
-  addStars(tets, stage);
+  if (!adjacency::matchFaces(tets, stage)) throwFaceFault(vertexCount, cells, stage);
+  adjacency::addStars(tets, stage);
   OvmTopology topology;
   topology.vertexCount = vertexCount;
   const std::vector<Edge> edges = listEdges(tets, stage);
@@ -219,7 +225,7 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells
 
 OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
   requireCounts(vertexCount, cells.size(), 6);
-  std::optional<HexMates> mates = matchHexFaces(vertexCount, cells, stage);
+  std::optional<adjacency::HexMates> mates = adjacency::matchHexFaces(vertexCount, cells, stage);
   if (mates) {
     std::optional<OvmTopology> topology = numberHexes(vertexCount, cells, std::move(*mates), stage);
     if (topology) return std::move(*topology);
@@ -228,4 +234,4 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells
   throwFaceFault(vertexCount, cells, stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

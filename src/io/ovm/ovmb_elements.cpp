@@ -7,7 +7,7 @@
 #include <base/parallel.hpp>
 #include <io/ovm/ovmb_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // Numbers of the four kinds of elements, in file headers and TOPO chunks.
@@ -279,4 +279,4 @@ void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage) {
   mesh.topology.vertexCount = mesh.points.size();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -10,7 +10,7 @@
 #include <io/core/text_scanner.hpp>
 #include <io/ovm/ovmb_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::uint8_t kMandatory = 1;
@@ -333,4 +333,4 @@ OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& st
   return mesh;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -17,7 +17,7 @@
 #include <io/core/checked_sink.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
 
@@ -68,4 +68,4 @@ std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& st
 /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
 void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

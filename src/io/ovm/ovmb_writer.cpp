@@ -9,7 +9,7 @@
 #include <io/ovm/ovm_mesh.hpp>
 #include <io/ovm/ovmb_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // What is written between two looks at the caller's wish to cancel: some milliseconds' work.
@@ -215,4 +215,4 @@ void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
   OvmbWriter(mesh, output, stage).write();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -22,7 +22,7 @@
 #include <io/ovm/ovm_cells.hpp>
 #include <io/ovm/ovm_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 using EdgeEnds = std::array<Index, 2>;
@@ -81,7 +81,7 @@ class TetSimplices {
 
  private:
   static std::span<const Tet> requireInRange(const TetMapView& map, Stage& stage) {
-    requireCornersInRange(map, stage);
+    adjacency::requireCornersInRange(map, stage);
     return map.tets;
   }
 
@@ -345,4 +345,4 @@ void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
         stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -15,7 +15,7 @@
 #include <io/parts/parts.hpp>
 #include <io/solvers/exodus_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 std::vector<std::int32_t> fromOneAll(const Array<std::uint64_t>& numbers, std::size_t count) {
@@ -284,4 +284,4 @@ std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file,
   return std::make_unique<ExodusSink>(file, context, team);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

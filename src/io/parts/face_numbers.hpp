@@ -9,7 +9,7 @@
 
 #include <hexhex/team.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Faces of a part, in the order that they have in the mesh in one piece. They follow one another
 /// there, too, as long as their cells do, which are a run then: there are about as many runs as
@@ -94,4 +94,4 @@ class FaceNumbers {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> begins_;  ///< per run, by its first cell
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

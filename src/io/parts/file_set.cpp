@@ -4,7 +4,7 @@
 
 #include <io/parts/file_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>& change) {
   agree(team_);  // all are written
@@ -36,4 +36,4 @@ void refuseGhosts(std::uint32_t layers, const std::string& what) {
   throw Error(ErrorCode::FileUnsupported, what + " hold no ghost cells. Leave out --ghosts.");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -11,7 +11,7 @@
 
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 // Sinks work in one process, without a team, or in each process of one.
 [[nodiscard]] inline bool isFirst(const ProcessTeam* team) {
@@ -56,4 +56,4 @@ class FileSet {
 /// @throws Error FileUnsupported if ghosts are asked for
 void refuseGhosts(std::uint32_t layers, const std::string& what);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -16,7 +16,7 @@
 #include <io/parts/parts.hpp>
 #include <io/parts/shared_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Copies all that was written to a file.
@@ -176,4 +176,4 @@ std::unique_ptr<PartSink> openSplitGmshPartSink(const std::filesystem::path& fil
   return std::make_unique<ManyGmshFiles>(file, context, team);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -6,7 +6,7 @@
 #include <io/gmsh/gmsh_elements.hpp>
 #include <io/parts/gmsh_sections.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Makes the sections of one part.
@@ -258,4 +258,4 @@ std::string gmshEnd(const GmshSums& sums) {
   return sums.ghosts == 0 ? "" : "\n$EndGhostElements\n";
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

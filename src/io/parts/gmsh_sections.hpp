@@ -18,7 +18,7 @@
 #include <io/core/bytes.hpp>
 #include <io/core/mesh_groups.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Bytes that are collected.
 class GmshBytes {
@@ -129,4 +129,4 @@ class GmshNumbers {
 [[nodiscard]] std::string gmshGhostsHead(const GmshSums& sums);
 [[nodiscard]] std::string gmshEnd(const GmshSums& sums);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

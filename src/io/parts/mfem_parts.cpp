@@ -15,7 +15,7 @@
 #include <io/parts/part_groups.hpp>
 #include <io/parts/parts.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Parts that share something, ascending; at least two.
@@ -58,7 +58,7 @@ class SharedByGroup {
     for (std::size_t c = 0; c < part_.mesh.cells.size(); ++c) {
       const std::uint32_t owner =
           c < part_.ownCells ? part_.part : part_.ghostParts[c - part_.ownCells];
-      for (const auto& ends : kHexEdges) {
+      for (const auto& ends : adjacency::kHexEdges) {
         std::array<Index, 2> edge = {part_.mesh.cells[c][ends[0]], part_.mesh.cells[c][ends[1]]};
         if (!isShared(edge[0]) || !isShared(edge[1])) continue;
         std::sort(edge.begin(), edge.end());
@@ -77,7 +77,7 @@ class SharedByGroup {
   void addFaces() {
     for (const PartNeighbour& neighbour : part_.neighbours) {
       for (const PartFace& face : neighbour.faces) {
-        Quad quad = faceVertices(part_.mesh.cells[face.cell], face.side);
+        Quad quad = adjacency::faceVertices(part_.mesh.cells[face.cell], face.side);
         std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
         if (quad[3] < quad[1]) std::swap(quad[1], quad[3]);
         groups_[withOwn({neighbour.part})].faces.push_back(quad);
@@ -202,4 +202,4 @@ std::unique_ptr<PartSink> openMfemPartSink(const std::filesystem::path& file,
   return std::make_unique<MfemSink>(file, context, team);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -22,7 +22,7 @@
 #include <io/parts/parts.hpp>
 #include <io/solvers/poly_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// A face of a part that is not between two of its cells.
@@ -55,7 +55,7 @@ struct OpenPart {
 class PartFaces {
  public:
   PartFaces(const MeshPart& part, Stage& stage)
-      : part_(part), neighbours_(findFaceNeighbours(part.mesh, stage)) {
+      : part_(part), neighbours_(adjacency::findFaceNeighbours(part.mesh, stage)) {
     open.part = part.part;
     for (const PartNeighbour& neighbour : part.neighbours) {
       for (const PartFace& face : neighbour.faces) {
@@ -95,12 +95,12 @@ class PartFaces {
     return quad;
   }
   void add(Index cell, std::size_t side) {
-    Quad quad = faceVertices(part_.mesh.cells[cell], side);
+    Quad quad = adjacency::faceVertices(part_.mesh.cells[cell], side);
     poly.faces.push_back(quad);
     poly.owners.push_back(cell);
   }
   [[nodiscard]] std::int32_t tagOf(Index cell, std::size_t side) const {
-    const Quad quad = sorted(faceVertices(part_.mesh.cells[cell], side));
+    const Quad quad = sorted(adjacency::faceVertices(part_.mesh.cells[cell], side));
     const auto found =
         std::lower_bound(tags_.begin(), tags_.end(), std::pair(quad, std::int32_t{0}),
                          [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -157,7 +157,7 @@ class PartFaces {
   };
 
   const MeshPart& part_;
-  FaceNeighbours neighbours_;
+  adjacency::FaceNeighbours neighbours_;
   std::vector<Owned> owned_;                           ///< of one cell
   std::uint64_t run_ = 0;                              ///< of that cell
   std::map<std::uint64_t, std::uint64_t> outside_;     ///< of faces between parts: the other cell
@@ -392,4 +392,4 @@ std::unique_ptr<PartSink> openOpenFoamPartSink(const std::filesystem::path& file
   return std::make_unique<OpenFoamSink>(file, context, team);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -10,7 +10,7 @@
 #include <io/parts/file_set.hpp>
 #include <io/parts/parts.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 #if defined(HEXHEX_HAS_HDF5)
@@ -81,24 +81,28 @@ bool isOverHdf5(std::size_t format) {
 
 }  // namespace
 
+}  // namespace hexhex::io
+
+namespace hexhex {
+
 std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
                                        const WriteOptions& options, Context& context,
                                        ProcessTeam* team) {
-  const std::size_t format = findFormat(file, options.format);
+  const std::size_t format = io::findFormat(file, options.format);
   if (team != nullptr) {
-    requireForTeams(file, format);
-    requireSameOutput(*team, file, options);
+    io::requireForTeams(file, format);
+    io::requireSameOutput(*team, file, options);
   }
-  if (isOverHdf5(format) && isFirst(team)) requireHdf5(file);
-  return kOpen[format](file, options, context, team);
+  if (io::isOverHdf5(format) && io::isFirst(team)) io::requireHdf5(file);
+  return io::kOpen[format](file, options, context, team);
 }
 
 void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,
                        bool byTeam) {
-  const std::size_t format = findFormat(file, options.format);
-  if (byTeam) requireForTeams(file, format);
+  const std::size_t format = io::findFormat(file, options.format);
+  if (byTeam) io::requireForTeams(file, format);
 }
 
-std::span<const PartFormat> partFormats() noexcept { return kPartFormats; }
+std::span<const PartFormat> partFormats() noexcept { return io::kPartFormats; }
 
 }  // namespace hexhex

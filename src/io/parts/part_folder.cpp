@@ -2,7 +2,7 @@
 
 #include <io/parts/part_folder.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 void PartFolder::commit(std::uint32_t parts) {
   folder_->commit();
@@ -20,4 +20,4 @@ void PartFolder::commit(std::uint32_t parts) {
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 #include <io/core/output_folder.hpp>
 #include <io/parts/file_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Files appear with the folder. Those of earlier runs with more parts are removed; what else is in
 /// the folder stays. In a team of processes, the folder is the first one's, and all write into it.
@@ -49,4 +49,4 @@ class PartFolder {
   FileName name_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

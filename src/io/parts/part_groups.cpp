@@ -4,7 +4,7 @@
 #include <base/parallel.hpp>
 #include <io/parts/part_groups.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 CellGroups groupOwnCells(const MeshPart& part, const PartsInfo& info) {
@@ -46,4 +46,4 @@ MeshGroups groupPart(const MeshPart& part, const PartsInfo& info, Stage& stage) 
   return {std::move(vertices), std::move(edges), std::move(quads), groupOwnCells(part, info)};
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

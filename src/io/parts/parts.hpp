@@ -9,7 +9,7 @@
 
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 using OpenPartSink = std::unique_ptr<PartSink>(const std::filesystem::path& file,
                                                const WriteOptions& options, Context& context,
@@ -54,4 +54,4 @@ OpenPartSink openMfemPartSink;
 /// @throws Error FileUnsupported for ghosts; TooLarge for a part beyond 32 bits
 OpenPartSink openCgnsPartSink;
 
-}  // namespace hexhex
+}  // namespace hexhex::io

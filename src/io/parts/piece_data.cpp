@@ -2,7 +2,7 @@
 
 #include <io/parts/piece_data.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 VtkDataSet partDataSet(const MeshPart& part, const PartsInfo& info, VtkPiece& piece) {
   const HexMesh& mesh = part.mesh;
@@ -42,4 +42,4 @@ VtkDataSet partDataSet(const MeshPart& part, const PartsInfo& info, VtkPiece& pi
   return data;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

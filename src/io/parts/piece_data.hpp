@@ -5,7 +5,7 @@
 
 #include <io/vtk/vtk_data_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// VTK's mark of points and cells that another part owns.
 inline constexpr std::uint8_t kVtkDuplicate = 1;
@@ -16,4 +16,4 @@ inline constexpr std::uint8_t kVtkDuplicate = 1;
 /// @param part, piece  outlive the data set
 [[nodiscard]] VtkDataSet partDataSet(const MeshPart& part, const PartsInfo& info, VtkPiece& piece);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -13,7 +13,7 @@
 #include <io/parts/parts.hpp>
 #include <io/parts/piece_data.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// As the value of an attribute.
@@ -143,4 +143,4 @@ std::unique_ptr<PartSink> openPvtuSink(const std::filesystem::path& file,
   return std::make_unique<PvtuSink>(file, context, team);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

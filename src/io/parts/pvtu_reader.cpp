@@ -11,7 +11,7 @@
 #include <io/vtk/vtk_reader.hpp>
 #include <io/vtk/xml_tags.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 std::string unescaped(std::string_view text) {
@@ -255,4 +255,4 @@ HexMesh readPvtu(const Input& input, Context& context) {
   });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

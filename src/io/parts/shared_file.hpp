@@ -9,7 +9,7 @@
 #include <io/core/output_file.hpp>
 #include <io/parts/file_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// The file is the first process's, and others open its temporary. Without a team, the one of this
 /// process. All processes make it, and commit it, together.
@@ -37,4 +37,4 @@ class SharedFile {
   std::optional<OutputFile> output_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

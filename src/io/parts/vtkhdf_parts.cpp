@@ -21,7 +21,7 @@
 #include <io/parts/shared_file.hpp>
 #include <io/vtk/vtkhdf_kind.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// What a part adds to a dataset of the file.
@@ -242,4 +242,4 @@ std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file,
   return std::make_unique<VtkHdfSink>(file, context, team);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

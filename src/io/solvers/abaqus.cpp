@@ -10,7 +10,7 @@
 #include <io/core/output_file.hpp>
 #include <io/solvers/solvers.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kLongestNumber = 20;
@@ -135,4 +135,4 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
   output.commit();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -27,7 +27,7 @@
 #include <io/parts/parts.hpp>
 #include <io/solvers/solvers.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// The standard's numbers of elements with so many corners.
@@ -358,4 +358,4 @@ std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file,
   return std::make_unique<CgnsPartSink>(file, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

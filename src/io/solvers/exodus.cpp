@@ -3,7 +3,7 @@
 #include <io/solvers/exodus_file.hpp>
 #include <io/solvers/solvers.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context, std::uint64_t mostBytes) {
@@ -17,4 +17,4 @@ void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
   target.commit();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

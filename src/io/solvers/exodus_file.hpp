@@ -16,7 +16,7 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/solvers/netcdf.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Exodus' numbers of the faces of kHexFaces.
 inline constexpr std::array<std::int32_t, 6> kExodusSides = {4, 2, 1, 3, 5, 6};
@@ -231,4 +231,4 @@ class ExodusFile {
   ExodusList nodes_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

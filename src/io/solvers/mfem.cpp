@@ -12,7 +12,7 @@
 #include <io/curved/lagrange_files.hpp>
 #include <io/solvers/solvers.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Writes one file front to back.
@@ -91,4 +91,4 @@ void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& fi
                      [&](std::size_t i) -> const Vec3& { return mesh.points[mesh.nodes[i]]; });
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -5,7 +5,7 @@
 
 #include <io/solvers/netcdf.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
@@ -118,4 +118,4 @@ void NetcdfFile::write(OutputFile& output, int threads, std::uint64_t mostBytes)
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -12,7 +12,7 @@
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 enum class NetcdfType : std::uint32_t {
   Char = 2,
@@ -51,4 +51,4 @@ struct NetcdfFile {
   void write(OutputFile& output, int threads, std::uint64_t mostBytes) const;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

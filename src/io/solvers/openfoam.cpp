@@ -22,14 +22,14 @@
 #include <io/solvers/poly_mesh.hpp>
 #include <io/solvers/solvers.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
 
 /// Inner faces: those of each cell with larger neighbours, in order of the neighbours.
 void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
-  const FaceNeighbours neighbours = findFaceNeighbours(mesh, stage);
+  const adjacency::FaceNeighbours neighbours = adjacency::findFaceNeighbours(mesh, stage);
   const auto isOwned = [&neighbours](std::size_t cell, std::size_t face) {
     const Index other = neighbours[cell][face];
     return other != kNone && other > cell;
@@ -52,7 +52,7 @@ void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
     }
     std::sort(owned.begin(), owned.begin() + size);
     for (std::size_t i = 0; i < size; ++i) {
-      poly.faces[begin[c] + i] = faceVertices(mesh.cells[c], owned[i].second);
+      poly.faces[begin[c] + i] = adjacency::faceVertices(mesh.cells[c], owned[i].second);
       poly.owners[begin[c] + i] = static_cast<Index>(c);
       poly.neighbours[begin[c] + i] = owned[i].first;
     }
@@ -113,4 +113,4 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
   }
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

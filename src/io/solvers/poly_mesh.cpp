@@ -2,7 +2,7 @@
 
 #include <io/solvers/poly_mesh.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 OutputFile& PolyMeshWriter::begin(std::string_view kind, std::string_view object,
                                   std::string_view note) {
@@ -85,4 +85,4 @@ void PolyMeshWriter::writeBoundary(const std::vector<PolyMesh::Patch>& patches) 
   output.write(")\n");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

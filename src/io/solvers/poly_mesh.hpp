@@ -17,7 +17,7 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Faces as OpenFOAM lists them; quads look out of their owners.
 struct PolyMesh {
@@ -65,4 +65,4 @@ class PolyMeshWriter {
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -10,7 +10,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// `.inp`: Abaqus and CalculiX input. Writes nodes and elements of type C3D8, numbered from 1, and
 /// for each group of vertices, edges and quads a node set, and for each group of boundary quads an
@@ -67,4 +67,4 @@ void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const Wri
 void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
                    const WriteOptions& options, Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

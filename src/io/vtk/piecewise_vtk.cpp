@@ -10,7 +10,7 @@
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 namespace {
 
@@ -130,4 +130,4 @@ void writePatchesVtk(const PiecewiseLinearMesh& mesh, const std::filesystem::pat
   writeVtkXml(output, data, false, stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -13,7 +13,7 @@
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 // `.vtu`: an unstructured grid. Data may be appended (raw or base64), inline base64 or ascii, and
 // compressed with zlib, if the library was built with it. They are written as raw bytes, appended,
@@ -116,4 +116,4 @@ void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& fil
 void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

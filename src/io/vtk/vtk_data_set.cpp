@@ -5,7 +5,7 @@
 
 #include <io/vtk/vtk_data_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// A tag for each vertex, 0 without.
@@ -179,4 +179,4 @@ VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece
   return data;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

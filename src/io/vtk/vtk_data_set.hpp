@@ -23,7 +23,7 @@
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 // VTK's types of cells.
 inline constexpr std::uint8_t kVtkLine = 3;
@@ -210,4 +210,4 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
 /// @param compress  with zlib, which is there; the output has positions then
 void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // Points or cells of a piece: a few megabytes.
@@ -128,4 +128,4 @@ void readVtuTo(MeshSink& sink, const Input& input, Context& context) {
   sendPieces(*openVtuFile(input, stage), sink, stage);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

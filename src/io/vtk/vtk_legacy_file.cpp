@@ -15,7 +15,7 @@
 #include <io/core/text_scanner.hpp>
 #include <io/vtk/vtk_source.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// VTK writes characters of names that separate tokens as "%20".
@@ -419,4 +419,4 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
   return file;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -14,7 +14,7 @@
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_source.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kNumbers = 1 + 8;  // of a cell: how many corners it has, and these
@@ -234,4 +234,4 @@ void readVtkLegacyTo(MeshSink& sink, const Input& input, Context& context) {
   readPlainMesh({openVtkPieces, readVtkLegacy}, sink, input, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -20,7 +20,7 @@
 #include <io/core/output_file.hpp>
 #include <io/vtk/vtk.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Numbers as text: in the form of version 2.0, which every program reads.
@@ -229,4 +229,4 @@ std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& f
   return openWriterSink<LegacyWriter<VtkBigBytes>>(file, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

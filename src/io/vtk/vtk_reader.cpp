@@ -9,7 +9,7 @@
 #include <io/core/checked_sink.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 // Points or cells that one thread reads at once: a fraction of a millisecond's work.
@@ -402,4 +402,4 @@ TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& st
   return labels;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -21,7 +21,7 @@
 #include <io/core/triangle_labels.hpp>
 #include <io/vtk/vtk_source.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// Reads points from number `first` on; or all, with all threads.
 /// @throws Error NotFinite
@@ -91,4 +91,4 @@ void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<Corner
 /// @param name  of the cell array
 [[nodiscard]] TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& stage);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

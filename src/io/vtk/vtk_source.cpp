@@ -5,7 +5,7 @@
 #include <io/core/bytes.hpp>
 #include <io/vtk/vtk_source.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// The number at a place of any alignment. Only numbers of 4 and 8 bytes come with the largest byte
@@ -119,4 +119,4 @@ void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, 
   set(scanner.integer(name));
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

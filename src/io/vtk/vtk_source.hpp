@@ -24,7 +24,7 @@
 #include <io/core/text_scanner.hpp>
 #include <io/vtk/vtk_data_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// The number types that are read: a zero of the type.
 using VtkScalar =
@@ -172,4 +172,4 @@ class VtkSource {
 void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
                    const NumberName& name);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

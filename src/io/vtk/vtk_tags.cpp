@@ -3,7 +3,7 @@
 
 #include <io/vtk/vtk_reader.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// An array that is used if it is as this library writes it.
@@ -136,4 +136,4 @@ Array<std::int32_t> readVtkRegions(const VtkSource& source, std::span<const std:
   return regions;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -19,7 +19,7 @@
 #include <io/vtk/vtk.hpp>
 #include <io/vtk/vtk_data_set.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::string_view kTail = "\n  </AppendedData>\n</VTKFile>\n";
@@ -378,4 +378,4 @@ std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file, Context
   return openWriterSink<VtuStream>(file, context);
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -11,7 +11,7 @@
 #include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtkhdf_kind.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 /// Writes one file.
@@ -116,4 +116,4 @@ void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
   target.commit();
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -8,7 +8,7 @@
 
 #include <io/core/hdf_file.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// HDF5's type of the numbers that VTK's XML calls so, in memory.
 [[nodiscard]] inline hid_t vtkHdfTypeOf(std::string_view name) {
@@ -28,4 +28,4 @@ inline void writeVtkHdfKind(const HdfFile& file, hid_t grid) {
   file.writeAttribute(grid, "Type", text.id(), file.space({}), kind.data());
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

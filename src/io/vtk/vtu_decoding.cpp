@@ -10,7 +10,7 @@
 #include <io/core/zlib_blocks.hpp>
 #include <io/vtk/vtu_decoding.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::uint8_t kNoDigit = 255;
@@ -169,4 +169,4 @@ Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, S
   return bytes;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -9,7 +9,7 @@
 
 #include <base/stage.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// How an array is stored.
 struct VtuEncoding {
@@ -25,4 +25,4 @@ struct VtuEncoding {
                                          Stage& stage,
                                          const std::function<void(const char* sentence)>& fail);
 
-}  // namespace hexhex
+}  // namespace hexhex::io

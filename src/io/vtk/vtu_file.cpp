@@ -19,7 +19,7 @@
 #include <io/vtk/vtu_decoding.hpp>
 #include <io/vtk/xml_tags.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 namespace {
 
 constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
@@ -378,4 +378,4 @@ std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage) {
   return file;
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io

@@ -11,7 +11,7 @@
 
 #include <io/core/text_scanner.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 /// What an XML file begins with: a tag, or the mark of UTF-8.
 inline constexpr std::string_view kXmlFirst = "<\xEF";
@@ -122,4 +122,4 @@ class XmlTags {
   std::size_t position_ = 0;
 };
 
-}  // namespace hexhex
+}  // namespace hexhex::io
