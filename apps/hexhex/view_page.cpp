@@ -19,6 +19,7 @@
 #include "output.hpp"
 #include "repair_text.hpp"
 #include "serve_page.hpp"
+#include "shared_options.hpp"
 #include "verification.hpp"
 
 namespace hexhex::command {

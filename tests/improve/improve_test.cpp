@@ -478,14 +478,6 @@ TEST(Improve, MendsCrumpledBalls) {
       const double factor = length(smooth.points[v]) / length(mesh.points[v]);
       for (double& x : mesh.points[v]) x *= factor;
     }
-    {
-      Context cc(1);
-      writeHexMesh(mesh, "/tmp/ball" + std::to_string(seed) + ".vtu", {}, cc);
-    }
-    {
-      Context cc(1);
-      writeHexMesh(mesh, "/tmp/ball" + std::to_string(seed) + ".vtu", {}, cc);
-    }
     const ImproveReport report = improved(mesh);
     expectNoWorse(report);
     EXPECT_FALSE(report.before.allPositive());
@@ -508,10 +500,6 @@ TEST(Improve, KeepsCreasesOfACrumpledCube) {
       return std::count_if(point.begin(), point.end(),
                            [](double x) { return x == 0 || x == kSide; }) == 1;
     });
-    {
-      Context cc(1);
-      writeHexMesh(mesh, "/tmp/cube" + std::to_string(seed) + ".vtu", {}, cc);
-    }
     const ImproveReport report = improved(mesh);
     expectNoWorse(report);
     EXPECT_FALSE(report.before.allPositive());
