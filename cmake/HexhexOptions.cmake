@@ -29,11 +29,6 @@ if(HEXHEX_SANITIZE)
   endif()
 endif()
 
-# With CMAKE_UNITY_BUILD, several files are compiled as one, in half of the time.
-if(CMAKE_UNITY_BUILD)
-  target_compile_options(hexhex_options INTERFACE -Wno-shadow)  # of what another file declares
-endif()
-
 # hexhex_needs(WHAT PACKAGE=DEBIAN-PACKAGE...): finds packages of CMake; if any are missing, says which ones
 # of Debian and Ubuntu bring them.
 macro(hexhex_needs what)
@@ -60,26 +55,6 @@ macro(hexhex_needs what)
   endif()
 endmacro()
 
-# hexhex_unit_names(TARGET NAME...): files of the target share an unnamed namespace then, in which each
-# has these names for itself.
-function(hexhex_unit_names target)
-  set(before "#define HEXHEX_JOINED(a, b) a##b\n#define HEXHEX_JOIN(a, b) HEXHEX_JOINED(a, b)\n")
-  set(after "")
-  foreach(name IN LISTS ARGN)
-    string(APPEND before "#define ${name} HEXHEX_JOIN(${name}, HEXHEX_UNIT)\n")
-    string(APPEND after "#undef ${name}\n")
-  endforeach()
-  set_target_properties(${target} PROPERTIES
-    UNITY_BUILD_UNIQUE_ID HEXHEX_UNIT
-    UNITY_BUILD_CODE_BEFORE_INCLUDE "${before}"
-    UNITY_BUILD_CODE_AFTER_INCLUDE "${after}")
-endfunction()
-
-# hexhex_alone(FILE...): these share names with other files.
-function(hexhex_alone)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endfunction()
-
 # hexhex_folder(NAME FILE...): one object library per folder of src/, of all its sources but the named
 # ones, which optional components add.
 function(hexhex_folder name)
@@ -92,5 +67,4 @@ function(hexhex_folder name)
   # Only what a public header declares leaves the shared library.
   set_target_properties(hexhex_${name} PROPERTIES
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  hexhex_unit_names(hexhex_${name} kGrain kRounding Side)
 endfunction()

@@ -20,7 +20,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct CheckArguments {
   MapSource input;
   CheckOptions options;
   RunOptions run;
@@ -33,7 +33,7 @@ struct Examination {
   std::optional<SeamlessReport> seamless;
 };
 
-Examination examine(const Arguments& arguments) {
+Examination examine(const CheckArguments& arguments) {
   LongRun longRun(arguments.run,
                   {{"readMap", 1}, {"readMapPair", 1}, {"check", 4}, {"examineSeamless", 8}});
   Context& context = longRun.context();
@@ -58,7 +58,7 @@ std::string classify(const Examination& found, const MapSource& input) {
   return text;
 }
 
-int run(const Arguments& arguments) {
+int run(const CheckArguments& arguments) {
   const Examination found = examine(arguments);
   const CheckReport& report = found.report;
   if (arguments.json) {
@@ -79,7 +79,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addCheck(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* const parser =
       app.add_subcommand("check", "Tell what a map is, and every condition that it violates");
   addMapSource(*parser, arguments->input);

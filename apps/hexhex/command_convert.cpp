@@ -20,7 +20,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct ConvertArguments {
   MapSource input;
   std::string output;
   OutputChoice choice;
@@ -32,7 +32,7 @@ struct Arguments {
 };
 
 /// That neither maps nor hex meshes can be written is known before anything is read.
-void requireAnyFormat(const Arguments& arguments) {
+void requireAnyFormat(const ConvertArguments& arguments) {
   try {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   } catch (const Error& error) {
@@ -43,7 +43,7 @@ void requireAnyFormat(const Arguments& arguments) {
 
 /// Calls require(), and says of its error what the input is.
 template <class F>
-void requireFor(const Arguments& arguments, const char* content, const F& require) {
+void requireFor(const ConvertArguments& arguments, const char* content, const F& require) {
   try {
     require(arguments.output, arguments.choice.options());
   } catch (const Error& error) {
@@ -54,21 +54,21 @@ void requireFor(const Arguments& arguments, const char* content, const F& requir
 }
 
 /// How a file is read.
-ReadOptions readingOf(const Arguments& arguments, std::vector<CellCount>& counts) {
+ReadOptions readingOf(const ConvertArguments& arguments, std::vector<CellCount>& counts) {
   ReadOptions options = arguments.input.options();
   options.hexesOnly = arguments.hexesOnly;
   options.cellCounts = &counts;
   return options;
 }
 
-std::variant<TetMap, HexMesh> readInput(const Arguments& arguments, std::vector<CellCount>& counts,
-                                        Context& context) {
+std::variant<TetMap, HexMesh> readInput(const ConvertArguments& arguments,
+                                        std::vector<CellCount>& counts, Context& context) {
   if (arguments.input.isPair()) return readMap(arguments.input, context);
   return readMapOrHexMesh(arguments.input.file, readingOf(arguments, counts), context);
 }
 
 /// What was converted.
-std::string convertWhole(const Arguments& arguments, std::vector<CellCount>& counts,
+std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCount>& counts,
                          Context& context) {
   auto content = readInput(arguments, counts, context);
   WriteOptions writing = arguments.choice.options();
@@ -97,7 +97,7 @@ std::string convertWhole(const Arguments& arguments, std::vector<CellCount>& cou
                      mesh.points.size());
 }
 
-std::string convertInPieces(const Arguments& arguments, std::vector<CellCount>& counts,
+std::string convertInPieces(const ConvertArguments& arguments, std::vector<CellCount>& counts,
                             Context& context) {
   const std::unique_ptr<MeshSink> sink =
       openMeshSink(arguments.output, arguments.choice.options(), context);
@@ -105,7 +105,7 @@ std::string convertInPieces(const Arguments& arguments, std::vector<CellCount>& 
   return "a mesh, piece by piece";
 }
 
-int run(const Arguments& arguments) {
+int run(const ConvertArguments& arguments) {
   for (const std::filesystem::path& input : arguments.input.files()) {
     requireDifferent(input, arguments.output);
   }
@@ -144,7 +144,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addConvert(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* const parser =
       app.add_subcommand("convert", "Write a map or a hexahedral mesh in another format");
   addMapSourceBefore(*parser, arguments->input, "INPUT", arguments->output, "OUTPUT",

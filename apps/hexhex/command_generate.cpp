@@ -22,7 +22,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct GenerateArguments {
   std::string kind;
   std::string charts = "aligned";
   std::string defectKind = "interior";
@@ -47,7 +47,7 @@ std::vector<std::string> namesOf(std::span<const Entry> entries) {
   return names;
 }
 
-int run(const Arguments& arguments) {
+int run(const GenerateArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   SampleOptions options = arguments.options;
@@ -105,7 +105,7 @@ void addSampleOptions(CLI::App& parser, SampleOptions& options) {
 }  // namespace
 
 Command addGenerate(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<GenerateArguments>();
   CLI::App* const parser =
       app.add_subcommand("generate", "Generate a map whose mesh is known in advance");
   parser->add_option("KIND", arguments->kind, "What to generate: one of the kinds below")

@@ -12,11 +12,11 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct HelpArguments {
   std::string subcommand;
 };
 
-int run(const CLI::App& app, const Arguments& arguments) {
+int run(const CLI::App& app, const HelpArguments& arguments) {
   const CLI::App* asked = &app;
   std::string name = app.get_name();
   for (const CLI::App* parser : app.get_subcommands({})) {
@@ -32,7 +32,7 @@ int run(const CLI::App& app, const Arguments& arguments) {
 }  // namespace
 
 Command addHelp(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<HelpArguments>();
   std::vector<std::string> names = {"help"};
   for (const CLI::App* parser : app.get_subcommands({})) names.push_back(parser->get_name());
   CLI::App* const parser = app.add_subcommand("help", "Explain a subcommand and its options");

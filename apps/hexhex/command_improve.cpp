@@ -22,7 +22,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct ImproveArguments {
   std::string mesh;
   std::string output;
   std::string map;
@@ -35,7 +35,7 @@ struct Arguments {
   bool hexesOnly = false;
 };
 
-void requireAllDifferent(const Arguments& arguments) {
+void requireAllDifferent(const ImproveArguments& arguments) {
   for (const std::string* const input : {&arguments.mesh, &arguments.map}) {
     for (const std::string* const output :
          {&arguments.output, &arguments.report, &arguments.page}) {
@@ -50,13 +50,13 @@ void requireAllDifferent(const Arguments& arguments) {
 }
 
 /// Positions that a page is to show, taken before they change.
-Array<Vec3> pointsForPage(const Arguments& arguments, const Array<Vec3>& points) {
+Array<Vec3> pointsForPage(const ImproveArguments& arguments, const Array<Vec3>& points) {
   return arguments.page.empty() ? Array<Vec3>() : points;
 }
 
 /// @param mesh    straight or curved
 /// @param before  its points before
-void writeComparison(const Arguments& arguments, const auto& mesh, const Array<Vec3>& before,
+void writeComparison(const ImproveArguments& arguments, const auto& mesh, const Array<Vec3>& before,
                      const ImproveReport& report, LongRun& longRun) {
   if (arguments.page.empty()) return;
   ViewOptions options;
@@ -68,7 +68,7 @@ void writeComparison(const Arguments& arguments, const auto& mesh, const Array<V
 }
 
 /// @param mesh  straight or curved
-ImproveReport improveMesh(const Arguments& arguments, auto& mesh, LongRun& longRun) {
+ImproveReport improveMesh(const ImproveArguments& arguments, auto& mesh, LongRun& longRun) {
   Context& context = longRun.context();
   if (arguments.map.empty()) {
     return longRun.part("improvement", [&] { return improve(mesh, arguments.options, context); });
@@ -78,7 +78,7 @@ ImproveReport improveMesh(const Arguments& arguments, auto& mesh, LongRun& longR
                       [&] { return improve(mesh, map, arguments.options, context); });
 }
 
-ImproveReport improveStraight(const Arguments& arguments, LongRun& longRun) {
+ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
   std::vector<CellCount> counts;
   HexMesh mesh = longRun.part("reading", [&] {
@@ -96,7 +96,7 @@ ImproveReport improveStraight(const Arguments& arguments, LongRun& longRun) {
   return report;
 }
 
-ImproveReport improveCurved(const Arguments& arguments, LongRun& longRun) {
+ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
   LagrangeMesh mesh =
       longRun.part("reading", [&] { return readLagrangeMesh(arguments.mesh, context); });
@@ -111,7 +111,7 @@ ImproveReport improveCurved(const Arguments& arguments, LongRun& longRun) {
 }
 
 /// @return whether the mesh is curved
-bool requireFormats(const Arguments& arguments, Context& context) {
+bool requireFormats(const ImproveArguments& arguments, Context& context) {
   if (!holdsLagrangeCells(arguments.mesh, context)) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
     return false;
@@ -125,7 +125,7 @@ bool requireFormats(const Arguments& arguments, Context& context) {
   return true;
 }
 
-int run(const Arguments& arguments) {
+int run(const ImproveArguments& arguments) {
   requireAllDifferent(arguments);
   LongRun longRun(arguments.run, {{"readHexMesh", 1},
                                   {"readLagrangeMesh", 1},
@@ -152,7 +152,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addImprove(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImproveArguments>();
   CLI::App* const parser =
       app.add_subcommand("improve", "Make all cells of a mesh positive, and better");
   parser->add_option("MESH", arguments->mesh, "The mesh, in any format that is read")

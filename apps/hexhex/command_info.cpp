@@ -28,7 +28,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct InfoArguments {
   MapSource source;
   bool pieces = false;
   bool json = false;
@@ -106,7 +106,7 @@ FileContent contentOf(const MeshSurvey& survey) {
 }
 
 /// What is in one file.
-FileContent readFile(const Arguments& arguments, Context& context) {
+FileContent readFile(const InfoArguments& arguments, Context& context) {
   const MapSource& source = arguments.source;
   std::vector<CellCount> types;
   ReadOptions reading = source.options();
@@ -122,7 +122,7 @@ FileContent readFile(const Arguments& arguments, Context& context) {
   return content;
 }
 
-FileContent read(const Arguments& arguments, Context& context) {
+FileContent read(const InfoArguments& arguments, Context& context) {
   const MapSource& source = arguments.source;
   if (arguments.pieces && source.isPair()) {
     throw Error(ErrorCode::InvalidArgument,
@@ -237,7 +237,7 @@ Json asJson(const FileContent& content, const std::string& file) {
   return json;
 }
 
-int run(const Arguments& arguments) {
+int run(const InfoArguments& arguments) {
   LongRun longRun({}, {{"readMapPair", 1},
                        {"readMapOrHexMesh", 2},
                        {"readHexMeshTo", 2},
@@ -258,7 +258,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addInfo(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InfoArguments>();
   CLI::App* const parser = app.add_subcommand("info", "Tell what a file holds");
   addMapSource(*parser, arguments->source, "FILE",
                "A map or a hexahedral mesh; `hexhex formats` lists the\nformats");

@@ -20,7 +20,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct QuantizeArguments {
   MapSource input;
   std::string output;
   OutputChoice choice;
@@ -29,7 +29,7 @@ struct Arguments {
   RunOptions run;
 };
 
-void requireAllDifferent(const Arguments& arguments) {
+void requireAllDifferent(const QuantizeArguments& arguments) {
   for (const std::filesystem::path& input : arguments.input.files()) {
     requireDifferent(input, arguments.output);
     if (!arguments.report.empty()) requireDifferent(input, arguments.report);
@@ -51,7 +51,7 @@ void printQuantized(const QuantizeReport& report) {
                         report.distortionBefore.worst, report.distortionBefore.median));
 }
 
-int run(const Arguments& arguments) {
+int run(const QuantizeArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   requireAllDifferent(arguments);
@@ -79,7 +79,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addQuantize(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<QuantizeArguments>();
   CLI::App* const parser =
       app.add_subcommand("quantize", "Make a seamless map an integer-grid map");
   addMapSource(*parser, arguments->input);

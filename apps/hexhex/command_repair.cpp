@@ -20,7 +20,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct RepairArguments {
   MapSource input;
   std::string output;
   OutputChoice choice;
@@ -30,7 +30,7 @@ struct Arguments {
   bool noRefine = false;
 };
 
-void requireAllDifferent(const Arguments& arguments) {
+void requireAllDifferent(const RepairArguments& arguments) {
   for (const std::filesystem::path& input : arguments.input.files()) {
     requireDifferent(input, arguments.output);
     if (!arguments.report.empty()) requireDifferent(input, arguments.report);
@@ -38,7 +38,7 @@ void requireAllDifferent(const Arguments& arguments) {
   if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
 }
 
-int run(const Arguments& arguments) {
+int run(const RepairArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   requireAllDifferent(arguments);
@@ -69,7 +69,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addRepair(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RepairArguments>();
   CLI::App* const parser =
       app.add_subcommand("repair", "Repair flipped and flat tets of a map by moving parameters");
   addMapSource(*parser, arguments->input);

@@ -22,7 +22,7 @@
 namespace hexhex::command {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   MapSource map;
   std::string mesh;
   VerifyOptions options;
@@ -70,7 +70,7 @@ struct Comparison {
   Certificate certificate;  ///< a cell may be where it belongs and yet not be valid
 };
 
-Comparison compare(const Arguments& arguments) {
+Comparison compare(const VerifyArguments& arguments) {
   LongRun longRun(arguments.run, {{"readMap", 0.05},
                                   {"readMapPair", 0.05},
                                   {"readHexMesh", 3},
@@ -86,7 +86,7 @@ Comparison compare(const Arguments& arguments) {
   return result;
 }
 
-int run(const Arguments& arguments) {
+int run(const VerifyArguments& arguments) {
   const Comparison result = compare(arguments);
   const std::optional<int> scale = likelyScale(result.report, arguments.options.scale);
   if (arguments.json) {
@@ -108,7 +108,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 Command addVerify(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<VerifyArguments>();
   arguments->options.countElements = true;
   CLI::App* const parser =
       app.add_subcommand("verify", "Compare a hexahedral mesh with the map that it came from");

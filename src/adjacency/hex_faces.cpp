@@ -14,7 +14,7 @@
 namespace hexhex::adjacency {
 namespace {
 
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kHexFacesGrain = 2048;
 
 /// By face: its corners as bits.
 constexpr std::array<unsigned, 6> makeCornersOfFaces() {
@@ -41,7 +41,8 @@ class AlignedCells {
   /// @param cells  with corners below vertexCount; must outlive this object
   AlignedCells(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage)
       : cells_(cells), cellAt_(vertexCount) {
-    parallelFor(stage, vertexCount, 8 * kGrain, [this](std::size_t v) { cellAt_[v] = kNone; });
+    parallelFor(stage, vertexCount, 8 * kHexFacesGrain,
+                [this](std::size_t v) { cellAt_[v] = kNone; });
     const auto enter = [this](std::size_t c) {
       const auto cell = static_cast<Index>(c);
       const std::atomic_ref place(cellAt_[cells_[c][0]]);
@@ -51,14 +52,14 @@ class AlignedCells {
       }
     };
     // Cells beyond what an index can name are not found.
-    parallelFor(stage, std::min<std::size_t>(cells.size(), kNone), 8 * kGrain, enter);
+    parallelFor(stage, std::min<std::size_t>(cells.size(), kNone), 8 * kHexFacesGrain, enter);
   }
 
   /// Calls link(cell, axis, next) where face 2 * axis + 1 of a cell is face 2 * axis of the next
   /// one, from any thread.
   template <class Link>
   void forEachPair(Stage& stage, const Link& link) const {
-    parallelFor(stage, cells_.size(), kGrain, [&](std::size_t c) {
+    parallelFor(stage, cells_.size(), kHexFacesGrain, [&](std::size_t c) {
       // Neighbours may be far from each other in memory.
       constexpr std::size_t kAhead = 16;
       if (c + kAhead < cells_.size()) fetch(c + kAhead);
@@ -118,8 +119,8 @@ Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex
                                     const Array<Index>& mates, Stage& stage,
                                     std::atomic<std::int64_t>& balance) {
   Array<std::uint8_t> onSeam(vertexCount);
-  parallelFor(stage, vertexCount, 8 * kGrain, [&](std::size_t v) { onSeam[v] = 0; });
-  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage, vertexCount, 8 * kHexFacesGrain, [&](std::size_t v) { onSeam[v] = 0; });
+  parallelFor(stage, cells.size(), kHexFacesGrain, [&](std::size_t c) {
     unsigned linked = 0;
     for (std::size_t face = 0; face < 6; ++face) {
       linked |= unsigned{mates[6 * c + face] != kNone} << face;
@@ -135,7 +136,7 @@ Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex
     }
   });
   Array<std::uint8_t> seamCorners(cells.size());
-  parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage, cells.size(), kHexFacesGrain, [&](std::size_t c) {
     unsigned corners = 0;
     for (std::size_t k = 0; k < 8; ++k) corners |= unsigned{onSeam[cells[c][k]]} << k;
     seamCorners[c] = static_cast<std::uint8_t>(corners);
@@ -152,7 +153,7 @@ std::vector<std::uint64_t> collectFromFaces(std::size_t vertexCount, std::span<c
                                             Stage& stage, const MayHave& mayHave,
                                             const Filter& isWanted, const Visit& visit) {
   const VertexLists<Index, std::uint64_t> around(vertexCount, stage, [&](const auto& add) {
-    parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    parallelFor(stage, cells.size(), kHexFacesGrain, [&](std::size_t c) {
       if (!mayHave(c)) return;
       for (std::size_t face = 0; face < 6; ++face) {
         if (!isWanted(c, face)) continue;
@@ -162,7 +163,7 @@ std::vector<std::uint64_t> collectFromFaces(std::size_t vertexCount, std::span<c
     });
   });
   return collectFromBlocks<std::uint64_t>(
-      stage, vertexCount, kGrain,
+      stage, vertexCount, kHexFacesGrain,
       [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& list) {
         forEachFace(cells, begin, end, around, isWanted,
                     [&](std::span<const CellFace<Hex>> halfFaces) { visit(halfFaces, list); });
@@ -176,7 +177,7 @@ std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const H
   HexMates result;
   Array<Index>& mates = result.mates;
   mates.resize(6 * cells.size());
-  parallelFor(stage, mates.size(), 6 * kGrain, [&](std::size_t i) { mates[i] = kNone; });
+  parallelFor(stage, mates.size(), 6 * kHexFacesGrain, [&](std::size_t i) { mates[i] = kNone; });
   const AlignedCells aligned(vertexCount, cells, stage);
   aligned.forEachPair(stage, [&](std::size_t cell, std::size_t axis, Index next) {
     // In a ring of two cells, two edges have the same vertices: a seam.
@@ -217,7 +218,7 @@ std::vector<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
   using Linked = std::array<std::uint8_t, 8>;
   constexpr auto kAllLinked = std::bit_cast<std::uint64_t>(Linked{1, 1, 1, 1, 1, 1, 1, 1});
   Array<Linked> linked(mesh.cells.size());
-  parallelFor(stage, linked.size(), kGrain,
+  parallelFor(stage, linked.size(), kHexFacesGrain,
               [&](std::size_t c) { linked[c] = {0, 0, 0, 0, 0, 0, 1, 1}; });
   const AlignedCells aligned(mesh.points.size(), mesh.cells, stage);
   aligned.forEachPair(stage, [&](std::size_t cell, std::size_t axis, Index next) {

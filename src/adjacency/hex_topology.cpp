@@ -18,7 +18,7 @@ namespace hexhex::adjacency {
 namespace {
 
 /// Vertices or cells per block: a block has about 10^5 operations, so its start costs nothing.
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kHexTopologyGrain = 2048;
 
 /// One more fault. Blocks are merged in order, so the first one noted is the first of all.
 void note(FaceFault& fault, const CellFace<Hex>& face) {
@@ -67,7 +67,7 @@ void requireIndexable(const HexMesh& mesh, Stage& stage) {
 VertexCells cellsAroundVertices(const HexMesh& mesh, Stage& stage) {
   requireIndexable(mesh, stage);
   return VertexCells(mesh.points.size(), stage, [&](const auto& add) {
-    parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+    parallelFor(stage, mesh.cells.size(), kHexTopologyGrain, [&](std::size_t c) {
       for (const Index v : mesh.cells[c]) add(v, static_cast<Index>(c));
     });
   });
@@ -76,8 +76,8 @@ VertexCells cellsAroundVertices(const HexMesh& mesh, Stage& stage) {
 HexFaces findFaces(const HexMesh& mesh, const VertexCells& around, Stage& stage) {
   Array<std::uint8_t> boundary(mesh.cells.size(), 0);
   DisjointSets cells(mesh.cells.size());
-  std::vector<HexFaces> blocks(blockCount(mesh.points.size(), kGrain));
-  parallelBlocks(stage, mesh.points.size(), kGrain,
+  std::vector<HexFaces> blocks(blockCount(mesh.points.size(), kHexTopologyGrain));
+  parallelBlocks(stage, mesh.points.size(), kHexTopologyGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    HexFaces& sum = blocks[block];
                    for (std::size_t v = end; v > begin;) {
@@ -123,7 +123,7 @@ FaceNeighbours findFaceNeighbours(const HexMesh& mesh, Stage& stage) {
     neighbours[a.cell][a.face] = isInner ? b.cell : kNone;
     if (isInner) neighbours[b.cell][b.face] = a.cell;
   };
-  parallelBlocks(stage, mesh.points.size(), kGrain,
+  parallelBlocks(stage, mesh.points.size(), kHexTopologyGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    forEachFace(std::span(mesh.cells), begin, end, around, join);
                  });
@@ -239,8 +239,8 @@ HexEdges findEdges(const HexMesh& mesh, const VertexCells& around, const HexFace
                    Stage& stage) {
   const QuadNumbers numbers(faces);
   DisjointSets quads(faces.boundaryCount);
-  std::vector<HexEdges> blocks(blockCount(mesh.points.size(), kGrain));
-  parallelBlocks(stage, mesh.points.size(), kGrain,
+  std::vector<HexEdges> blocks(blockCount(mesh.points.size(), kHexTopologyGrain));
+  parallelBlocks(stage, mesh.points.size(), kHexTopologyGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    std::vector<EdgeEntry> entries;
                    for (std::size_t v = begin; v < end; ++v) {

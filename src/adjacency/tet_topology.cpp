@@ -6,14 +6,14 @@ namespace hexhex::adjacency {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kTetTopologyGrain = 4096;
 
 }  // namespace
 
 void addStars(TetTopology& topology, Stage& stage) {
   if (!topology.stars.empty()) return;
   topology.stars = VertexLists<CornerIndex>(topology.pointCount, stage, [&](const auto& add) {
-    parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+    parallelFor(stage, topology.tetCount(), kTetTopologyGrain, [&](std::size_t t) {
       for (std::size_t i = 0; i < 4; ++i) {
         add(topology.tets[t][i], static_cast<CornerIndex>(4 * t + i));
       }
@@ -24,7 +24,7 @@ void addStars(TetTopology& topology, Stage& stage) {
 std::uint64_t countEdges(const TetTopology& topology, Stage& stage) {
   std::atomic<std::uint64_t> count{0};
   parallelBlocks(
-      stage, topology.pointCount, kGrain,
+      stage, topology.pointCount, kTetTopologyGrain,
       [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
         std::vector<Index> ends;  // w of edges (v, w) with v < w
         for (std::size_t v = begin; v < end; ++v) {

@@ -10,7 +10,7 @@ namespace hexhex::atlas {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kChartsGrain = 4096;
 
 /// Joins tets across identity transitions, and numbers the resulting patches.
 class Patches {
@@ -19,7 +19,7 @@ class Patches {
     const std::size_t tets = map.topology.tetCount();
     const Array<adjacency::HalfFace>& mate = map.topology.mate;
     DisjointSets sets(tets);
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) {
+    parallelFor(stage, tets, kChartsGrain, [&](std::size_t t) {
       // Smaller neighbours, as each face needs to be seen once; listed without branches, which
       // cannot be predicted: with them, an extraction of s17c_sphere_r0.1 takes 4 % longer.
       std::array<Index, 4> smaller{};
@@ -32,16 +32,17 @@ class Patches {
       auto patch = static_cast<Index>(t);
       for (std::size_t i = 0; i < count; ++i) patch = sets.unite(patch, smaller[i]);
     });
-    const auto representatives = collectFromBlocks<Index>(
-        stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
-          for (std::size_t t = begin; t < end; ++t) {
-            of_[t] = sets.find(static_cast<Index>(t));
-            if (of_[t] == t) list.push_back(static_cast<Index>(t));
-          }
-        });
+    const auto representatives =
+        collectFromBlocks<Index>(stage, tets, kChartsGrain,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Index>& list) {
+                                   for (std::size_t t = begin; t < end; ++t) {
+                                     of_[t] = sets.find(static_cast<Index>(t));
+                                     if (of_[t] == t) list.push_back(static_cast<Index>(t));
+                                   }
+                                 });
     Array<Index> number(tets);  // of representatives; most of it is never touched
     for (const Index t : representatives) number[t] = count_++;
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) { of_[t] = number[of_[t]]; });
+    parallelFor(stage, tets, kChartsGrain, [&](std::size_t t) { of_[t] = number[of_[t]]; });
   }
   [[nodiscard]] Index of(Index tet) const noexcept { return of_[tet]; }
   [[nodiscard]] Index count() const noexcept { return count_; }
@@ -107,7 +108,7 @@ Charts buildCharts(const igm::PreparedMap& map, Stage& stage) {
   }
   charts.gaugeOf = std::move(patches).release();
   charts.chart.resize(charts.gaugeOf.size());
-  parallelFor(stage, charts.chart.size(), kGrain,
+  parallelFor(stage, charts.chart.size(), kChartsGrain,
               [&](std::size_t t) { charts.chart[t] = chartOfPatch[charts.gaugeOf[t]]; });
   return charts;
 }

@@ -19,12 +19,12 @@ namespace hexhex::curved {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 16;
+constexpr std::size_t kExtractCurvedGrain = 1 << 16;
 
 /// From the tets as the library orders their corners to the caller's.
 void toCallersCorners(const igm::OrientedMap& input, Array<CornerSet>& corners, Stage& stage) {
   if (!input.cornersReversed) return;
-  parallelFor(stage, corners.size(), kGrain,
+  parallelFor(stage, corners.size(), kExtractCurvedGrain,
               [&](std::size_t i) { corners[i] = input.callersCorners(corners[i]); });
 }
 

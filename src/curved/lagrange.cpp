@@ -10,7 +10,7 @@ namespace hexhex::curved {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kLagrangeGrain = 4096;
 constexpr std::size_t kCellGrain = 256;
 
 using Triangle = std::array<lattice::LatticePoint, 3>;
@@ -163,10 +163,10 @@ class NodeCollector {
 Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint64_t count,
                       Stage& stage) {
   Array<Index> number(count);
-  parallelFor(stage, count, kGrain, [&](std::size_t i) { number[i] = kNone; });
+  parallelFor(stage, count, kLagrangeGrain, [&](std::size_t i) { number[i] = kNone; });
   const std::size_t perCell = result.nodesPerCell();
   std::atomic<bool> contradiction{false};
-  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage, mesh.cells.size(), kLagrangeGrain, [&](std::size_t c) {
     for (std::size_t corner = 0; corner < 8; ++corner) {
       const Index node = result.nodes[c * perCell + nodeOfCorner(corner, result.order)];
       const Index before =
@@ -196,7 +196,7 @@ void describeNodes(const sweep::VertexTables& numbers, const HexMesh& mesh,
   result.points.resize(number.size());
   result.generatorTet.resize(number.size());
   result.generatorCorners.resize(number.size());
-  parallelFor(stage, number.size(), kGrain, [&](std::size_t i) {
+  parallelFor(stage, number.size(), kLagrangeGrain, [&](std::size_t i) {
     const Index n = number[i];
     // Vertices keep every bit: at another scale, rounding differs.
     result.points[n] = n < mesh.points.size() ? mesh.points[n] : points[i];
@@ -245,7 +245,7 @@ LagrangeMesh groupNodes(const HexMesh& mesh, igm::PreparedMap& map, int order, C
         }
       });
   const Array<Index> number = renumber(mesh, result, numbers.count(), stage);
-  parallelFor(stage, result.nodes.size(), kGrain,
+  parallelFor(stage, result.nodes.size(), kLagrangeGrain,
               [&](std::size_t i) { result.nodes[i] = number[result.nodes[i]]; });
   describeNodes(numbers, mesh, number, result, stage);
   return result;

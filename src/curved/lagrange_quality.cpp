@@ -18,7 +18,7 @@ namespace hexhex::curved {
 
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kLagrangeQualityGrain = 64;
 
 void nodesOf(const LagrangeMesh& mesh, std::size_t cell, std::vector<Vec3>& nodes) {
   nodes.resize(mesh.nodesPerCell());
@@ -65,7 +65,7 @@ double smallestOf(const LagrangeColumns::Values& values) {
 template <class Use>
 void forCells(const LagrangeMesh& mesh, Stage& stage, const Use& use) {
   const LagrangeQuality quality(mesh.order);
-  parallelBlocks(stage, mesh.cellCount(), kGrain,
+  parallelBlocks(stage, mesh.cellCount(), kLagrangeQualityGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    LagrangeColumns::Values values;
                    std::vector<Vec3> points;
@@ -158,7 +158,7 @@ Certificate certify(const LagrangeMesh& mesh, Context& context) {
     certificate.validity.resize(n);
     const mesh::CellValidity cells(mesh.order);
     withThreads(context.threads(), [&] {
-      std::vector<mesh::BlockFindings> blocks(blockCount(n, curved::kGrain));
+      std::vector<mesh::BlockFindings> blocks(blockCount(n, curved::kLagrangeQualityGrain));
       curved::forCells(mesh, stage,
                        [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
                          const CellCertificate known = cells.examine(nodes);

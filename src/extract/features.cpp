@@ -11,7 +11,7 @@ namespace hexhex::extraction {
 
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;
+constexpr std::size_t kFeaturesGrain = std::size_t{1} << 14;
 
 /// Tagged edges or triangles of the tet mesh, found by their vertices.
 /// @tparam n  vertices of a simplex: 2 or 3
@@ -88,7 +88,7 @@ class Marks {
       : ofPoint_(given.points.size(), Mark{0}), ofVertex_(mesh.points.size()) {
     for (const FeatureEdge& edge : given.features.edges) mark(edge.vertices, edge.tag, kAtEdges);
     for (const FeatureFace& face : given.features.faces) mark(face.vertices, face.tag, kAtFaces);
-    parallelFor(stage, mesh.points.size(), kGrain, [&](std::size_t v) {
+    parallelFor(stage, mesh.points.size(), kFeaturesGrain, [&](std::size_t v) {
       const CornerSet corners = mesh.generatorCorners[v];
       ofVertex_[v] = corners == lattice::kWholeTet
                          ? Mark{0}
@@ -277,7 +277,7 @@ std::vector<FeatureVertex> tagVertices(const TetMapView& given, const HexMesh& m
     tagOf[feature.vertex] = feature.tag;
   }
   return collectFromBlocks<FeatureVertex>(
-      stage, mesh.points.size(), kGrain,
+      stage, mesh.points.size(), kFeaturesGrain,
       [&](std::size_t begin, std::size_t end, std::vector<FeatureVertex>& tagged) {
         for (std::size_t v = begin; v < end; ++v) {
           const CornerSet corners = mesh.generatorCorners[v];
@@ -351,7 +351,7 @@ TaggedCells allCells(const igm::PreparedMap& prepared, const sweep::CellCenters&
 void fillRegions(const TetMapView& given, const sweep::CellCenters& centers, HexMesh& mesh,
                  Stage& stage) {
   mesh.regions.resize(mesh.cells.size());
-  parallelFor(stage, given.tets.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, given.tets.size(), kFeaturesGrain, [&](std::size_t t) {
     std::fill(mesh.regions.begin() + static_cast<std::ptrdiff_t>(centers.begin[t]),
               mesh.regions.begin() + static_cast<std::ptrdiff_t>(centers.begin[t + 1]),
               given.regions[t]);

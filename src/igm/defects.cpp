@@ -10,7 +10,7 @@ namespace hexhex::igm {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kDefectsGrain = 1024;
 
 /// At most this many places of each kind are kept (a list that a person reads).
 constexpr std::size_t kWorst = 10;
@@ -112,7 +112,7 @@ void checkFaces(adjacency::TetTopology& topology, Stage& stage, DefectCollector&
     joinMates(topology, same, defects);
   };
   parallelBlocks(
-      stage, topology.pointCount, kGrain,
+      stage, topology.pointCount, kDefectsGrain,
       [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
         std::vector<Index> around;
         const auto tetsAt = [&](std::size_t v) {
@@ -131,7 +131,7 @@ void checkFaces(adjacency::TetTopology& topology, Stage& stage, DefectCollector&
 Array<Index> checkEdges(const adjacency::TetTopology& topology, Stage& stage,
                         DefectCollector& defects) {
   Array<Index> degree(topology.pointCount, 0);
-  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t i) {
+  parallelFor(stage, topology.pointCount, kDefectsGrain, [&](std::size_t i) {
     const auto v = static_cast<Index>(i);
     std::vector<adjacency::EdgeCorner> scratch;
     adjacency::forEachEdge(topology, v, scratch,
@@ -193,7 +193,7 @@ bool isConnected(const adjacency::TetTopology& topology,
 /// connected and has the right Euler characteristic.
 void checkLinks(const adjacency::TetTopology& topology, const Array<Index>& degree, Stage& stage,
                 DefectCollector& defects) {
-  parallelFor(stage, topology.pointCount, kGrain, [&](std::size_t v) {
+  parallelFor(stage, topology.pointCount, kDefectsGrain, [&](std::size_t v) {
     const std::span<const adjacency::CornerIndex> star = topology.star(static_cast<Index>(v));
     if (star.empty()) return;  // isolated: reported by check(), harmless
     const std::int64_t boundary = boundaryFacesAt(topology, star);

@@ -14,7 +14,7 @@ namespace hexhex::igm {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kExactMapGrain = 1024;
 
 /// Unscaled lattice coordinates stay below 2^52 and scaled ones below 2^60, which the predicates
 /// rely on (tet_geometry.hpp).
@@ -286,7 +286,7 @@ class TetRounder {
 std::vector<std::vector<Index>> roundTets(const Sanitization& in,
                                           std::span<const Rounding> rounding, Stage& stage) {
   const std::size_t tets = in.topology.tetCount();
-  std::vector<std::vector<Index>> unfinished(blockCount(tets, kGrain));
+  std::vector<std::vector<Index>> unfinished(blockCount(tets, kExactMapGrain));
   std::vector<double> displacements(unfinished.size());
   const auto report = [&](Index begin, Index end) {
     CornerRounder rounder(in);
@@ -295,20 +295,21 @@ std::vector<std::vector<Index>> roundTets(const Sanitization& in,
       if (how != Rounding::ByStar) rounder.run(corner, how);
     }
   };
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    TetRounder rounder(in, rounding);
-    std::array<Index, kGrain + 1> list;  // NOLINT: written before it is read
-    std::size_t count = 0;
-    for (auto t = static_cast<Index>(begin); t < end; ++t) {
-      list[count] = t;
-      count += rounder.run(t) ? 0 : 1;
-    }
-    unfinished[block].assign(list.begin(), list.begin() + count);
-    displacements[block] = rounder.maxDisplacement();
-    if (displacements[block] > in.tolerance) {
-      report(static_cast<Index>(begin), static_cast<Index>(end));
-    }
-  });
+  parallelBlocks(stage, tets, kExactMapGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   TetRounder rounder(in, rounding);
+                   std::array<Index, kExactMapGrain + 1> list;  // NOLINT: written before it is read
+                   std::size_t count = 0;
+                   for (auto t = static_cast<Index>(begin); t < end; ++t) {
+                     list[count] = t;
+                     count += rounder.run(t) ? 0 : 1;
+                   }
+                   unfinished[block].assign(list.begin(), list.begin() + count);
+                   displacements[block] = rounder.maxDisplacement();
+                   if (displacements[block] > in.tolerance) {
+                     report(static_cast<Index>(begin), static_cast<Index>(end));
+                   }
+                 });
   noteDisplacements(displacements, in.map);
   return unfinished;
 }
@@ -364,7 +365,7 @@ ExactMap sanitize(const adjacency::TetTopology& topology, const LocalParameters&
 
 void scaleMap(ExactMap& map, int scale, Stage& stage) {
   if (scale == 1) return;
-  parallelFor(stage, map.corners.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, map.corners.size(), kExactMapGrain, [&](std::size_t t) {
     for (lattice::LatticePoint& corner : map.corners[t]) {
       for (std::int64_t& coordinate : corner) coordinate *= scale;
     }

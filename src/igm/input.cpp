@@ -10,7 +10,7 @@ namespace hexhex::igm {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kInputGrain = 1024;
 
 /// The smallest step by which charts are moved: maps whose coordinates stay below half of it,
 /// nearly all, are not moved at all. It costs ten of the 52 bits of a coordinate.
@@ -156,8 +156,8 @@ Measures measureBlock(const TetMapView& map, std::size_t begin, std::size_t end,
 }
 
 Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defects) {
-  std::vector<Measures> blocks(blockCount(map.tets.size(), kGrain));
-  parallelBlocks(stage, map.tets.size(), kGrain,
+  std::vector<Measures> blocks(blockCount(map.tets.size(), kInputGrain));
+  parallelBlocks(stage, map.tets.size(), kInputGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    blocks[block] = measureBlock(map, begin, end, defects);
                  });
@@ -170,7 +170,7 @@ Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defec
 void reorient(OrientedMap& oriented, const TetMapView& map, Stage& stage) {
   oriented.tets.resize(map.tets.size());
   oriented.parameters.resize(map.tets.size());
-  parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, map.tets.size(), kInputGrain, [&](std::size_t t) {
     Tet& tet = oriented.tets[t];
     TetParameters& parameters = oriented.parameters[t];
     tet = map.tets[t];
@@ -199,7 +199,7 @@ OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defe
     defects.add(ErrorCode::TooLarge, {}, 0);
     return oriented;
   }
-  parallelFor(stage, map.points.size(), kGrain, [&](std::size_t v) {
+  parallelFor(stage, map.points.size(), kInputGrain, [&](std::size_t v) {
     const auto isSmall = [](double x) { return std::abs(x) <= kMaxCoordinate; };
     const Vec3& p = map.points[v];
     if (isSmall(p[0]) && isSmall(p[1]) && isSmall(p[2])) return;

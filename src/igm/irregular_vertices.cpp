@@ -11,7 +11,7 @@ namespace hexhex::igm {
 namespace {
 
 /// Most vertices are regular, and the star of another one takes long.
-constexpr std::size_t kGrain = 128;
+constexpr std::size_t kIrregularVerticesGrain = 128;
 
 /// Whether a coordinate is halfway between two integers. The plane across its axis to snap to then
 /// depends on the chart.
@@ -155,14 +155,14 @@ VertexKinds classifyVertices(const adjacency::TetTopology& topology,
   VertexKinds result;
   result.kind.resize(topology.pointCount);
   result.rounding.resize(topology.pointCount);
-  result.blocks.resize(blockCount(topology.pointCount, kGrain));
+  result.blocks.resize(blockCount(topology.pointCount, kIrregularVerticesGrain));
   // What the caller claims about edges, if anything, is to be looked up for each.
   const bool flatAllowed = findFlat && known.empty();
   const auto makeClassifier = [&] {
     return StarClassifier(topology, parameters, survey, crossings, flatAllowed, result);
   };
   parallelBlocksWith(
-      stage, topology.pointCount, kGrain, makeClassifier,
+      stage, topology.pointCount, kIrregularVerticesGrain, makeClassifier,
       [&](std::size_t begin, std::size_t end, std::size_t block, StarClassifier& classifier) {
         result.blocks[block].reserve(static_cast<std::size_t>(
             std::count(&isIrregular[begin], &isIrregular[begin] + (end - begin), 1)));

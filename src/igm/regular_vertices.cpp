@@ -9,7 +9,7 @@ namespace hexhex::igm {
 
 namespace {
 
-constexpr std::size_t kGrain = RegularVertices::kBlock;
+constexpr std::size_t kRegularVerticesGrain = RegularVertices::kBlock;
 
 /// Tets whose parameters, 96 bytes each, are still in the innermost cache when they are looked at
 /// for the second time.
@@ -82,7 +82,7 @@ class Survey {
         parameters_(parameters),
         planes_(topology.pointCount),
         cones_(topology.pointCount, 0) {
-    const std::size_t blocks = blockCount(topology.tetCount(), kGrain);
+    const std::size_t blocks = blockCount(topology.tetCount(), kRegularVerticesGrain);
     result_.isIrregular.assign(topology.pointCount, 0);
     result_.plane.resize(topology.pointCount);
     result_.sides.resize(topology.tetCount());
@@ -92,11 +92,12 @@ class Survey {
 
   RegularVertices run(Stage& stage) {
     const std::size_t tets = topology_.tetCount();
-    parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-      forEachPart(begin, end, [&](std::size_t first, std::size_t last) {
-        listBoundary(first, last, result_.boundaryFaces[block]);
-      });
-    });
+    parallelBlocks(stage, tets, kRegularVerticesGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                     forEachPart(begin, end, [&](std::size_t first, std::size_t last) {
+                       listBoundary(first, last, result_.boundaryFaces[block]);
+                     });
+                   });
     // By one thread, as faces share most of their corners, and are few.
     std::uint64_t boundaryFaces = 0;
     for (const auto& faces : result_.boundaryFaces) {
@@ -104,13 +105,14 @@ class Survey {
       for (const RegularVertices::BoundaryFace& face : faces) notePlane(face);
     }
     result_.innerFaces = (4 * tets - boundaryFaces) / 2;
-    parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-      forEachPart(begin, end, [&](std::size_t first, std::size_t last) {
-        countCones(first, last);
-        compareNeighbours(first, last, result_.unequalFaces[block]);
-      });
-    });
-    parallelFor(stage, topology_.pointCount, kGrain, [&](std::size_t v) {
+    parallelBlocks(stage, tets, kRegularVerticesGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                     forEachPart(begin, end, [&](std::size_t first, std::size_t last) {
+                       countCones(first, last);
+                       compareNeighbours(first, last, result_.unequalFaces[block]);
+                     });
+                   });
+    parallelFor(stage, topology_.pointCount, kRegularVerticesGrain, [&](std::size_t v) {
       result_.plane[v] = planes_[v].all;
       // On two planes, all cones are counted in vain.
       if ((cones_[v] != 1 || planes_[v].areMany()) &&
@@ -196,7 +198,7 @@ class Survey {
                                                 const Vec3& directionOfNext) const {
     std::array<TetParameters, 2> scratch;  // NOLINT: written before it is read
     return igm::sidesOf(parameters_.see(t, scratch[0]), direction,
-                           parameters_.see(next, scratch[1]), directionOfNext);
+                        parameters_.see(next, scratch[1]), directionOfNext);
   }
 
   /// Compares parameters of at most kPart tets with those of neighbours, from the larger half-face:

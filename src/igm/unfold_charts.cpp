@@ -15,7 +15,7 @@ namespace hexhex::igm {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kUnfoldChartsGrain = 1024;
 
 /// Tets between asking for parameters and looking at them: the memory's delay.
 constexpr Index kAhead = 8;
@@ -47,7 +47,7 @@ class GaugeSearch {
                      searchBlock(static_cast<Index>(begin), static_cast<Index>(end), blocks[block]);
                    });
     const std::vector<lattice::Gauge> gaugesOfPieces = joinPieces(blocks);
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) {
+    parallelFor(stage, tets, kUnfoldChartsGrain, [&](std::size_t t) {
       gauges_[t] = gaugesOfPieces[pieceOf(static_cast<Index>(t))] * gauges_[t];
     });
     return std::move(gauges_);
@@ -245,13 +245,14 @@ Array<lattice::Gauge> unfoldCharts(const adjacency::TetTopology& topology, Orien
   Array<lattice::Gauge> gauges = computeGauges(topology, given, stage);
   const std::size_t tets = topology.tetCount();
   if (map.parameters.empty()) map.parameters.resize(tets);
-  std::vector<double> largest(blockCount(tets, kGrain), 0);
-  parallelBlocks(stage, tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    for (std::size_t t = begin; t < end; ++t) {
-      map.parameters[t] = rewritten(given, static_cast<Index>(t), gauges[t]);
-      largest[block] = std::max(largest[block], largestMagnitude(map.parameters[t]));
-    }
-  });
+  std::vector<double> largest(blockCount(tets, kUnfoldChartsGrain), 0);
+  parallelBlocks(stage, tets, kUnfoldChartsGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t t = begin; t < end; ++t) {
+                     map.parameters[t] = rewritten(given, static_cast<Index>(t), gauges[t]);
+                     largest[block] = std::max(largest[block], largestMagnitude(map.parameters[t]));
+                   }
+                 });
   map.view.parameters = map.parameters;
   map.largestCoordinate = *std::max_element(largest.begin(), largest.end());
   return gauges;
@@ -262,8 +263,8 @@ std::uint64_t countGivenTransitions(const adjacency::TetTopology& topology,
                                     const Array<lattice::Gauge>& gauges, Stage& stage) {
   if (gauges.empty()) return transitions.nonTrivial;
   const std::size_t halfFaces = topology.mate.size();
-  std::vector<std::uint64_t> blocks(blockCount(halfFaces, kGrain), 0);
-  parallelBlocks(stage, halfFaces, kGrain,
+  std::vector<std::uint64_t> blocks(blockCount(halfFaces, kUnfoldChartsGrain), 0);
+  parallelBlocks(stage, halfFaces, kUnfoldChartsGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    for (auto here = static_cast<adjacency::HalfFace>(begin); here < end; ++here) {
                      const adjacency::HalfFace there = topology.mate[here];

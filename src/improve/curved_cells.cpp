@@ -9,7 +9,7 @@ namespace hexhex::improvement {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kCurvedCellsGrain = 1024;
 
 /// Of the determinant: its degree along each axis, and one.
 constexpr int placesOf(int order) { return 3 * order; }
@@ -33,7 +33,7 @@ CellPoints CurvedCells::points(const adjacency::VertexCells& around) const {
 
 adjacency::VertexCells CurvedCells::cellsAroundNodes(Stage& stage) const {
   return adjacency::VertexCells(mesh_.points.size(), stage, [&](const auto& add) {
-    parallelFor(stage, mesh_.cellCount(), kGrain, [&](std::size_t c) {
+    parallelFor(stage, mesh_.cellCount(), kCurvedCellsGrain, [&](std::size_t c) {
       for (const Index node : nodesOf(c)) add(node, static_cast<Index>(c));
     });
   });
@@ -232,7 +232,7 @@ HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage) {
     refined.regions.insert(refined.regions.end(), parts, region);
   }
   refined.cells.resize(parts * mesh.cellCount());
-  parallelFor(stage, mesh.cellCount(), kGrain, [&](std::size_t cell) {
+  parallelFor(stage, mesh.cellCount(), kCurvedCellsGrain, [&](std::size_t cell) {
     const NodeGrid grid(mesh, cell);
     for (std::size_t part = 0; part < parts; ++part) {
       const int i = static_cast<int>(part);

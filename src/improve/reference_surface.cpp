@@ -12,7 +12,7 @@ namespace hexhex::improvement {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kReferenceSurfaceGrain = 4096;
 
 /// An edge of a triangle, its vertices ascending.
 struct TriangleEdge {
@@ -174,7 +174,7 @@ void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
   }
   patches_.resize(triangles_.size());
   withCreases_.resize(triangles_.size());
-  parallelFor(stage, triangles_.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, triangles_.size(), kReferenceSurfaceGrain, [&](std::size_t t) {
     patches_[t] = sets.find(static_cast<Index>(t));
     withCreases_[t] = setsWithCreases.find(static_cast<Index>(t));
   });

@@ -10,7 +10,7 @@ namespace hexhex::improvement {
 
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kSurfaceDistanceGrain = 256;
 
 Vec3 centreOf(std::span<const Vec3> corners) {
   Vec3 sum{};
@@ -65,7 +65,7 @@ double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTre
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
   std::vector<double> distances(quads.size());
-  parallelFor(stage, quads.size(), kGrain,
+  parallelFor(stage, quads.size(), kSurfaceDistanceGrain,
               [&](std::size_t q) { distances[q] = distanceOf(points, quads[q], tree) / diagonal; });
   return distances;
 }
@@ -117,7 +117,7 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
   };
   const TriangleTree ofMesh = treeOf(points, quads);
   const std::vector<FromSurface> found = collectFromBlocks<FromSurface>(
-      stage, surface.boundaryCount(), kGrain,
+      stage, surface.boundaryCount(), kSurfaceDistanceGrain,
       [&](std::size_t begin, std::size_t end, std::vector<FromSurface>& list) {
         for (std::size_t t = begin; t < end; ++t) {
           const std::array<Vec3, 3> corners = surface.triangle(static_cast<Index>(t));

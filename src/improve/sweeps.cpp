@@ -12,7 +12,7 @@ namespace hexhex::improvement {
 
 namespace {
 
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kSweepsGrain = 1024;
 /// Vertices: a block takes some tenths of a millisecond.
 constexpr std::size_t kVertexGrain = 64;
 constexpr std::size_t kCurvedGrain = 8;
@@ -64,7 +64,7 @@ Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, d
       boundary_(adjacency::findFaces(mesh, meshAround_, stage).boundary),
       chord_(kChord * diagonal) {
   boxes_.resize(cellPoints().cellCount());
-  parallelFor(stage, boxes_.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage, boxes_.size(), kSweepsGrain, [&](std::size_t c) {
     boxes_[c] = boxOf(mesh.points, curved != nullptr ? curved->cornersOf(c) : mesh.cells[c]);
   });
   qualities_.resize(boxes_.size());
@@ -82,7 +82,7 @@ CellPoints Sweeps::cellPoints() const {
 
 template <class CellAt>
 void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
-  parallelBlocks(stage_, n, curved_ != nullptr ? kCurvedGrain : kGrain,
+  parallelBlocks(stage_, n, curved_ != nullptr ? kCurvedGrain : kSweepsGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    CurvedCells::Scratch scratch;
                    std::vector<Index> list;

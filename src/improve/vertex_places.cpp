@@ -20,7 +20,7 @@ namespace hexhex::improvement {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kVertexPlacesGrain = 4096;
 
 template <std::size_t n>
 std::array<Index, n> sorted(std::array<Index, n> vertices) {
@@ -128,7 +128,7 @@ std::vector<Quad> innerQuads(const HexMesh& mesh, bool regionsCount, Stage& stag
   if (tagged.empty() && !byRegion) return {};
   const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
   return collectFromBlocks<Quad>(
-      stage, mesh.points.size(), kGrain,
+      stage, mesh.points.size(), kVertexPlacesGrain,
       [&](std::size_t begin, std::size_t end, std::vector<Quad>& quads) {
         adjacency::forEachFace(
             std::span<const Hex>(mesh.cells), begin, end, around, [&](const auto& sides) {
@@ -185,7 +185,7 @@ void place(const Array<Vec3>& points, const Features& features, const GeneratorO
   places.freedom.resize(n);
   places.simplex.resize(n);
   places.isLoose.assign(n, 0);
-  parallelFor(stage, n, kGrain, [&](std::size_t v) {
+  parallelFor(stage, n, kVertexPlacesGrain, [&](std::size_t v) {
     std::array<Index, 4> corners{};
     const std::size_t count = generatorOf(v, corners);
     places.simplex[v] = kNone;

@@ -18,7 +18,7 @@
 namespace hexhex::mesh {
 namespace {
 
-constexpr double kRounding = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kCellValidityRounding = std::numeric_limits<double>::epsilon() / 2;
 
 /// Parts that a cell is divided into at most. Of random cells, one of a million takes more than
 /// 300; one that takes all, where it is zero along a surface, costs milliseconds.
@@ -241,8 +241,8 @@ CellValidity::Form CellValidity::formOf(std::span<const Vec3> nodes) const {
       for (const double c : column) largest[axis] = std::max(largest[axis], std::abs(c));
       longest = std::max(longest, length(column));
     }
-    errors[axis] = kRounding * largest[axis] + conversionError_ * difference;
-    form.largestLengths *= (1 + 16 * kRounding) * (longest + 2 * errors[axis]);
+    errors[axis] = kCellValidityRounding * largest[axis] + conversionError_ * difference;
+    form.largestLengths *= (1 + 16 * kCellValidityRounding) * (longest + 2 * errors[axis]);
     largest[axis] += errors[axis];
     if (largest[axis] < kShortest) form.error = std::numeric_limits<double>::infinity();
   }
@@ -251,13 +251,13 @@ CellValidity::Form CellValidity::formOf(std::span<const Vec3> nodes) const {
   const double terms = 2 * std::pow(static_cast<double>(n), 3) + 40;
   const double product = largest[0] * largest[1] * largest[2];
   form.error += 2 * 6 *
-                (terms * kRounding * product + errors[0] * largest[1] * largest[2] +
+                (terms * kCellValidityRounding * product + errors[0] * largest[1] * largest[2] +
                  largest[0] * errors[1] * largest[2] + largest[0] * largest[1] * errors[2]);
   return form;
 }
 
 CellCertificate CellValidity::decide(std::span<const Vec3> nodes, const Form& form) const {
-  const double growth = static_cast<double>(3 * order_ + 2) * kRounding * form.size;
+  const double growth = static_cast<double>(3 * order_ + 2) * kCellValidityRounding * form.size;
   CellCertificate result = {Validity::Undecided, -1, {}, 0};
   if (std::isfinite(form.error)) result = divide(form.determinant, form.error, growth);
   if (result.validity == Validity::Undecided) result = decideExactly(nodes, form);
@@ -351,8 +351,9 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
 
   // Sums of so many products as a convolution has, in the squares and their products, of columns
   // whose lengths are wrong by a few roundings, too.
-  const double rounding = 64 * static_cast<double>(form.determinant.values.size()) * kRounding;
-  const double growth = static_cast<double>(3 * order_ + 2) * kRounding * form.size;
+  const double rounding =
+      64 * static_cast<double>(form.determinant.values.size()) * kCellValidityRounding;
+  const double growth = static_cast<double>(3 * order_ + 2) * kCellValidityRounding * form.size;
   const auto isLess = [](const JacobianQuotient& a, const JacobianQuotient& b) {
     return a.bound > b.bound;
   };

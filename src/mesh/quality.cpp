@@ -19,7 +19,7 @@ namespace hexhex::mesh {
 namespace {
 
 /// Cells per block: a block takes about a twentieth of a millisecond.
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kQualityGrain = 1024;
 
 /// Corners by their place (u, v, w) in bits 0, 1, 2.
 using Corners = std::array<Vec3, 8>;
@@ -152,7 +152,7 @@ Array<double> scaledJacobians(const HexMesh& mesh, Context& context) {
   return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
     Array<double> result(mesh.cells.size());
     withThreads(context.threads(), [&] {
-      parallelBlocks(stage, mesh.cells.size(), mesh::kGrain,
+      parallelBlocks(stage, mesh.cells.size(), mesh::kQualityGrain,
                      [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                        mesh::forCells(mesh, begin, end, stage,
                                       [&](std::size_t first, const mesh::CellMeasures& measures,
@@ -187,10 +187,11 @@ Certificate certify(const HexMesh& mesh, Context& context) {
     certificate.validity.resize(n);
     const mesh::CellValidity cells(1);
     withThreads(context.threads(), [&] {
-      std::vector<mesh::BlockFindings> blocks(blockCount(n, mesh::kGrain));
+      std::vector<mesh::BlockFindings> blocks(blockCount(n, mesh::kQualityGrain));
       std::vector<QualitySummary> summaries(blocks.size());
       parallelBlocks(
-          stage, n, mesh::kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+          stage, n, mesh::kQualityGrain,
+          [&](std::size_t begin, std::size_t end, std::size_t block) {
             summaries[block].minimum = 1;
             mesh::forCells(
                 mesh, begin, end, stage,

@@ -22,34 +22,34 @@ namespace hexhex::mesh {
 namespace {
 
 /// Quads, or vertices, per block: some tenths of a millisecond.
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kSmoothPatchesGrain = 4096;
 
 /// Normals of flat neighbours differ by rounding; 1e-12 of a cosine is a turn of a millionth, far
 /// above rounding and far below any turn that is meant.
 constexpr double kCosineError = 1e-12;
 
 /// An edge seen from a quad, or a seam. Its smaller vertex is known from the context.
-struct Side {
+struct EdgeSide {
   Index other;  ///< the larger vertex
   Index quad;   ///< kNone: a seam
-  auto operator<=>(const Side&) const = default;
+  auto operator<=>(const EdgeSide&) const = default;
 };
 
 /// The edges of quads and the seams, by their smaller vertices.
-adjacency::VertexLists<Side, std::uint64_t> listSides(std::size_t points,
-                                                      std::span<const Quad> quads,
-                                                      std::span<const FeatureEdge> seams,
-                                                      Stage& stage) {
+adjacency::VertexLists<EdgeSide, std::uint64_t> listSides(std::size_t points,
+                                                          std::span<const Quad> quads,
+                                                          std::span<const FeatureEdge> seams,
+                                                          Stage& stage) {
   return {points, stage, [&](const auto& add) {
-            parallelFor(stage, quads.size(), kGrain, [&](std::size_t q) {
+            parallelFor(stage, quads.size(), kSmoothPatchesGrain, [&](std::size_t q) {
               for (std::size_t i = 0; i < 4; ++i) {
                 const auto [low, high] = std::minmax(quads[q][i], quads[q][(i + 1) % 4]);
-                add(low, Side{high, static_cast<Index>(q)});
+                add(low, EdgeSide{high, static_cast<Index>(q)});
               }
             });
             for (const FeatureEdge& seam : seams) {
               const auto [low, high] = std::minmax(seam.vertices[0], seam.vertices[1]);
-              if (seam.tag != 0) add(low, Side{high, kNone});
+              if (seam.tag != 0) add(low, EdgeSide{high, kNone});
             }
           }};
 }
@@ -57,7 +57,7 @@ adjacency::VertexLists<Side, std::uint64_t> listSides(std::size_t points,
 /// Unit normals; zero for quads without area.
 Array<Vec3> normalsOf(std::span<const Vec3> points, std::span<const Quad> quads, Stage& stage) {
   Array<Vec3> normals(quads.size());
-  parallelFor(stage, quads.size(), kGrain, [&](std::size_t q) {
+  parallelFor(stage, quads.size(), kSmoothPatchesGrain, [&](std::size_t q) {
     const Quad& quad = quads[q];
     Vec3 normal =
         cross(minus(points[quad[2]], points[quad[0]]), minus(points[quad[3]], points[quad[1]]));
@@ -96,17 +96,17 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
   }
   const double limit = std::cos(angle * std::numbers::pi / 180) - kCosineError;
   const Array<Vec3> normals = normalsOf(points, quads, stage);
-  const adjacency::VertexLists<Side, std::uint64_t> sides =
+  const adjacency::VertexLists<EdgeSide, std::uint64_t> sides =
       listSides(points.size(), quads, seams, stage);
   DisjointSets sets(quads.size());
-  const auto isSameEdge = [](const Side& a, const Side& b) { return a.other == b.other; };
-  const auto join = [&](std::span<const Side> atEdge) {
+  const auto isSameEdge = [](const EdgeSide& a, const EdgeSide& b) { return a.other == b.other; };
+  const auto join = [&](std::span<const EdgeSide> atEdge) {
     // Exactly two quads and no seam, which would come last.
     if (atEdge.size() != 2 || atEdge[1].quad == kNone) return;
     const auto [a, b] = std::pair(atEdge[0].quad, atEdge[1].quad);
     if (dot(normals[a], normals[b]) >= limit) sets.unite(a, b);
   };
-  parallelFor(stage, points.size(), kGrain,
+  parallelFor(stage, points.size(), kSmoothPatchesGrain,
               [&](std::size_t v) { adjacency::forEachRun(sides(v), isSameEdge, join); });
   return numbered(sets, quads.size());
 }

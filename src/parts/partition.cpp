@@ -100,9 +100,9 @@ void countCells(const PartitionInput& input, Partition& partition, Stage& stage)
   const auto placeOf = [&](std::size_t i) {
     return i < blocks.size() ? blocks[i].first : partition.inBlock.size();
   };
-  constexpr std::size_t kFewTets = 8;
+  constexpr std::size_t kTetsPerBlock = 8;
   const std::size_t skipped = first;
-  parallelFor(stage, end - first, kFewTets, [&](std::size_t i) {
+  parallelFor(stage, end - first, kTetsPerBlock, [&](std::size_t i) {
     const TetBlocks& some = blocks[skipped + i];
     countCells(input.map, some, std::span(partition.inBlock).subspan(some.first, some.count()));
   });

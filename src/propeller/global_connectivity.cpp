@@ -7,7 +7,7 @@ namespace hexhex::propeller {
 
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kGlobalConnectivityGrain = 64;
 
 /// A hex edge that is traced: in the chart of a tet, from grid point z in direction `along`, beside
 /// it the blade in direction `beside`.
@@ -150,7 +150,7 @@ GlobalConnectivity traceOpposites(const igm::PreparedMap& map,
               GlobalConnectivity::kUntraced);
   });
   const Tracer tracer(map, signs, vertices, local, global);
-  parallelFor(stage, map.topology.tetCount(), kGrain,
+  parallelFor(stage, map.topology.tetCount(), kGlobalConnectivityGrain,
               [&](std::size_t t) { tracer.run(static_cast<Index>(t)); });
   return global;
 }

@@ -6,7 +6,7 @@ namespace hexhex::propeller {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kHexVerticesGrain = 512;
 
 /// Lists generators, and in which tets they are seen.
 class GeneratorLister {
@@ -20,12 +20,15 @@ class GeneratorLister {
     begin_[tets] = 0;
     result_.incidenceBegin.resize(tets + 1);
     result_.incidenceBegin[tets] = 0;
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) { count(static_cast<Index>(t)); });
+    parallelFor(stage, tets, kHexVerticesGrain,
+                [&](std::size_t t) { count(static_cast<Index>(t)); });
     result_.generators.resize(exclusiveScan(std::span(begin_)));
     result_.incidences.resize(exclusiveScan(std::span(result_.incidenceBegin)));
     result_.generatorOf.resize(numbers_.count());
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) { list(static_cast<Index>(t)); });
-    parallelFor(stage, tets, kGrain, [&](std::size_t t) { listIncidences(static_cast<Index>(t)); });
+    parallelFor(stage, tets, kHexVerticesGrain,
+                [&](std::size_t t) { list(static_cast<Index>(t)); });
+    parallelFor(stage, tets, kHexVerticesGrain,
+                [&](std::size_t t) { listIncidences(static_cast<Index>(t)); });
   }
 
  private:

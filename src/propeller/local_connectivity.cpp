@@ -32,7 +32,7 @@ bool linkCorners(const std::vector<Propeller>& propellers, std::vector<Slot>& sl
 
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kLocalConnectivityGrain = 256;
 
 /// Appends the structure around the vertices of one generator.
 void append(Configurations& to, const StarConnectivity::Result& structure) {
@@ -158,8 +158,8 @@ LocalConnectivity extractLocalConnectivity(const igm::PreparedMap& map,
   addConstantConfigurations(local);
   const std::size_t generators = vertices.generators.size();
   local.configurationOf.resize(generators);
-  std::vector<Configurations> blocks(blockCount(generators, kGrain));
-  parallelBlocks(stage, generators, kGrain,
+  std::vector<Configurations> blocks(blockCount(generators, kLocalConnectivityGrain));
+  parallelBlocks(stage, generators, kLocalConnectivityGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
                    StarConnectivity star(map, signs);
                    for (std::size_t g = begin; g < end; ++g) {

@@ -10,11 +10,11 @@ namespace hexhex::propeller {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kPipelineGrain = 4096;
 
 Array<lattice::NormalSigns> computeNormalSigns(const igm::ExactMap& map, Stage& stage) {
   Array<lattice::NormalSigns> signs(map.corners.size());
-  parallelFor(stage, map.corners.size(), kGrain,
+  parallelFor(stage, map.corners.size(), kPipelineGrain,
               [&](std::size_t t) { signs[t] = lattice::NormalSigns(map.corners[t]); });
   return signs;
 }

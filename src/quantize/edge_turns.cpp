@@ -8,7 +8,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kEdgeTurnsGrain = 256;
 
 double angleSum(std::span<const TetParameters> map, std::span<const adjacency::EdgeCorner> fan) {
   double sum = 0;
@@ -37,7 +37,8 @@ std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
                                     const IrregularEdges& expected,
                                     std::span<const TetParameters> map, Stage& stage) {
   auto tets = collectFromBlocks<Index>(
-      stage, topology.pointCount, kGrain, [&](std::size_t begin, std::size_t end, auto& list) {
+      stage, topology.pointCount, kEdgeTurnsGrain,
+      [&](std::size_t begin, std::size_t end, auto& list) {
         std::vector<adjacency::EdgeCorner> scratch;
         for (auto v = static_cast<Index>(begin); v < end; ++v) {
           adjacency::forEachEdge(

@@ -11,7 +11,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kVertexUnknownsGrain = 256;
 
 /// Linear equations of a point, in reduced echelon form. Exact: coefficients are -2 to 2 at first,
 /// and rows are divided by their common divisors.
@@ -158,13 +158,14 @@ VertexUnknowns findUnknowns(const BendProblem& problem, const adjacency::TetTopo
   unknowns.fixed.assign(topology.pointCount, lattice::kAllAxes);  // isolated vertices stay so
   unknowns.fixedPosition.resize(topology.pointCount);
   unknowns.toCorner.resize(4 * topology.tetCount());
-  unknowns.contradictions = collectFromBlocks<Index>(
-      stage, topology.pointCount, kGrain, [&](std::size_t begin, std::size_t end, auto& list) {
-        StarReader reader(problem, topology, unknowns);
-        for (auto v = static_cast<Index>(begin); v < end; ++v) {
-          if (!topology.isIsolated(v) && !reader.run(v)) list.push_back(v);
-        }
-      });
+  unknowns.contradictions =
+      collectFromBlocks<Index>(stage, topology.pointCount, kVertexUnknownsGrain,
+                               [&](std::size_t begin, std::size_t end, auto& list) {
+                                 StarReader reader(problem, topology, unknowns);
+                                 for (auto v = static_cast<Index>(begin); v < end; ++v) {
+                                   if (!topology.isIsolated(v) && !reader.run(v)) list.push_back(v);
+                                 }
+                               });
   return unknowns;
 }
 

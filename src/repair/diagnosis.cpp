@@ -12,7 +12,7 @@ namespace hexhex::repairs {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kDiagnosisGrain = 4096;
 
 class Examiner {
  public:
@@ -63,7 +63,7 @@ class Examiner {
   /// Whether transitions carry triangles over.
   void examineFaces(Stage& stage, Diagnosis& diagnosis) {
     const adjacency::TetTopology& topology = map_.topology;
-    parallelFor(stage, topology.tetCount(), kGrain, [&](std::size_t t) {
+    parallelFor(stage, topology.tetCount(), kDiagnosisGrain, [&](std::size_t t) {
       for (int f = 0; f < 4; ++f) {
         const adjacency::HalfFace halfFace = adjacency::halfFaceOf(static_cast<Index>(t), f);
         if (topology.mate[halfFace] == kNone || topology.mate[halfFace] < halfFace) continue;

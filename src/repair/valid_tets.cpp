@@ -9,13 +9,14 @@ namespace hexhex::repairs {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kValidTetsGrain = 4096;
 
 /// The elements of [0, n) for which a test holds, ascending.
 template <class Test>
 std::vector<Index> select(std::size_t n, Stage& stage, const Test& test) {
   return collectFromBlocks<Index>(
-      stage, n, kGrain, [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+      stage, n, kValidTetsGrain,
+      [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
         for (std::size_t i = begin; i < end; ++i) {
           if (test(static_cast<Index>(i))) found.push_back(static_cast<Index>(i));
         }
@@ -86,7 +87,7 @@ std::vector<std::uint8_t> findValidTets(const igm::PreparedMap& map,
                                         Stage& stage) {
   std::vector<std::uint8_t> valid(map.topology.tetCount(), 0);
   const auto unit = static_cast<double>(map.exact.unit);
-  parallelFor(stage, valid.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, valid.size(), kValidTetsGrain, [&](std::size_t t) {
     const lattice::LatticeTet& corners = map.exact.corners[t];
     double displacement = 0;
     for (int c = 0; c < 4; ++c) {

@@ -11,7 +11,7 @@ namespace hexhex::untangle {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kEnergyGrain = 512;
 
 using Corners = Eigen::Matrix<double, 3, 4>;
 using Gradients = Eigen::Matrix<double, 4, 3>;
@@ -110,10 +110,12 @@ Energy::Energy(const Problem& problem, Stage& stage)
 template <class Visit>
 Height Energy::collect(const Visit& visit) const {
   const std::size_t n = problem_.elements.size();
-  std::vector<Height> parts(blockCount(n, kGrain));
-  parallelBlocks(stage_, n, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-    for (std::size_t i = begin; i < end; ++i) visit(i, problem_.elements[i], parts[block]);
-  });
+  std::vector<Height> parts(blockCount(n, kEnergyGrain));
+  parallelBlocks(stage_, n, kEnergyGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t block) {
+                   for (std::size_t i = begin; i < end; ++i)
+                     visit(i, problem_.elements[i], parts[block]);
+                 });
   Height all;
   for (const Height& part : parts) {
     all.energy += part.energy;
@@ -152,7 +154,7 @@ Height Energy::at(const Vector& x, double epsilon, Vector& gradient) {
         element.weight * byMatrix * cornerGradients(element).transpose();
   });
   gradient.resize(x.size());
-  parallelFor(stage_, unknownCount(), kGrain, [&](std::size_t unknown) {
+  parallelFor(stage_, unknownCount(), kEnergyGrain, [&](std::size_t unknown) {
     double sum = 0;
     for (const std::uint32_t use : uses_(unknown)) {
       const Corner& corner = problem_.elements[use / 12].corners[use % 12 / 3];

@@ -15,7 +15,7 @@ namespace hexhex::verification {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kMatchGrain = 4096;
 
 /// Points in the cells of a grid so fine that hardly two share one, as lists behind a hash table.
 class PointFinder {
@@ -24,7 +24,7 @@ class PointFinder {
       : points_(points), tolerance_(tolerance), spacing_(tolerance > 0 ? 16 * tolerance : 1) {
     buckets_ = adjacency::VertexLists<Index>(
         std::max<std::size_t>(points.size(), 1), stage, [&](const auto& add) {
-          parallelFor(stage, points.size(), kGrain, [&](std::size_t v) {
+          parallelFor(stage, points.size(), kMatchGrain, [&](std::size_t v) {
             add(bucketOf(gridCell(points[v], {})), static_cast<Index>(v));
           });
         });
@@ -177,7 +177,7 @@ class Matching {
   /// The first vertex of the right mesh at the place of each point, or kNone.
   [[nodiscard]] Array<Index> placesOf(const Array<Vec3>& points, const PointFinder& finder) const {
     Array<Index> places(points.size());
-    parallelFor(stage_, points.size(), kGrain,
+    parallelFor(stage_, points.size(), kMatchGrain,
                 [&](std::size_t v) { places[v] = finder.nearest(points[v]); });
     return places;
   }
@@ -209,14 +209,14 @@ class Matching {
   void matchCells() {
     byFirstPlace_ = adjacency::VertexLists<Index>(
         std::max<std::size_t>(right_.points.size(), 1), stage_, [&](const auto& add) {
-          parallelFor(stage_, right_.cells.size(), kGrain, [&](std::size_t c) {
+          parallelFor(stage_, right_.cells.size(), kMatchGrain, [&](std::size_t c) {
             add(turnedFirst(right_.cells[c], rightPlaces_).places[0], static_cast<Index>(c));
           });
         });
     fill(finders_, right_.cells.size(), kNone);
     fill(cells_, found_.cells.size(), kNone);
     std::atomic<bool> areContested{false};
-    parallelFor(stage_, found_.cells.size(), kGrain, [&](std::size_t c) {
+    parallelFor(stage_, found_.cells.size(), kMatchGrain, [&](std::size_t c) {
       Index only = kNone;
       bool isContested = false;
       forEachCandidate(c, [&](Index right) {
@@ -279,7 +279,7 @@ class Matching {
   /// Vertices are the same if they are corners of the same cells.
   void matchVertices() {
     const auto forAllCorners = [this](const auto& visit) {
-      parallelFor(stage_, found_.cells.size(), kGrain,
+      parallelFor(stage_, found_.cells.size(), kMatchGrain,
                   [&](std::size_t c) { forEachCorner(c, visit); });
     };
     Array<Index> rightOf;

@@ -11,7 +11,7 @@ namespace {
 
 /// What a position may err by, relative to the coordinates of its tet: a few roundings, and the
 /// conversion to text with 17 digits.
-constexpr double kRounding = 0x1p-48;
+constexpr double kSpaceOfTetRounding = 0x1p-48;
 /// Weights that lose more digits than this are computed exactly. Extraction does so from 2^20 on,
 /// as it measures it, which is at least a sixth of what is measured here.
 constexpr double kMaxCondition = 0x1p23;
@@ -54,7 +54,7 @@ SpaceOfTet::SpaceOfTet(const igm::PreparedMap& map, Index tet)
   condition = 1 + condition / determinant;
   isFlat_ = !(determinant > 0) || !(condition < kMaxCondition);
   // Below 2^-1022, numbers lose digits.
-  error_ = largest * kRounding * (isFlat_ ? 1 : condition) +
+  error_ = largest * kSpaceOfTetRounding * (isFlat_ ? 1 : condition) +
            0x1p-1070 * (8 + extent[0] + extent[1] + extent[2]);
   atOrigin_ = points_[0];
   for (std::size_t k = 0; k < 3; ++k) {

@@ -18,7 +18,7 @@ using namespace curved;
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
-using testing::Random;
+using testing::LatticeRandom;
 
 /// Corners on opposite sides of the line, with all of it in one plane.
 struct EdgeCorners {
@@ -26,7 +26,7 @@ struct EdgeCorners {
   lattice::LatticePoint b;
 };
 
-EdgeCorners cornersBesideLine(std::int64_t unit, Random& random) {
+EdgeCorners cornersBesideLine(std::int64_t unit, LatticeRandom& random) {
   const std::int64_t p = random.between(-1000, 1000);
   const std::int64_t q = p == 0 ? random.between(1, 1000) : random.between(-1000, 1000);
   const std::int64_t before = random.between(1, unit / 512);
@@ -58,7 +58,7 @@ lattice::LatticePoint fromOtherEnd(lattice::LatticePoint point, std::int64_t uni
 }
 
 TEST(EdgeCrossing, IsTheSameHoweverItIsSeen) {
-  Random random(4711);
+  LatticeRandom random(4711);
   int inside = 0;
   for (int i = 0; i < testing::cases(100000) + 5000 && !HasFailure(); ++i) {
     const std::int64_t unit = std::int64_t{1} << (random.oneIn(2) ? 18 : 44);

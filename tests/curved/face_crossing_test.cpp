@@ -16,10 +16,10 @@ using namespace curved;
 
 namespace {
 
-using testing::Random;
+using testing::LatticeRandom;
 
 /// Corners on the half-integer grid, anywhere, or nearly on a line: all of them around the origin.
-lattice::LatticeTet randomCorners(std::int64_t unit, Random& random) {
+lattice::LatticeTet randomCorners(std::int64_t unit, LatticeRandom& random) {
   lattice::LatticeTet corners{};
   const bool onGrid = random.oneIn(3);
   const std::int64_t thickness = random.oneIn(3) ? 3 : 4 * unit;
@@ -108,7 +108,7 @@ void compareCrossing(const OwnersFace& face, const ChartEdge& edge, std::int64_t
 }
 
 TEST(FaceCrossing, IsTheSameByBothArithmeticsAndFromBothEnds) {
-  Random random(8812);
+  LatticeRandom random(8812);
   CrossingCounts counts;
   for (int i = 0; i < testing::cases(200000) + 5000 && !HasFailure(); ++i) {
     // Where products fit 53 bits, and where they are rounded.

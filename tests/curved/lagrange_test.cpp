@@ -17,7 +17,7 @@
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::lagrange {
 
 namespace {
 
@@ -443,4 +443,4 @@ TEST(LagrangeCertificate, FindsWhatSamplesMiss) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::lagrange

@@ -13,7 +13,7 @@
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::limits {
 
 using namespace curved;
 
@@ -117,4 +117,4 @@ TEST(CurvedLimits, NodesOfLongTets) {
 
 }  // namespace
 
-}  // namespace hexhex::test
+}  // namespace hexhex::test::limits

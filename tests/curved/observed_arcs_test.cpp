@@ -25,7 +25,7 @@ using namespace curved;
 
 namespace {
 
-using testing::Random;
+using testing::LatticeRandom;
 
 /// What occurred: tests that miss a case say nothing.
 struct PointKinds {
@@ -104,7 +104,7 @@ TEST(ObservedArcs, AreThoseOfMapsSweptAnew) {
 
 TEST(ObservedArcs, AreThoseOfMapsSweptAnewOnRandomMaps) {
   PointKinds kinds;
-  Random random(20262);
+  LatticeRandom random(20262);
   const auto share = [&](double most) {
     return most * static_cast<double>(random.between(0, 100)) / 100;
   };
@@ -119,7 +119,7 @@ TEST(ObservedArcs, AreThoseOfMapsSweptAnewOnRandomMaps) {
     options.noise = random.oneIn(3) ? 1e-9 : 0;
     options.charts = random.oneIn(2) ? ChartStyle::Random : ChartStyle::Blocks;
     options.offset = random.oneIn(3) ? 1e6 : 0;
-    const auto& kind = all[random.index(all.size())];
+    const auto& kind = all[random.below(all.size())];
     const int scale = static_cast<int>(random.between(1, 3));
     SCOPED_TRACE(std::string(kind.name) + ", case " + std::to_string(i));
     compareWithSweptAnew(generateSample(kind.kind, options).map, scale, kinds);

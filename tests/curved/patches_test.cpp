@@ -16,7 +16,7 @@
 #include "curved/curved_maps.hpp"
 #include "curved/tet_points.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::patches {
 
 namespace {
 
@@ -319,4 +319,4 @@ TEST(Patches, SameOfBothEngines) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::patches

@@ -12,7 +12,7 @@ using namespace curved;
 
 namespace {
 
-using testing::Random;
+using testing::LatticeRandom;
 
 using Point2 = std::array<std::int64_t, 2>;
 
@@ -33,7 +33,7 @@ bool isBeside(const std::array<Point2, 3>& seen) {
 }
 
 TEST(SimplexPoint, IsWhereALineCrossesAFace) {
-  Random random(1);
+  LatticeRandom random(1);
   int met = 0;
   int missed = 0;
   for (int n = 0; n < cases(20000); ++n) {

@@ -7,7 +7,7 @@
 
 #include "extract/support.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::samples {
 
 namespace {
 
@@ -177,4 +177,4 @@ TEST(Property, RandomSamplesAreExtractedRight) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::samples

@@ -13,7 +13,7 @@
 #include <io/medit/medit.hpp>
 #include <io/vtk/vtk.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::hex_mesh {
 
 using namespace io;
 namespace {
@@ -362,4 +362,4 @@ TEST(Vtu, CorruptOffsetsAndSizes) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::hex_mesh

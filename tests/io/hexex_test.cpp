@@ -9,7 +9,7 @@
 #include <io/hexex/hexex.hpp>
 #include <io/io_test_support.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::hexex {
 
 using namespace io;
 namespace {
@@ -246,4 +246,4 @@ TEST(Hexex, WriterRefusesWhatCannotBeReadBack) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::hexex

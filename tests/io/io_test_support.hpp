@@ -17,6 +17,8 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include "support/random.hpp"
+
 namespace hexhex::test {
 
 /// An empty folder that vanishes with the object.
@@ -85,30 +87,6 @@ Failure failureOf(const F& f) {
   ADD_FAILURE() << "nothing was thrown";
   return {};
 }
-
-/// Splitmix64: the same numbers on every machine.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15U;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31U);
-  }
-  /// Uniform enough in [0, n).
-  std::size_t below(std::size_t n) { return next() % n; }
-  /// Any finite double, each bit pattern equally likely.
-  double anyDouble() {
-    while (true) {
-      const auto value = std::bit_cast<double>(next());
-      if (value - value == 0) return value;
-    }
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 /// Two tets that share a face, with awkward numbers.
 inline TetMap smallMap() {

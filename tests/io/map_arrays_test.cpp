@@ -14,7 +14,7 @@
 #include <io/io_test_support.hpp>
 #include <io/vtk/vtk.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::map_arrays {
 
 using namespace io;
 namespace {
@@ -294,4 +294,4 @@ TEST(VtuMaps, PointArrayAndOtherArrays) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::map_arrays

@@ -23,7 +23,7 @@
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::measures {
 namespace {
 
 /// How many elements a group has, and how large they are together.
@@ -391,4 +391,4 @@ INSTANTIATE_TEST_SUITE_P(Programs, Measured,
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::measures

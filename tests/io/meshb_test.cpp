@@ -10,7 +10,7 @@
 #include <io/io_test_support.hpp>
 #include <io/medit/medit.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::meshb {
 
 using namespace io;
 namespace {
@@ -129,4 +129,4 @@ TEST(Meshb, WrongElements) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::meshb

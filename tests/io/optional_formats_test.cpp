@@ -21,7 +21,7 @@
 #include <io/other_programs.hpp>
 #include <io/solvers/solvers.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::optional_formats {
 
 using namespace io;
 namespace {
@@ -334,4 +334,4 @@ TEST(OptionalFormats, NamesAreNothingButNames) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::optional_formats

@@ -13,7 +13,7 @@
 
 #include "ovm_test_support.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::ovm_damage {
 
 using namespace io;
 namespace {
@@ -247,4 +247,4 @@ TEST(DamagedOvm, AbsurdCounts) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::ovm_damage

@@ -14,7 +14,7 @@
 
 #include "ovm_test_support.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::ovmb_bytes {
 
 using namespace io;
 namespace {
@@ -662,4 +662,4 @@ TEST(Ovmb, WriterTakesWiderHandlesForLargerMeshes) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::ovmb_bytes

@@ -17,7 +17,7 @@
 
 #include "support/collecting_sink.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::stream {
 namespace {
 
 /// A grid with random coordinates, and generators if wanted.
@@ -521,4 +521,4 @@ TEST(Survey, ChecksumsAreThoseOfTheFirstVersion) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::stream

@@ -10,7 +10,7 @@
 #include <io/io_test_support.hpp>
 #include <io/vtk/vtk.hpp>
 
-namespace hexhex::test {
+namespace hexhex::test::vtk_legacy {
 
 using namespace io;
 namespace {
@@ -140,4 +140,4 @@ TEST(VtkLegacyReader, WrongCells) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::vtk_legacy

@@ -67,7 +67,7 @@ int turnEverywhere(const Star& star) {
 }
 
 TEST(ExitOfTurn, AroundVertices) {
-  Random random(91);
+  LatticeRandom random(91);
   for (int i = cases(60); i > 0; --i) {
     const Star star = vertexStar(random, static_cast<int>(random.between(1, 4)),
                                  random.oneIn(2) ? 0 : random.between(1, 5));
@@ -78,7 +78,7 @@ TEST(ExitOfTurn, AroundVertices) {
 }
 
 TEST(ExitOfTurn, AroundVerticesWithDirectionsOnEdgesAndFaces) {
-  Random random(92);
+  LatticeRandom random(92);
   int ambiguous = 0;
   for (int i = cases(60); i > 0; --i) {
     ambiguous += turnEverywhere(vertexStar(random, 2, 0));
@@ -88,7 +88,7 @@ TEST(ExitOfTurn, AroundVerticesWithDirectionsOnEdgesAndFaces) {
 }
 
 TEST(ExitOfTurn, AroundEdges) {
-  Random random(93);
+  LatticeRandom random(93);
   int ambiguous = 0;
   for (int i = cases(600); i > 0; --i) {
     const Star star = edgeStar(random, random.oneIn(2) ? random.between(1, 2) : 1000);
@@ -100,7 +100,7 @@ TEST(ExitOfTurn, AroundEdges) {
 }
 
 TEST(ExitOfTurn, AroundFaces) {
-  Random random(94);
+  LatticeRandom random(94);
   int ambiguous = 0;
   for (int i = std::max(50, cases(1000)); i > 0; --i) {  // few are ambiguous
     ambiguous += turnEverywhere(faceStar(random, random.oneIn(2) ? random.between(1, 2) : 1000));
@@ -110,7 +110,7 @@ TEST(ExitOfTurn, AroundFaces) {
 }
 
 /// A positive tet; with a small range, degenerate in many ways against coordinate directions.
-LatticeTet positiveTet(Random& random, std::int64_t range) {
+LatticeTet positiveTet(LatticeRandom& random, std::int64_t range) {
   for (;;) {
     LatticeTet t;
     for (LatticePoint& p : t) p = random.point(-range, range);
@@ -121,7 +121,7 @@ LatticeTet positiveTet(Random& random, std::int64_t range) {
 }
 
 TEST(ExitOfTurn, AnswersOfSingleTets) {
-  Random random(95);
+  LatticeRandom random(95);
   int exits = 0;
   for (int i = cases(100'000); i > 0; --i) {
     const LatticeTet corners = positiveTet(random, random.between(1, 4));
@@ -139,7 +139,7 @@ TEST(ExitOfTurn, AnswersOfSingleTets) {
 }
 
 /// One random question, in a tet with coordinates up to `range`. Counts the exits found.
-void askForExitOfLine(Random& random, std::int64_t range, std::int64_t unit, int& exits) {
+void askForExitOfLine(LatticeRandom& random, std::int64_t range, std::int64_t unit, int& exits) {
   const LatticeTet corners = positiveTet(random, range);
   const LatticePoint p = random.point(-2, 2);
   const GridPoint z = {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]),
@@ -153,7 +153,7 @@ void askForExitOfLine(Random& random, std::int64_t range, std::int64_t unit, int
 }
 
 TEST(ExitOfLine, AnswersOfSingleTets) {
-  Random random(96);
+  LatticeRandom random(96);
   int exits = 0;
   for (int i = cases(100'000); i > 0; --i) {
     const std::int64_t unit = std::int64_t{1} << random.between(0, 2);
@@ -163,7 +163,7 @@ TEST(ExitOfLine, AnswersOfSingleTets) {
 }
 
 TEST(ExitOfLine, AnswersOfTetsOfFullRange) {
-  Random random(97);
+  LatticeRandom random(97);
   int exits = 0;
   constexpr std::int64_t kUnit = std::int64_t{1} << 58;
   for (int i = cases(20'000); i > 0; --i) {
@@ -236,7 +236,7 @@ int followEverywhere(const TetPatch& patch, const GridPoint& z, std::int64_t uni
 }
 
 /// A box of tets, and one of the grid points in it.
-void followInRandomBox(Random& random, bool jitter, int& steps) {
+void followInRandomBox(LatticeRandom& random, bool jitter, int& steps) {
   const std::int64_t unit = std::int64_t{1} << random.between(4, 20);
   const int cells = static_cast<int>(random.between(2, 4));
   LatticePoint origin;
@@ -254,7 +254,7 @@ void followInRandomBox(Random& random, bool jitter, int& steps) {
 }
 
 TEST(ExitOfLine, ReachesTheNextGridPoint) {
-  Random random(98);
+  LatticeRandom random(98);
   int steps = 0;
   for (int i = cases(300); i > 0; --i) {
     ASSERT_NO_FATAL_FAILURE(followInRandomBox(random, true, steps));
@@ -264,7 +264,7 @@ TEST(ExitOfLine, ReachesTheNextGridPoint) {
 }
 
 TEST(ExitOfLine, ReachesTheNextGridPointAlongEdgesAndFaces) {
-  Random random(99);
+  LatticeRandom random(99);
   int steps = 0;
   for (int i = cases(300); i > 0; --i) {
     ASSERT_NO_FATAL_FAILURE(followInRandomBox(random, false, steps));

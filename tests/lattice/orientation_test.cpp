@@ -33,7 +33,7 @@ void expectOrientation(const LatticeTet& t) {
 }
 
 /// Four points of which the last lies in the plane of the others: a lattice combination of them.
-LatticeTet coplanar(Random& random, std::int64_t range) {
+LatticeTet coplanar(LatticeRandom& random, std::int64_t range) {
   LatticeTet t;
   const std::int64_t small = range / 16;  // the combination stays in range
   for (std::size_t i = 0; i < 3; ++i) t[i] = random.point(-small, small);
@@ -42,7 +42,7 @@ LatticeTet coplanar(Random& random, std::int64_t range) {
   for (std::size_t k = 0; k < 3; ++k) {
     t[3][k] = t[0][k] + alpha * (t[1][k] - t[0][k]) + beta * (t[2][k] - t[0][k]);
   }
-  std::swap(t[3], t[random.index(4)]);
+  std::swap(t[3], t[random.below(4)]);
   return t;
 }
 
@@ -63,29 +63,29 @@ TEST(Orientation, HoldsAtTheEndsOfTheRange) {
 
 /// Where all coordinates but one have few bits, that one may still decide.
 TEST(Orientation, OneCoordinateHasManyBits) {
-  Random random(12);
+  LatticeRandom random(12);
   for (int i = cases(30'000); i > 0; --i) {
     LatticeTet t = coplanar(random, std::int64_t{1} << 12);
     for (LatticePoint& p : t) {
       for (std::int64_t& x : p) x <<= 44;
     }
-    t[random.index(4)][random.index(3)] += random.between(-2, 2);
+    t[random.below(4)][random.below(3)] += random.between(-2, 2);
     ASSERT_NO_FATAL_FAILURE(expectOrientation(t));
   }
 }
 
 TEST(Orientation, RandomFullRange) {
-  Random random(11);
+  LatticeRandom random(11);
   for (int i = cases(300'000); i > 0; --i) {
     LatticeTet t;
-    const std::int64_t range = kFullRange >> random.index(60);
+    const std::int64_t range = kFullRange >> random.below(60);
     for (LatticePoint& p : t) p = random.point(-range, range);
     ASSERT_NO_FATAL_FAILURE(expectOrientation(t));
   }
 }
 
 TEST(Orientation, RandomSmall) {
-  Random random(12);
+  LatticeRandom random(12);
   int degenerate = 0;
   const int count = cases(200'000);
   for (int i = 0; i < count; ++i) {
@@ -98,30 +98,30 @@ TEST(Orientation, RandomSmall) {
 }
 
 TEST(Orientation, ExactlyCoplanar) {
-  Random random(13);
+  LatticeRandom random(13);
   for (int i = cases(250'000); i > 0; --i) {
-    const LatticeTet t = coplanar(random, kFullRange >> random.index(50));
+    const LatticeTet t = coplanar(random, kFullRange >> random.below(50));
     ASSERT_EQ(oracleOrientation(t), 0);
     ASSERT_NO_FATAL_FAILURE(expectOrientation(t));
   }
 }
 
 TEST(Orientation, OneLatticeUnitOffThePlane) {
-  Random random(14);
+  LatticeRandom random(14);
   for (int i = cases(300'000); i > 0; --i) {
-    LatticeTet t = coplanar(random, kFullRange >> random.index(50));
-    t[random.index(4)][random.index(3)] += random.oneIn(2) ? 1 : -1;
+    LatticeTet t = coplanar(random, kFullRange >> random.below(50));
+    t[random.below(4)][random.below(3)] += random.oneIn(2) ? 1 : -1;
     ASSERT_NO_FATAL_FAILURE(expectOrientation(t));
   }
 }
 
 /// Floating point is exact of coordinates with few bits, wherever these are, and only of those.
 TEST(Orientation, MultiplesOfPowersOfTwo) {
-  Random random(15);
+  LatticeRandom random(15);
   for (int i = cases(300'000); i > 0; --i) {
     const int bits = static_cast<int>(random.between(5, 30));
     LatticeTet t = coplanar(random, std::int64_t{1} << bits);
-    if (random.oneIn(2)) t[random.index(4)][random.index(3)] += random.oneIn(2) ? 1 : -1;
+    if (random.oneIn(2)) t[random.below(4)][random.below(3)] += random.oneIn(2) ? 1 : -1;
     const auto shift = random.between(0, 59 - bits);
     for (LatticePoint& p : t) {
       for (std::int64_t& x : p) x *= std::int64_t{1} << shift;
@@ -131,14 +131,14 @@ TEST(Orientation, MultiplesOfPowersOfTwo) {
 }
 
 /// A positive tet whose faces and edges often contain coordinate directions.
-LatticeTet anyPositiveTet(Random& random, std::int64_t largest = kFullRange) {
+LatticeTet anyPositiveTet(LatticeRandom& random, std::int64_t largest = kFullRange) {
   for (;;) {
     LatticeTet t;
-    const std::int64_t range = random.oneIn(2) ? random.between(1, 3) : largest >> random.index(58);
+    const std::int64_t range = random.oneIn(2) ? random.between(1, 3) : largest >> random.below(58);
     for (LatticePoint& p : t) p = random.point(-range, range);
     for (int i = 0; i < 3; ++i) {
-      const std::size_t axis = random.index(3);
-      if (random.oneIn(2)) t[random.index(4)][axis] = t[random.index(4)][axis];
+      const std::size_t axis = random.below(3);
+      if (random.oneIn(2)) t[random.below(4)][axis] = t[random.below(4)][axis];
     }
     const int s = oracleOrientation(t);
     if (s < 0) std::swap(t[0], t[1]);
@@ -147,7 +147,7 @@ LatticeTet anyPositiveTet(Random& random, std::int64_t largest = kFullRange) {
 }
 
 TEST(NormalSigns, AreTheSignsOfTheInwardNormals) {
-  Random random(21);
+  LatticeRandom random(21);
   for (int i = cases(50'000); i > 0; --i) {
     const LatticeTet t = anyPositiveTet(random);
     const NormalSigns signs(t);
@@ -168,7 +168,7 @@ struct TetAround {
 
 /// The barycentre of the simplex is a lattice point once all corners are multiplied by the number
 /// of its corners.
-TetAround anyTetAround(Random& random, CornerMask simplex) {
+TetAround anyTetAround(LatticeRandom& random, CornerMask simplex) {
   TetAround result{anyPositiveTet(random, kFullRange / 4), {}};
   const int corners = dimension(simplex) + 1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -182,7 +182,7 @@ TetAround anyTetAround(Random& random, CornerMask simplex) {
 }
 
 TEST(Casing, AgreesWithThePointAnInfinitesimalStepAway) {
-  Random random(22);
+  LatticeRandom random(22);
   int insideFaces = 0;
   for (int i = cases(30'000); i > 0; --i) {
     const auto simplex = static_cast<CornerMask>(random.between(1, 15));

@@ -141,7 +141,8 @@ void expectAgreement(const ScaledTet& scaled) {
   }
 }
 
-/// Random tets of one kind, positive, with many grid points on their corners, edges and faces.
+/// LatticeRandom tets of one kind, positive, with many grid points on their corners, edges and
+/// faces.
 class TetSource {
  public:
   explicit TetSource(std::uint64_t seed) : random_(seed) {}
@@ -163,7 +164,7 @@ class TetSource {
       if (s != 0) return scaled;
     }
   }
-  Random& random() { return random_; }
+  LatticeRandom& random() { return random_; }
 
  private:
   LatticePoint corner(Kind kind, std::int64_t unit) {
@@ -185,30 +186,30 @@ class TetSource {
     }
     for (std::size_t k = 0; k < 3; ++k) t[3][k] = t[0][k] + (t[1][k] - t[0][k]) / 2;
     for (std::size_t k = 0; k < 3; ++k) t[3][k] += (t[2][k] - t[0][k]) / 4;
-    t[3][random_.index(3)] += random_.oneIn(2) ? 1 : -1;
-    std::swap(t[3], t[random_.index(4)]);
+    t[3][random_.below(3)] += random_.oneIn(2) ? 1 : -1;
+    std::swap(t[3], t[random_.below(4)]);
   }
   /// Puts a face onto a grid plane, an edge of it onto a grid line, a corner onto a grid point.
   void align(LatticeTet& t, std::int64_t unit) {
-    const std::size_t axis = random_.index(3);
+    const std::size_t axis = random_.below(3);
     const std::int64_t plane = random_.between(0, extent[axis]) * unit;
     for (std::size_t i = 0; i < 3; ++i) t[i][axis] = plane;
     const std::size_t next = (axis + 1) % 3;
     if (random_.oneIn(2)) t[0][next] = t[1][next] = random_.between(0, extent[next]) * unit;
     const std::size_t last = (axis + 2) % 3;
     if (random_.oneIn(2)) t[0][last] = random_.between(0, extent[last]) * unit;
-    std::swap(t[3], t[random_.index(4)]);
+    std::swap(t[3], t[random_.below(4)]);
   }
   /// Presses the tet against a grid plane, which it still crosses: cuts by other planes are thin,
   /// their slopes steep.
   void press(LatticeTet& t, std::int64_t unit) {
-    const std::size_t axis = random_.index(3);
+    const std::size_t axis = random_.below(3);
     const std::int64_t plane = random_.between(0, extent[axis]) * unit;
-    const std::int64_t thickness = std::max(unit >> random_.index(24), std::int64_t{1});
+    const std::int64_t thickness = std::max(unit >> random_.below(24), std::int64_t{1});
     for (LatticePoint& p : t) p[axis] = plane + random_.between(-thickness, thickness);
   }
 
-  Random random_;
+  LatticeRandom random_;
 };
 
 void translate(ScaledTet& scaled, const GridPoint& offset) {
@@ -217,7 +218,7 @@ void translate(ScaledTet& scaled, const GridPoint& offset) {
   }
 }
 
-GridPoint anyOffset(Random& random, std::int64_t range) {
+GridPoint anyOffset(LatticeRandom& random, std::int64_t range) {
   const LatticePoint p = random.point(-range, range);
   return {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]),
           static_cast<std::int32_t>(p[2])};
@@ -227,7 +228,7 @@ class RasterizeKinds : public ::testing::TestWithParam<TetSource::Kind> {};
 
 TEST_P(RasterizeKinds, SmallTetsWithFewBits) {
   TetSource source(31 + static_cast<std::uint64_t>(GetParam()));
-  Random& random = source.random();
+  LatticeRandom& random = source.random();
   for (int i = cases(90'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 6);
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(0, 8));
@@ -238,7 +239,7 @@ TEST_P(RasterizeKinds, SmallTetsWithFewBits) {
 
 TEST_P(RasterizeKinds, SmallTetsFarFromTheOrigin) {
   TetSource source(41 + static_cast<std::uint64_t>(GetParam()));
-  Random& random = source.random();
+  LatticeRandom& random = source.random();
   for (int i = cases(50'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 3);
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(3, 29));
@@ -249,7 +250,7 @@ TEST_P(RasterizeKinds, SmallTetsFarFromTheOrigin) {
 
 TEST_P(RasterizeKinds, CoordinatesOfSixtyBits) {
   TetSource source(51 + static_cast<std::uint64_t>(GetParam()));
-  Random& random = source.random();
+  LatticeRandom& random = source.random();
   for (int i = cases(8'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 3);
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(30, 52));
@@ -260,10 +261,10 @@ TEST_P(RasterizeKinds, CoordinatesOfSixtyBits) {
 
 TEST_P(RasterizeKinds, LargeAndLongTets) {
   TetSource source(61 + static_cast<std::uint64_t>(GetParam()));
-  Random& random = source.random();
+  LatticeRandom& random = source.random();
   for (int i = cases(1'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(2, 16);
-    if (GetParam() == TetSource::kNeedle) source.extent[random.index(3)] *= 50;
+    if (GetParam() == TetSource::kNeedle) source.extent[random.below(3)] *= 50;
     ScaledTet scaled = source(GetParam(), std::int64_t{1} << random.between(3, 20));
     translate(scaled, anyOffset(random, random.oneIn(2) ? 10 : 1'000'000));
     ASSERT_NO_FATAL_FAILURE(expectAgreement<Int128>(scaled));
@@ -286,7 +287,7 @@ INSTANTIATE_TEST_SUITE_P(, RasterizeKinds,
 TEST(Rasterize, SteepCutsFarFromTheOrigin) {
   // Tets pressed against a grid plane y, cut at constant x into polygons with slopes up to a
   // million, which multiply the rounding error of y.
-  Random random(71);
+  LatticeRandom random(71);
   constexpr std::int64_t kUnit = std::int64_t{1} << 29;
   for (int i = cases(20'000); i > 0; --i) {
     ScaledTet scaled{{}, kUnit};
@@ -337,10 +338,10 @@ TEST(Rasterize, NamesTheSimplexOfEveryPoint) {
 /// Centres and midpoints, which tests above only see in tets that are moved with them.
 TEST(Rasterize, FindsAllGridsOfOneTet) {
   TetSource source(91);
-  Random& random = source.random();
+  LatticeRandom& random = source.random();
   for (int i = cases(20'000); i > 0; --i) {
     for (std::int64_t& e : source.extent) e = random.between(1, 4);
-    const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
+    const auto kind = static_cast<TetSource::Kind>(random.below(TetSource::kKinds));
     ScaledTet scaled = source(kind, std::int64_t{1} << random.between(2, 20));
     translate(scaled, anyOffset(random, 1000));
     TetRasterizer rasterizer(scaled.corners, scaled.unit, 0, random.oneIn(2));
@@ -360,7 +361,7 @@ TEST(Rasterize, FindsAllGridsOfOneTet) {
 
 /// Corners within a few units of points of the finer grid: faces pass by its points closely.
 TEST(Rasterize, PointsAsCloseToFacesAsCanBe) {
-  Random random(8);
+  LatticeRandom random(8);
   for (int i = cases(10'000); i > 0; --i) {
     ScaledTet scaled{{}, std::int64_t{1} << random.between(30, 50)};
     for (LatticePoint& corner : scaled.corners) {
@@ -374,11 +375,11 @@ TEST(Rasterize, PointsAsCloseToFacesAsCanBe) {
 }
 
 TEST(GridBox, HoldsTheGridPointsOfTheBoundingBox) {
-  Random random(72);
+  LatticeRandom random(72);
   for (int i = cases(100'000); i > 0; --i) {
-    const std::int64_t unit = std::int64_t{1} << random.index(30);
+    const std::int64_t unit = std::int64_t{1} << random.below(30);
     LatticeTet t;
-    const std::int64_t range = std::min(unit << random.index(30), std::int64_t{1} << 58);
+    const std::int64_t range = std::min(unit << random.below(30), std::int64_t{1} << 58);
     for (LatticePoint& p : t) p = random.point(-range, range);
     if (random.oneIn(2)) t[0][0] = unit * (t[0][0] / unit);
     const GridBox box = gridBox(t, unit);
@@ -418,9 +419,9 @@ TEST(SweepAxes, FewestPlanesFirstLongestLinesLast) {
 
 TEST(SimplexOf, LocatesPointsInsideAndOutside) {
   TetSource source(81);
-  Random& random = source.random();
+  LatticeRandom& random = source.random();
   for (int i = cases(200'000); i > 0; --i) {
-    const auto kind = static_cast<TetSource::Kind>(random.index(TetSource::kKinds));
+    const auto kind = static_cast<TetSource::Kind>(random.below(TetSource::kKinds));
     ScaledTet scaled = source(kind, std::int64_t{1} << random.between(3, 29));
     translate(scaled, anyOffset(random, random.oneIn(2) ? 3 : 1'000'000'000));
     const GridBox box = gridBox(scaled.corners, scaled.unit);

@@ -82,7 +82,7 @@ struct Star {
 /// The tets around a vertex: a cone over the triangulated surface of a cube of n^3 cells, with
 /// random diagonals and distances; the points of the surface are moved by up to `jitter` 16ths of a
 /// cell. Without jitter, many directions lie on edges and faces.
-inline Star vertexStar(Random& random, int n, std::int64_t jitter) {
+inline Star vertexStar(LatticeRandom& random, int n, std::int64_t jitter) {
   const LatticePoint center = random.point(-1000, 1000);
   std::vector<LatticePoint> points = {center};
   std::vector<std::array<int, 4>> tets;
@@ -141,11 +141,11 @@ inline bool windOnce(const LatticePoint& axis, const std::vector<LatticePoint>& 
 
 /// The tets around an edge with random directions of edge and spokes; with a small range, many
 /// coordinate directions lie on edges and faces.
-inline Star edgeStar(Random& random, std::int64_t range) {
+inline Star edgeStar(LatticeRandom& random, std::int64_t range) {
   for (;;) {
     const LatticePoint center = random.point(-1000, 1000);
     const LatticePoint axis = random.point(-range, range);
-    std::vector<LatticePoint> around(3 + random.index(4));
+    std::vector<LatticePoint> around(3 + random.below(4));
     for (LatticePoint& spoke : around) spoke = random.point(-range, range);
     if (!windOnce(axis, around)) continue;
     const auto at = [&](const LatticePoint& d, std::int64_t distance) {
@@ -165,7 +165,7 @@ inline Star edgeStar(Random& random, std::int64_t range) {
 }
 
 /// Two tets on a face, with the point at a third of each corner.
-inline Star faceStar(Random& random, std::int64_t range) {
+inline Star faceStar(LatticeRandom& random, std::int64_t range) {
   for (;;) {
     const LatticePoint center = random.point(-1000, 1000);
     std::vector<LatticePoint> points(5);
@@ -181,8 +181,8 @@ inline Star faceStar(Random& random, std::int64_t range) {
 
 /// A box of cells with six tets each (Kuhn), cut along the diagonals of the box. Inner points are
 /// moved by up to an eighth of a cell, unless that makes a tet negative.
-inline TetPatch boxPatch(Random& random, const LatticePoint& origin, const LatticePoint& spacing,
-                         int cells, bool jitter) {
+inline TetPatch boxPatch(LatticeRandom& random, const LatticePoint& origin,
+                         const LatticePoint& spacing, int cells, bool jitter) {
   std::vector<LatticePoint> points;
   std::vector<std::array<int, 4>> tets;
   const int row = cells + 1;

@@ -13,7 +13,7 @@
 #include "oracle.hpp"
 #include "random.hpp"
 
-namespace hexhex::testing {
+namespace hexhex::testing::triangle_cells {
 
 using namespace lattice;
 namespace {
@@ -140,7 +140,7 @@ enum Kind {
 };
 
 /// A point on a half diagonal, often the centre of the cell.
-LatticePoint pointOnHalfDiagonal(Random& random, std::int64_t unit, std::int64_t extent) {
+LatticePoint pointOnHalfDiagonal(LatticeRandom& random, std::int64_t unit, std::int64_t extent) {
   const std::int64_t fraction = random.oneIn(3) ? 0 : random.between(0, unit / 2);
   LatticePoint p{};
   for (std::int64_t& coordinate : p) {
@@ -151,14 +151,14 @@ LatticePoint pointOnHalfDiagonal(Random& random, std::int64_t unit, std::int64_t
 }
 
 /// Puts a corner or the middle of an edge on a half diagonal.
-void touchHalfDiagonal(Triangle& t, Random& random, std::int64_t unit, std::int64_t extent) {
+void touchHalfDiagonal(Triangle& t, LatticeRandom& random, std::int64_t unit, std::int64_t extent) {
   const LatticePoint touched = pointOnHalfDiagonal(random, unit, extent);
   const bool atCorner = random.oneIn(2);
   for (std::size_t k = 0; k < 3; ++k) t[0][k] = atCorner ? touched[k] : 2 * touched[k] - t[1][k];
   std::rotate(t.begin(), t.begin() + random.between(0, 2), t.end());
 }
 
-Triangle anyTriangle(Random& random, Kind kind, std::int64_t unit, std::int64_t extent) {
+Triangle anyTriangle(LatticeRandom& random, Kind kind, std::int64_t unit, std::int64_t extent) {
   for (;;) {
     Triangle t{};
     for (LatticePoint& p : t) {
@@ -171,14 +171,14 @@ Triangle anyTriangle(Random& random, Kind kind, std::int64_t unit, std::int64_t 
     }
     if (kind == kThin) {
       for (std::size_t k = 0; k < 3; ++k) t[2][k] = (t[0][k] + t[1][k]) / 2;
-      t[2][random.index(3)] += random.between(1, 3);
+      t[2][random.below(3)] += random.between(1, 3);
     }
     if (kind == kInGridPlane) {
-      const std::size_t axis = random.index(3);
+      const std::size_t axis = random.below(3);
       for (LatticePoint& p : t) p[axis] = t[0][axis];
     }
     if (kind == kInCenterPlane) {
-      const std::size_t axis = random.index(3);
+      const std::size_t axis = random.below(3);
       const std::int64_t height = random.between(0, extent - 1) * unit + unit / 2;
       for (LatticePoint& p : t) p[axis] = height;
     }
@@ -225,7 +225,7 @@ struct Drawn {
 };
 
 /// @param leastBits, mostBits  of the unit
-Drawn draw(Random& random, Kind kind, std::int64_t leastBits, std::int64_t mostBits) {
+Drawn draw(LatticeRandom& random, Kind kind, std::int64_t leastBits, std::int64_t mostBits) {
   Drawn drawn;
   drawn.unit = std::int64_t{1} << random.between(leastBits, mostBits);
   drawn.extent = random.between(1, 5);
@@ -256,7 +256,7 @@ class TriangleCellsKinds : public ::testing::TestWithParam<Kind> {};
 /// @param mostBits  of the unit
 template <class Integer>
 void expectAllHalfDiagonals(Kind kind, std::uint64_t seed, int count, std::int64_t mostBits) {
-  Random random(seed + static_cast<std::uint64_t>(kind));
+  LatticeRandom random(seed + static_cast<std::uint64_t>(kind));
   std::size_t met = 0;
   std::size_t visited = 0;
   for (int i = count; i > 0; --i) {
@@ -289,7 +289,7 @@ TEST_P(TriangleCellsKinds, LeaveNoHalfDiagonalOutOfManyBits) {
 /// Whatever meets the open cell meets some open octant of it, or the planes between them, and all
 /// octants are taken: so this holds, too, here for as many bits as there can be.
 TEST_P(TriangleCellsKinds, ColumnsLeaveNoCellOut) {
-  Random random(181 + static_cast<std::uint64_t>(GetParam()));
+  LatticeRandom random(181 + static_cast<std::uint64_t>(GetParam()));
   std::size_t met = 0;
   std::size_t visited = 0;
   const int count = cases(3000);
@@ -321,4 +321,4 @@ INSTANTIATE_TEST_SUITE_P(, TriangleCellsKinds,
                          kindName);
 
 }  // namespace
-}  // namespace hexhex::testing
+}  // namespace hexhex::testing::triangle_cells

@@ -35,15 +35,15 @@ BigInteger valueOf(const Int192& a) {
   return (toBigUnsigned(high) << 64) + toBigUnsigned(low.shiftedRight(0, exact));
 }
 
-/// Random bits of random length and sign: small values, and carries over every boundary.
-Int128 anyInt128(Random& random) {
-  const UInt128 bits = (static_cast<UInt128>(random.bits()) << 64) | random.bits();
-  const Int128 magnitude = static_cast<Int128>(bits >> (1 + random.index(127)));
+/// LatticeRandom bits of random length and sign: small values, and carries over every boundary.
+Int128 anyInt128(LatticeRandom& random) {
+  const UInt128 bits = (static_cast<UInt128>(random.next()) << 64) | random.next();
+  const Int128 magnitude = static_cast<Int128>(bits >> (1 + random.below(127)));
   return random.oneIn(2) ? magnitude : -magnitude;
 }
 
-std::int64_t anyInt64(Random& random) {
-  const auto magnitude = static_cast<std::int64_t>(random.bits() >> (1 + random.index(63)));
+std::int64_t anyInt64(LatticeRandom& random) {
+  const auto magnitude = static_cast<std::int64_t>(random.next() >> (1 + random.below(63)));
   return random.oneIn(2) ? magnitude : -magnitude;
 }
 
@@ -92,7 +92,7 @@ TEST(Int192, SumsOfExtremeValuesCarry) {
 }
 
 TEST(Int192, SumsOfRandomProducts) {
-  Random random(1);
+  LatticeRandom random(1);
   const int count = cases(200'000);
   for (int i = 0; i < count; ++i) {
     Int192 sum;
@@ -108,7 +108,7 @@ TEST(Int192, SumsOfRandomProducts) {
 }
 
 TEST(Int192, CancelsToZero) {
-  Random random(2);
+  LatticeRandom random(2);
   for (int i = 0; i < cases(10'000); ++i) {
     const Int128 a = anyInt128(random);
     const std::int64_t b = anyInt64(random);
@@ -127,11 +127,11 @@ TEST(Int192, CancelsToZero) {
 }
 
 TEST(Int192, ShiftedRightTellsTheRemainder) {
-  Random random(3);
+  LatticeRandom random(3);
   for (int i = 0; i < cases(2'000); ++i) {
     Int192 value;
     const Int128 a = anyInt128(random);
-    const std::int64_t b = std::int64_t{1} << random.index(62);
+    const std::int64_t b = std::int64_t{1} << random.below(62);
     value.addProduct(a < 0 ? -a : a, b);
     const BigInteger expected = valueOf(value);
     for (int shift = 0; shift <= 191; ++shift) {

@@ -9,7 +9,11 @@
 
 #include <hexhex/types.hpp>
 
+#include "support/random.hpp"
+
 namespace hexhex::testing {
+
+using test::Random;
 
 /// Which cells of a grid exist.
 using CellFilter = std::function<bool(std::size_t x, std::size_t y, std::size_t z)>;
@@ -65,24 +69,6 @@ inline TetMap identityMap(std::size_t n) {
   }
   return map;
 }
-
-/// A small generator of random numbers that is the same on every machine (splitmix64).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31U);
-  }
-  std::uint64_t below(std::uint64_t n) { return next() % n; }
-  /// In [0, 1).
-  double real() { return static_cast<double>(next() >> 11U) * 0x1p-53; }
-
- private:
-  std::uint64_t state_;
-};
 
 /// The same mesh with vertices and cells in random order.
 inline HexMesh shuffled(const HexMesh& mesh, std::uint64_t seed) {

@@ -19,7 +19,7 @@
 #include "lattice/random.hpp"
 #include "support/error_of.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::child_process {
 
 using namespace quantization;
 namespace {
@@ -110,7 +110,7 @@ IntegerProgram hardProgram() {
   IntegerProgram program;
   program.lengths.assign(40, 1.5);
   program.least.assign(40, 1);
-  testing::Random random(24);
+  testing::LatticeRandom random(24);
   for (int row = 0; row < 4; ++row) {
     ArcEquation equation;
     for (Index arc = 0; arc < 40; ++arc) {
@@ -140,4 +140,4 @@ TEST_F(ChildProcess, SolversEndByInterruption) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::child_process

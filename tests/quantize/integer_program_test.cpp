@@ -39,7 +39,7 @@ double costOf(const IntegerProgram& program, const std::vector<std::int64_t>& in
 }
 
 /// A row of rectangles, each divided otherwise below than above: sums of both sides agree.
-IntegerProgram rectangles(testing::Random& random, double scale) {
+IntegerProgram rectangles(testing::LatticeRandom& random, double scale) {
   IntegerProgram program;
   for (int rectangle = 0; rectangle < 8; ++rectangle) {
     ArcEquation equation;
@@ -49,12 +49,12 @@ IntegerProgram rectangles(testing::Random& random, double scale) {
       program.lengths.push_back(length);
       program.least.push_back(1);
     };
-    for (std::uint64_t below = 1 + random.index(3); below-- > 0;) {
+    for (std::uint64_t below = 1 + random.below(3); below-- > 0;) {
       const double length = scale * static_cast<double>(random.between(1, 100)) / 100;
       whole += length;
       add(length, 1);
     }
-    const std::uint64_t above = 1 + random.index(3);
+    const std::uint64_t above = 1 + random.below(3);
     for (std::uint64_t k = 0; k < above; ++k) add(whole / static_cast<double>(above), -1);
     program.equations.push_back(equation);
   }
@@ -62,7 +62,7 @@ IntegerProgram rectangles(testing::Random& random, double scale) {
 }
 
 TEST(IntegerProgram, AllSolversComeNearToTheMinimum) {
-  testing::Random random(3);
+  testing::LatticeRandom random(3);
   for (const double scale : {0.5, 3.0, 40.0}) {
     for (int round = 0; round < 5; ++round) {
       const IntegerProgram program = rectangles(random, scale);

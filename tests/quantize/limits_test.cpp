@@ -18,11 +18,11 @@
 #include "support/error_of.hpp"
 #include "support/scaled_map.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::limits {
 
 using namespace quantization;
 
-using testing::Random;
+using testing::LatticeRandom;
 
 namespace {
 
@@ -34,12 +34,12 @@ QuantizeOptions scale(double factor) {
 
 /// A chart for each tet, up to so far away.
 TetMap withChartsUpTo(double distance, TetMap map) {
-  Random random(24);
+  LatticeRandom random(24);
   const auto draw = [&] {
     return distance * static_cast<double>(random.between(-1000, 1000)) / 999;
   };
   for (TetParameters& tet : map.parameters) {
-    const lattice::Rotation rotation(static_cast<int>(random.index(lattice::Rotation::kCount)));
+    const lattice::Rotation rotation(static_cast<int>(random.below(lattice::Rotation::kCount)));
     const Vec3 move = {draw(), draw(), draw()};
     for (Vec3& u : tet) {
       u = rotation(u);
@@ -74,7 +74,7 @@ TEST(QuantizeLimits, FarChartsTolerateNoMore) {
 TEST(QuantizeLimits, NothingAtRandomIsSeamless) {
   TetMap map = generateSample(SampleKind::Sphere, {.refine = 8}).map;
   ASSERT_GT(map.tets.size(), 40'000U);
-  Random random(7);
+  LatticeRandom random(7);
   for (TetParameters& tet : map.parameters) {
     for (Vec3& u : tet) {
       for (double& x : u) x = static_cast<double>(random.between(-1000, 1000)) / 999;
@@ -179,11 +179,11 @@ TEST(QuantizeLimits, ArcsWithoutALengthAreRefused) {
 
 /// Left from a map are tets that hang together at edges and vertices only.
 TEST(QuantizeLimits, PartsThatTouchAreNoManifold) {
-  Random random(11);
+  LatticeRandom random(11);
   int refused = 0;
   for (int round = 0; round < 40; ++round) {
     TetMap map = generateSample(SampleKind::Star, {.cells = 2, .stretch = 0.5}).map;
-    const std::uint64_t oneIn = 2 + random.index(20);
+    const std::uint64_t oneIn = 2 + random.below(20);
     std::size_t kept = 0;
     for (std::size_t t = 0; t < map.tets.size(); ++t) {
       if (random.oneIn(oneIn)) continue;
@@ -274,14 +274,14 @@ TEST(IntegerForms, SayWhatDoesNotFit) {
 }
 
 TEST(IntegerForms, OfASolutionVanish) {
-  Random random(3);
+  LatticeRandom random(3);
   int solved = 0;
   for (int round = 0; round < 200; ++round) {
-    const auto count = static_cast<Index>(2 + random.index(20));
-    std::vector<IntegerForm> equations(random.index(count));
+    const auto count = static_cast<Index>(2 + random.below(20));
+    std::vector<IntegerForm> equations(random.below(count));
     for (IntegerForm& form : equations) {
       for (int term = 0; term < 3; ++term) {
-        form.add({static_cast<Index>(random.index(count)), 1}, random.between(-2, 2));
+        form.add({static_cast<Index>(random.below(count)), 1}, random.between(-2, 2));
       }
     }
     const IntegerSystem system(count, equations);
@@ -298,4 +298,4 @@ TEST(IntegerForms, OfASolutionVanish) {
 
 }  // namespace
 
-}  // namespace hexhex::test
+}  // namespace hexhex::test::limits

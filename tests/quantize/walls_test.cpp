@@ -13,9 +13,9 @@
 #include "extract/support.hpp"
 #include "lattice/random.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::walls {
 
-using testing::Random;
+using testing::LatticeRandom;
 
 namespace {
 
@@ -31,7 +31,7 @@ struct NearlyIntegerBox {
 };
 
 NearlyIntegerBox nearlyInteger(const TetMap& map, double distance, std::uint64_t oneIn,
-                               Random& random) {
+                               LatticeRandom& random) {
   NearlyIntegerBox box;
   box.parameters.resize(map.points.size());
   for (std::size_t t = 0; t < map.tets.size(); ++t) {
@@ -74,7 +74,7 @@ TEST(Walls, MayPassNearVertices) {
   for (const double distance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     for (const std::uint64_t oneIn : {50, 200}) {
       SCOPED_TRACE(std::to_string(distance) + ", one edge in " + std::to_string(oneIn));
-      Random random(oneIn);
+      LatticeRandom random(oneIn);
       const NearlyIntegerBox box = nearlyInteger(whole, distance, oneIn, random);
       ASSERT_GT(box.edges.size(), 5U);
       TetMap map = whole;
@@ -90,4 +90,4 @@ TEST(Walls, MayPassNearVertices) {
 
 }  // namespace
 
-}  // namespace hexhex::test
+}  // namespace hexhex::test::walls

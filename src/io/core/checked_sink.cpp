@@ -35,9 +35,10 @@ void requireFinite(std::span<const Vec3> points, Stage& stage) {
 }  // namespace
 
 std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage) {
-  constexpr std::size_t kGrain = std::size_t{1} << 14;  // a fraction of a millisecond's work
+  constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
+                                            << 14;  // a fraction of a millisecond's work
   return firstFault(
-      stage, points.size(), [&](std::size_t i) { return isFinite(points[i]); }, kGrain);
+      stage, points.size(), [&](std::size_t i) { return isFinite(points[i]); }, kCheckedSinkGrain);
 }
 
 void requireWritable(const TetMap& map, Stage& stage) {
@@ -77,7 +78,8 @@ void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& st
 
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;  // a fraction of a millisecond's work
+constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
+                                          << 14;  // a fraction of a millisecond's work
 
 std::string numbers(std::uint64_t first, std::uint64_t size) {
   return std::to_string(size) + " from number " + std::to_string(first) + " on";
@@ -150,7 +152,7 @@ void SinkCalls::cells(std::uint64_t first, std::span<const Cell> cells) {
   Stage stage(quiet_, "check");
   std::size_t wrong = 0;
   withThreadsHere(quiet_.threads(),
-                  [&] { wrong = firstFault(stage, cells.size(), isInRange, kGrain); });
+                  [&] { wrong = firstFault(stage, cells.size(), isInRange, kCheckedSinkGrain); });
   if (wrong < cells.size()) {
     throw Error(ErrorCode::InvalidArgument,
                 name_ + ": a corner of cell " + std::to_string(first + wrong) +

@@ -20,7 +20,7 @@ constexpr std::size_t kMinimumStep = std::size_t{1} << 20;
 
 // What one thread reads at once: large enough that system calls cost nothing, small enough that
 // files of some megabytes have work for several threads.
-constexpr std::size_t kGrain = std::size_t{1} << 20;
+constexpr std::size_t kInputFileGrain = std::size_t{1} << 20;
 
 // How much of a file shows what it is.
 constexpr std::size_t kHead = std::size_t{1} << 16;
@@ -105,7 +105,7 @@ Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::
   if (input.size() > size) {
     // One byte more than the size, so that the end of the file shows without growing the array.
     bytes.resize(input.size() + 1);
-    parallelBlocks(stage, input.size() - size, kGrain,
+    parallelBlocks(stage, input.size() - size, kInputFileGrain,
                    [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                      input.readAt(size + begin, bytes.data() + size + begin, end - begin);
                    });

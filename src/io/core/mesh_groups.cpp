@@ -16,7 +16,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 12;
+constexpr std::size_t kMeshGroupsGrain = std::size_t{1} << 12;
 
 using Tag = std::int32_t;
 
@@ -144,7 +144,7 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   }
   std::sort(table.begin(), table.end());
   std::vector<std::uint8_t> onBoundary(features.size(), 0);
-  parallelFor(stage, found.quads.size(), kGrain, [&](std::size_t i) {
+  parallelFor(stage, found.quads.size(), kMeshGroupsGrain, [&](std::size_t i) {
     const std::pair<Quad, std::size_t> wanted{sorted(found.quads[i]), 0};
     const auto feature = std::lower_bound(table.begin(), table.end(), wanted);
     if (feature == table.end() || feature->first != wanted.first) return;
@@ -208,7 +208,7 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   }
   result.elements.resize(order.size());
   result.places.resize(order.size());
-  parallelFor(stage, order.size(), kGrain, [&](std::size_t i) {
+  parallelFor(stage, order.size(), kMeshGroupsGrain, [&](std::size_t i) {
     result.elements[i] = found.quads[order[i]];
     result.places[i] = found.places[order[i]];
   });

@@ -11,7 +11,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
+constexpr std::size_t kSurveyGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
 
 /// What number `place` of an array adds to its checksum: all bits of both matter for all bits.
 std::uint64_t summand(std::uint64_t place, std::uint64_t value) {
@@ -78,7 +78,7 @@ class SurveyWriter {
     Stage stage(quiet_, "survey");
     withThreadsHere(quiet_.threads(), [&] {
       parallelBlocks(
-          stage, n, kGrain,
+          stage, n, kSurveyGrain,
           [&f](std::size_t begin, std::size_t end, std::size_t /*block*/) { f(begin, end); });
     });
   }

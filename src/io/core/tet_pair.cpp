@@ -13,7 +13,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 13;
+constexpr std::size_t kTetPairGrain = std::size_t{1} << 13;
 
 /// What two meshes are called in sentences, and what it is if they do not belong together.
 struct PairNames {
@@ -69,7 +69,7 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
   map.points = tets.points;
   map.tets = tets.tets;
   map.parameters.resize(count);
-  parallelFor(stage, count, kGrain, [&](std::size_t t) {
+  parallelFor(stage, count, kTetPairGrain, [&](std::size_t t) {
     for (std::size_t i = 0; i < 4; ++i) map.parameters[t][i] = polycube.points[map.tets[t][i]];
   });
   return map;

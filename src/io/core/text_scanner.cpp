@@ -186,7 +186,7 @@ namespace {
 // what else a section takes that has nothing in it.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 10;
 // Blocks that one thread counts at once.
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kTextScannerGrain = 512;
 
 constexpr unsigned isGap(char c) { return isSpace(c) ? 1 : 0; }
 
@@ -208,7 +208,7 @@ TokenIndex::TokenIndex(std::string_view text, Stage& stage) : text_(text) {
   const std::size_t blocks = blockCount(text.size(), kBlockBytes);
   before_.resize(blocks + 1);
   before_.back() = 0;
-  parallelFor(stage, blocks, kGrain, [&](std::size_t block) {
+  parallelFor(stage, blocks, kTextScannerGrain, [&](std::size_t block) {
     const std::size_t begin = block * kBlockBytes;
     before_[block] =
         countTokens(begin == 0 ? ' ' : text[begin - 1], text.substr(begin, kBlockBytes));

@@ -17,7 +17,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kOvmHexTopologyGrain = 2048;
 /// The row of kHexFaces in each slot of kOvmHexFaces.
 constexpr std::array<std::uint8_t, 6> kFaceOfSlot = {4, 5, 2, 3, 1, 0};
 constexpr std::array<std::uint8_t, 6> kSlotOfFace = {5, 4, 2, 3, 0, 1};
@@ -72,7 +72,7 @@ Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
     });
   };
   const adjacency::VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
-    parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+    parallelFor(stage, cells.size(), kOvmHexTopologyGrain, [&](std::size_t c) {
       const unsigned seams = mates.seamCorners[c];
       for (std::size_t e = 0; seams != 0 && e < 12; ++e) {
         const auto& [i, k] = adjacency::kHexEdges[e];
@@ -147,7 +147,8 @@ class HexTopologyBuilder {
   /// Numbers edges and faces.
   void number() {
     own_.resize(cells_.size());
-    parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) { own_[c] = ownOf(c); });
+    parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain,
+                [this](std::size_t c) { own_[c] = ownOf(c); });
     std::uint64_t edges = seamEdges_.size();
     std::uint64_t faces = 0;
     for (Own& own : own_) {
@@ -163,7 +164,7 @@ class HexTopologyBuilder {
 
   void listEdges() {
     std::copy(seamEdges_.begin(), seamEdges_.end(), topology_.edges.begin());
-    parallelFor(stage_, cells_.size(), kGrain, [this](std::size_t c) {
+    parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain, [this](std::size_t c) {
       Edge* edge = topology_.edges.data() + own_[c].firstEdge;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if ((own_[c].edges >> axis & 1U) != 0)
@@ -228,7 +229,7 @@ class HexTopologyBuilder {
     const auto numberOf = [this](std::size_t cell, std::size_t slot) {
       return own_[cell].firstFace + rankOf(own_[cell].faces, slot);
     };
-    parallelFor(stage_, cells_.size(), kGrain, [&](std::size_t c) {
+    parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain, [&](std::size_t c) {
       Index* const handles = topology_.cells.handles.data() + 6 * c;
       std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
       std::copy_n(handles, 6, mates.begin());

@@ -12,7 +12,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kOvmHexesGrain = 4096;
 constexpr std::size_t kReversed = 4;  // the order of a cell that begins alike but turns round
 
 using QuadLoops = std::array<std::array<Index, 4>, 6>;
@@ -89,7 +89,7 @@ bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells, 
 }
 
 void reverse(std::span<Hex> cells, Stage& stage) {
-  parallelFor(stage, cells.size(), kGrain,
+  parallelFor(stage, cells.size(), kOvmHexesGrain,
               [&](std::size_t c) { cells[c] = inHexOrder(cells[c], kReversed); });
 }
 

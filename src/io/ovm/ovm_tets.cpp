@@ -13,7 +13,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kOvmTetsGrain = 4096;
 
 using TetOrder = std::array<std::uint8_t, 4>;
 
@@ -188,7 +188,7 @@ std::size_t writtenOrder(std::span<const Vec3> points, std::span<const Tet> tets
 OvmTopology topologyOf(std::size_t points, std::span<const Tet> tets, const TetOrder& order,
                        Stage& stage) {
   Array<Tet> ordered(tets.size());
-  parallelFor(stage, tets.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, tets.size(), kOvmTetsGrain, [&](std::size_t t) {
     for (std::size_t i = 0; i < 4; ++i) ordered[t][i] = tets[t][order[i]];
   });
   return buildOvmTopology(points, ordered, stage);
@@ -245,7 +245,7 @@ class TetWriter {
     // The half-faces at the boundary have no cell; all others are overwritten.
     parameters.assign(2 * topology_.faces.size(), Vec3{});
     if (!map_.rotations.empty()) rotations.assign(parameters.size(), -1);
-    parallelFor(stage_, map_.tets.size(), kGrain, [&](std::size_t t) {
+    parallelFor(stage_, map_.tets.size(), kOvmTetsGrain, [&](std::size_t t) {
       for (std::size_t s = 0; s < 4; ++s) {
         const Index halfFace = topology_.cells.handles[4 * t + s];
         const std::size_t corner = order_[kOvmTetOpposite[s]];

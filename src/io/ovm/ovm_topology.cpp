@@ -29,7 +29,7 @@ void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what)
 
 namespace {
 
-constexpr std::size_t kGrain = 2048;
+constexpr std::size_t kOvmTopologyGrain = 2048;
 
 void requireCounts(std::size_t vertexCount, std::size_t cellCount, std::size_t facesPerCell) {
   requireOvmCount(kMaxOvmEntities, vertexCount, "vertices");
@@ -79,7 +79,7 @@ template <class Cell>
                                  Stage& stage) {
   const adjacency::VertexLists<Index, std::uint64_t> around(
       vertexCount, stage, [&](const auto& add) {
-        parallelFor(stage, cells.size(), kGrain, [&](std::size_t c) {
+        parallelFor(stage, cells.size(), kOvmTopologyGrain, [&](std::size_t c) {
           for (const Index v : cells[c]) add(v, static_cast<Index>(c));
         });
       });
@@ -110,7 +110,7 @@ void appendEdges(const adjacency::TetTopology& tets, Index vertex, adjacency::Ke
 
 std::vector<Edge> listEdges(const adjacency::TetTopology& tets, Stage& stage) {
   return collectFromBlocks<Edge>(
-      stage, tets.pointCount, kGrain,
+      stage, tets.pointCount, kOvmTopologyGrain,
       [&tets](std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
         adjacency::KeyTable others;
         for (std::size_t v = begin; v < end; ++v) {
@@ -145,7 +145,7 @@ class TetFaceLister {
 
   void run(Stage& stage) {
     const std::vector<adjacency::HalfFace> faces = collectFromBlocks<adjacency::HalfFace>(
-        stage, tets_.pointCount, kGrain,
+        stage, tets_.pointCount, kOvmTopologyGrain,
         [this](std::size_t begin, std::size_t end, std::vector<adjacency::HalfFace>& list) {
           for (std::size_t v = begin; v < end; ++v) appendFaces(tets_, static_cast<Index>(v), list);
         });
@@ -154,7 +154,7 @@ class TetFaceLister {
     topology_.cells.handles.resize(4 * tets_.tetCount());
     topology_.faces.length = 3;
     topology_.faces.handles.resize(3 * faces.size());
-    parallelFor(stage, faces.size(), kGrain,
+    parallelFor(stage, faces.size(), kOvmTopologyGrain,
                 [&](std::size_t f) { listFace(static_cast<Index>(f), faces[f]); });
   }
 

@@ -25,7 +25,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kOpenfoamGrain = 4096;
 
 /// Inner faces: those of each cell with larger neighbours, in order of the neighbours.
 void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
@@ -36,7 +36,7 @@ void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
   };
   Array<std::uint64_t> begin(mesh.cells.size() + 1);
   begin[mesh.cells.size()] = 0;
-  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage, mesh.cells.size(), kOpenfoamGrain, [&](std::size_t c) {
     begin[c] = 0;
     for (std::size_t face = 0; face < 6; ++face) begin[c] += isOwned(c, face) ? 1 : 0;
   });
@@ -44,7 +44,7 @@ void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
   poly.faces.resize(count);
   poly.owners.resize(count);
   poly.neighbours.resize(count);
-  parallelFor(stage, mesh.cells.size(), kGrain, [&](std::size_t c) {
+  parallelFor(stage, mesh.cells.size(), kOpenfoamGrain, [&](std::size_t c) {
     std::array<std::pair<Index, std::size_t>, 6> owned{};  // neighbours and faces, ascending
     std::size_t size = 0;
     for (std::size_t face = 0; face < 6; ++face) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kNumbers = 1 + 8;  // of a cell: how many corners it has, and these
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kVtkLegacyStreamGrain = 4096;
 
 /// What stands where in a file with the sections POINTS, CELLS and CELL_TYPES, in this order, and
 /// nothing but hexahedra. Arrays may follow.
@@ -206,7 +206,7 @@ class VtkBytePieces final : public VtkSections {
   template <class F>
   void forEach(std::size_t n, const F& f) {
     Stage stage(quiet_, "read");
-    parallelFor(stage, n, kGrain, f);
+    parallelFor(stage, n, kVtkLegacyStreamGrain, f);
   }
 
   const InputFile& file_;

@@ -137,9 +137,9 @@ class LegacyWriter {
   /// n rows: row(i) is an array of numbers.
   template <class Row>
   void rows(std::size_t n, const Row& row) {
-    constexpr std::size_t kNumbers = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
+    constexpr std::size_t kColumns = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
     lines_.write(
-        n, kNumbers * Numbers::kRoom,
+        n, kColumns * Numbers::kRoom,
         [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress_);
   }
 

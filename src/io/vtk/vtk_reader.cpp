@@ -13,18 +13,19 @@ namespace hexhex::io {
 namespace {
 
 // Points or cells that one thread reads at once: a fraction of a millisecond's work.
-constexpr std::size_t kGrain = std::size_t{1} << 13;
+constexpr std::size_t kVtkReaderGrain = std::size_t{1} << 13;
 
 /// Calls f(begin, end, block) for all blocks of n elements, in parallel. Of several errors, the one
 /// of the first block is thrown.
 template <class F>
 void forEachBlock(Stage& stage, std::size_t n, const F& f) {
-  const std::size_t begin =
-      firstUnreadable(stage, n, kGrain, [&](std::size_t first, std::size_t end, std::size_t& i) {
-        f(first, end, first / kGrain);
+  const std::size_t begin = firstUnreadable(
+      stage, n, kVtkReaderGrain, [&](std::size_t first, std::size_t end, std::size_t& i) {
+        f(first, end, first / kVtkReaderGrain);
         i = end;
       });
-  if (begin < n) f(begin, std::min(begin + kGrain, n), begin / kGrain);  // throws again
+  if (begin < n)
+    f(begin, std::min(begin + kVtkReaderGrain, n), begin / kVtkReaderGrain);  // throws again
 }
 
 /// Types of consecutive cells, and where their corners are.
@@ -232,7 +233,7 @@ void readPointParameters(const VtkSource& source, const VtkColumn& column, TetMa
     source.copy(column, kPointMapComponents * begin, kPointMapComponents * (end - begin),
                 values[begin].data());
   });
-  parallelFor(stage, map.tets.size(), kGrain, [&](std::size_t t) {
+  parallelFor(stage, map.tets.size(), kVtkReaderGrain, [&](std::size_t t) {
     for (std::size_t i = 0; i < map.tets[t].size(); ++i) {
       map.parameters[t][i] = values[map.tets[t][i]];
     }
@@ -294,7 +295,7 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
                   Stage& stage) {
   const std::size_t all = source.cells;
-  std::vector<std::size_t> begins(blockCount(all, kGrain) + 1, 0);
+  std::vector<std::size_t> begins(blockCount(all, kVtkReaderGrain) + 1, 0);
   forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
     begins[block] = countVtkCells(source, cells, begin, end - begin);
   });
@@ -312,8 +313,8 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
 void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t count) {
   if (count == source.cells) return source.counts->addVtk(cells.vtkType, count);
   Array<std::int64_t> types;
-  for (std::uint64_t first = 0; first < source.cells; first += kGrain) {
-    types.resize(std::min<std::uint64_t>(kGrain, source.cells - first));
+  for (std::uint64_t first = 0; first < source.cells; first += kVtkReaderGrain) {
+    types.resize(std::min<std::uint64_t>(kVtkReaderGrain, source.cells - first));
     source.copy(source.types, first, types.size(), types.data());
     // Cells of one type mostly follow each other.
     for (std::size_t i = 0; i < types.size();) {
