@@ -154,6 +154,16 @@ struct Subject {
   }
 };
 
+/// Per vertex: 1 if a cell there is not positive.
+std::vector<std::uint8_t> atBadCells(const Subject& subject, const Certificate& certificate) {
+  std::vector<std::uint8_t> isAtBad(subject.mesh.points.size(), 0);
+  for (std::size_t c = 0; c < subject.mesh.cells.size(); ++c) {
+    if (certificate.validity[c / subject.parts()] == Validity::Positive) continue;
+    for (const Index v : subject.mesh.cells[c]) isAtBad[v] = 1;
+  }
+  return isAtBad;
+}
+
 /// The boundary of the mesh, and the surface that it must be near.
 struct Boundary {
   std::vector<std::uint64_t> faces;  ///< as of boundaryPlaces()
@@ -236,7 +246,7 @@ void listNotPositive(ImproveReport& report) {
 }
 
 /// @param subjectOf  of (stage), once the options are right
-/// @param placesOf   of (mesh, stage)
+/// @param placesOf   of (mesh, per vertex whether a cell there is not positive, stage)
 template <class SubjectOf, class PlacesOf>
 ImproveReport improveOn(const ImproveOptions& options, Context& context, const SubjectOf& subjectOf,
                         const PlacesOf& placesOf) {
@@ -258,7 +268,7 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
     Boundary boundary;
     boundary.faces = adjacency::boundaryPlaces(mesh, stage);
     boundary.quads = adjacency::quadsAt(mesh, boundary.faces);
-    VertexPlaces places = placesOf(mesh, stage);
+    VertexPlaces places = placesOf(mesh, atBadCells(subject, report.before), stage);
     report.taggedVertices = places.tagged;
     if (options.fixBoundary) report.boundaryVertices = fixBoundary(places);
     for (const Freedom freedom : places.freedom) {
@@ -299,14 +309,15 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
 
 /// How to find places on the surface of a map, and on the mesh's own.
 auto onMap(const TetMapView& map, const ImproveOptions& options, Context& context) {
-  return [&map, &options, &context](const HexMesh& mesh, Stage& stage) {
+  return [&map, &options, &context](const HexMesh& mesh, std::span<const std::uint8_t> /*isAtBad*/,
+                                    Stage& stage) {
     requirePositions(map.points, "the map", stage);
     return placesOnMap(mesh, map, options.featureAngle, context, stage);
   };
 }
 auto onItself(const ImproveOptions& options) {
-  return [&options](const HexMesh& mesh, Stage& stage) {
-    return placesOnMesh(mesh, options.featureAngle, stage);
+  return [&options](const HexMesh& mesh, std::span<const std::uint8_t> isAtBad, Stage& stage) {
+    return placesOnMesh(mesh, isAtBad, options.featureAngle, stage);
   };
 }
 

@@ -7,28 +7,13 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/reference_surface.hpp>
+#include <improve/triangle_edges.hpp>
 
 namespace hexhex::improvement {
 
 namespace {
 
 constexpr std::size_t kReferenceSurfaceGrain = 4096;
-
-/// An edge of a triangle, its vertices ascending.
-struct TriangleEdge {
-  std::array<Index, 2> vertices;
-  Index triangle;
-  auto operator<=>(const TriangleEdge&) const = default;
-};
-
-std::array<Index, 2> ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-
-Vec3 normalOf(const std::array<Vec3, 3>& t) { return cross(minus(t[1], t[0]), minus(t[2], t[0])); }
-
-double cosineBetween(const Vec3& a, const Vec3& b) {
-  const double lengths = length(a) * length(b);
-  return lengths > 0 ? dot(a, b) / lengths : 1;
-}
 
 template <std::size_t n>
 adjacency::VertexLists<Index> listAt(std::size_t points,
@@ -116,25 +101,17 @@ ReferenceSurface::ReferenceSurface(SurfaceParts parts, Stage& stage)
   findCorners(parts);
 }
 
-bool ReferenceSurface::isCurve(std::span<const Index> around, const SurfaceParts& parts,
-                               double limit) const {
+bool ReferenceSurface::isCurve(const std::array<Index, 2>& vertices, std::span<const Index> around,
+                               const SurfaceParts& parts, double limit) const {
   if (around.size() != 2) return true;
   const auto [a, b] = std::pair(around[0], around[1]);
   if (parts.triangles[a].tag != parts.triangles[b].tag) return true;
+  if (parts.sharp) return std::binary_search(parts.sharp->begin(), parts.sharp->end(), vertices);
   if (!parts.groups.empty() && parts.groups[a] == parts.groups[b]) return false;
   return cosineBetween(normalOf(triangle(a)), normalOf(triangle(b))) < limit;
 }
 
 void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
-  std::vector<TriangleEdge> edges;
-  edges.reserve(3 * triangles_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      edges.push_back(
-          {ascending(triangles_[t][i], triangles_[t][(i + 1) % 3]), static_cast<Index>(t)});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
   for (const std::array<Index, 2>& curve : parts.curves) {
     segments_.push_back(ascending(curve[0], curve[1]));
   }
@@ -145,27 +122,20 @@ void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
   DisjointSets sets(triangles_.size());
   DisjointSets setsWithCreases(triangles_.size());
   std::vector<std::array<Index, 2>> creases;
-  std::vector<Index> around;
-  for (std::size_t begin = 0; begin < edges.size();) {
-    std::size_t end = begin;
-    around.clear();
-    for (; end < edges.size() && edges[end].vertices == edges[begin].vertices; ++end) {
-      around.push_back(edges[end].triangle);
-    }
-    const std::array<Index, 2>& vertices = edges[begin].vertices;
-    begin = end;
-    const bool isGiven = std::binary_search(given.begin(), given.end(), vertices);
-    const bool goesOn = around.size() == 2 &&
-                        parts.triangles[around[0]].tag == parts.triangles[around[1]].tag &&
-                        !(isGiven && parts.areTagged);
-    if (goesOn) setsWithCreases.unite(around[0], around[1]);
-    if (!isGiven && !isCurve(around, parts, limit)) {
-      sets.unite(around[0], around[1]);
-      continue;
-    }
-    if (!isGiven) segments_.push_back(vertices);
-    if (goesOn) creases.push_back(vertices);
-  }
+  forEachEdge(
+      parts.triangles, [&](const std::array<Index, 2>& vertices, std::span<const Index> around) {
+        const bool isGiven = std::binary_search(given.begin(), given.end(), vertices);
+        const bool goesOn = around.size() == 2 &&
+                            parts.triangles[around[0]].tag == parts.triangles[around[1]].tag &&
+                            !(isGiven && parts.areTagged);
+        if (goesOn) setsWithCreases.unite(around[0], around[1]);
+        if (!isGiven && !isCurve(vertices, around, parts, limit)) {
+          sets.unite(around[0], around[1]);
+          return;
+        }
+        if (!isGiven) segments_.push_back(vertices);
+        if (goesOn) creases.push_back(vertices);
+      });
   std::sort(segments_.begin(), segments_.end());
   for (const std::array<Index, 2>& segment : segments_) {
     taggedSegments_.push_back(parts.areTagged &&

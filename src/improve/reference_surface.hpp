@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct SurfaceParts {
   bool areTagged = false;                    ///< the curves
   std::vector<Index> corners;                ///< points
   double angle = 40;  ///< in degrees: edges where the surface turns by more are curves, too
+  /// Those edges, ascending, where it is not the angle alone that tells.
+  std::optional<std::vector<std::array<Index, 2>>> sharp;
 };
 
 /// How a vertex may move.
@@ -81,8 +84,8 @@ class ReferenceSurface {
   void findCorners(const SurfaceParts& parts);
   [[nodiscard]] SurfacePlace onTriangles(const Vec3& point, Index triangle,
                                          const std::vector<Index>& sets) const;
-  [[nodiscard]] bool isCurve(std::span<const Index> around, const SurfaceParts& parts,
-                             double limit) const;
+  [[nodiscard]] bool isCurve(const std::array<Index, 2>& vertices, std::span<const Index> around,
+                             const SurfaceParts& parts, double limit) const;
 
   Array<Vec3> points_;
   std::vector<std::array<Index, 3>> triangles_;

@@ -13,6 +13,7 @@
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <improve/crease_chains.hpp>
 #include <improve/sound_input.hpp>
 #include <improve/vertex_places.hpp>
 
@@ -239,7 +240,8 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
   return places;
 }
 
-VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
+VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isAtBad, double angle,
+                          Stage& stage) {
   requireFeatures(mesh.features, mesh.points.size());
   SurfaceParts parts;
   parts.angle = angle;
@@ -250,6 +252,7 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage) {
       mesh.features,
       adjacency::findEdges(mesh, around, adjacency::findFaces(mesh, around, stage), stage).singular,
       parts);
+  parts.sharp = creaseChains(parts, isAtBad, stage);
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -42,7 +43,9 @@ struct VertexPlaces {
                                        Context& context, Stage& stage);
 
 /// The surface is the mesh's own boundary with its tagged quads, two triangles each.
+/// @param isAtBad  per vertex: 1 if a cell there is not positive; as of creaseChains()
 /// @throws Error InvalidArgument for features that are not in the mesh
-[[nodiscard]] VertexPlaces placesOnMesh(const HexMesh& mesh, double angle, Stage& stage);
+[[nodiscard]] VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isAtBad,
+                                        double angle, Stage& stage);
 
 }  // namespace hexhex::improvement

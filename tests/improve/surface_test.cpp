@@ -68,7 +68,8 @@ TEST(Surface, AWalkStaysOnItsPatchAndItsCurve) {
   const HexMesh mesh = hexhex::testing::gridMesh(4);
   Context context(1);
   Stage stage(context, "test");
-  const VertexPlaces places = placesOnMesh(mesh, 40, stage);
+  const VertexPlaces places =
+      placesOnMesh(mesh, std::vector<std::uint8_t>(mesh.points.size()), 40, stage);
   EXPECT_EQ(places.surface.corners().size(), 8U);
   EXPECT_EQ(places.surface.segmentCount(), 12U * 4);
   Random random(3);
@@ -85,6 +86,29 @@ TEST(Surface, AWalkStaysOnItsPatchAndItsCurve) {
       EXPECT_NEAR(place.point[k], fixed ? from[k] : std::clamp(far[k], 0.0, 4.0), 1e-12);
     }
   }
+}
+
+/// Short chains are what bad cells make, unless they end at vertices with tags.
+TEST(Surface, AVertexThatSticksOutIsNoCornerAtABadCell) {
+  HexMesh mesh = hexhex::testing::gridMesh(6);
+  const auto vertexAt = [&mesh](const Vec3& point) {
+    const auto found = std::find(mesh.points.begin(), mesh.points.end(), point);
+    return static_cast<Index>(found - mesh.points.begin());
+  };
+  const Index tip = vertexAt({3, 3, 6});
+  const std::array<Index, 4> beside = {vertexAt({2, 3, 6}), vertexAt({4, 3, 6}),
+                                       vertexAt({3, 2, 6}), vertexAt({3, 4, 6})};
+  mesh.points[tip][2] = 8;
+  Context context(1);
+  Stage stage(context, "test");
+  const auto freedom = [&](std::uint8_t isAtBad) {
+    const std::vector<std::uint8_t> all(mesh.points.size(), isAtBad);
+    return placesOnMesh(mesh, all, 40, stage).freedom[tip];
+  };
+  EXPECT_EQ(freedom(0), Freedom::Fixed);
+  EXPECT_EQ(freedom(1), Freedom::OnPatch);
+  for (const Index v : beside) mesh.features.vertices.push_back({v, 1});
+  EXPECT_EQ(freedom(1), Freedom::Fixed);
 }
 
 TEST(Surface, TagsOfAMapHoldVertices) {
