@@ -154,9 +154,9 @@ std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<Tet
   return contested.size();
 }
 
-template std::uint64_t resolveOverlaps(const igm::PreparedMap&, const std::vector<TetClaims>&, Charts&,
-                                       BrickGrid<std::uint32_t>&, Stage&);
-template std::uint64_t resolveOverlaps(const igm::PreparedMap&, const std::vector<TetClaims>&, Charts&,
-                                       BrickGrid<std::uint64_t>&, Stage&);
+template std::uint64_t resolveOverlaps(const igm::PreparedMap&, const std::vector<TetClaims>&,
+                                       Charts&, BrickGrid<std::uint32_t>&, Stage&);
+template std::uint64_t resolveOverlaps(const igm::PreparedMap&, const std::vector<TetClaims>&,
+                                       Charts&, BrickGrid<std::uint64_t>&, Stage&);
 
 }  // namespace hexhex::atlas

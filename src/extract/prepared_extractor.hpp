@@ -31,8 +31,9 @@ class Extractor::Prepared {
 
   /// Scales the map, and runs work(number of cells, statistics).
   template <class Work>
-  void run(const extraction::ReportedCall& call, const ExtractOptions& options, const extraction::ScaleLimits& limits,
-           Context& context, ExtractStatistics* statistics, const Work& work) {
+  void run(const extraction::ReportedCall& call, const ExtractOptions& options,
+           const extraction::ScaleLimits& limits, Context& context, ExtractStatistics* statistics,
+           const Work& work) {
     extraction::checkOptions(options);
     if (options.scale < 1 || options.scale > maxScale_ / limits.furtherScale) {
       const bool curved = limits.furtherScale > 1;

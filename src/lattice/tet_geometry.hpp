@@ -14,7 +14,6 @@
 #include <hexhex/types.hpp>
 
 #include <base/vector3.hpp>
-
 #include <lattice/direction.hpp>
 #include <lattice/wide_int.hpp>
 

@@ -65,14 +65,13 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
         std::uint64_t at = begin[i];
         const Index tet = tets[i];
         forEachRun(map_, partition_, part, tet, centersOf(tet),
-                              [&](const lattice::SweptLine& line, std::uint32_t first,
-                                  std::uint32_t run, std::uint64_t number) {
-                                emitter.emitOn(tet, line, first,
-                                               std::span(cells.corners).subspan(at, run));
-                                for (std::uint32_t k = 0; k < run; ++k) {
-                                  cells.numbers[at++] = counts_.cells[tet] + number + k;
-                                }
-                              });
+                   [&](const lattice::SweptLine& line, std::uint32_t first, std::uint32_t run,
+                       std::uint64_t number) {
+                     emitter.emitOn(tet, line, first, std::span(cells.corners).subspan(at, run));
+                     for (std::uint32_t k = 0; k < run; ++k) {
+                       cells.numbers[at++] = counts_.cells[tet] + number + k;
+                     }
+                   });
       });
   return cells;
 }

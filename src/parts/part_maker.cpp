@@ -310,12 +310,12 @@ class Maker final : public PartMaker {
               lattice::TetRasterizer(map_.map.exact.corners[tet], map_.map.exact.unit)
                   .append(lattice::kCenterGrid, lines);
               forEachRun(map_.map, partition_, part.part, tet, lines,
-                                    [&](const lattice::SweptLine& line, std::uint32_t begin,
-                                        std::uint32_t count, std::uint64_t) {
-                                      for (std::uint32_t k = begin; k < begin + count; ++k) {
-                                        visit(cell++, tet, line.point(k), line.simplex(k));
-                                      }
-                                    });
+                         [&](const lattice::SweptLine& line, std::uint32_t begin,
+                             std::uint32_t count, std::uint64_t) {
+                           for (std::uint32_t k = begin; k < begin + count; ++k) {
+                             visit(cell++, tet, line.point(k), line.simplex(k));
+                           }
+                         });
             }};
   }
 

@@ -18,10 +18,10 @@
 
 /// HDF5(H5Dwrite) is that function, HDF5(H5T_NATIVE_INT32_g) that value of the library.
 #if defined(HEXHEX_HDF5_NAME)
-#define HDF5(name)                                                                             \
-  (*[] {                                                                                       \
+#define HDF5(name)                                                                                 \
+  (*[] {                                                                                           \
     static const auto symbol = reinterpret_cast<decltype(&::name)>(hexhex::io::hdf5Symbol(#name)); \
-    return symbol;                                                                             \
+    return symbol;                                                                                 \
   }())
 // Constants of its headers call it to see whether it is ready.
 #undef H5OPEN
