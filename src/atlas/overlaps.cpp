@@ -118,14 +118,14 @@ class TetMover {
 template <class Id>
 std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<TetClaims>& claims,
                               Charts& charts, BrickGrid<Id>& grid, Stage& stage) {
-  constexpr std::size_t kFewTets = 64;  // of which each may take long
+  constexpr std::size_t kClaimingTets = 64;  // of which each may take long
   const auto forEachOf = [&](BrickCache<Id>& cache, const TetClaims& tet, const auto& visit) {
     const Index chart = charts.chart[tet.tet];
     forEachEntry<Id>(
         tet, [&](const lattice::ChartPoint& c) { return cache.find(chart, c); }, visit);
   };
   // Entries are only ever replaced by "contested", so it does not matter who looks first.
-  parallelBlocks(stage, claims.size(), kFewTets,
+  parallelBlocks(stage, claims.size(), kClaimingTets,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    BrickCache<Id> cache(grid);
                    for (std::size_t i = begin; i < end; ++i) {
@@ -139,7 +139,7 @@ std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<Tet
                    }
                  });
   const auto contested = collectFromBlocks<const TetClaims*>(
-      stage, claims.size(), kFewTets,
+      stage, claims.size(), kClaimingTets,
       [&](std::size_t begin, std::size_t end, std::vector<const TetClaims*>& list) {
         BrickCache<Id> cache(grid);
         for (std::size_t i = begin; i < end; ++i) {

@@ -275,7 +275,7 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   const auto tets = collectFromBlocks<std::size_t>(stage, tetCount(), sweep::kSweepBlock, listTets);
   // Listed once, as finding the owners of vertices takes longer than all that follows.
   std::vector<TetClaims> claims(tets.size());
-  constexpr std::size_t kFewTets = 64;
+  constexpr std::size_t kListedTets = 64;
   const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {
     scratch.clear();
     forEachClaim(
@@ -286,7 +286,7 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
     claims[i] = {tetAt(tets[i]), scratch};
   };
   parallelForWith(
-      stage, tets.size(), kFewTets, [] { return std::vector<Claim>(); }, list);
+      stage, tets.size(), kListedTets, [] { return std::vector<Claim>(); }, list);
   return atlas::resolveOverlaps(map_, claims, charts_, grid_, stage);
 }
 

@@ -86,9 +86,10 @@ void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& c
                       std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
                       Stage& stage) {
   const std::vector<OwnersVertices> groups = groupByOwner(counts, numbers);
-  constexpr std::size_t kFewTets = 8;
+  constexpr std::size_t kFewGroups = 8;
   parallelForWith(
-      stage, groups.size(), kFewTets, [&] { return Describer(map, counts, numbers, first, mesh); },
+      stage, groups.size(), kFewGroups,
+      [&] { return Describer(map, counts, numbers, first, mesh); },
       [&](std::size_t i, Describer& describer) { describer.describe(groups[i]); });
 }
 

@@ -91,7 +91,7 @@ TEST(SoundInput, AMoebiusBandHasNoOrientation) {
   // The last cell ends at the first one's near face, mirrored.
   const Hex first = mesh.cells.front();
   Hex& last = mesh.cells.back();
-  for (std::size_t k = 0; k < 4; ++k) last[4 + k] = first[std::array{1, 0, 3, 2}[k]];
+  for (std::size_t k = 0; k < 4; ++k) last[4 + k] = first[k ^ 1U];
   const Error error = refusalOf(mesh);
   EXPECT_EQ(error.code(), ErrorCode::Orientation);
   expectWords(error, "Moebius");

@@ -113,13 +113,13 @@ TEST(Rotation, ProductIsClosedAssociativeAndComposes) {
   });
 }
 
-const double s = std::sqrt(0.5);
+const double r = std::sqrt(0.5);
 const double h = 0.5;
 /// AlgoHex's unit quaternions (w, x, y, z), in its order.
 const std::array<std::array<double, 4>, 24> kQuaternions = {{
-    {1, 0, 0, 0},  {0, 1, 0, 0},   {0, 0, 1, 0},  {0, 0, 0, 1},   {s, s, 0, 0},   {s, -s, 0, 0},
-    {s, 0, s, 0},  {s, 0, -s, 0},  {s, 0, 0, s},  {s, 0, 0, -s},  {0, s, s, 0},   {0, 0, s, s},
-    {0, s, 0, s},  {0, -s, s, 0},  {0, 0, -s, s}, {0, s, 0, -s},  {h, h, h, h},   {h, h, h, -h},
+    {1, 0, 0, 0},  {0, 1, 0, 0},   {0, 0, 1, 0},  {0, 0, 0, 1},   {r, r, 0, 0},   {r, -r, 0, 0},
+    {r, 0, r, 0},  {r, 0, -r, 0},  {r, 0, 0, r},  {r, 0, 0, -r},  {0, r, r, 0},   {0, 0, r, r},
+    {0, r, 0, r},  {0, -r, r, 0},  {0, 0, -r, r}, {0, r, 0, -r},  {h, h, h, h},   {h, h, h, -h},
     {h, h, -h, h}, {h, h, -h, -h}, {h, -h, h, h}, {h, -h, h, -h}, {h, -h, -h, h}, {h, -h, -h, -h},
 }};
 

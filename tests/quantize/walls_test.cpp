@@ -72,7 +72,7 @@ TEST(Walls, MayPassNearVertices) {
                      {.cells = kCubes, .refine = kCubes, .charts = ChartStyle::Aligned})
           .map;
   for (const double distance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    for (const std::uint64_t oneIn : {50, 200}) {
+    for (const std::uint64_t oneIn : {50U, 200U}) {
       SCOPED_TRACE(std::to_string(distance) + ", one edge in " + std::to_string(oneIn));
       LatticeRandom random(oneIn);
       const NearlyIntegerBox box = nearlyInteger(whole, distance, oneIn, random);

@@ -286,7 +286,8 @@ TEST_F(Untangle, CopesWithoutUnknownsOrElements) {
 
 TEST(UntangleRuns, DoNotDependOnThreads) {
   const auto run = [](int threads) {
-    auto [problem, best] = gridProblem(13, Boundary::Sliding);  // several blocks, several levels
+    untangle::Problem problem =
+        gridProblem(13, Boundary::Sliding).problem;  // several blocks, several levels
     shuffle(problem, 1);
     Context context(threads);
     Stage stage(context, "test");
