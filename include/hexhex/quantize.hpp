@@ -106,8 +106,9 @@ using FaceFlags = std::array<std::int8_t, 4>;
 
 /// The seamless map of a polycube, from labels of the boundary triangles: each connected piece of
 /// one axis becomes a plane, and the tets are bent onto these planes with little distortion and
-/// without flips. Parameters are in units of space. Edges of the tets may be split. What quantize()
-/// makes of the map is the polycube's mesh.
+/// without flips. Parameters are in units of space. Tets at the boundary are split where labels
+/// leave them no room; the given points come first in the map. What quantize() makes of it is the
+/// polycube's mesh.
 /// @param flags  per tet
 /// @throws Error InvalidArgument for other labels than these (with the face), or those of no
 ///               polycube (with the face, edge or vertex), or if canQuantize() is false; FlippedTet

@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+#include <quantize/edge_splitter.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -54,9 +56,6 @@ struct BendOptions {
   /// Steps that lower distortion, at most, once no tet is flipped.
   int polishing = 60;
 };
-
-/// An edge that was split: its middle is a new vertex, numbered after all others.
-using SplitEdge = std::array<Index, 2>;
 
 struct BentMap {
   std::vector<Vec3> points;

@@ -10,10 +10,6 @@ namespace hexhex::quantization {
 
 namespace {
 
-Vec3 middle(const Vec3& a, const Vec3& b) {
-  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
-}
-
 /// How many coordinates of an edge's inner points are fixed, by what is around the edge.
 class EdgeReader {
  public:
@@ -52,23 +48,6 @@ class EdgeReader {
   lattice::AxisSet axes_ = 0;  ///< in the chart of the tet
 };
 
-SplitEdge sorted(Index v, Index w) { return {std::min(v, w), std::max(v, w)}; }
-
-/// Calls visit(edge, corners) for the six edges of a tet.
-template <class Visit>
-void forEachEdgeOf(const Tet& tet, const Visit& visit) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = i + 1; j < 4; ++j) {
-      visit(sorted(tet[i], tet[j]), static_cast<lattice::CornerMask>((1U << i) | (1U << j)));
-    }
-  }
-}
-
-void sortOut(std::vector<SplitEdge>& edges) {
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-}
-
 /// Edges whose middles are freer than both of their ends.
 std::vector<SplitEdge> freeingEdges(const BendProblem& problem,
                                     const adjacency::TetTopology& topology,
@@ -87,17 +66,9 @@ std::vector<SplitEdge> freeingEdges(const BendProblem& problem,
   return edges;
 }
 
-/// Which tets are at each vertex, while they are cut.
-using Stars = std::vector<std::vector<Index>>;
-
-void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Index vertex) {
+/// What a tet that was cut and its second half, the last one, have of it.
+void carryCut(BendState& state, Index t, std::size_t a, std::size_t b) {
   BendProblem& problem = state.problem;
-  const auto second = static_cast<Index>(problem.tets.size());
-  const auto a = static_cast<std::size_t>(adjacency::localCorner(problem.tets[t], edge[0]));
-  const auto b = static_cast<std::size_t>(adjacency::localCorner(problem.tets[t], edge[1]));
-  problem.tets.push_back(problem.tets[t]);
-  problem.tets[t][b] = vertex;
-  problem.tets[second][a] = vertex;
   for (std::vector<TetParameters>* corners : {&problem.reference, &state.bent}) {
     const Vec3 between = middle((*corners)[t][a], (*corners)[t][b]);
     corners->push_back((*corners)[t]);
@@ -106,11 +77,12 @@ void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Inde
   }
   state.parentTet.push_back(state.parentTet[t]);
   // Both halves keep what is across their faces; between them there is one chart.
+  const std::size_t second = problem.tets.size() - 1;
   for (std::size_t face = 0; face < 4; ++face) {
     problem.transitions.push_back(problem.transitions[4 * t + face]);
     problem.planes.push_back(problem.planes[4 * t + face]);
   }
-  for (const std::size_t inner : {4 * std::size_t{t} + a, 4 * std::size_t{second} + b}) {
+  for (const std::size_t inner : {4 * std::size_t{t} + a, 4 * second + b}) {
     problem.transitions[inner] = {};
     problem.planes[inner] = {};
   }
@@ -118,9 +90,6 @@ void cutTet(BendState& state, Stars& stars, Index t, const SplitEdge& edge, Inde
     fixed.key() = static_cast<adjacency::CornerIndex>(4 * second + b);
     problem.fixedCorners.insert(std::move(fixed));
   }
-  for (const Index v : problem.tets[second]) stars[v].push_back(second);
-  stars[vertex].push_back(t);
-  std::erase(stars[edge[1]], t);
 }
 
 }  // namespace
@@ -134,8 +103,7 @@ std::vector<Index> withNeighbours(const adjacency::TetTopology& topology,
         around.push_back(adjacency::tetOf(corner));
     }
   }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sortOut(around);
   return around;
 }
 
@@ -157,22 +125,11 @@ std::vector<SplitEdge> edgesToSplit(const BendProblem& problem,
 
 bool splitEdges(BendState& state, std::span<const SplitEdge> edges, std::size_t mostTets) {
   BendProblem& problem = state.problem;
-  Stars stars(problem.points.size());
-  for (Index t = 0; t < problem.tets.size(); ++t) {
-    for (const Index v : problem.tets[t]) stars[v].push_back(t);
-  }
+  EdgeSplitter splitter(problem.points, problem.tets);
   for (const SplitEdge& edge : edges) {
     if (problem.tets.size() > mostTets) return false;
-    const auto vertex = static_cast<Index>(problem.points.size());
-    problem.points.push_back(middle(problem.points[edge[0]], problem.points[edge[1]]));
-    stars.emplace_back();
-    const std::vector<Index> star = stars[edge[0]];
-    for (const Index t : star) {
-      const Tet& tet = problem.tets[t];
-      if (std::find(tet.begin(), tet.end(), edge[1]) != tet.end()) {
-        cutTet(state, stars, t, edge, vertex);
-      }
-    }
+    const Index vertex = splitter.split(
+        edge, [&](Index t, std::size_t a, std::size_t b) { carryCut(state, t, a, b); });
     splitIrregular(edge, vertex, problem.irregularEdges);
     state.splitEdges.push_back(edge);
   }

@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <utility>
 
+#include <quantize/edge_splitter.hpp>
 #include <quantize/polycube_borders.hpp>
 
 #include <base/disjoint_sets.hpp>
@@ -8,11 +12,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-std::string nameOf(lattice::Direction label) {
-  return {lattice::signOf(label) > 0 ? '+' : '-', static_cast<char>('x' + lattice::axisOf(label))};
-}
-
-VertexPair verticesOf(const BoundarySides& sides, BoundarySides::Side side) {
+VertexPair verticesOf(const BoundarySides& sides, BoundarySide side) {
   return pairOf(sides.tail(side), sides.head(side));
 }
 
@@ -25,40 +25,17 @@ Place placeOf(const VertexPair& edge) { return {PlaceKind::Edge, edge[0], edge[1
               place);
 }
 
-Index triangleOf(BoundarySides::Side side) { return static_cast<Index>(side / 3); }
+Index triangleOf(BoundarySide side) { return static_cast<Index>(side / 3); }
 
 }  // namespace
 
-BoundarySides::BoundarySides(const adjacency::TetTopology& topology) : topology_(topology) {
-  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
-    if (topology.isBoundary(h)) faces_.push_back(h);
-  }
-  twins_.resize(3 * faces_.size());
-  for (Side side = 0; side < twins_.size(); ++side) {
-    const adjacency::HalfFace h = face(side);
-    const auto ends = static_cast<lattice::CornerMask>(
-        lattice::cornerBit(topology.localCorner(adjacency::tetOf(h), head(side))) |
-        lattice::cornerBit(topology.localCorner(adjacency::tetOf(h), tail(side))));
-    adjacency::EdgeTurn turn(topology, adjacency::tetOf(h), ends,
-                             adjacency::otherFaceAtEdge(ends, adjacency::localOf(h)));
-    while (turn.next() != kNone) turn.step();
-    const auto found = std::lower_bound(faces_.begin(), faces_.end(), turn.out());
-    Side there = 3 * static_cast<Side>(found - faces_.begin());
-    while (head(there) != tail(side)) ++there;
-    twins_[side] = there;
-  }
-}
-
-Index BoundarySides::corner(Side side, std::size_t ahead) const noexcept {
-  // Corners of a face are in the order that looks inwards.
-  const adjacency::HalfFace h = face(side);
-  const auto& corners = lattice::kFaceCorners[h % 4];
-  return topology_.tets[adjacency::tetOf(h)][static_cast<std::size_t>(corners[(side + ahead) % 3])];
+std::string nameOf(lattice::Direction label) {
+  return {lattice::signOf(label) > 0 ? '+' : '-', static_cast<char>('x' + lattice::axisOf(label))};
 }
 
 PolycubeBorders::PolycubeBorders(const LabelledMesh& mesh)
     : mesh_(mesh), sides_(mesh.topology), borderCount_(mesh.topology.pointCount) {
-  for (Side side = 0; side < sides_.size(); ++side) {
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
     if (!isBorder(side)) continue;
     requireOtherAxes(side);
     borders_.push_back(side);
@@ -69,7 +46,7 @@ PolycubeBorders::PolycubeBorders(const LabelledMesh& mesh)
   requireFourEdges();
 }
 
-void PolycubeBorders::requireOtherAxes(Side border) const {
+void PolycubeBorders::requireOtherAxes(BoundarySide border) const {
   if (lattice::axisOf(label(border)) != lattice::axisOf(labelBeyond(border))) return;
   const lattice::Direction upper = std::min(label(border), labelBeyond(border));
   throw Error(ErrorCode::InvalidArgument,
@@ -83,12 +60,12 @@ void PolycubeBorders::requireOtherAxes(Side border) const {
 /// A closed surface faces all ways.
 void PolycubeBorders::requireBorderOnEachPiece() const {
   DisjointSets pieces(mesh_.topology.pointCount);
-  for (Side side = 0; side < sides_.size(); ++side) {
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
     pieces.unite(sides_.tail(side), sides_.head(side));
   }
   std::vector<bool> hasBorder(mesh_.topology.pointCount);
-  for (const Side border : borders_) hasBorder[pieces.find(sides_.tail(border))] = true;
-  for (Side side = 0; side < sides_.size(); ++side) {
+  for (const BoundarySide border : borders_) hasBorder[pieces.find(sides_.tail(border))] = true;
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
     if (hasBorder[pieces.find(sides_.tail(side))]) continue;
     refuseFlag(mesh_, sides_.face(side),
                "All triangles of a closed piece of the boundary have the label " +
@@ -99,7 +76,7 @@ void PolycubeBorders::requireBorderOnEachPiece() const {
 /// Around a corner, there are two directions along each axis.
 void PolycubeBorders::requireFewBorders() const {
   std::vector<std::array<Index, 3>> alongAxes(mesh_.topology.pointCount);
-  for (const Side border : borders_) {
+  for (const BoundarySide border : borders_) {
     const Index vertex = sides_.tail(border);
     if (++alongAxes[vertex][static_cast<std::size_t>(axisAlong(border))] <= 2) continue;
     throw Error(ErrorCode::InvalidArgument,
@@ -114,13 +91,13 @@ void PolycubeBorders::requireFewBorders() const {
 /// Each loop around a face of a polycube turns by right angles.
 void PolycubeBorders::requireFourEdges() const {
   std::vector<bool> isSeen(sides_.size());
-  for (const Side first : borders_) {
+  for (const BoundarySide first : borders_) {
     if (isSeen[first]) continue;
     int edges = 0;
-    Side side = first;
+    BoundarySide side = first;
     do {
       isSeen[side] = true;
-      const Side next = nextBorder(side);
+      const BoundarySide next = nextBorder(side);
       edges += axisAlong(next) != axisAlong(side) ? 1 : 0;
       side = next;
     } while (side != first);
@@ -135,65 +112,135 @@ void PolycubeBorders::requireFourEdges() const {
 }
 
 /// Of the same loop, from the head on.
-PolycubeBorders::Side PolycubeBorders::nextBorder(Side border) const {
-  Side side = BoundarySides::next(border);
+BoundarySide PolycubeBorders::nextBorder(BoundarySide border) const {
+  BoundarySide side = BoundarySides::next(border);
   while (!isBorder(side)) side = BoundarySides::next(sides_.twin(side));
   return side;
 }
 
 /// Counterclockwise, from the same tail.
-PolycubeBorders::Side PolycubeBorders::nextBorderAtTail(Side border) const {
-  const auto turned = [this](Side side) {
+BoundarySide PolycubeBorders::nextBorderAtTail(BoundarySide border) const {
+  const auto turned = [this](BoundarySide side) {
     return sides_.twin(BoundarySides::next(BoundarySides::next(side)));
   };
-  Side side = turned(border);
+  BoundarySide side = turned(border);
   while (!isBorder(side)) side = turned(side);
   return side;
 }
 
-std::vector<lattice::Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const {
-  std::vector<lattice::Direction> directions(sides_.size());
-  for (const Side first : borders_) {
+/// From corner to corner, each from both of its sides.
+std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) const {
+  std::map<std::array<std::int64_t, 3>, Gap> gaps;
+  for (const BoundarySide first : borders_) {
     if (!isCorner(sides_.tail(first))) continue;
-    Side last = first;
+    BoundarySide last = first;
     while (!isCorner(sides_.head(last))) last = nextBorder(last);
     const int axis = axisAlong(first);
-    const std::int64_t length =
-        planeAt(axis, sides_.head(last)) - planeAt(axis, sides_.tail(first));
-    if (length == 0) {
+    const std::int64_t begin = planeAt(axis, sides_.tail(first));
+    const std::int64_t end = planeAt(axis, sides_.head(last));
+    if (begin == end) {
       refusePlanes("from vertex " + std::to_string(sides_.tail(first)) + " to vertex " +
                        std::to_string(sides_.head(last)) + " the edge between " +
                        nameOf(label(first)) + " and " + nameOf(labelBeyond(first)) +
                        " has no length, as its ends are in one plane.",
                    placeOf(verticesOf(sides_, first)));
     }
-    for (Side side = first; true; side = nextBorder(side)) {
-      directions[side] = lattice::direction(axis, length < 0 ? -1 : 1);
+    Gap& gap = gaps[{axis, std::min(begin, end), std::max(begin, end)}];
+    gap.width = std::abs(end - begin);
+    gap.corners.push_back(cornerAt(first));
+    for (BoundarySide side = first; true; side = nextBorder(side)) {
+      (begin < end ? gap.upwards : gap.downwards).push_back(side);
       if (side == last) break;
     }
+  }
+  std::vector<Gap> list;
+  for (auto& [planes, gap] : gaps) {
+    sortOut(gap.corners);
+    list.push_back(std::move(gap));
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Gap& a, const Gap& b) { return a.width < b.width; });
+  return list;
+}
+
+void PolycubeBorders::turnOver(Gap& gap, std::vector<lattice::Direction>& directions) const {
+  gap.upwards.swap(gap.downwards);
+  setDirections(gap, directions);
+}
+
+void PolycubeBorders::setDirections(const Gap& gap,
+                                    std::vector<lattice::Direction>& directions) const {
+  for (const BoundarySide side : gap.upwards)
+    directions[side] = lattice::direction(axisAlong(side), 1);
+  for (const BoundarySide side : gap.downwards)
+    directions[side] = lattice::direction(axisAlong(side), -1);
+}
+
+std::size_t PolycubeBorders::countOverlaps(
+    const Gap& gap, const std::vector<lattice::Direction>& directions) const {
+  return static_cast<std::size_t>(
+      std::count_if(gap.corners.begin(), gap.corners.end(),
+                    [&](BoundarySide corner) { return !hasRoom(corner, directions); }));
+}
+
+/// Of all borders that begin at a corner, the first.
+BoundarySide PolycubeBorders::cornerAt(BoundarySide border) const {
+  BoundarySide least = border;
+  for (BoundarySide side = nextBorderAtTail(border); side != border;
+       side = nextBorderAtTail(side)) {
+    least = std::min(least, side);
+  }
+  return least;
+}
+
+/// Planes that are near to each other may be in the wrong order, as a map that turns towards labels
+/// need not be injective. Two of them change places, the nearest ones first, where faces overlap
+/// around fewer corners then.
+std::vector<lattice::Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const {
+  std::vector<lattice::Direction> directions(sides_.size());
+  std::vector<Gap> all = gaps(planeAt);
+  for (const Gap& gap : all) setDirections(gap, directions);
+  const auto improves = [&](Gap& gap) {
+    const std::size_t before = countOverlaps(gap, directions);
+    if (before == 0) return false;
+    turnOver(gap, directions);
+    if (countOverlaps(gap, directions) < before) return true;
+    turnOver(gap, directions);
+    return false;
+  };
+  // It ends, as there are fewer such corners each time.
+  while (std::any_of(all.begin(), all.end(), improves)) {
   }
   return directions;
 }
 
 /// Walks around a corner, along edges and over faces.
-void PolycubeBorders::requireRoom(Side first,
-                                  const std::vector<lattice::Direction>& directions) const {
+bool PolycubeBorders::hasRoom(BoundarySide first,
+                              const std::vector<lattice::Direction>& directions) const {
   std::array<bool, lattice::kDirections> isTaken{};
-  bool isInjective = true;
-  std::string labels;
-  Side side = first;
+  BoundarySide side = first;
   do {
-    const Side next = nextBorderAtTail(side);
+    const BoundarySide next = nextBorderAtTail(side);
     lattice::Direction at = directions[side];
     do {
-      isInjective = isInjective && !isTaken[at];
+      if (isTaken[at]) return false;
       isTaken[at] = true;
       at = lattice::cross(label(side), at);
     } while (at != directions[next]);
-    labels += (labels.empty() ? "" : ", ") + nameOf(label(side));
     side = next;
   } while (side != first);
-  if (isInjective) return;
+  return true;
+}
+
+void PolycubeBorders::requireRoom(BoundarySide first,
+                                  const std::vector<lattice::Direction>& directions) const {
+  if (hasRoom(first, directions)) return;
+  std::string labels;
+  BoundarySide side = first;
+  do {
+    labels += (labels.empty() ? "" : ", ") + nameOf(label(side));
+    side = nextBorderAtTail(side);
+  } while (side != first);
   refusePlanes("faces overlap around a vertex, whose labels are " + labels +
                    " counterclockwise, with their planes where a map turned towards the labels "
                    "puts them.",
@@ -203,14 +250,14 @@ void PolycubeBorders::requireRoom(Side first,
 /// Quarter turns to the left around a flat face: four times its Euler characteristic.
 void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& directions) const {
   DisjointSets faces(sides_.size() / 3);
-  for (Side side = 0; side < sides_.size(); ++side) {
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
     if (!isBorder(side)) faces.unite(triangleOf(side), triangleOf(sides_.twin(side)));
   }
   // Vertices and edges of borders are as many; others are left to count.
   std::vector<int> twiceCharacteristic(sides_.size() / 3);
   std::vector<int> turns(sides_.size() / 3);
   std::vector<bool> isSeen(mesh_.topology.pointCount);
-  for (Side side = 0; side < sides_.size(); ++side) {
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
     const Index face = faces.find(triangleOf(side));
     if (side % 3 == 0) twiceCharacteristic[face] += 2;
     if (isBorder(side)) {
@@ -225,7 +272,7 @@ void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& di
     if (borderCount_[vertex] == 0 && !isSeen[vertex]) twiceCharacteristic[face] += 2;
     isSeen[vertex] = true;
   }
-  for (Side side = 0; side < sides_.size(); side += 3) {
+  for (BoundarySide side = 0; side < sides_.size(); side += 3) {
     const Index face = faces.find(triangleOf(side));
     if (turns[face] == 2 * twiceCharacteristic[face]) continue;
     refusePlanes("the border of a face with the label " + nameOf(label(side)) + " makes " +
@@ -236,20 +283,24 @@ void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& di
   }
 }
 
-IrregularEdges PolycubeBorders::turns(const PlaneAt& planeAt) const {
+std::vector<PolycubeEdge> PolycubeBorders::edges(const PlaneAt& planeAt) const {
   const std::vector<lattice::Direction> along = directions(planeAt);
-  for (const Side border : borders_) {
+  for (const BoundarySide border : borders_) {
     if (isCorner(sides_.tail(border))) requireRoom(border, along);
   }
   requireFlatFaces(along);
-  IrregularEdges quarters;
-  for (const Side border : borders_) {
+  std::vector<PolycubeEdge> edges;
+  for (const BoundarySide border : borders_) {
+    if (sides_.head(border) < sides_.tail(border)) continue;  // once from each side
     // From the edge, the face goes to the left.
     const bool isConvex =
         labelBeyond(border) == lattice::opposite(lattice::cross(label(border), along[border]));
-    quarters[verticesOf(sides_, border)] = isConvex ? 1 : 3;
+    edges.push_back({verticesOf(sides_, border),
+                     {label(border), labelBeyond(border)},
+                     along[border],
+                     isConvex ? 1 : 3});
   }
-  return quarters;
+  return edges;
 }
 
 }  // namespace hexhex::quantization

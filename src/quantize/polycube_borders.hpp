@@ -9,37 +9,27 @@
 // immersion of a disk into a sphere whose boundary is a simple curve, hence injective.)
 #pragma once
 
+#include <array>
 #include <functional>
+#include <string>
 
-#include <quantize/bend.hpp>
+#include <quantize/boundary_sides.hpp>
 #include <quantize/polycube_labels.hpp>
 #include <quantize/wall_mesh.hpp>
 
 namespace hexhex::quantization {
 
-/// The sides of boundary triangles, counterclockwise as seen from outside.
-class BoundarySides {
- public:
-  using Side = std::size_t;  ///< 3 * triangle + 0 to 2
-
-  explicit BoundarySides(const adjacency::TetTopology& topology);
-
-  [[nodiscard]] std::size_t size() const noexcept { return twins_.size(); }
-  [[nodiscard]] adjacency::HalfFace face(Side side) const noexcept { return faces_[side / 3]; }
-  [[nodiscard]] Index head(Side side) const noexcept { return corner(side, 0); }
-  [[nodiscard]] Index tail(Side side) const noexcept { return corner(side, 1); }
-  /// Of the same triangle, from the head on.
-  [[nodiscard]] static Side next(Side side) noexcept { return side / 3 * 3 + (side + 2) % 3; }
-  /// Of the triangle beyond: from head to tail.
-  [[nodiscard]] Side twin(Side side) const noexcept { return twins_[side]; }
-
- private:
-  [[nodiscard]] Index corner(Side side, std::size_t ahead) const noexcept;
-
-  const adjacency::TetTopology& topology_;
-  std::vector<adjacency::HalfFace> faces_;  ///< ascending
-  std::vector<Side> twins_;
+/// An edge of the mesh between two labels.
+struct PolycubeEdge {
+  VertexPair vertices;  ///< ascending
+  std::array<lattice::Direction, 2>
+      labels;                ///< to the left of it, as seen from outside, and to the right
+  lattice::Direction along;  ///< from the first vertex to the second
+  int quarters;              ///< turns that a map makes around it
 };
+
+/// "+x", say.
+[[nodiscard]] std::string nameOf(lattice::Direction label);
 
 class PolycubeBorders {
  public:
@@ -50,36 +40,56 @@ class PolycubeBorders {
   /// The coordinate along an axis of a plane with a vertex in it.
   using PlaneAt = std::function<std::int64_t(int axis, Index vertex)>;
 
-  /// How often maps with such planes turn around the edges of the polycube.
+  /// How the edges of the polycube run in maps with such planes, or with planes in another order if
+  /// faces overlap around corners otherwise.
   /// @throws Error FlippedTet where no map with such planes is injective
-  [[nodiscard]] IrregularEdges turns(const PlaneAt& planeAt) const;
+  [[nodiscard]] std::vector<PolycubeEdge> edges(const PlaneAt& planeAt) const;
 
  private:
-  using Side = BoundarySides::Side;
-
-  [[nodiscard]] lattice::Direction label(Side side) const { return mesh_.label(sides_.face(side)); }
-  [[nodiscard]] lattice::Direction labelBeyond(Side side) const { return label(sides_.twin(side)); }
-  [[nodiscard]] bool isBorder(Side side) const { return label(side) != labelBeyond(side); }
+  [[nodiscard]] lattice::Direction label(BoundarySide side) const {
+    return mesh_.label(sides_.face(side));
+  }
+  [[nodiscard]] lattice::Direction labelBeyond(BoundarySide side) const {
+    return label(sides_.twin(side));
+  }
+  [[nodiscard]] bool isBorder(BoundarySide side) const { return label(side) != labelBeyond(side); }
   /// Along which a border runs.
-  [[nodiscard]] int axisAlong(Side side) const {
+  [[nodiscard]] int axisAlong(BoundarySide side) const {
     return 3 - lattice::axisOf(label(side)) - lattice::axisOf(labelBeyond(side));
   }
   [[nodiscard]] bool isCorner(Index vertex) const { return borderCount_[vertex] > 2; }
-  [[nodiscard]] Side nextBorder(Side border) const;
-  [[nodiscard]] Side nextBorderAtTail(Side border) const;
+  [[nodiscard]] BoundarySide nextBorder(BoundarySide border) const;
+  [[nodiscard]] BoundarySide nextBorderAtTail(BoundarySide border) const;
 
-  void requireOtherAxes(Side border) const;
+  void requireOtherAxes(BoundarySide border) const;
   void requireFewBorders() const;
   void requireFourEdges() const;
   void requireBorderOnEachPiece() const;
+  /// Between two planes of an axis: the border sides that run from one to the other.
+  struct Gap {
+    std::int64_t width = 0;
+    std::vector<BoundarySide> upwards;
+    std::vector<BoundarySide> downwards;
+    std::vector<BoundarySide> corners;  ///< at their ends, by the first border that begins there
+  };
+  /// The narrowest first.
+  [[nodiscard]] std::vector<Gap> gaps(const PlaneAt& planeAt) const;
+  void setDirections(const Gap& gap, std::vector<lattice::Direction>& directions) const;
+  void turnOver(Gap& gap, std::vector<lattice::Direction>& directions) const;
+  [[nodiscard]] BoundarySide cornerAt(BoundarySide border) const;
+  /// Corners at its ends around which faces overlap.
+  [[nodiscard]] std::size_t countOverlaps(const Gap& gap,
+                                          const std::vector<lattice::Direction>& directions) const;
+  [[nodiscard]] bool hasRoom(BoundarySide first,
+                             const std::vector<lattice::Direction>& directions) const;
   /// Per side of a border: where it runs.
   [[nodiscard]] std::vector<lattice::Direction> directions(const PlaneAt& planeAt) const;
-  void requireRoom(Side first, const std::vector<lattice::Direction>& directions) const;
+  void requireRoom(BoundarySide first, const std::vector<lattice::Direction>& directions) const;
   void requireFlatFaces(const std::vector<lattice::Direction>& directions) const;
 
   const LabelledMesh& mesh_;
   BoundarySides sides_;
-  std::vector<Side> borders_;
+  std::vector<BoundarySide> borders_;
   std::vector<Index> borderCount_;  ///< per vertex
 };
 

@@ -20,12 +20,16 @@ constexpr int kMostRounds = 150;
 constexpr int kStepsOfRound = 10;
 constexpr int kMostStepsOfRound = 100;
 constexpr double kFastDecrease = 0.03;
-/// Rounds after which there are to be fewer flipped elements than ever before.
-constexpr int kPatience = 8;
+struct Pace {
+  /// Rounds after which there are to be fewer flipped elements than ever before.
+  int patience;
+  /// The penalty grows at least as if the energy had fallen by this share.
+  double leastFollowed;
+};
+constexpr Pace kQuick = {8, 0.5};
+constexpr Pace kPatient = {16, 0.2};
 /// A step that lowers the energy by a smaller share ends its round.
 constexpr double kLeastDecrease = 1e-6;
-/// The penalty grows at least as if the energy had fallen by this share.
-constexpr double kLeastFollowed = 0.5;
 /// Regularization where hardly any element is bad.
 constexpr double kLeastEpsilon = 1e-9;
 /// Polishing ends when so many steps lower the energy by less than this share.
@@ -34,8 +38,7 @@ constexpr double kLeastPolish = 1e-4;
 
 /// The penalty grows as fast as the energy could follow (their Section 3, Theorem 1).
 double nextEpsilon(double epsilon, double followed, double leastDeterminant) {
-  const double aim =
-      (1 - std::max(followed, kLeastFollowed)) * regularized(epsilon, leastDeterminant);
+  const double aim = (1 - followed) * regularized(epsilon, leastDeterminant);
   const double square = aim * (aim - leastDeterminant);
   return std::max(kLeastEpsilon, 2 * std::sqrt(std::max(0.0, square)));
 }
@@ -50,12 +53,12 @@ struct Solver::Parts {
         metric(laplacian(theProblem, energy.uses()), kMostFactored, theStage.context()) {}
 
   /// Untangles x. Ends at the best place that was seen.
-  End untangle(double epsilon, Vector& x, int& steps) {
+  End untangle(double epsilon, const Pace& pace, Vector& x, int& steps) {
     std::size_t fewest = energy.at(x, epsilon).flipped;
     Vector best = x;
     int idle = 0;
     int rounds = 0;
-    for (; fewest > 0 && idle < kPatience && rounds < kMostRounds; ++rounds) {
+    for (; fewest > 0 && idle < pace.patience && rounds < kMostRounds; ++rounds) {
       Lbfgs descent(energy, metric, x, epsilon);
       const double before = descent.height().energy;
       steps += descendRound(descent, x);
@@ -63,7 +66,8 @@ struct Solver::Parts {
       idle = now.flipped < fewest ? 0 : idle + 1;
       if (now.flipped <= fewest) best = x;
       fewest = std::min(fewest, now.flipped);
-      epsilon = nextEpsilon(epsilon, 1 - now.energy / before, now.leastDeterminant);
+      const double followed = std::max(1 - now.energy / before, pace.leastFollowed);
+      epsilon = nextEpsilon(epsilon, followed, now.leastDeterminant);
     }
     x = best;
     if (fewest == 0) return End::Positive;
@@ -117,7 +121,8 @@ Result Solver::run(const Options& options) {
   Problem& problem = parts_->problem;
   Vector x = Eigen::Map<const Vector>(problem.x.data(), std::ssize(problem.x));
   Result result;
-  result.end = parts_->untangle(options.epsilon, x, result.steps);
+  result.end =
+      parts_->untangle(options.epsilon, options.isPatient ? kPatient : kQuick, x, result.steps);
   if (result.end == End::Positive) result.steps += parts_->polish(options.polishing, x);
   problem.x.assign(x.begin(), x.end());
   const Height height = parts_->energy.at(x, 0);

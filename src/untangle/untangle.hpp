@@ -10,10 +10,10 @@
 // 50 lines of code", ACM Transactions on Graphics 40 (2021): a penalty for flipped elements grows
 // as fast as the energy can follow. Each penalty gets a few steps of a quasi-Newton method whose
 // metric is the Laplacian of the elements, inverted by multigrid: a step takes a time proportional
-// to the number of elements. It ends when there are no fewer flipped elements after 8 penalties, or
-// after 150 of them. (Newton's method with a semidefinite stand-in for the Hessian matrix finds the
-// same maps, but takes half as long again over those of docs/quantize.md, and three times as long
-// over the hardest one.)
+// to the number of elements. It ends when there are no fewer flipped elements after 8 penalties (16
+// if it is to be patient), or after 150 of them. (Newton's method with a semidefinite stand-in for
+// the Hessian matrix finds the same maps, but takes half as long again over those of
+// docs/quantize.md, and three times as long over the hardest one.)
 //
 // Where flips stay, flatElements() says which ones no unknowns can mend.
 #pragma once
@@ -35,6 +35,9 @@ struct Options {
   double epsilon = 1;
   /// Steps, at most, that lower the energy once no element is flipped. None is flipped again.
   int polishing = 60;
+  /// Whether the penalty grows slowly, and flips may stay for longer: for maps of which nothing is
+  /// fixed, whose parts have to find their places first. Takes up to three times as many steps.
+  bool isPatient = false;
 };
 
 enum class End : unsigned char {

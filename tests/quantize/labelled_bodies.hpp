@@ -9,9 +9,13 @@
 #include <map>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include <hexhex/context.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/types.hpp>
+
+#include "extract/support.hpp"
 
 namespace hexhex::test {
 
@@ -135,6 +139,32 @@ class CubeBody {
   Cell size_;
   std::function<bool(const Cell&)> isFull_;
 };
+
+/// How many vertices of a mesh have so many cells, of odd numbers.
+inline std::map<int, int> cornersOf(const HexMesh& mesh) {
+  std::vector<int> counts(mesh.points.size());
+  for (const Hex& cell : mesh.cells) {
+    for (const Index v : cell) ++counts[v];
+  }
+  std::map<int, int> corners;
+  for (const int count : counts) {
+    if (count % 2 != 0) ++corners[count];
+  }
+  return corners;
+}
+
+/// Quantizes, extracts and verifies the polycube, whose corners and topology are those of the body.
+/// @param handles  through the body
+inline void expectPolycube(const CubeBody& body, const Labelled& input, int handles = 0) {
+  const QuantizedMap quantized = quantize(mapOf(input), {.cells = 500});
+  ExtractOptions exact;
+  exact.tolerance = 0;
+  const HexMesh mesh = verifiedExtraction(quantized.map, exact);
+  EXPECT_EQ(cornersOf(mesh), body.corners());
+  const Expectation expected = check(quantized.map).expected;
+  EXPECT_TRUE(expected.innerSingularEdges.empty());
+  EXPECT_EQ(expected.eulerCharacteristic, 1 - handles);
+}
 
 /// Points of the square [-1, 1]^2 or of a cube moved onto circles or balls of the same height.
 template <std::size_t N>

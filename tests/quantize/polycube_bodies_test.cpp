@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <quantize/bend.hpp>
 #include <quantize/polycube_borders.hpp>
 
 #include <hexhex/hexhex.hpp>
@@ -36,31 +37,6 @@ CubeBody notched() {
 /// With a corner at which six edges meet.
 CubeBody stairs() {
   return {{2, 2, 2}, [](const Cell& c) { return c[2] == 0 ? c[0] + c[1] < 2 : c == Cell{}; }};
-}
-
-/// How many vertices of a mesh have so many cells, of odd numbers.
-std::map<int, int> cornersOf(const HexMesh& mesh) {
-  std::vector<int> counts(mesh.points.size());
-  for (const Hex& cell : mesh.cells) {
-    for (const Index v : cell) ++counts[v];
-  }
-  std::map<int, int> corners;
-  for (const int count : counts) {
-    if (count % 2 != 0) ++corners[count];
-  }
-  return corners;
-}
-
-/// @param handles  through the body
-void expectPolycube(const CubeBody& body, const Labelled& input, int handles = 0) {
-  const QuantizedMap quantized = quantize(mapOf(input), {.cells = 500});
-  ExtractOptions exact;
-  exact.tolerance = 0;
-  const HexMesh mesh = verifiedExtraction(quantized.map, exact);
-  EXPECT_EQ(cornersOf(mesh), body.corners());
-  const Expectation expected = check(quantized.map).expected;
-  EXPECT_TRUE(expected.innerSingularEdges.empty());
-  EXPECT_EQ(expected.eulerCharacteristic, 1 - handles);
 }
 
 TEST(PolycubeBodies, AreBalls) {
@@ -127,8 +103,12 @@ IrregularEdges turnsOf(const CubeBody& body,
   Context context;
   Stage stage(context, "test");
   const LabelledMesh mesh = readLabels(input.tets, input.flags, stage);
-  return PolycubeBorders(mesh).turns(
-      [&](int axis, Index v) { return planes(input.tets.points[v], axis); });
+  IrregularEdges turns;
+  for (const PolycubeEdge& edge : PolycubeBorders(mesh).edges(
+           [&](int axis, Index v) { return planes(input.tets.points[v], axis); })) {
+    turns[edge.vertices] = edge.quarters;
+  }
+  return turns;
 }
 
 std::int64_t asTheyAre(const Vec3& p, int axis) {
@@ -168,22 +148,25 @@ void expectError(const Error& error, ErrorCode code, PlaceKind place, const std:
   EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
 }
 
-TEST(PolycubeBorders, RefusePlanesThatLeaveNoRoom) {
-  const auto errorWith = [](const auto& planes) {
-    return errorOf([&] { static_cast<void>(turnsOf(notched(), planes)); });
-  };
+TEST(PolycubeBorders, PutPlanesIntoAnotherOrderWhereFacesOverlap) {
   // The notch is deeper than the body.
-  const Error deep = errorWith([](const Vec3& p, int axis) {
-    const std::int64_t at = asTheyAre(p, axis);
-    return axis == 2 && at == 2 ? -1 : at;
+  EXPECT_EQ(turnsOf(notched(),
+                    [](const Vec3& p, int axis) {
+                      const std::int64_t at = asTheyAre(p, axis);
+                      return axis == 2 && at == 2 ? -1 : at;
+                    }),
+            turnsOf(notched(), asTheyAre));
+}
+
+TEST(PolycubeBorders, RefusePlanesThatLeaveNoRoom) {
+  const Error flat = errorOf([] {
+    static_cast<void>(turnsOf(
+        notched(), [](const Vec3& p, int axis) { return axis == 1 ? 0 : asTheyAre(p, axis); }));
   });
-  expectError(deep, ErrorCode::FlippedTet, PlaceKind::Vertex, "faces overlap around a vertex");
-  const Error flat =
-      errorWith([](const Vec3& p, int axis) { return axis == 1 ? 0 : asTheyAre(p, axis); });
   expectError(flat, ErrorCode::FlippedTet, PlaceKind::Edge, "has no length");
 }
 
-/// The boundary triangles of a box from 0 to 1, each with its middle.
+/// Boundary triangles, each with its middle.
 template <class Visit>
 void forEachTriangle(Labelled& input, const Visit& visit) {
   for (std::size_t t = 0; t < input.flags.size(); ++t) {
@@ -233,6 +216,33 @@ TEST(PolycubeLabels, ThatFitNoPolycubeAreRefusedWhereTheyDoNot) {
                 PlaceKind::Vertex, "More than two edges");
 }
 
+TEST(PolycubeLabels, OfACornerThatNoPlanesGiveRoomAreRefused) {
+  Labelled body = notched().labelled(3, [](const Vec3& p) { return p; });
+  forEachTriangle(body, [](const Vec3& middle, std::int8_t& flag) {
+    if (flag == 0 && middle[0] < 1.5) flag = 1;  // a side of the notch
+  });
+  expectError(errorOf([&] { static_cast<void>(mapOf(body)); }), ErrorCode::FlippedTet,
+              PlaceKind::Vertex, "faces overlap around a vertex, whose labels are -x");
+}
+
+/// Whose corners are those of polycubes: only all planes together contradict each other.
+TEST(PolycubeLabels, OfStairsThatLeadUpToThemselvesAreRefused) {
+  Labelled body = ring().labelled(3, [](const Vec3& p) { return p; });
+  forEachTriangle(body, [](const Vec3& middle, std::int8_t& flag) {
+    if (flag != 4) return;
+    // Steps across the four arms.
+    const auto isStep = [&](std::size_t along, std::size_t across, bool isFar) {
+      return std::abs(middle[along] - 1.5) < 0.17 && (middle[across] > 1.5) == isFar;
+    };
+    if (isStep(0, 1, false)) flag = 1;
+    if (isStep(1, 0, true)) flag = 3;
+    if (isStep(0, 1, true)) flag = 0;
+    if (isStep(1, 0, false)) flag = 2;
+  });
+  expectError(errorOf([&] { static_cast<void>(mapOf(body)); }), ErrorCode::FlippedTet,
+              PlaceKind::Tet, "stay flipped");
+}
+
 TEST(PolycubeLabels, OfOneKindAreRefused) {
   Labelled box = cube().labelled(2, [](const Vec3& p) { return p; });
   forEachTriangle(box, [](const Vec3&, std::int8_t& flag) { flag = 4; });
@@ -279,7 +289,9 @@ TEST(PolycubeRealLabels, AreBent) {
   const auto folder =
       std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "labels";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no labels";
-  for (const std::string name : {"x_ball", "x_roundcube", "mm_Explicit_grid_17", "sc_fanpart"}) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".flags") continue;
+    const std::string name = entry.path().stem().string();
     SCOPED_TRACE(name);
     Context context;
     const TetMesh tets = readTetMesh(folder / (name + ".mesh"), {}, context);

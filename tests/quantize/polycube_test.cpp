@@ -1,4 +1,5 @@
 // Polycubes by labels: from a tet mesh whose boundary triangles say which way they are to face.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -94,7 +95,7 @@ RC_GTEST_PROP(Polycube, HasTheMeshThatItsLabelsImply, ()) {
 TEST(Polycube, IsTheObjectItselfWhereThatIsOne) {
   const Labelled input = polycube(SampleKind::Box, 2);
   const TetMap map = mapOf(input);
-  EXPECT_EQ(map.tets, input.tets.tets);
+  EXPECT_TRUE(std::equal(input.tets.points.begin(), input.tets.points.end(), map.points.begin()));
   for (std::size_t t = 0; t < map.tets.size(); ++t) {
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
