@@ -100,6 +100,29 @@ int WallTracer::moveEnd(const TetEdge& edge, const AxisPlane& plane) {
   return mesh_.moveInto(edge.tet, moved, plane.axis, plane.value) ? corner : -1;
 }
 
+namespace {
+
+/// Calls visit(tet, plane in its chart) for the other tets around an edge: both ways round, if the
+/// boundary is between.
+template <class Visit>
+void forEachOtherTetAt(const WallMesh& mesh, const TetEdge& edge, const AxisPlane& plane,
+                       const Visit& visit) {
+  bool isClosed = false;
+  for (int face = 0; face < 4 && !isClosed; ++face) {
+    if (lattice::contains(edge.mask(), face)) continue;
+    WallTurn turn(mesh, edge, face);
+    AxisPlane here = plane;
+    while (!isClosed && !turn.isAtBoundary()) {
+      here = here.beyond(mesh.change[turn.out()]);
+      turn.step();
+      isClosed = turn.edge().tet == edge.tet;
+      if (!isClosed) visit(turn.edge().tet, here);
+    }
+  }
+}
+
+}  // namespace
+
 void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
   struct Crossed {
     std::array<Index, 2> vertices;
@@ -117,18 +140,7 @@ void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
   };
   const Tet& tet = mesh_.tets[edge.tet];
   if (mesh_.isNew(tet[edge.corner0]) || mesh_.isNew(tet[edge.corner1])) {
-    bool isClosed = false;
-    for (int face = 0; face < 4 && !isClosed; ++face) {
-      if (lattice::contains(edge.mask(), face)) continue;
-      WallTurn turn(mesh_, edge, face);
-      AxisPlane here = plane;
-      while (!isClosed && !turn.isAtBoundary()) {
-        here = here.beyond(mesh_.change[turn.out()]);
-        turn.step();
-        isClosed = turn.edge().tet == edge.tet;
-        if (!isClosed) collect(turn.edge().tet, here);
-      }
-    }
+    forEachOtherTetAt(mesh_, edge, plane, collect);
   }
   mesh_.split(edge, plane.axis, plane.value);
   for (const Crossed& other : others) {
