@@ -113,14 +113,34 @@ TEST(Rotation, ProductIsClosedAssociativeAndComposes) {
   });
 }
 
-const double r = std::sqrt(0.5);
-const double h = 0.5;
+const double kRoot = std::sqrt(0.5);
+const double kHalf = 0.5;
 /// AlgoHex's unit quaternions (w, x, y, z), in its order.
 const std::array<std::array<double, 4>, 24> kQuaternions = {{
-    {1, 0, 0, 0},  {0, 1, 0, 0},   {0, 0, 1, 0},  {0, 0, 0, 1},   {r, r, 0, 0},   {r, -r, 0, 0},
-    {r, 0, r, 0},  {r, 0, -r, 0},  {r, 0, 0, r},  {r, 0, 0, -r},  {0, r, r, 0},   {0, 0, r, r},
-    {0, r, 0, r},  {0, -r, r, 0},  {0, 0, -r, r}, {0, r, 0, -r},  {h, h, h, h},   {h, h, h, -h},
-    {h, h, -h, h}, {h, h, -h, -h}, {h, -h, h, h}, {h, -h, h, -h}, {h, -h, -h, h}, {h, -h, -h, -h},
+    {1, 0, 0, 0},
+    {0, 1, 0, 0},
+    {0, 0, 1, 0},
+    {0, 0, 0, 1},
+    {kRoot, kRoot, 0, 0},
+    {kRoot, -kRoot, 0, 0},
+    {kRoot, 0, kRoot, 0},
+    {kRoot, 0, -kRoot, 0},
+    {kRoot, 0, 0, kRoot},
+    {kRoot, 0, 0, -kRoot},
+    {0, kRoot, kRoot, 0},
+    {0, 0, kRoot, kRoot},
+    {0, kRoot, 0, kRoot},
+    {0, -kRoot, kRoot, 0},
+    {0, 0, -kRoot, kRoot},
+    {0, kRoot, 0, -kRoot},
+    {kHalf, kHalf, kHalf, kHalf},
+    {kHalf, kHalf, kHalf, -kHalf},
+    {kHalf, kHalf, -kHalf, kHalf},
+    {kHalf, kHalf, -kHalf, -kHalf},
+    {kHalf, -kHalf, kHalf, kHalf},
+    {kHalf, -kHalf, kHalf, -kHalf},
+    {kHalf, -kHalf, -kHalf, kHalf},
+    {kHalf, -kHalf, -kHalf, -kHalf},
 }};
 
 Matrix matrixOf(const std::array<double, 4>& q) {
