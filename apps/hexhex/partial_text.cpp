@@ -5,10 +5,10 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <hexhex/version.hpp>
 
+#include "json.hpp"
 #include "output.hpp"
 
 namespace hexhex::command {
@@ -48,7 +48,6 @@ void printPartial(const PartialMesh& partial) {
 }
 
 std::string partialReportAsJson(const PartialMesh& partial, const Error& problem, int scale) {
-  using Json = nlohmann::ordered_json;
   Json holes = Json::array();
   for (const Hole& hole : partial.holes) {
     holes.push_back({{"tet", hole.tet},

@@ -3,8 +3,8 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json.hpp"
 #include "output.hpp"
 
 namespace hexhex::command {
@@ -41,8 +41,7 @@ void printRegions(const RepairReport& report) {
   }
 }
 
-nlohmann::ordered_json repairAsJson(const RepairReport& report) {
-  using Json = nlohmann::ordered_json;
+Json repairAsJson(const RepairReport& report) {
   if (!report.changed) return nullptr;
   Json regions = Json::array();
   for (const RepairedRegion& region : report.regions) {

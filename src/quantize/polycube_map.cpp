@@ -31,9 +31,8 @@
 #include <base/stage.hpp>
 #endif
 
-namespace hexhex::quantization {
-
 #if defined(HEXHEX_HAS_QUANTIZE)
+namespace hexhex::quantization {
 namespace {
 
 /// Times at which tets are refined and all begins anew.
@@ -192,8 +191,11 @@ class PolycubeMaker {
 }  // namespace
 
 }  // namespace hexhex::quantization
+#endif
 
 namespace hexhex {
+
+#if defined(HEXHEX_HAS_QUANTIZE)
 
 TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags, Context& context) {
   constexpr std::array<WorkStep, 3> kSteps = {{{"labels", 1}, {"planes", 2}, {"untangling", 6}}};
@@ -213,4 +215,4 @@ TetMap mapFromFlags(const TetMesh& /*tets*/, std::span<const FaceFlags> /*flags*
 }
 #endif
 
-}  // namespace hexhex::quantization
+}  // namespace hexhex

@@ -26,9 +26,8 @@
 #include <base/vector3.hpp>
 #endif
 
-namespace hexhex::quantization {
-
 #if defined(HEXHEX_HAS_QUANTIZE)
+namespace hexhex::quantization {
 namespace {
 
 /// As a share of its size, an almost seamless map may be so far from a seamless one.
@@ -423,8 +422,11 @@ QuantizedMap quantizeSorted(TetMap map, const QuantizeOptions& options, Context&
 }  // namespace
 
 }  // namespace hexhex::quantization
+#endif
 
 namespace hexhex {
+
+#if defined(HEXHEX_HAS_QUANTIZE)
 
 bool canQuantize() noexcept { return true; }
 
@@ -499,4 +501,4 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options) {
   return quantize(map, options, context);
 }
 
-}  // namespace hexhex::quantization
+}  // namespace hexhex

@@ -38,7 +38,7 @@ void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
 
 #include <hexhex/error.hpp>
 
-namespace hexhex {
+namespace hexhex::io {
 
 bool hasZlib() noexcept { return false; }
 
@@ -50,6 +50,6 @@ void deflateBlock(std::span<const char> /*bytes*/, Array<char>& /*compressed*/) 
   throw Error(ErrorCode::Internal, "This library was built without zlib.");
 }
 
-}  // namespace hexhex
+}  // namespace hexhex::io
 
 #endif
