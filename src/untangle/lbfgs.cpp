@@ -24,7 +24,8 @@ Lbfgs::Lbfgs(Energy& energy, const Multigrid& metric, const Vector& x, double ep
 Vector Lbfgs::direction() const {
   Vector d = -gradient_;
   std::vector<double> shares(pairs_.size());
-  for (std::size_t i = pairs_.size(); i-- > 0;) {
+  for (std::size_t i = pairs_.size(); i > 0;) {
+    --i;
     shares[i] = pairs_[i].move.dot(d) / pairs_[i].product;
     d -= shares[i] * pairs_[i].change;
   }
