@@ -102,11 +102,9 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
 }
 
 void addKeepWalls(CLI::App& parser, MapSource& source) {
-  parser
-      .add_flag("--keep-walls", source.keepWalls,
-                "Walls of a motorcycle complex that a .hexex file lists\n"
-                "become features with the tag 2: faces between blocks")
-      ->excludes("--tets");
+  parser.add_flag("--keep-walls", source.keepWalls,
+                  "Walls of a motorcycle complex that a .hexex file lists\n"
+                  "become features with the tag 2: faces between blocks");
 }
 
 namespace {
@@ -134,6 +132,8 @@ void requireOneSource(const MapSource& source, const std::string& argument) {
   if (source.isPair() && source.polycube.empty() && source.flags.empty()) {
     throw CLI::ValidationError("--tets", "requires --polycube or --flags");
   }
+  // excludes("--tets") would end the process where memory ends: CLI11 looks names up in noexcept functions.
+  if (source.isPair() && source.keepWalls) throw CLI::ExcludesError("--keep-walls", "--tets");
   if (source.file.empty() || !source.isPair()) return;
   throw CLI::ValidationError(argument, "cannot be given beside --tets");
 }

@@ -39,7 +39,7 @@ struct MapSource {
 /// ".mesh, .vtu or .vtk": the extensions of the formats that can do this.
 [[nodiscard]] std::string extensionsThat(bool FileFormat::*can);
 
-/// Adds --keep-walls, for a source whose options are there.
+/// Adds --keep-walls; addMapSource() sees to it that --tets is not given beside it.
 void addKeepWalls(CLI::App& parser, MapSource& source);
 
 /// For arguments that name a map to read.
