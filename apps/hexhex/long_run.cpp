@@ -25,14 +25,16 @@ LongRun::LongRun(const RunOptions& options, std::vector<WorkStep> steps)
   parts_.reserve(names_.size());
 }
 
+LongRun::Watch::Watch(LongRun& run, std::string_view name) : run_(run) {
+  const auto isThis = [&](const StageTime& part) { return part.stage == name; };
+  const auto part = std::find_if(run.parts_.begin(), run.parts_.end(), isThis);
+  part_ = static_cast<std::size_t>(part - run.parts_.begin());
+  if (part == run.parts_.end()) run.parts_.push_back({std::string(name), 0});
+}
+
 LongRun::Watch::~Watch() {
   const std::chrono::duration<double> seconds = Clock::now() - begin_;
-  for (StageTime& part : run_.parts_) {
-    if (part.stage != name_) continue;
-    part.seconds += seconds.count();
-    return;
-  }
-  run_.parts_.push_back({std::string(name_), seconds.count()});
+  run_.parts_[part_].seconds += seconds.count();
 }
 
 std::string LongRun::partsAsText() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -55,14 +56,15 @@ class LongRun {
   /// Adds the time that it lives to a part.
   class Watch {
    public:
-    Watch(LongRun& run, std::string_view name) : run_(run), name_(name) {}
+    /// Whatever takes memory is done here: destructors must not fail.
+    Watch(LongRun& run, std::string_view name);
     ~Watch();
     Watch(const Watch&) = delete;
     Watch& operator=(const Watch&) = delete;
 
    private:
     LongRun& run_;
-    std::string_view name_;
+    std::size_t part_ = 0;
     Clock::time_point begin_ = Clock::now();
   };
 

@@ -132,7 +132,8 @@ void requireOneSource(const MapSource& source, const std::string& argument) {
   if (source.isPair() && source.polycube.empty() && source.flags.empty()) {
     throw CLI::ValidationError("--tets", "requires --polycube or --flags");
   }
-  // excludes("--tets") would end the process where memory ends: CLI11 looks names up in noexcept functions.
+  // excludes("--tets") would end the process where memory ends: CLI11 looks names up in noexcept
+  // functions.
   if (source.isPair() && source.keepWalls) throw CLI::ExcludesError("--keep-walls", "--tets");
   if (source.file.empty() || !source.isPair()) return;
   throw CLI::ValidationError(argument, "cannot be given beside --tets");
