@@ -47,6 +47,62 @@ lattice::Transition toTransition(const ChartChange& change) {
   return {change.rotation, {toInt32(t[0]), toInt32(t[1]), toInt32(t[2])}};
 }
 
+/// Lengths that are far below one cell are rounded to one, so that a block may be as many orders
+/// thinner than its integers say. The solver is left to make up for this ratio and its inverse:
+/// within these, maps are nearer to the seamless one; a ratio of 10^4 it cannot follow.
+constexpr double kMostStretch = 4;
+
+/// Per block and axis: the integer length by the real one.
+/// @param unit  length of a cell on the lattice
+std::vector<Vec3> blockRatios(const MotorcycleComplex& complex, const BlockIntegers& integers,
+                              double unit) {
+  std::vector<Extent> real(complex.blockCount);
+  std::vector<Extent> whole(complex.blockCount);
+  for (const PatchSide& patch : complex.patches) {
+    real[patch.block].add(patch);
+    for (const ArcSide& side : patch.border) {
+      whole[patch.block].add(integers(patch.block, side.start));
+    }
+  }
+  std::vector<Vec3> ratios(complex.blockCount);
+  for (std::size_t block = 0; block < ratios.size(); ++block) {
+    const lattice::LatticePoint from = real[block].high - real[block].low;
+    const lattice::LatticePoint to = whole[block].high - whole[block].low;
+    for (std::size_t k = 0; k < 3; ++k) {
+      ratios[block][k] = static_cast<double>(to[k]) * unit / static_cast<double>(from[k]);
+    }
+  }
+  return ratios;
+}
+
+/// By what the reference of each tet is stretched along its axes: the mean over its parts, beyond
+/// what the solver is left to make up for.
+std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
+                               const std::vector<ChartChange>& ways,
+                               const std::vector<Vec3>& ratios, std::size_t originals) {
+  const WallMesh& mesh = complex.mesh;
+  std::vector<Vec3> stretches(originals);
+  std::vector<double> volumes(originals);
+  for (Index part = 0; part < mesh.tetCount(); ++part) {
+    const lattice::LatticeTet& u = mesh.corners[part];
+    const double volume = lattice::orientationDeterminant(u[0], u[1], u[2], u[3]).toDouble();
+    const Index tet = mesh.original[part];
+    volumes[tet] += volume;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis =
+          static_cast<std::size_t>(lattice::axisOf(ways[part].rotation(lattice::direction(k, 1))));
+      stretches[tet][axis] += volume * ratios[complex.blockOf[part]][static_cast<std::size_t>(k)];
+    }
+  }
+  for (std::size_t tet = 0; tet < originals; ++tet) {
+    for (double& stretch : stretches[tet]) {
+      stretch /= volumes[tet];
+      stretch /= std::clamp(stretch, 1 / kMostStretch, kMostStretch);
+    }
+  }
+  return stretches;
+}
+
 /// The triangles, edges and vertices of features that are aligned.
 void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers,
                  const std::vector<ChartChange>& ways, BendProblem& problem) {
@@ -88,11 +144,14 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
   problem.points.assign(view.points.begin(), view.points.end());
   problem.tets.assign(view.tets.begin(), view.tets.end());
   problem.reference.resize(problem.tets.size());
+  const std::vector<ChartChange> ways = waysToOriginal(complex, integers, problem.tets.size());
+  const std::vector<Vec3> stretches = tetStretches(
+      complex, ways, blockRatios(complex, integers, map.unit / scale), problem.tets.size());
   for (std::size_t t = 0; t < problem.tets.size(); ++t) {
     for (std::size_t i = 0; i < 4; ++i) {
       const lattice::LatticePoint u = complex.toBlock[t](map.corners[t][i]);
       for (std::size_t k = 0; k < 3; ++k) {
-        problem.reference[t][i][k] = static_cast<double>(u[k]) / map.unit * scale;
+        problem.reference[t][i][k] = static_cast<double>(u[k]) / map.unit * scale * stretches[t][k];
       }
     }
   }
@@ -102,7 +161,6 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
   }
   problem.transitions.resize(4 * problem.tets.size());
   problem.planes.resize(4 * problem.tets.size());
-  const std::vector<ChartChange> ways = waysToOriginal(complex, integers, problem.tets.size());
   for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
     if (mesh.originalFace[h] == kInside) continue;
     const Index tet = adjacency::tetOf(h);

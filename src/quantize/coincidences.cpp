@@ -1,6 +1,10 @@
-#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
 #include <set>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <quantize/coincidences.hpp>
 
@@ -8,11 +12,16 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// So many planes are compared with each other at most.
-constexpr std::size_t kMostPlanes = 200'000;
+/// So many planes are compared with each other at most: more of them come near to each other by
+/// chance.
+constexpr std::size_t kMostPlanes = 10'000;
+/// So often one is taken across a piece of the cut at most: for maps with many pieces, the rest of
+/// quantization takes longer than this.
+constexpr std::size_t kMostCrossings = 200'000;
 
-/// In place of an axis: not a coordinate, but a difference.
-constexpr std::size_t kMoves = 3;
+/// Planes may also lie anywhere: one on each axis stands for those, at this share of the extent,
+/// which no other plane is likely to have.
+constexpr std::array<double, 3> kAnywhere = {0.1234567, 0.2345671, 0.3456712};
 
 /// A coordinate that conditions fix, times two.
 struct FixedCoordinate {
@@ -38,36 +47,79 @@ void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>&
   }
 }
 
-/// The same planes as they are beyond pieces of the cut.
-std::set<FixedCoordinate> beyondCut(const std::set<FixedCoordinate>& here, const CutGraph& graph,
-                                    const SharedUnknowns& unknowns) {
-  std::set<FixedCoordinate> all = here;
-  for (const adjacency::HalfFace h : unknowns.cutPieces()) {
-    for (const FixedCoordinate& fixed : here) {
-      const lattice::Direction to =
-          graph.rotations[h](lattice::direction(static_cast<int>(fixed.axis), 1));
-      FixedCoordinate there;
-      there.axis = static_cast<std::size_t>(lattice::axisOf(to));
-      there.form.add(fixed.form, lattice::signOf(to));
-      there.form.add(unknowns.translation(h, there.axis), 2);
-      all.insert(std::move(there));
+/// Planes, each once: what is nearly the same as one that is there becomes an equation.
+class Planes {
+ public:
+  /// @param values  of shared unknowns
+  Planes(std::span<const std::int64_t> values, double noise, double extent)
+      : sharedCount_(values.size()),
+        values_(values.begin(), values.end()),
+        near_(static_cast<std::int64_t>(2 * noise)) {
+    for (const double share : kAnywhere) values_.push_back(std::llround(share * extent));
+  }
+
+  void addAnywhere() {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      add({axis, {static_cast<Index>(sharedCount_ + axis), 2}});
     }
   }
-  return all;
-}
 
-/// What ways around move along axes that they do not turn, and nothing: a wall that comes back to
-/// its beginning meets it, or misses it by more than noise.
-void collectMoves(const CutGraph& graph, const SharedUnknowns& unknowns,
-                  std::set<FixedCoordinate>& all) {
-  all.insert({kMoves, {}});
-  for (const adjacency::HalfFace h : unknowns.cutPieces()) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const lattice::Direction d = lattice::direction(static_cast<int>(axis), 1);
-      if (graph.rotations[h](d) != d) continue;
-      FixedCoordinate move{kMoves, {}};
-      move.form.add(unknowns.translation(h, axis), 2);
-      all.insert(std::move(move));
+  void add(const FixedCoordinate& plane) {
+    const std::int64_t value = valueOf(plane);
+    const auto at = numbers_.lower_bound({plane.axis, value - near_});
+    if (at == numbers_.end() || at->first.first != plane.axis || at->first.second > value + near_) {
+      numbers_.emplace(std::pair(plane.axis, value), planes_.size());
+      planes_.push_back(plane);
+      return;
+    }
+    IntegerForm difference = plane.form;
+    difference.add(planes_[at->second].form, -1);
+    // What depends on where planes lie that may lie anywhere is chance.
+    const auto& terms = difference.terms();
+    if (terms.empty() || terms.back().first >= sharedCount_) return;
+    isAny_ = isAny_ || at->first.second != value;
+    equations_.push_back(std::move(difference));
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return planes_.size(); }
+  [[nodiscard]] const FixedCoordinate& operator[](std::size_t i) const { return planes_[i]; }
+  [[nodiscard]] std::int64_t valueOf(const FixedCoordinate& plane) const {
+    return plane.form(values_);
+  }
+  /// None if all planes that are nearly the same are the same: these have to stay so.
+  [[nodiscard]] std::vector<IntegerForm> equations() && {
+    if (!isAny_) equations_.clear();
+    return std::move(equations_);
+  }
+
+ private:
+  std::size_t sharedCount_;
+  std::vector<std::int64_t> values_;  ///< of shared unknowns, and of planes anywhere
+  std::int64_t near_;
+  std::vector<FixedCoordinate> planes_;
+  std::map<std::pair<std::size_t, std::int64_t>, std::size_t> numbers_;  ///< by axis and value
+  std::vector<IntegerForm> equations_;
+  bool isAny_ = false;
+};
+
+/// Adds the planes as they are beyond pieces of the cut, beyond further ones, and so on: walls may
+/// go around through the map many times. Those far outside of all charts are none of a wall's.
+void addBeyondCut(const CutGraph& graph, const SharedUnknowns& unknowns, double extent,
+                  Planes& planes) {
+  const std::vector<adjacency::HalfFace> pieces = unknowns.cutPieces();
+  for (std::size_t next = 0;
+       next < planes.size() && planes.size() < kMostPlanes && next * pieces.size() < kMostCrossings;
+       ++next) {
+    const FixedCoordinate here = planes[next];
+    for (const adjacency::HalfFace h : pieces) {
+      const lattice::Direction to =
+          graph.rotations[h](lattice::direction(static_cast<int>(here.axis), 1));
+      FixedCoordinate there;
+      there.axis = static_cast<std::size_t>(lattice::axisOf(to));
+      there.form.add(here.form, lattice::signOf(to));
+      there.form.add(unknowns.translation(h, there.axis), 2);
+      const auto coordinate = 0.5 * static_cast<double>(planes.valueOf(there));
+      if (std::abs(coordinate) <= 2 * extent) planes.add(there);
     }
   }
 }
@@ -76,37 +128,15 @@ void collectMoves(const CutGraph& graph, const SharedUnknowns& unknowns,
 
 std::vector<IntegerForm> coincidences(const CutGraph& graph, const SharedUnknowns& unknowns,
                                       const std::vector<VertexConditions>& conditions,
-                                      std::span<const std::int64_t> values, double noise) {
-  std::vector<IntegerForm> equations;
-  std::set<FixedCoordinate> all;
-  for (const VertexConditions& vertex : conditions) collectFixed(vertex, all);
-  // Walls cross the cut, some of them twice.
-  for (int crossing = 0; crossing < 2; ++crossing) {
-    if (all.size() * unknowns.cutPieces().size() > kMostPlanes) break;
-    all = beyondCut(all, graph, unknowns);
-  }
-  collectMoves(graph, unknowns, all);
-  std::vector<std::tuple<std::size_t, std::int64_t, const IntegerForm*>> sorted;
-  sorted.reserve(all.size());
-  for (const FixedCoordinate& each : all) {
-    sorted.emplace_back(each.axis, each.form(values), &each.form);
-  }
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
-  });
-  bool isAny = false;
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const auto& [axis, value, form] = sorted[i];
-    const auto& [otherAxis, otherValue, otherForm] = sorted[i - 1];
-    const auto apart = static_cast<double>(value - otherValue);
-    if (axis != otherAxis || apart > 2 * noise) continue;
-    isAny = isAny || apart != 0;
-    equations.push_back(*form);
-    equations.back().add(*otherForm, -1);
-  }
-  // Those that are the same already have to stay so.
-  if (!isAny) equations.clear();
-  return equations;
+                                      std::span<const std::int64_t> values, double noise,
+                                      double extent) {
+  std::set<FixedCoordinate> fixed;
+  for (const VertexConditions& vertex : conditions) collectFixed(vertex, fixed);
+  Planes planes(values, noise, extent);
+  for (const FixedCoordinate& each : fixed) planes.add(each);
+  planes.addAnywhere();
+  addBeyondCut(graph, unknowns, extent, planes);
+  return std::move(planes).equations();
 }
 
 }  // namespace hexhex::quantization

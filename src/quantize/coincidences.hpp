@@ -10,11 +10,12 @@ namespace hexhex::quantization {
 
 /// Equations for what is fixed at nearly the same coordinate of the common charts: as symmetric
 /// objects have it.
+/// @param extent  of coordinates in all charts; as noise, and values, on the lattice
 /// @return none if all of them are the same
 [[nodiscard]] std::vector<IntegerForm> coincidences(const CutGraph& graph,
                                                     const SharedUnknowns& unknowns,
                                                     const std::vector<VertexConditions>& conditions,
                                                     std::span<const std::int64_t> values,
-                                                    double noise);
+                                                    double noise, double extent);
 
 }  // namespace hexhex::quantization

@@ -23,6 +23,9 @@ constexpr std::size_t kMostEntries = std::size_t{1} << 27;
 /// Of coefficients; those of values, which stay far below, are sums of a few of them.
 constexpr std::int64_t kLargestCoefficient = std::int64_t{1} << 40;
 constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
+/// By what a wish may divide: planes of symmetric objects that come back after several ways around
+/// make fractions of up to eighths. Larger ones, of chains of them, would need a coarser lattice.
+constexpr std::int64_t kLargestDivisor = 8;
 
 [[noreturn]] void failForSize() {
   throw Error(
@@ -96,7 +99,7 @@ IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm>
                              std::vector<IntegerForm> wishes)
     : variableCount_(variableCount), solvedBy_(variableCount, kNone) {
   addEquations(std::move(equations), std::numeric_limits<std::int64_t>::max());
-  addEquations(std::move(wishes), 2);
+  addEquations(std::move(wishes), kLargestDivisor);
   for (Index v = 0; v < variableCount; ++v) {
     if (solvedBy_[v] == kNone) free_.push_back(v);
   }

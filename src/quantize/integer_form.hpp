@@ -45,7 +45,7 @@ class IntegerForm {
 class IntegerSystem {
  public:
   /// @param equations  forms that are to vanish
-  /// @param wishes     further ones, but for those that would make fractions other than halves
+  /// @param wishes     further ones, but for those that would make fractions of more than eighths
   IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
                 std::vector<IntegerForm> wishes = {});
 

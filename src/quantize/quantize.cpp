@@ -61,11 +61,18 @@ constexpr std::array<Attempt, 10> kAttempts = {{{1, true},
 /// Tets are split until there are so many times as many: first not at all, as other integers are
 /// cheaper than tets; more rarely helps.
 constexpr std::array<double, 2> kGrowths = {1, 1.25};
-/// Steps of a search for a density that works, and how many there are at most.
-constexpr double kDenser = 1.3;
-constexpr int kMostDensities = 24;
-/// How often a map is bent while a density is searched.
-constexpr std::uint64_t kMostAttempts = 120;
+/// That mends few of them: hardly any map of which a larger share stays flipped, and if it is as
+/// large after some attempts, other integers near to these do not help, either.
+constexpr double kMostMended = 0.01;
+constexpr double kHopelessShare = 0.1;
+constexpr std::uint64_t kFewAttempts = 3;
+/// If no attempt succeeds: steps of a search for a number of cells that works, how many there are
+/// at most, and with which complex.
+constexpr double kDenser = 1.5;
+constexpr int kMostDensities = 10;
+constexpr std::array<bool, 2> kReduced = {true, false};
+constexpr std::uint64_t kMostAttempts =
+    kGrowths.size() * kAttempts.size() + kMostDensities * kReduced.size();
 
 /// Planes so near to each other, as a share of the map's size, are taken as one if walls between
 /// them leave no room for tets: in turn. Cells are seldom smaller than the last.
@@ -246,34 +253,45 @@ class Quantizer {
   }
 
   QuantizedMap run() {
-    double density = 1;
-    for (int step = 0; step < (options_.densify ? kMostDensities : 1); ++step) {
-      const double cells = report_.cellsWanted * density;
-      for (const double growth : kGrowths) {
-        for (const Attempt& attempt : kAttempts) {
-          if (report_.attempts == mostAttempts()) fail();
-          cutIntoBlocks(attempt.reduced);
-          std::optional<QuantizedMap> result = tryCells(cells * attempt.density, growth);
-          if (result) return std::move(*result);
-        }
+    for (const double growth : kGrowths) {
+      if (growth > 1 && leastFlipped_ > kMostMended) break;
+      for (const Attempt& attempt : kAttempts) {
+        if (isHopeless()) break;
+        cutIntoBlocks(attempt.reduced);
+        auto result = tryCells(report_.cellsWanted * attempt.density, growth);
+        if (result) return std::move(*result);
       }
-      density *= kDenser;
-      if (report_.cellsWanted * density > kMostCells) break;
     }
-    fail();
+    isDenser_ = true;
+    double cells = report_.cellsWanted;
+    for (int step = 0; step < kMostDensities && cells * kDenser <= kMostCells; ++step) {
+      cells *= kDenser;
+      for (const bool reduced : kReduced) {
+        if (!reduced && isHopeless()) break;
+        cutIntoBlocks(reduced);
+        auto result = tryCells(cells, 1);
+        if (result && !options_.densify) {
+          fail(std::to_string(report_.cells) +
+               " cells work: ask for so many, or let it choose (densify)");
+        }
+        if (result) return std::move(*result);
+      }
+    }
+    fail("Nor were any up to " + std::to_string(std::llround(cells)) +
+         " cells found that it can be bent onto: make arcs of the map's blocks less different in "
+         "length");
   }
 
  private:
-  [[nodiscard]] std::uint64_t mostAttempts() const {
-    return options_.densify ? kMostAttempts : kGrowths.size() * kAttempts.size();
+  [[nodiscard]] bool isHopeless() const {
+    return report_.attempts >= kFewAttempts && leastFlipped_ > kHopelessShare;
   }
 
   /// Says which attempt this is.
   void announce(double cells, double growth) {
     context_.report("bending " + std::to_string(report_.attempts) + " of at most " +
-                        std::to_string(mostAttempts()) + ": " +
-                        std::to_string(std::llround(cells)) + " cells in " +
-                        std::to_string(report_.blocks) + " blocks" +
+                        std::to_string(kMostAttempts) + ": " + std::to_string(std::llround(cells)) +
+                        " cells in " + std::to_string(report_.blocks) + " blocks" +
                         (growth > 1 ? ", with split tets" : ""),
                     0);
   }
@@ -313,7 +331,11 @@ class Quantizer {
     BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
       failed_.insert({growth, report_.blocks, choice->integers});
-      if (!bent.flippedTets.empty()) {
+      const double flipped = static_cast<double>(bent.flippedTets.size());
+      if (flipped > 0) {
+        leastFlipped_ = std::min(leastFlipped_, flipped / static_cast<double>(bent.tets.size()));
+      }
+      if (flipped > 0 && (!isDenser_ || flippedTet_ == kNone)) {
         flippedTet_ = bent.parentTet[bent.flippedTets.front()];
         flippedBlock_ = "block " + std::to_string(blockOf[flippedTet_] + 1) + " of " +
                         std::to_string(report_.blocks) + " with " +
@@ -365,24 +387,25 @@ class Quantizer {
     return best;
   }
 
-  [[noreturn]] void fail() const {
-    std::string message = "The map cannot be bent onto integers for about " +
-                          std::to_string(std::llround(report_.cellsWanted)) + " cells";
+  /// @param whatWorks  what a search for larger numbers of cells has found
+  [[noreturn]] void fail(const std::string& whatWorks) const {
+    const std::string message = "The map cannot be bent onto integers for about " +
+                                std::to_string(std::llround(report_.cellsWanted)) + " cells: ";
+    const std::string advice = ". " + whatWorks + '.';
     if (failed_.empty()) {
       throw Error(
           ErrorCode::FlippedTet,
-          message + ": none were found for the " + std::to_string(report_.arcs) +
-              " arcs of its motorcycle complex. Ask for more cells" +
-              (report_.integersBy == "rounding" ? ", or install CBC (coinor-libcbc3)." : "."));
+          message + "none were found for the " + std::to_string(report_.arcs) +
+              " arcs of its motorcycle complex" + advice +
+              (report_.integersBy == "rounding" ? " Or install CBC (coinor-libcbc3)." : ""));
     }
     if (flippedTet_ == kNone) {
       throw Error(ErrorCode::HalfIntegerFixedPoint,
-                  message + ": they leave no position for a vertex. Ask for more cells.");
+                  message + "they leave no position for a vertex" + advice);
     }
     throw Error(ErrorCode::FlippedTet,
-                message + ": tets stay flipped in " + flippedBlock_ + ", after " +
-                    std::to_string(report_.attempts) + " attempts. Ask for more cells" +
-                    (options_.densify ? "." : ", or let it choose a density that works (densify)."),
+                message + "tets stay flipped in " + flippedBlock_ + ", after " +
+                    std::to_string(report_.attempts) + " attempts" + advice,
                 {PlaceKind::Tet, flippedTet_});
   }
 
@@ -399,8 +422,10 @@ class Quantizer {
   /// Integers that the map cannot be bent onto, if tets may grow so many times in number, of the
   /// complex with so many blocks. Those of the next density are often the same.
   std::set<std::tuple<double, std::uint64_t, std::vector<std::int64_t>>> failed_;
+  double leastFlipped_ = 1;  ///< the least share of tets that an attempt has left so
+  bool isDenser_ = false;    ///< while a number of cells that works is searched
   Index flippedTet_ = kNone;
-  std::string flippedBlock_;  ///< of the same attempt, in words
+  std::string flippedBlock_;  ///< of the same attempt, in words: the last before that, if any
 };
 
 /// Takes more and more planes as one until walls leave room between them.

@@ -411,9 +411,10 @@ std::vector<std::int64_t> nearestValues(const SharedUnknowns& unknowns, double u
   const IntegerSystem system(unknowns.size(), equations, wishes);
   std::vector<double> wanted = system.nearest(unknowns.measured());
   for (double& x : wanted) x *= unit;
-  // Nearly all that depends on others is their sum, or half of it; some is a third ...
+  // Nearly all that depends on others is their sum, or half of it, and the step is a power of two;
+  // some is a third, a ninth ...
   std::vector<std::int64_t> values;
-  for (const std::int64_t divisible : {1, 3, 15, 105}) {
+  for (const std::int64_t divisible : {1, 3, 15, 105, 315, 945}) {
     if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
   }
   if (values.size() != unknowns.size()) values.clear();
@@ -483,7 +484,8 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   std::vector<IntegerForm> wishes;
   std::vector<std::int64_t> best = values;
   for (int round = 0; round < kRoundsOfWishes; ++round) {
-    const auto more = coincidences(graph, unknowns, conditions, best, noise * result.unit);
+    const auto more = coincidences(graph, unknowns, conditions, best, noise * result.unit,
+                                   result.size * result.unit);
     if (more.empty()) break;
     wishes.insert(wishes.end(), more.begin(), more.end());
     best = nearestValues(unknowns, result.unit, equations, wishes);

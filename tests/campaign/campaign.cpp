@@ -19,6 +19,7 @@
 #include <string_view>
 #include <sys/time.h>
 #include <unistd.h>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -114,6 +115,7 @@ struct Totals {
   std::uint64_t cells = 0;
   std::uint64_t quantized = 0;
   std::uint64_t notQuantized = 0;
+  std::pair<double, std::uint64_t> longest;  ///< quantization, in seconds, and the map's number
   int failures = 0;
 };
 
@@ -134,8 +136,13 @@ void run(std::uint64_t number, const Options& options, const std::filesystem::pa
     ++totals.kinds[drawn.kind];
     totals.tets += sizes.tets;
     totals.cells += sizes.cells;
-    totals.quantized += sizes.quantized;
-    totals.notQuantized += sizes.notQuantized;
+    totals.quantized += sizes.isQuantized ? 1 : 0;
+    if (!sizes.notQuantized.empty()) {
+      ++totals.notQuantized;
+      std::printf("not quantized: map %llu (%s): %s\n", static_cast<unsigned long long>(number),
+                  drawn.kind.c_str(), sizes.notQuantized.c_str());
+    }
+    totals.longest = std::max(totals.longest, {sizes.quantizationSeconds, number});
   } catch (const std::exception& error) {
     ++totals.failures;
     std::filesystem::create_directories(options.found);
@@ -180,9 +187,10 @@ int main(int count, char** arguments) {
     std::printf("%8llu  %s\n", static_cast<unsigned long long>(maps), kind.c_str());
   }
   if (options.quantized > 0) {
-    std::printf("%llu quantized, %llu could not be\n",
+    std::printf("%llu quantized, %llu could not be; the longest took %.1f s (map %llu)\n",
                 static_cast<unsigned long long>(totals.quantized),
-                static_cast<unsigned long long>(totals.notQuantized));
+                static_cast<unsigned long long>(totals.notQuantized), totals.longest.first,
+                static_cast<unsigned long long>(totals.longest.second));
   }
   std::printf(
       "seed %llu, maps %llu to %llu: %llu tets, %llu cells, %.0f s (%.1f maps per second), "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -197,8 +198,8 @@ std::vector<int> valences(const Counts& counts) {
 
 /// The map at a scale that makes it seamless instead of integer, quantized, with one thread as with
 /// several: its curves and topology stay, and its mesh is right.
-/// @return false if it cannot be quantized: random maps have tets that are hardly any
-bool expectQuantized(const SampleAnswer& answer, const TetMap& integerMap, Random& random) {
+void expectQuantized(const SampleAnswer& answer, const TetMap& integerMap, Random& random,
+                     ExaminedSizes& sizes) {
   constexpr std::array<double, 4> kFactors = {1, 0.618, 1.414, 2.2};
   const TetMap map = scaled(integerMap, kFactors[random.below(kFactors.size())]);
   QuantizeOptions options;
@@ -208,12 +209,17 @@ bool expectQuantized(const SampleAnswer& answer, const TetMap& integerMap, Rando
   Context one(1);
   Context several(drawThreads(random));
   QuantizedMap quantized;
+  const auto begin = std::chrono::steady_clock::now();
   try {
     quantized = quantize(map, options, one);
+    sizes.isQuantized = true;
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::FlippedTet) << error.what();
-    return false;
+    sizes.notQuantized = error.what();
   }
+  sizes.quantizationSeconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!sizes.isQuantized) return;
   const TetMap same = quantize(map, options, several).map;
   EXPECT_EQ(same.tets, quantized.map.tets);
   EXPECT_EQ(same.parameters, quantized.map.parameters);
@@ -228,7 +234,6 @@ bool expectQuantized(const SampleAnswer& answer, const TetMap& integerMap, Rando
   EXPECT_EQ(valences(report.expected.boundarySingularEdges),
             valences(answer.expected.boundarySingularEdges));
   verifyAll(quantized.map, extract(quantized.map, {.tolerance = 0}, several), 1);
-  return true;
 }
 
 /// Mostly 1, and such that there are few cells, but for one map in a hundred.
@@ -270,7 +275,7 @@ ExaminedSizes examine(const DrawnMap& drawn, Random& random, std::uint64_t quant
   ExaminedSizes sizes{map.tets.size(), mesh.cells.size()};
   if (quantizedOneIn > 0 && canQuantize() && map.tets.size() < 1000 &&
       random.below(quantizedOneIn) == 0) {
-    ++(expectQuantized(*drawn.answer, map, random) ? sizes.quantized : sizes.notQuantized);
+    expectQuantized(*drawn.answer, map, random, sizes);
   }
   return sizes;
 }

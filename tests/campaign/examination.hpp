@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "campaign/block_map.hpp"
 
@@ -10,8 +11,9 @@ namespace hexhex::campaign {
 struct ExaminedSizes {
   std::uint64_t tets = 0;
   std::uint64_t cells = 0;
-  std::uint64_t quantized = 0;     ///< 1 if the map was quantized, too
-  std::uint64_t notQuantized = 0;  ///< 1 if its tets are too thin for that, or leave no room
+  bool isQuantized = false;       ///< the map was quantized, too
+  std::string notQuantized = {};  ///< why it could not be
+  double quantizationSeconds = 0;
 };
 
 /// Extracts a map in all ways, which must agree in every bit with each other and with its answer,

@@ -86,6 +86,23 @@ TEST(QuantizeLimits, NothingAtRandomIsSeamless) {
             ErrorCode::TransitionResidual);
 }
 
+/// Whose map is eight orders longer than wide: each arc gets a cell at least, so that nothing keeps
+/// its shape.
+TEST(QuantizeLimits, LengthsOfEightOrders) {
+  constexpr Vec3 kThickness = {1e-4, 1, 1e4};
+  for (const SampleKind kind : {SampleKind::Box, SampleKind::HandleBody}) {
+    TetMap map = generateSample(kind, {.cells = 2, .refine = 3}).map;
+    for (TetParameters& tet : map.parameters) {
+      for (Vec3& u : tet) {
+        for (std::size_t k = 0; k < 3; ++k) u[k] *= kThickness[k];
+      }
+    }
+    const QuantizedMap result = quantize(map, {.cells = 1000});
+    EXPECT_EQ(verifiedExtraction(result.map).cells.size(), result.report.cells);
+    EXPECT_LE(result.report.attempts, 2U);
+  }
+}
+
 /// A vertex whose coordinates are none of those of the boundary.
 Index innerVertex(const TetMap& map) {
   const auto [low, high] = std::minmax_element(map.parameters[0].begin(), map.parameters[0].end());

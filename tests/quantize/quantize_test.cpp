@@ -345,7 +345,7 @@ TEST(Quantize, NamesEachAttempt) {
       1, [&stages](std::string_view stage, double /*share*/) { stages.emplace_back(stage); });
   const TetMap map = generateSample(SampleKind::Sphere, {.stretch = 0.5}).map;
   const QuantizeReport report = quantize(map, sameScale(), context).report;
-  const std::string first = "bending 1 of at most 20: " + std::to_string(report.cells) +
+  const std::string first = "bending 1 of at most 40: " + std::to_string(report.cells) +
                             " cells in " + std::to_string(report.blocks) + " blocks";
   EXPECT_NE(std::find(stages.begin(), stages.end(), first), stages.end()) << first;
 }
@@ -381,6 +381,13 @@ TEST(QuantizeRealMaps, ThatHaveFaultsAreRefusedForThese) {
   ASSERT_EQ(std::sscanf(bent.c_str() + at, "in block %u of %u", &block, &blocks), 2) << bent;
   EXPECT_GE(block, 1U);
   EXPECT_LE(block, blocks);
+  // What it says works does.
+  unsigned works = 0;
+  const std::size_t after = bent.find("attempts. ");
+  ASSERT_NE(after, std::string::npos) << bent;
+  ASSERT_EQ(std::sscanf(bent.c_str() + after, "attempts. %u cells work", &works), 1) << bent;
+  const TetMap map = readMap(folder / "two_components_flipped_block.hexex");
+  EXPECT_EQ(quantize(map, cells(works)).report.cells, works);
 }
 
 TEST(QuantizeRealMaps, WithWallsNearVertices) {

@@ -9,9 +9,12 @@
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
+#include "lattice/random.hpp"
 
 namespace hexhex::test {
 namespace {
+
+using testing::LatticeRandom;
 
 /// How many cubes a grid of six tets each has along an axis.
 constexpr int kCubes = 3;
@@ -96,6 +99,30 @@ TEST(Rings, OfASpaceWithoutABoundary) {
 
 TEST(Rings, OfASolidRing) {
   expectMesh(gluedGrid({false, false, true}, {{{0.25, 0, 0}, {0, 0.3, 0}, {0, 0, 0.4}}}), 1);
+}
+
+/// Walls wind around several times before they meet themselves, but for noise; planes that are to
+/// be one are multiples of each other's distances.
+TEST(Rings, WithNoise) {
+  LatticeRandom random(1);
+  for (const bool isClosed : {false, true}) {
+    for (int round = 0; round < 12; ++round) {
+      SCOPED_TRACE(round);
+      const auto step = [&] { return 0.1 * static_cast<double>(random.between(1, 4)); };
+      const auto shear = [&] { return 0.1 * static_cast<double>(random.between(-1, 1)); };
+      TetMap map = gluedGrid({isClosed, true, true},
+                             {{{step(), 0, 0}, {0, step(), shear()}, {0, shear(), 5 * step()}}});
+      for (TetParameters& tet : map.parameters) {
+        for (Vec3& u : tet) {
+          for (double& x : u) x += 1e-9 * static_cast<double>(random.between(-1000, 1000)) / 1000;
+        }
+      }
+      const QuantizedMap result = quantize(map, {.cells = 500});
+      EXPECT_EQ(verifiedExtraction(result.map).cells.size(), result.report.cells);
+      EXPECT_EQ(check(result.map, {.tolerance = 0}).expected.boundaryComponents,
+                isClosed ? 0U : 2U);
+    }
+  }
 }
 
 }  // namespace
