@@ -18,10 +18,10 @@
 #include <malloc.h>
 #endif
 
-#include <quantize/bend_problem.hpp>
-#include <quantize/edge_turns.hpp>
-#include <quantize/integer_factor.hpp>
+#include <quantize/bend/bend_problem.hpp>
+#include <quantize/bend/edge_turns.hpp>
 #include <quantize/quantized_map.hpp>
+#include <quantize/seamless/integer_factor.hpp>
 
 #include <base/vector3.hpp>
 #endif

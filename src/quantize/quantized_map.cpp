@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include <quantize/edge_turns.hpp>
+#include <quantize/bend/edge_turns.hpp>
 #include <quantize/quantized_map.hpp>
 
 #include <hexhex/check.hpp>

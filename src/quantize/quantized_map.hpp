@@ -2,7 +2,7 @@
 // checked.
 #pragma once
 
-#include <quantize/bend.hpp>
+#include <quantize/bend/bend.hpp>
 
 #include <hexhex/quantize.hpp>
 

@@ -18,7 +18,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <quantize/bend.hpp>
+#include <quantize/bend/bend.hpp>
 
 namespace hexhex::quantization {
 

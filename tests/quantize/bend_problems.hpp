@@ -8,8 +8,8 @@
 #include <utility>
 
 #include <adjacency/tet_topology.hpp>
-#include <quantize/bend.hpp>
-#include <quantize/edge_turns.hpp>
+#include <quantize/bend/bend.hpp>
+#include <quantize/bend/edge_turns.hpp>
 
 #include <hexhex/types.hpp>
 

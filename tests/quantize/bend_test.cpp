@@ -9,10 +9,10 @@
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
+#include "quantize/bend/bend_split.hpp"
+#include "quantize/bend/edge_turns.hpp"
 #include "quantize/bend_problem_file.hpp"
 #include "quantize/bend_problems.hpp"
-#include "quantize/bend_split.hpp"
-#include "quantize/edge_turns.hpp"
 
 namespace hexhex::test {
 

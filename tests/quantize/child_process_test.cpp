@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include <gtest/gtest.h>
-#include <quantize/child_process.hpp>
-#include <quantize/integer_program.hpp>
+#include <quantize/integers/child_process.hpp>
+#include <quantize/integers/integer_program.hpp>
 
 #include <hexhex/error.hpp>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <quantize/integer_program.hpp>
+#include <quantize/integers/integer_program.hpp>
 
 #include "lattice/random.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <quantize/integer_form.hpp>
+#include <quantize/seamless/integer_form.hpp>
 
 #include <hexhex/hexhex.hpp>
 

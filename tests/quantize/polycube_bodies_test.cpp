@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
-#include <quantize/bend.hpp>
-#include <quantize/polycube_borders.hpp>
+#include <quantize/bend/bend.hpp>
+#include <quantize/polycube/borders.hpp>
 
 #include <hexhex/hexhex.hpp>
 

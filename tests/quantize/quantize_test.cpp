@@ -12,10 +12,10 @@
 #include <string_view>
 
 #include <gtest/gtest.h>
-#include <quantize/edge_turns.hpp>
-#include <quantize/motorcycle_complex.hpp>
+#include <quantize/bend/edge_turns.hpp>
+#include <quantize/complex/motorcycle_complex.hpp>
 #include <quantize/quantized_map.hpp>
-#include <quantize/seamless_map.hpp>
+#include <quantize/seamless/seamless_map.hpp>
 #include <rapidcheck/gtest.h>
 
 #include <hexhex/hexhex.hpp>

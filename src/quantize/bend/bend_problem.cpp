@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <limits>
+
+#include <quantize/bend/bend_problem.hpp>
+
+namespace hexhex::quantization {
+
+namespace {
+
+/// Walls may cut a tet into parts in several blocks. Its chart is that of the block of one of them;
+/// this is the way from the other ones' integer charts into it.
+std::vector<ChartChange> waysToOriginal(const MotorcycleComplex& complex,
+                                        const BlockIntegers& integers, std::size_t originals) {
+  const WallMesh& mesh = complex.mesh;
+  std::vector<ChartChange> ways(mesh.tetCount());
+  std::vector<bool> isReached(mesh.tetCount());
+  std::vector<Index> queue;
+  for (Index root = 0; root < originals; ++root) {
+    isReached[root] = true;
+    queue.assign(1, root);
+    for (std::size_t next = 0; next < queue.size(); ++next) {
+      for (int face = 0; face < 4; ++face) {
+        const adjacency::HalfFace h = adjacency::halfFaceOf(queue[next], face);
+        if (mesh.originalFace[h] != kInside) continue;
+        const Index there = adjacency::tetOf(mesh.mate[h]);
+        if (isReached[there]) continue;
+        isReached[there] = true;
+        ways[there] = ways[queue[next]] * integers.across(complex, h).inverse();
+        queue.push_back(there);
+      }
+    }
+  }
+  return ways;
+}
+
+std::int32_t toInt32(std::int64_t x) {
+  if (x > std::numeric_limits<std::int32_t>::max() / 4 ||
+      x < std::numeric_limits<std::int32_t>::min() / 4) {
+    throw Error(ErrorCode::TooLarge,
+                "The quantized map has more hexahedra along a line than are supported.");
+  }
+  return static_cast<std::int32_t>(x);
+}
+
+lattice::Transition toTransition(const ChartChange& change) {
+  const lattice::LatticePoint& t = change.translation;
+  return {change.rotation, {toInt32(t[0]), toInt32(t[1]), toInt32(t[2])}};
+}
+
+/// Lengths that are far below one cell are rounded to one, so that a block may be as many orders
+/// thinner than its integers say. The solver is left to make up for this ratio and its inverse:
+/// within these, maps are nearer to the seamless one; a ratio of 10^4 it cannot follow.
+constexpr double kMostStretch = 4;
+
+/// Per block and axis: the integer length by the real one.
+/// @param unit  length of a cell on the lattice
+std::vector<Vec3> blockRatios(const MotorcycleComplex& complex, const BlockIntegers& integers,
+                              double unit) {
+  std::vector<Extent> real(complex.blockCount);
+  std::vector<Extent> whole(complex.blockCount);
+  for (const PatchSide& patch : complex.patches) {
+    real[patch.block].add(patch);
+    for (const ArcSide& side : patch.border) {
+      whole[patch.block].add(integers(patch.block, side.start));
+    }
+  }
+  std::vector<Vec3> ratios(complex.blockCount);
+  for (std::size_t block = 0; block < ratios.size(); ++block) {
+    const lattice::LatticePoint from = real[block].high - real[block].low;
+    const lattice::LatticePoint to = whole[block].high - whole[block].low;
+    for (std::size_t k = 0; k < 3; ++k) {
+      ratios[block][k] = static_cast<double>(to[k]) * unit / static_cast<double>(from[k]);
+    }
+  }
+  return ratios;
+}
+
+/// By what the reference of each tet is stretched along its axes: the mean over its parts, beyond
+/// what the solver is left to make up for.
+std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
+                               const std::vector<ChartChange>& ways,
+                               const std::vector<Vec3>& ratios, std::size_t originals) {
+  const WallMesh& mesh = complex.mesh;
+  std::vector<Vec3> stretches(originals);
+  std::vector<double> volumes(originals);
+  for (Index part = 0; part < mesh.tetCount(); ++part) {
+    const lattice::LatticeTet& u = mesh.corners[part];
+    const double volume = lattice::orientationDeterminant(u[0], u[1], u[2], u[3]).toDouble();
+    const Index tet = mesh.original[part];
+    volumes[tet] += volume;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis =
+          static_cast<std::size_t>(lattice::axisOf(ways[part].rotation(lattice::direction(k, 1))));
+      stretches[tet][axis] += volume * ratios[complex.blockOf[part]][static_cast<std::size_t>(k)];
+    }
+  }
+  for (std::size_t tet = 0; tet < originals; ++tet) {
+    for (double& stretch : stretches[tet]) {
+      stretch /= volumes[tet];
+      stretch /= std::clamp(stretch, 1 / kMostStretch, kMostStretch);
+    }
+  }
+  return stretches;
+}
+
+/// The triangles, edges and vertices of features that are aligned.
+void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers,
+                 const std::vector<ChartChange>& ways, BendProblem& problem) {
+  const WallMesh& mesh = complex.mesh;
+  const auto toPlane = [&](Index tet, std::size_t axis, const lattice::LatticePoint& node) {
+    const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
+    return BoundaryPlane{static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
+  };
+  for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
+    if (!mesh.isFeature[h] || mesh.originalFace[h] == kInside) continue;
+    const Index tet = adjacency::tetOf(h);
+    const PatchSide& patch = complex.patches[complex.patchOf[h]];
+    const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
+    problem.planes[adjacency::halfFaceOf(mesh.original[tet], mesh.originalFace[h])] =
+        toPlane(tet, axis, integers(patch.block, patch.border.front().start));
+  }
+  for (const FeatureCorner& at : complex.featureCorners) {
+    const Index vertex = mesh.tets[at.tet][at.corner];
+    if (vertex >= problem.points.size()) continue;
+    const Index tet = mesh.original[at.tet];
+    auto& planes =
+        problem.fixedCorners[4 * tet + adjacency::localCorner(problem.tets[tet], vertex)];
+    const lattice::LatticePoint node = integers(complex.blockOf[at.tet], at.node);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const BoundaryPlane plane = toPlane(at.tet, axis, node);
+      const bool isKnown = std::find(planes.begin(), planes.end(), plane) != planes.end();
+      if (axis != at.freeAxis && !isKnown) planes.push_back(plane);
+    }
+  }
+}
+
+}  // namespace
+
+BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex,
+                        const BlockIntegers& integers, double scale) {
+  const TetMapView& view = map.input.view;
+  const WallMesh& mesh = complex.mesh;
+  BendProblem problem;
+  problem.points.assign(view.points.begin(), view.points.end());
+  problem.tets.assign(view.tets.begin(), view.tets.end());
+  problem.reference.resize(problem.tets.size());
+  const std::vector<ChartChange> ways = waysToOriginal(complex, integers, problem.tets.size());
+  const std::vector<Vec3> stretches = tetStretches(
+      complex, ways, blockRatios(complex, integers, map.unit / scale), problem.tets.size());
+  for (std::size_t t = 0; t < problem.tets.size(); ++t) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const lattice::LatticePoint u = complex.toBlock[t](map.corners[t][i]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        problem.reference[t][i][k] = static_cast<double>(u[k]) / map.unit * scale * stretches[t][k];
+      }
+    }
+  }
+  for (const adjacency::EdgeCorner& at : map.featureEdges) {
+    const Tet& tet = problem.tets[at.tet];
+    problem.keptEdges.insert(pairOf(tet[at.corner0], tet[at.corner1]));
+  }
+  problem.transitions.resize(4 * problem.tets.size());
+  problem.planes.resize(4 * problem.tets.size());
+  for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
+    if (mesh.originalFace[h] == kInside) continue;
+    const Index tet = adjacency::tetOf(h);
+    const adjacency::HalfFace original =
+        adjacency::halfFaceOf(mesh.original[tet], mesh.originalFace[h]);
+    if (mesh.mate[h] == kNone) {
+      const PatchSide& patch = complex.patches[complex.patchOf[h]];
+      const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
+      const lattice::LatticePoint node = integers(patch.block, patch.border.front().start);
+      const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
+      problem.planes[original] = {static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
+    } else {
+      problem.transitions[original] = toTransition(
+          ways[adjacency::tetOf(mesh.mate[h])] * integers.across(complex, h) * ways[tet].inverse());
+    }
+  }
+  fixFeatures(complex, integers, ways, problem);
+  return problem;
+}
+
+}  // namespace hexhex::quantization

@@ -1,0 +1,39 @@
+// How often does a map turn around each edge? Positive tets alone do not ensure that it is locally
+// injective: around an inner edge they may wind twice, which would make it singular.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <adjacency/tet_topology.hpp>
+#include <quantize/bend/bend.hpp>
+#include <quantize/seamless/cut_graph.hpp>
+
+namespace hexhex::quantization {
+
+/// @tparam Corners  as in quartersAround()
+template <class Corners>
+[[nodiscard]] IrregularEdges irregularEdges(const EdgeFans& edges, std::span<const Tet> tets,
+                                            std::span<const Corners> map) {
+  const std::vector<int> quarters = quartersAround(edges, map);
+  IrregularEdges irregular;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (quarters[e] == regularQuarters(edges, e)) continue;
+    const adjacency::EdgeCorner& at = edges(e).front();
+    irregular[{tets[at.tet][at.corner0], at.other}] = quarters[e];
+  }
+  return irregular;
+}
+
+/// Both halves of an edge turn as it did.
+/// @param middle  a new vertex
+void splitIrregular(const SplitEdge& edge, Index middle, IrregularEdges& irregular);
+
+/// Tets at edges around which a map turns otherwise than expected, ascending. Its boundary
+/// triangles lie along planes of the grid, so that it turns by multiples of a right angle. Needs
+/// the stars of the topology.
+[[nodiscard]] std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
+                                                  const IrregularEdges& expected,
+                                                  std::span<const TetParameters> map, Stage& stage);
+
+}  // namespace hexhex::quantization

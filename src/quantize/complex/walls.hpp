@@ -1,0 +1,98 @@
+// Walls of the motorcycle complex (Brueckner et al. 2022, "The 3D Motorcycle Complex for Structured
+// Volume Decomposition"): planes that grow from singular edges until they meet others.
+#pragma once
+
+#include <cstdint>
+#include <queue>
+#include <vector>
+
+#include <quantize/complex/wall_mesh.hpp>
+#include <quantize/seamless/cut_graph.hpp>
+
+namespace hexhex::quantization {
+
+/// A plane perpendicular to an axis, in the chart of some tet.
+struct AxisPlane {
+  std::size_t axis = 0;
+  std::int64_t value = 0;
+
+  [[nodiscard]] int sideOf(const lattice::LatticePoint& u) const noexcept {
+    return (u[axis] > value ? 1 : 0) - (u[axis] < value ? 1 : 0);
+  }
+  /// The same in the chart beyond.
+  [[nodiscard]] AxisPlane beyond(const ChartChange& change) const noexcept;
+};
+
+/// Where a turn around an edge meets a plane.
+struct PlaneMeeting {
+  enum class Kind : std::uint8_t { Boundary, Face, Inside } kind = Kind::Boundary;
+  adjacency::HalfFace face = kNone;  ///< that lies in the plane
+  TetEdge crossed{};                 ///< that the plane crosses inside of its tet
+  AxisPlane plane{};                 ///< in the chart of that tet
+  bool wallBefore = false;           ///< whether a wall was passed on the way
+};
+
+/// Lets walls grow, nearest to their singular edge first.
+class WallTracer {
+ public:
+  explicit WallTracer(WallMesh& mesh) : mesh_(mesh) {}
+
+  /// Walls in all directions of the grid from what was an edge of a tet, parallel to an axis: a
+  /// singular edge, or one that is to become part of the complex.
+  void startAlong(Index v, Index w, Index tet);
+
+  /// A wall from an aligned triangle.
+  void startAt(adjacency::HalfFace feature);
+
+  /// A wall along a plane that crosses a tet, or runs along its side.
+  /// @return false if there is nothing of it
+  bool startIn(Index tet, const AxisPlane& plane);
+
+  /// Lets all walls grow until each ends at others or at the boundary.
+  void grow();
+
+ private:
+  /// The edge of a wall, and its distance from where the wall began, at both ends.
+  struct Front {
+    double distance = 0;
+    std::uint64_t order = 0;
+    std::array<Index, 2> vertices{};
+    std::array<double, 2> distances{};
+    Index tet = 0;
+    friend bool operator<(const Front& a, const Front& b) noexcept {
+      return a.distance != b.distance ? a.distance > b.distance : a.order > b.order;
+    }
+  };
+  /// @param face  of the edge's tet, at the edge: on the boundary if the edge is
+  void startAt(const TetEdge& edge, int face);
+  void grow(const Front& front);
+  /// Moves an end of an edge into a plane that crosses the edge close by.
+  /// @return its corner, or -1 if neither end is close, or may move
+  int moveEnd(const TetEdge& edge, const AxisPlane& plane);
+  /// Splits an edge where a plane crosses it. If it ends at a vertex of another wall, so are all
+  /// edges of tets around it that the plane crosses: two walls that cross one edge would otherwise
+  /// split what the other has made, by turns and without end, beside that edge.
+  void split(const TetEdge& edge, const AxisPlane& plane);
+  adjacency::HalfFace wallAt(const PlaneMeeting& meeting);
+  void push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
+            const std::array<double, 2>& distances);
+  void push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances, Index tet);
+  [[nodiscard]] adjacency::HalfFace someWall(const TetEdge& edge) const;
+
+  WallMesh& mesh_;
+  std::priority_queue<Front> fronts_;
+  std::uint64_t order_ = 0;
+};
+
+/// The axis to which a triangle of a wall is perpendicular, in the chart of the half-face's tet.
+[[nodiscard]] AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall);
+
+/// The wall, if any, that continues a wall's triangle beyond its edge (v, w), on the same side;
+/// kNone if there is none or the edge is on the boundary.
+[[nodiscard]] adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall,
+                                               Index v, Index w);
+
+/// A mesh whose walls are the motorcycle complex of a map.
+[[nodiscard]] WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges);
+
+}  // namespace hexhex::quantization

@@ -1,0 +1,42 @@
+// Numbers of hexahedra along the arcs of a motorcycle complex (Brueckner et al. 2022, "Volume
+// Parametrization Quantization for Hexahedral Meshing").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <quantize/complex/motorcycle_complex.hpp>
+#include <quantize/integers/integer_program.hpp>
+
+namespace hexhex::quantization {
+
+/// Opposite sides of a patch are equally long.
+[[nodiscard]] std::vector<ArcEquation> arcEquations(const MotorcycleComplex& complex);
+
+/// Integer positions of what real positions a block has: of the nodes on its border.
+class BlockIntegers {
+ public:
+  /// @param integers  per arc
+  BlockIntegers(const MotorcycleComplex& complex, const std::vector<std::int64_t>& integers);
+
+  /// Of a node of a block, at its position in the block's chart.
+  [[nodiscard]] const lattice::LatticePoint& operator()(
+      Index block, const lattice::LatticePoint& position) const {
+    return positions_[block].at(position);
+  }
+  /// Across a half-face, between the integer charts of the blocks on its sides.
+  [[nodiscard]] ChartChange across(const MotorcycleComplex& complex, adjacency::HalfFace h) const {
+    return complex.mesh.isWall[h] ? across_[complex.patchOf[h]] : ChartChange{};
+  }
+  [[nodiscard]] double cellCount() const noexcept { return cells_; }
+
+ private:
+  void findPositions(const MotorcycleComplex& complex, const std::vector<std::int64_t>& integers);
+  void findTransitions(const MotorcycleComplex& complex);
+
+  std::vector<std::map<lattice::LatticePoint, lattice::LatticePoint>> positions_;  ///< per block
+  std::vector<ChartChange> across_;  ///< per side of a patch
+  double cells_ = 0;
+};
+
+}  // namespace hexhex::quantization

@@ -1,0 +1,306 @@
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <utility>
+
+#include <quantize/bend/edge_splitter.hpp>
+#include <quantize/polycube/borders.hpp>
+
+#include <base/disjoint_sets.hpp>
+
+namespace hexhex::quantization {
+
+namespace {
+
+VertexPair verticesOf(const BoundarySides& sides, BoundarySide side) {
+  return pairOf(sides.tail(side), sides.head(side));
+}
+
+Place placeOf(const VertexPair& edge) { return {PlaceKind::Edge, edge[0], edge[1]}; }
+
+[[noreturn]] void refusePlanes(const std::string& sentence, const Place& place) {
+  throw Error(ErrorCode::FlippedTet,
+              "The tets cannot be bent to a polycube that fits the labels: " + sentence +
+                  " Look at the labels of the faces there.",
+              place);
+}
+
+Index triangleOf(BoundarySide side) { return static_cast<Index>(side / 3); }
+
+}  // namespace
+
+std::string nameOf(lattice::Direction label) {
+  return {lattice::signOf(label) > 0 ? '+' : '-', static_cast<char>('x' + lattice::axisOf(label))};
+}
+
+PolycubeBorders::PolycubeBorders(const LabelledMesh& mesh)
+    : mesh_(mesh), sides_(mesh.topology), borderCount_(mesh.topology.pointCount) {
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
+    if (!isBorder(side)) continue;
+    requireOtherAxes(side);
+    borders_.push_back(side);
+    ++borderCount_[sides_.tail(side)];
+  }
+  requireBorderOnEachPiece();
+  requireFewBorders();
+  requireFourEdges();
+}
+
+void PolycubeBorders::requireOtherAxes(BoundarySide border) const {
+  if (lattice::axisOf(label(border)) != lattice::axisOf(labelBeyond(border))) return;
+  const lattice::Direction upper = std::min(label(border), labelBeyond(border));
+  throw Error(ErrorCode::InvalidArgument,
+              "Triangles with the labels " + nameOf(upper) + " and " +
+                  nameOf(lattice::opposite(upper)) +
+                  " meet at an edge; opposite faces of a polycube never do. Put triangles with "
+                  "another label between them.",
+              placeOf(verticesOf(sides_, border)));
+}
+
+/// A closed surface faces all ways.
+void PolycubeBorders::requireBorderOnEachPiece() const {
+  DisjointSets pieces(mesh_.topology.pointCount);
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
+    pieces.unite(sides_.tail(side), sides_.head(side));
+  }
+  std::vector<bool> hasBorder(mesh_.topology.pointCount);
+  for (const BoundarySide border : borders_) hasBorder[pieces.find(sides_.tail(border))] = true;
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
+    if (hasBorder[pieces.find(sides_.tail(side))]) continue;
+    refuseFlag(mesh_, sides_.face(side),
+               "All triangles of a closed piece of the boundary have the label " +
+                   nameOf(label(side)) + "; that of a polycube faces all six ways.");
+  }
+}
+
+/// Around a corner, there are two directions along each axis.
+void PolycubeBorders::requireFewBorders() const {
+  std::vector<std::array<Index, 3>> alongAxes(mesh_.topology.pointCount);
+  for (const BoundarySide border : borders_) {
+    const Index vertex = sides_.tail(border);
+    if (++alongAxes[vertex][static_cast<std::size_t>(axisAlong(border))] <= 2) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                "More than two edges of the polycube would run along one axis at a vertex, between "
+                "the labels " +
+                    nameOf(label(border)) + " and " + nameOf(labelBeyond(border)) +
+                    " and others of their axes. Label triangles around it otherwise.",
+                {PlaceKind::Vertex, vertex});
+  }
+}
+
+/// Each loop around a face of a polycube turns by right angles.
+void PolycubeBorders::requireFourEdges() const {
+  std::vector<bool> isSeen(sides_.size());
+  for (const BoundarySide first : borders_) {
+    if (isSeen[first]) continue;
+    int edges = 0;
+    BoundarySide side = first;
+    do {
+      isSeen[side] = true;
+      const BoundarySide next = nextBorder(side);
+      edges += axisAlong(next) != axisAlong(side) ? 1 : 0;
+      side = next;
+    } while (side != first);
+    if (edges >= 4) continue;
+    refuseFlag(mesh_, sides_.face(first),
+               "Triangles with the label " + nameOf(label(first)) + " have a border of " +
+                   (edges == 0 ? "no straight edges" : std::to_string(edges) + " straight edges") +
+                   "; around a face of a polycube there are four at least, which labels beyond "
+                   "separate by their axes. Merge the triangles with their neighbours, or give "
+                   "those other labels.");
+  }
+}
+
+/// Of the same loop, from the head on.
+BoundarySide PolycubeBorders::nextBorder(BoundarySide border) const {
+  BoundarySide side = BoundarySides::next(border);
+  while (!isBorder(side)) side = BoundarySides::next(sides_.twin(side));
+  return side;
+}
+
+/// Counterclockwise, from the same tail.
+BoundarySide PolycubeBorders::nextBorderAtTail(BoundarySide border) const {
+  const auto turned = [this](BoundarySide side) {
+    return sides_.twin(BoundarySides::next(BoundarySides::next(side)));
+  };
+  BoundarySide side = turned(border);
+  while (!isBorder(side)) side = turned(side);
+  return side;
+}
+
+/// From corner to corner, each from both of its sides.
+std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) const {
+  std::map<std::array<std::int64_t, 3>, Gap> gaps;
+  for (const BoundarySide first : borders_) {
+    if (!isCorner(sides_.tail(first))) continue;
+    BoundarySide last = first;
+    while (!isCorner(sides_.head(last))) last = nextBorder(last);
+    const int axis = axisAlong(first);
+    const std::int64_t begin = planeAt(axis, sides_.tail(first));
+    const std::int64_t end = planeAt(axis, sides_.head(last));
+    if (begin == end) {
+      refusePlanes("from vertex " + std::to_string(sides_.tail(first)) + " to vertex " +
+                       std::to_string(sides_.head(last)) + " the edge between " +
+                       nameOf(label(first)) + " and " + nameOf(labelBeyond(first)) +
+                       " has no length, as its ends are in one plane.",
+                   placeOf(verticesOf(sides_, first)));
+    }
+    Gap& gap = gaps[{axis, std::min(begin, end), std::max(begin, end)}];
+    gap.width = std::abs(end - begin);
+    gap.corners.push_back(cornerAt(first));
+    for (BoundarySide side = first; true; side = nextBorder(side)) {
+      (begin < end ? gap.upwards : gap.downwards).push_back(side);
+      if (side == last) break;
+    }
+  }
+  std::vector<Gap> list;
+  for (auto& [planes, gap] : gaps) {
+    sortOut(gap.corners);
+    list.push_back(std::move(gap));
+  }
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Gap& a, const Gap& b) { return a.width < b.width; });
+  return list;
+}
+
+void PolycubeBorders::turnOver(Gap& gap, std::vector<lattice::Direction>& directions) const {
+  gap.upwards.swap(gap.downwards);
+  setDirections(gap, directions);
+}
+
+void PolycubeBorders::setDirections(const Gap& gap,
+                                    std::vector<lattice::Direction>& directions) const {
+  for (const BoundarySide side : gap.upwards)
+    directions[side] = lattice::direction(axisAlong(side), 1);
+  for (const BoundarySide side : gap.downwards)
+    directions[side] = lattice::direction(axisAlong(side), -1);
+}
+
+std::size_t PolycubeBorders::countOverlaps(
+    const Gap& gap, const std::vector<lattice::Direction>& directions) const {
+  return static_cast<std::size_t>(
+      std::count_if(gap.corners.begin(), gap.corners.end(),
+                    [&](BoundarySide corner) { return !hasRoom(corner, directions); }));
+}
+
+/// Of all borders that begin at a corner, the first.
+BoundarySide PolycubeBorders::cornerAt(BoundarySide border) const {
+  BoundarySide least = border;
+  for (BoundarySide side = nextBorderAtTail(border); side != border;
+       side = nextBorderAtTail(side)) {
+    least = std::min(least, side);
+  }
+  return least;
+}
+
+/// Planes that are near to each other may be in the wrong order, as a map that turns towards labels
+/// need not be injective. Two of them change places, the nearest ones first, where faces overlap
+/// around fewer corners then.
+std::vector<lattice::Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const {
+  std::vector<lattice::Direction> directions(sides_.size());
+  std::vector<Gap> all = gaps(planeAt);
+  for (const Gap& gap : all) setDirections(gap, directions);
+  const auto improves = [&](Gap& gap) {
+    const std::size_t before = countOverlaps(gap, directions);
+    if (before == 0) return false;
+    turnOver(gap, directions);
+    if (countOverlaps(gap, directions) < before) return true;
+    turnOver(gap, directions);
+    return false;
+  };
+  // It ends, as there are fewer such corners each time.
+  while (std::any_of(all.begin(), all.end(), improves)) {
+  }
+  return directions;
+}
+
+/// Walks around a corner, along edges and over faces.
+bool PolycubeBorders::hasRoom(BoundarySide first,
+                              const std::vector<lattice::Direction>& directions) const {
+  std::array<bool, lattice::kDirections> isTaken{};
+  BoundarySide side = first;
+  do {
+    const BoundarySide next = nextBorderAtTail(side);
+    lattice::Direction at = directions[side];
+    do {
+      if (isTaken[at]) return false;
+      isTaken[at] = true;
+      at = lattice::cross(label(side), at);
+    } while (at != directions[next]);
+    side = next;
+  } while (side != first);
+  return true;
+}
+
+void PolycubeBorders::requireRoom(BoundarySide first,
+                                  const std::vector<lattice::Direction>& directions) const {
+  if (hasRoom(first, directions)) return;
+  std::string labels;
+  BoundarySide side = first;
+  do {
+    labels += (labels.empty() ? "" : ", ") + nameOf(label(side));
+    side = nextBorderAtTail(side);
+  } while (side != first);
+  refusePlanes("faces overlap around a vertex, whose labels are " + labels +
+                   " counterclockwise, with their planes where a map turned towards the labels "
+                   "puts them.",
+               {PlaceKind::Vertex, sides_.tail(first)});
+}
+
+/// Quarter turns to the left around a flat face: four times its Euler characteristic.
+void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& directions) const {
+  DisjointSets faces(sides_.size() / 3);
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
+    if (!isBorder(side)) faces.unite(triangleOf(side), triangleOf(sides_.twin(side)));
+  }
+  // Vertices and edges of borders are as many; others are left to count.
+  std::vector<int> twiceCharacteristic(sides_.size() / 3);
+  std::vector<int> turns(sides_.size() / 3);
+  std::vector<bool> isSeen(mesh_.topology.pointCount);
+  for (BoundarySide side = 0; side < sides_.size(); ++side) {
+    const Index face = faces.find(triangleOf(side));
+    if (side % 3 == 0) twiceCharacteristic[face] += 2;
+    if (isBorder(side)) {
+      const lattice::Direction next = directions[nextBorder(side)];
+      if (next != directions[side]) {
+        turns[face] += next == lattice::cross(label(side), directions[side]) ? 1 : -1;
+      }
+      continue;
+    }
+    --twiceCharacteristic[face];
+    const Index vertex = sides_.tail(side);
+    if (borderCount_[vertex] == 0 && !isSeen[vertex]) twiceCharacteristic[face] += 2;
+    isSeen[vertex] = true;
+  }
+  for (BoundarySide side = 0; side < sides_.size(); side += 3) {
+    const Index face = faces.find(triangleOf(side));
+    if (turns[face] == 2 * twiceCharacteristic[face]) continue;
+    refusePlanes("the border of a face with the label " + nameOf(label(side)) + " makes " +
+                     std::to_string(turns[face]) + " quarter turns to the left, and not " +
+                     std::to_string(2 * twiceCharacteristic[face]) +
+                     ", with planes where a map turned towards the labels puts them.",
+                 mesh_.placeOf(sides_.face(side)));
+  }
+}
+
+std::vector<PolycubeEdge> PolycubeBorders::edges(const PlaneAt& planeAt) const {
+  const std::vector<lattice::Direction> along = directions(planeAt);
+  for (const BoundarySide border : borders_) {
+    if (isCorner(sides_.tail(border))) requireRoom(border, along);
+  }
+  requireFlatFaces(along);
+  std::vector<PolycubeEdge> edges;
+  for (const BoundarySide border : borders_) {
+    if (sides_.head(border) < sides_.tail(border)) continue;  // once from each side
+    // From the edge, the face goes to the left.
+    const bool isConvex =
+        labelBeyond(border) == lattice::opposite(lattice::cross(label(border), along[border]));
+    edges.push_back({verticesOf(sides_, border),
+                     {label(border), labelBeyond(border)},
+                     along[border],
+                     isConvex ? 1 : 3});
+  }
+  return edges;
+}
+
+}  // namespace hexhex::quantization

@@ -1,0 +1,218 @@
+// The seamless map of a polycube: boundary triangles say by labels which way they are to face.
+//
+// 1. Tets that labels over-constrain are split (polycube_tets).
+// 2. A smooth field says how each tet has to turn for the boundary to face where labels say
+//    (polycube_field).
+// 3. A linear problem puts the planes where a map that turns so would have them (Gregson et al.
+//    2011), which decides on their order. Its corners have to be those of a polycube
+//    (polycube_borders).
+// 4. The foldover-free solver moves all vertices in their planes, which may move themselves
+//    (polycube_bend, polycube_problem). What decides whether it gets there are boundary triangles
+//    and edges in its energy: tets alone do not see triangles that fold over in their plane.
+// 5. Where that fails, tets are refined, and all begins anew: from there, maps do not get better.
+#include <string>
+
+#include <hexhex/quantize.hpp>
+
+#if defined(HEXHEX_HAS_QUANTIZE)
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <quantize/polycube/bend.hpp>
+#include <quantize/polycube/field.hpp>
+#include <quantize/polycube/tets.hpp>
+#include <untangle/untangle.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#endif
+
+#if defined(HEXHEX_HAS_QUANTIZE)
+namespace hexhex::quantization {
+namespace {
+
+/// Times at which tets are refined and all begins anew.
+constexpr int kMostRefinements = 3;
+/// It is not tried again after so many steps of the solver, times tets: a minute or two.
+constexpr double kMostWork = 5e7;
+
+double scaleOf(const TetMapView& view) {
+  double size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] =
+        std::minmax_element(view.points.begin(), view.points.end(),
+                            [k](const Vec3& a, const Vec3& b) { return a[k] < b[k]; });
+    size = std::max(size, (*high)[k] - (*low)[k]);
+  }
+  return std::exp2(std::ceil(std::log2(kPolycubeUnits / std::max(size, 1e-300))));
+}
+
+template <class Count>
+std::string counted(Count count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+/// @param tets  that were bent
+[[noreturn]] void fail(const BentTets& bent, const PolycubeTets& tets) {
+  const PolycubeProblem& problem = bent.problem;
+  std::size_t first = bent.flipped.front();
+  std::string what;
+  if (bent.isWound) {
+    what = counted(bent.flipped.size(), "tet") + " overlap around edges, though none is flipped.";
+  } else {
+    what = std::to_string(bent.flipped.size()) +
+           " tets, boundary triangles or edges between labels stay flipped, the first of them " +
+           problem.nameOf(first) + ".";
+    const std::vector<std::size_t> flat = untangle::flatElements(problem.solved());
+    if (!flat.empty()) {
+      first = flat.front();
+      what += " " + std::to_string(flat.size()) +
+              " are flat wherever they go, as labels bind their vertices to one plane or line: the "
+              "first is " +
+              problem.nameOf(first) + ".";
+    }
+  }
+  throw Error(ErrorCode::FlippedTet,
+              "The tets cannot be bent to a polycube that fits the labels: " + what +
+                  " Look at the labels there, or refine the tets where the object is thin.",
+              {PlaceKind::Tet, tets.parentTet[problem.tetAt(first)]});
+}
+
+/// Vertices of what is flipped, ascending.
+std::vector<Index> verticesAt(const BentTets& bent) {
+  std::vector<Index> vertices;
+  for (const std::size_t element : bent.flipped) {
+    const std::vector<Index> more = bent.problem.verticesOf(element);
+    vertices.insert(vertices.end(), more.begin(), more.end());
+  }
+  sortOut(vertices);
+  return vertices;
+}
+
+TetMap mapOf(const TetMapView& given, PolycubeTets tets, std::vector<TetParameters> parameters,
+             double scale) {
+  TetMap map{.points = std::move(tets.mesh.points),
+             .tets = std::move(tets.mesh.tets),
+             .parameters = std::move(parameters)};
+  std::copy(given.points.begin(), given.points.end(), map.points.begin());
+  for (std::size_t v = given.points.size(); v < map.points.size(); ++v) {
+    for (double& x : map.points[v]) x /= scale;
+  }
+  for (TetParameters& corners : map.parameters) {
+    for (Vec3& u : corners) {
+      for (double& x : u) x /= scale;
+    }
+  }
+  return map;
+}
+
+class PolycubeMaker {
+ public:
+  PolycubeMaker(const TetMesh& tets, std::span<const FaceFlags> flags, Context& context)
+      : context_(context),
+        given_(read(tets, flags)),
+        borders_(given_),
+        scale_(scaleOf(given_.input.view)),
+        tets_(polycubeTets(given_, scale_)) {}
+
+  TetMap run() {
+    for (int refinements = 0;; ++refinements) {
+      makeRoom(tets_);
+      std::optional<BentTets> best;
+      if (bend(best)) break;
+      if (refinements == kMostRefinements || work_ > kMostWork) fail(*best, tets_);
+      refineAt(tets_, verticesAt(*best));
+    }
+    return mapOf(given_.input.view, std::move(tets_), std::move(parameters_), scale_);
+  }
+
+ private:
+  LabelledMesh read(const TetMesh& tets, std::span<const FaceFlags> flags) {
+    Stage stage(context_, "labels");
+    return readLabels(tets, flags, stage);
+  }
+
+  /// @param[out] best  the map with the fewest flips, if none is good
+  /// @return whether there is a map
+  bool bend(std::optional<BentTets>& best) {
+    mesh_ = read(tets_.mesh, tets_.flags);
+    const PolycubeProblem start = place();
+    const auto planeAt = [&](int axis, Index vertex) {
+      return static_cast<std::int64_t>(
+          std::llround(start.at(vertex, static_cast<std::size_t>(axis))));
+    };
+    // As given first, so that errors have the caller's numbers.
+    static_cast<void>(borders_.edges(planeAt));
+    const std::vector<PolycubeEdge> edges = PolycubeBorders(mesh_).edges(planeAt);
+    Stage stage(context_, "untangling");
+    for (const bool fixPlanes : {false, true}) {
+      BentTets bent = bendTets(mesh_, start, edges, fixPlanes, stage);
+      work_ += static_cast<double>(bent.steps) * static_cast<double>(tets_.flags.size());
+      announce(bent, fixPlanes);
+      if (bent.flipped.empty()) {
+        parameters_ = parametersOf(mesh_, bent.problem);
+        return true;
+      }
+      if (!best || bent.flipped.size() < best->flipped.size()) best.emplace(std::move(bent));
+    }
+    return false;
+  }
+
+  /// Says how that went.
+  void announce(const BentTets& bent, bool fixPlanes) {
+    context_.report("untangling " + std::to_string(tets_.flags.size()) + " tets, planes " +
+                        (fixPlanes ? "fixed: " : "free: ") + counted(bent.steps, "step") + ", " +
+                        std::to_string(bent.flipped.size()) + " flips",
+                    std::min(1.0, work_ / kMostWork));
+  }
+
+  /// Near to where the field turns tets to, flipped or not.
+  PolycubeProblem place() {
+    Stage stage(context_, "planes");
+    PolycubeProblem problem(mesh_, rotationField(mesh_, stage));
+    untangle::Solver(problem.solved(), stage).start();
+    return problem;
+  }
+
+  Context& context_;
+  LabelledMesh given_;
+  PolycubeBorders borders_;
+  double scale_;
+  PolycubeTets tets_;  ///< of points times the scale
+  LabelledMesh mesh_;  ///< of these tets; what is bent refers to it
+  double work_ = 0;
+  std::vector<TetParameters> parameters_;
+};
+
+}  // namespace
+
+}  // namespace hexhex::quantization
+#endif
+
+namespace hexhex {
+
+#if defined(HEXHEX_HAS_QUANTIZE)
+
+TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags, Context& context) {
+  constexpr std::array<WorkStep, 3> kSteps = {{{"labels", 1}, {"planes", 2}, {"untangling", 6}}};
+  return inSteps(context, "mapFromFlags", kSteps, [&] {
+    TetMap map;
+    withThreads(context.threads(),
+                [&] { map = quantization::PolycubeMaker(tets, flags, context).run(); });
+    return map;
+  });
+}
+#else
+TetMap mapFromFlags(const TetMesh& /*tets*/, std::span<const FaceFlags> /*flags*/,
+                    Context& /*context*/) {
+  throw Error(ErrorCode::InvalidArgument,
+              "This build of hexhex cannot make maps of labels. Install Eigen (libeigen3-dev) and "
+              "build it anew.");
+}
+#endif
+
+}  // namespace hexhex

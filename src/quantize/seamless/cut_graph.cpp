@@ -1,0 +1,293 @@
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <quantize/seamless/cut_graph.hpp>
+
+#include <base/disjoint_sets.hpp>
+#include <base/vector3.hpp>
+#include <igm/transition_fit.hpp>
+
+namespace hexhex::quantization {
+
+namespace {
+
+/// Numbers the six edges of a tet by the set of their corners.
+constexpr std::array<std::uint8_t, 16> kEdgeOfCorners = {0, 0, 0, 0, 0, 1, 2, 0,
+                                                         0, 3, 4, 0, 5, 0, 0, 0};
+
+std::size_t numberOf(lattice::CornerMask ends) { return kEdgeOfCorners[ends]; }
+
+lattice::CornerMask endsOf(const adjacency::EdgeCorner& at) {
+  return static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
+                                          lattice::cornerBit(at.corner1));
+}
+
+/// How charts are moved on their way from tet to tet.
+struct Motion {
+  lattice::Rotation rotation;
+  Vec3 translation{};
+
+  [[nodiscard]] Vec3 operator()(const Vec3& u) const { return plus(rotation(u), translation); }
+};
+
+/// The same triangle's middle in both its tets.
+std::array<Vec3, 2> middles(const adjacency::TetTopology& topology, adjacency::HalfFace halfFace,
+                            std::span<const TetParameters> parameters) {
+  const adjacency::HalfFace mate = topology.mate[halfFace];
+  const adjacency::SharedFace face(topology, halfFace, mate);
+  std::array<Vec3, 2> sums{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    sums[0] = plus(sums[0], parameters[adjacency::tetOf(halfFace)][face.here(k)]);
+    sums[1] = plus(sums[1], parameters[adjacency::tetOf(mate)][face.there(k)]);
+  }
+  for (Vec3& sum : sums) {
+    for (double& x : sum) x /= 3;
+  }
+  return sums;
+}
+
+/// The one after which two edges of a tet come last in the alphabet: the same in whatever chart the
+/// tet is given.
+lattice::Rotation canonicalRotation(const TetParameters& u) {
+  lattice::Rotation best;
+  std::array<Vec3, 2> last{};
+  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
+    const lattice::Rotation rotation(r);
+    std::array<Vec3, 2> image = {rotation(minus(u[1], u[0])), rotation(minus(u[2], u[0]))};
+    for (Vec3& v : image) {
+      for (double& x : v) x = static_cast<double>(static_cast<float>(x));  // but for noise
+    }
+    if (r == 0 || image > last) {
+      best = rotation;
+      last = image;
+    }
+  }
+  return best;
+}
+
+/// Walks a tree of each component and puts all tets into the chart of its first one.
+/// @return the motion of each tet; marks triangles of the tree in `isTree`
+std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
+                                  std::span<const TetParameters> parameters,
+                                  std::span<const lattice::Rotation> rotations,
+                                  std::vector<bool>& isTree) {
+  std::vector<Motion> motions(topology.tetCount());
+  std::vector<bool> isMoved(topology.tetCount());
+  std::vector<Index> queue;
+  queue.reserve(topology.tetCount());
+  for (Index root = 0; root < topology.tetCount(); ++root) {
+    if (isMoved[root]) continue;
+    isMoved[root] = true;
+    motions[root].rotation = canonicalRotation(parameters[root]);
+    queue.push_back(root);
+    for (std::size_t next = queue.size() - 1; next < queue.size(); ++next) {
+      const Motion& here = motions[queue[next]];
+      for (int face = 0; face < 4; ++face) {
+        const adjacency::HalfFace out = adjacency::halfFaceOf(queue[next], face);
+        const adjacency::HalfFace mate = topology.mate[out];
+        if (mate == kNone || isMoved[adjacency::tetOf(mate)]) continue;
+        Motion& there = motions[adjacency::tetOf(mate)];
+        there.rotation = here.rotation * rotations[out].inverse();
+        const auto middle = middles(topology, out, parameters);
+        there.translation = minus(here(middle[0]), there.rotation(middle[1]));
+        isTree[out] = isTree[mate] = true;
+        isMoved[adjacency::tetOf(mate)] = true;
+        queue.push_back(adjacency::tetOf(mate));
+      }
+    }
+  }
+  return motions;
+}
+
+/// Takes triangles out of the cut that are its last ones at an edge around which nothing rotates.
+void mendCut(const adjacency::TetTopology& topology, const EdgeFans& edges, CutGraph& graph) {
+  std::vector<Index> cutFaces(edges.size());  // half-faces, that is, two for each triangle
+  std::vector<Index> ends;
+  const auto lookAt = [&](Index edge) {
+    if (cutFaces[edge] == 2 && !edges.isBoundary(edge)) ends.push_back(edge);
+  };
+  for (Index edge = 0; edge < edges.size(); ++edge) {
+    for (const adjacency::EdgeCorner& at : edges(edge)) {
+      forEachFaceAt(at, [&](adjacency::HalfFace h) { cutFaces[edge] += graph.isCut[h] ? 1 : 0; });
+    }
+    lookAt(edge);
+  }
+  const auto mend = [&](adjacency::HalfFace halfFace) {
+    graph.isCut[halfFace] = graph.isCut[topology.mate[halfFace]] = false;
+    for (int i = 0; i < 4; ++i) {
+      if (i == adjacency::localOf(halfFace)) continue;
+      const auto ends4 =
+          static_cast<lattice::CornerMask>(lattice::kWholeTet ^ lattice::cornerBit(i) ^
+                                           lattice::cornerBit(adjacency::localOf(halfFace)));
+      const Index edge = edges.edgeOf(adjacency::tetOf(halfFace), ends4);
+      cutFaces[edge] -= 2;
+      lookAt(edge);
+    }
+  };
+  while (!ends.empty()) {
+    const Index edge = ends.back();
+    ends.pop_back();
+    if (cutFaces[edge] != 2) continue;
+    adjacency::HalfFace last = kNone;
+    for (const adjacency::EdgeCorner& at : edges(edge)) {
+      forEachFaceAt(at, [&](adjacency::HalfFace h) { last = graph.isCut[h] ? h : last; });
+    }
+    if (graph.rotations[last].isIdentity()) mend(last);
+  }
+}
+
+/// Moves charts such that corners differ as little as can be across uncut triangles (least
+/// squares): along the tree alone, the noise of each triangle adds to that of those before.
+void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
+  const auto n = static_cast<Eigen::Index>(topology.tetCount());
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX3d differences = Eigen::MatrixX3d::Zero(n, 3);
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h || graph.isCut[h]) continue;
+    const Index t = adjacency::tetOf(h);
+    const Index other = adjacency::tetOf(mate);
+    const auto middle = middles(topology, h, graph.parameters);
+    const Vec3 apart = minus(middle[1], middle[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      differences(t, static_cast<Eigen::Index>(k)) += apart[k];
+      differences(other, static_cast<Eigen::Index>(k)) -= apart[k];
+    }
+    for (const auto& [a, b] : {std::pair(t, other), std::pair(other, t)}) {
+      entries.emplace_back(a, a, 1);
+      entries.emplace_back(a, b, -1);
+    }
+  }
+  if (differences.isZero(0)) return;
+  // All charts may move together.
+  for (Eigen::Index t = 0; t < n; ++t) entries.emplace_back(t, t, 1e-9);
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
+  solver.setTolerance(1e-6);
+  solver.compute(matrix);
+  const Eigen::MatrixX3d moves = solver.solve(differences);
+  for (Eigen::Index t = 0; t < n; ++t) {
+    for (Vec3& u : graph.parameters[static_cast<std::size_t>(t)]) {
+      u = plus(u, {moves(t, 0), moves(t, 1), moves(t, 2)});
+    }
+  }
+}
+
+/// Numbers corners at a vertex alike that uncut triangles connect.
+void numberSectors(const adjacency::TetTopology& topology, CutGraph& graph) {
+  DisjointSets sets(4 * topology.tetCount());
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h || graph.isCut[h]) continue;
+    const adjacency::SharedFace face(topology, h, mate);
+    for (std::size_t k = 0; k < 3; ++k) {
+      sets.unite(adjacency::halfFaceOf(adjacency::tetOf(h), static_cast<int>(face.here(k))),
+                 adjacency::halfFaceOf(adjacency::tetOf(mate), static_cast<int>(face.there(k))));
+    }
+  }
+  graph.sectors.resize(4 * topology.tetCount());
+  for (adjacency::CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
+    // The smallest corner of a set has come before.
+    const adjacency::CornerIndex first = sets.find(corner);
+    graph.sectors[corner] =
+        first == corner ? static_cast<Index>(graph.sectorCount++) : graph.sectors[first];
+  }
+}
+
+}  // namespace
+
+double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b) {
+  const std::size_t c = lattice::firstCorner(
+      static_cast<lattice::CornerMask>(lattice::kWholeTet ^ (1U << a) ^ (1U << b)));
+  const std::size_t d = 6 - a - b - c;
+  const Vec3 edge = minus(tet[b], tet[a]);
+  const Vec3 left = cross(edge, minus(tet[c], tet[a]));
+  const Vec3 right = cross(edge, minus(tet[d], tet[a]));
+  const Vec3 normal = cross(left, right);
+  return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
+}
+
+EdgeFans::EdgeFans(const adjacency::TetTopology& topology)
+    : topology_(topology), edges_(topology.tetCount()) {
+  // As many edges as Euler's formula has, where no component is a closed space.
+  const auto boundary =
+      static_cast<std::size_t>(std::count(topology.mate.begin(), topology.mate.end(), kNone));
+  begin_.reserve(topology.pointCount + topology.tetCount() + boundary / 2 + 1);
+  corners_.reserve(6 * topology.tetCount());
+  std::vector<adjacency::EdgeCorner> scratch;
+  for (Index v = 0; v < topology.pointCount; ++v) {
+    adjacency::forEachEdge(topology, v, scratch,
+                           [this](Index /*w*/, std::span<const adjacency::EdgeCorner> fan) {
+                             for (const adjacency::EdgeCorner& at : fan) {
+                               edges_[at.tet][numberOf(endsOf(at))] = static_cast<Index>(size());
+                             }
+                             corners_.insert(corners_.end(), fan.begin(), fan.end());
+                             begin_.push_back(corners_.size());
+                           });
+  }
+}
+
+Index EdgeFans::edgeOf(Index tet, lattice::CornerMask ends) const noexcept {
+  return edges_[tet][numberOf(ends)];
+}
+
+std::vector<lattice::Rotation> fitRotations(const adjacency::TetTopology& topology,
+                                            std::span<const TetParameters> parameters) {
+  std::vector<lattice::Rotation> rotations(topology.mate.size());
+  for (adjacency::HalfFace h = 0; h < rotations.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    const adjacency::SharedFace face(topology, h, mate);
+    const TetParameters& here = parameters[adjacency::tetOf(h)];
+    const TetParameters& there = parameters[adjacency::tetOf(mate)];
+    rotations[h] = igm::bestRotation({minus(here[face.here(1)], here[face.here(0)]),
+                                      minus(here[face.here(2)], here[face.here(0)])},
+                                     {minus(there[face.there(1)], there[face.there(0)]),
+                                      minus(there[face.there(2)], there[face.there(0)])});
+    rotations[mate] = rotations[h].inverse();
+  }
+  return rotations;
+}
+
+CutGraph cutOpen(const adjacency::TetTopology& topology, const EdgeFans& edges,
+                 std::span<const TetParameters> parameters,
+                 std::span<const lattice::Rotation> rotations) {
+  CutGraph graph;
+  std::vector<bool> isTree(topology.mate.size());
+  // Charts may lie anywhere: far away, sums would lose what differences still have.
+  graph.parameters.assign(parameters.begin(), parameters.end());
+  for (TetParameters& tet : graph.parameters) {
+    const Vec3 origin = tet[0];
+    for (Vec3& u : tet) u = minus(u, origin);
+  }
+  const std::vector<Motion> motions = moveAlongTree(topology, graph.parameters, rotations, isTree);
+  for (std::size_t t = 0; t < graph.parameters.size(); ++t) {
+    for (Vec3& u : graph.parameters[t]) u = motions[t](u);
+  }
+  graph.rotations.resize(topology.mate.size());
+  graph.isCut.resize(topology.mate.size());
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone) continue;
+    graph.rotations[h] = motions[adjacency::tetOf(mate)].rotation * rotations[h] *
+                         motions[adjacency::tetOf(h)].rotation.inverse();
+    graph.isCut[h] = !isTree[h];
+  }
+  mendCut(topology, edges, graph);
+  levelCharts(topology, graph);
+  numberSectors(topology, graph);
+  return graph;
+}
+
+adjacency::HalfFace nextCutAround(const adjacency::TetTopology& topology, const CutGraph& graph,
+                                  lattice::CornerMask edge, adjacency::HalfFace halfFace) {
+  adjacency::EdgeTurn turn(topology, adjacency::tetOf(halfFace), edge,
+                           adjacency::otherFaceAtEdge(edge, adjacency::localOf(halfFace)));
+  while (turn.next() != kNone && !graph.isCut[turn.out()]) turn.step();
+  return turn.next() == kNone ? kNone : turn.out();
+}
+
+}  // namespace hexhex::quantization

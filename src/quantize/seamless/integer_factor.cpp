@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <quantize/seamless/cut_graph.hpp>
+#include <quantize/seamless/integer_factor.hpp>
+
+#include <hexhex/extract.hpp>
+
+#include <base/vector3.hpp>
+#include <igm/prepare.hpp>
+
+namespace hexhex::quantization {
+namespace {
+
+/// The coordinate of a face along the axis that it is perpendicular to.
+double planeOf(const TetParameters& corners, adjacency::HalfFace face) {
+  double least = INFINITY;
+  double plane = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double lower = INFINITY;
+    double upper = -INFINITY;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (i == face % 4) continue;
+      lower = std::min(lower, corners[i][axis]);
+      upper = std::max(upper, corners[i][axis]);
+    }
+    if (upper - lower >= least) continue;
+    least = upper - lower;
+    plane = (lower + upper) / 2;
+  }
+  return plane;
+}
+
+/// Sizes of all that has to be an integer, in the charts given: those of the seamless map begin
+/// anywhere.
+std::vector<double> conditions(const adjacency::TetTopology& topology,
+                               std::span<const TetParameters> parameters) {
+  std::vector<double> sizes;
+  const std::vector<lattice::Rotation> rotations = fitRotations(topology, parameters);
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const TetParameters& here = parameters[adjacency::tetOf(h)];
+    if (topology.isBoundary(h)) {
+      sizes.push_back(std::abs(planeOf(here, h)));
+      continue;
+    }
+    const adjacency::HalfFace mate = topology.mate[h];
+    const adjacency::SharedFace face(topology, h, mate);
+    const Vec3 translation =
+        minus(parameters[adjacency::tetOf(mate)][face.there(0)], rotations[h](here[face.here(0)]));
+    for (const double x : translation) sizes.push_back(std::abs(x));
+  }
+  std::sort(sizes.begin(), sizes.end());
+  sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+  return sizes;
+}
+
+/// The largest length of which all are multiples but for some noise; 0 if there is none.
+double commonLength(const std::vector<double>& sizes, double noise) {
+  // A length with less than that many noises would fit anything.
+  constexpr double kNoisesPerLength = 1000;
+  double length = 0;
+  for (double size : sizes) {
+    while (size > noise) {
+      if (length == 0) length = size;
+      if (length > size) std::swap(length, size);
+      size = std::abs(size - std::round(size / length) * length);
+    }
+    if (length > 0 && length < kNoisesPerLength * noise) return 0;
+  }
+  // The largest multiple has the smallest relative error.
+  return length == 0 ? 0 : sizes.back() / std::round(sizes.back() / length);
+}
+
+/// What a person has divided by, where roundings of the parameters hide it: a number with six
+/// digits.
+double withFewDigits(double number) {
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 5);
+  const double shorter = unit < 1 ? std::round(number / unit) / std::round(1 / unit)
+                                  : std::round(number / unit) * unit;
+  return std::abs(number - shorter) < 1e-9 * number ? shorter : number;
+}
+
+bool isInteger(const TetMapView& map, double factor, Context& context) {
+  std::vector<TetParameters> scaled(map.parameters.begin(), map.parameters.end());
+  for (TetParameters& tet : scaled) {
+    for (Vec3& corner : tet) {
+      for (double& x : corner) x *= factor;
+    }
+  }
+  TetMapView view = map;
+  view.parameters = scaled;
+  igm::DefectCollector defects;
+  static_cast<void>(igm::prepareMap(view, ExtractOptions{}.tolerance, 1, context, defects,
+                                    igm::ChartChoice::Unfolded));
+  return defects.empty();
+}
+
+}  // namespace
+
+double integerFactor(const TetMapView& map, const SeamlessMap& seamless, Context& context) {
+  Stage stage(context, "seamless map");
+  igm::DefectCollector defects;
+  const igm::OrientedMap input = igm::readInput(map, stage, defects);
+  const std::vector<double> sizes = conditions(seamless.topology, input.view.parameters);
+  stage.finish();
+  if (sizes.empty()) return 0;
+  // Twice what made it seamless, and what is lost in sums of doubles.
+  const double noise = 2 * seamless.maxDisplacement + 1e-12 * sizes.back();
+  const double length = commonLength(sizes, noise);
+  if (length == 0) return 0;
+  // Around singular edges, halves of translations have to be integers as well.
+  for (const double multiple : {1.0, 2.0}) {
+    const double factor = withFewDigits(multiple / length);
+    if (isInteger(map, factor, context)) return factor;
+  }
+  return 0;
+}
+
+}  // namespace hexhex::quantization

@@ -1,0 +1,299 @@
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+
+#include <quantize/seamless/seamless_conditions.hpp>
+
+#include <base/disjoint_sets.hpp>
+
+namespace hexhex::quantization {
+
+namespace {
+
+/// R applied to forms.
+std::array<IntegerForm, 3> rotated(lattice::Rotation rotation,
+                                   const std::array<IntegerForm, 3>& forms) {
+  std::array<IntegerForm, 3> image;
+  for (int from = 0; from < 3; ++from) {
+    const lattice::Direction to = rotation(lattice::direction(from, 1));
+    image[static_cast<std::size_t>(lattice::axisOf(to))].add(forms[static_cast<std::size_t>(from)],
+                                                             lattice::signOf(to));
+  }
+  return image;
+}
+
+/// coefficients . u + rest = 0 for the parameter u of a vertex.
+struct Row {
+  std::array<std::int64_t, 3> coefficients{};
+  IntegerForm rest;
+
+  void reduceBy(const Row& pivot, std::size_t column) {
+    const std::int64_t common = std::gcd(coefficients[column], pivot.coefficients[column]);
+    const std::int64_t mine = pivot.coefficients[column] / common;
+    const std::int64_t theirs = -coefficients[column] / common;
+    for (std::size_t k = 0; k < 3; ++k) {
+      coefficients[k] = mine * coefficients[k] + theirs * pivot.coefficients[k];
+    }
+    rest.multiply(mine);
+    rest.add(pivot.rest, theirs);
+    std::int64_t divisor = 0;
+    for (const std::int64_t c : coefficients) divisor = std::gcd(divisor, c);
+    divisor = rest.commonDivisor(divisor);
+    if (divisor <= 1) return;
+    for (std::int64_t& c : coefficients) c /= divisor;
+    rest.divide(divisor);
+  }
+};
+
+/// Solves rows for coordinates; what is left over are equations between the unknowns.
+void eliminate(std::vector<Row>& rows, VertexConditions& vertex,
+               std::vector<IntegerForm>& equations) {
+  std::array<std::size_t, 3> pivotOf = {kNone, kNone, kNone};
+  std::size_t done = 0;
+  for (std::size_t column = 0; column < 3; ++column) {
+    std::size_t best = kNone;
+    for (std::size_t r = done; r < rows.size(); ++r) {
+      const std::int64_t size = std::abs(rows[r].coefficients[column]);
+      if (size != 0 && (best == kNone || size < std::abs(rows[best].coefficients[column])))
+        best = r;
+    }
+    if (best == kNone) continue;
+    std::swap(rows[done], rows[best]);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      if (r != done && rows[r].coefficients[column] != 0) rows[r].reduceBy(rows[done], column);
+    }
+    pivotOf[column] = done++;
+  }
+  for (std::size_t column = 0; column < 3; ++column) {
+    if (pivotOf[column] == kNone) continue;
+    const Row& row = rows[pivotOf[column]];
+    vertex.fixed[column] = {row.coefficients[column], row.rest};
+  }
+  for (std::size_t r = done; r < rows.size(); ++r) equations.push_back(std::move(rows[r].rest));
+}
+
+/// Two ways to a sector give the same parameter there.
+void addDifference(const VertexConditions::Sector& reached, const VertexConditions::Sector& known,
+                   std::vector<Row>& rows) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    Row row;
+    for (int from = 0; from < 3; ++from) {
+      const auto column = static_cast<std::size_t>(from);
+      const lattice::Direction a = reached.rotation(lattice::direction(from, 1));
+      const lattice::Direction b = known.rotation(lattice::direction(from, 1));
+      if (static_cast<std::size_t>(lattice::axisOf(a)) == k)
+        row.coefficients[column] += lattice::signOf(a);
+      if (static_cast<std::size_t>(lattice::axisOf(b)) == k)
+        row.coefficients[column] -= lattice::signOf(b);
+    }
+    row.rest = reached.translation[k];
+    row.rest.add(known.translation[k], -1);
+    rows.push_back(std::move(row));
+  }
+}
+
+/// What planes say in a sector.
+void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unknowns,
+               std::vector<Row>& rows) {
+  for (int from = 0; from < 3; ++from) {
+    const lattice::Direction to = sector.rotation(lattice::direction(from, 1));
+    const auto axis = static_cast<std::size_t>(lattice::axisOf(to));
+    const Index plane = unknowns.plane(sector.sector, axis);
+    if (plane == kNone) continue;
+    Row row;
+    row.coefficients[static_cast<std::size_t>(from)] = lattice::signOf(to);
+    row.rest = sector.translation[axis];
+    row.rest.add({plane, 1}, -1);
+    rows.push_back(std::move(row));
+  }
+}
+
+/// A way from one sector at a vertex to another, across the cut.
+struct Crossing {
+  Index from;
+  Index to;
+  adjacency::HalfFace halfFace;
+};
+
+std::vector<Crossing> crossingsAt(Index vertex, const adjacency::TetTopology& topology,
+                                  const CutGraph& graph) {
+  std::vector<Crossing> crossings;
+  for (const adjacency::CornerIndex corner : topology.star(vertex)) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace h = adjacency::halfFaceOf(corner / 4, face);
+      if (face == adjacency::localOf(corner) || !graph.isCut[h]) continue;
+      const Index there = adjacency::tetOf(topology.mate[h]);
+      const adjacency::CornerIndex mate =
+          4 * there + static_cast<Index>(topology.localCorner(there, vertex));
+      crossings.push_back({graph.sectors[corner], graph.sectors[mate], h});
+    }
+  }
+  return crossings;
+}
+
+}  // namespace
+
+SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology, const EdgeFans& edges,
+                               const CutGraph& graph, const Alignment& alignment)
+    : topology_(topology), graph_(graph) {
+  numberCutPieces(edges);
+  numberPlanes(alignment);
+}
+
+void SharedUnknowns::numberCutPieces(const EdgeFans& edges) {
+  // Across an edge with two triangles of the cut, translations are the same, unless it is singular.
+  DisjointSets sets(topology_.mate.size());
+  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+    std::vector<std::pair<adjacency::HalfFace, lattice::CornerMask>> cuts;
+    for (const adjacency::EdgeCorner& at : edges(edge)) {
+      const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
+                                                         lattice::cornerBit(at.corner1));
+      forEachFaceAt(at, [&](adjacency::HalfFace h) {
+        if (graph_.isCut[h]) cuts.emplace_back(h, ends);
+      });
+    }
+    if (cuts.size() != 4 || edges.isBoundary(edge)) continue;
+    for (const auto& [h, ends] : cuts) {
+      const adjacency::HalfFace next = nextCutAround(topology_, graph_, ends, h);
+      if (graph_.rotations[h] == graph_.rotations[next]) sets.unite(h, next);
+    }
+  }
+  pieces_.assign(topology_.mate.size(), kNone);
+  first_.assign(topology_.mate.size(), kNone);
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
+    if (!graph_.isCut[h]) continue;
+    pieces_[h] = sets.find(h);
+    const adjacency::HalfFace otherSide = sets.find(topology_.mate[h]);
+    if (pieces_[h] != h || otherSide < h) continue;
+    first_[h] = static_cast<Index>(size_);
+    size_ += 3;
+  }
+  // A piece with one side only: its translation is that of its inverse.
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
+    if (first_[h] == kNone || sets.find(topology_.mate[h]) != h) continue;
+    std::array<IntegerForm, 3> own;
+    for (std::size_t k = 0; k < 3; ++k) own[k] = translation(h, k);
+    const auto back = rotated(graph_.rotations[h].inverse(), own);
+    for (std::size_t k = 0; k < 3; ++k) {
+      equations_.push_back(own[k]);
+      equations_.back().add(back[k], 1);
+    }
+  }
+}
+
+void SharedUnknowns::numberPlanes(const Alignment& alignment) {
+  DisjointSets sets(3 * graph_.sectorCount);
+  std::vector<bool> isPlane(3 * graph_.sectorCount);
+  const auto join = [&](adjacency::CornerIndex a, adjacency::CornerIndex b, Index axis) {
+    const Index first = 3 * graph_.sectors[a] + axis;
+    const Index second = 3 * graph_.sectors[b] + axis;
+    isPlane[first] = isPlane[second] = true;
+    sets.unite(first, second);
+  };
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
+    if (alignment.axes[h] == kFree) continue;
+    const auto corner = [&](std::size_t k) {
+      return adjacency::halfFaceOf(adjacency::tetOf(h), lattice::kFaceCorners[h % 4][k]);
+    };
+    join(corner(0), corner(1), alignment.axes[h]);
+    join(corner(0), corner(2), alignment.axes[h]);
+  }
+  for (const auto& [at, along] : alignment.edges) {
+    for (Index axis = 0; axis < 3; ++axis) {
+      if (axis == along) continue;
+      join(adjacency::halfFaceOf(at.tet, at.corner0), adjacency::halfFaceOf(at.tet, at.corner1),
+           axis);
+    }
+  }
+  planes_.assign(isPlane.size(), kNone);
+  for (Index i = 0; i < planes_.size(); ++i) {
+    if (!isPlane[i]) continue;
+    const Index first = sets.find(i);
+    planes_[i] = first == i ? static_cast<Index>(size_++) : planes_[first];
+  }
+}
+
+IntegerForm SharedUnknowns::translation(adjacency::HalfFace halfFace, std::size_t axis) const {
+  const adjacency::HalfFace piece = pieces_[halfFace];
+  if (first_[piece] != kNone) return {first_[piece] + static_cast<Index>(axis), 1};
+  // Known on the other side: u' = R u + t, hence u = R^-1 u' - R^-1 t.
+  const adjacency::HalfFace other = pieces_[topology_.mate[halfFace]];
+  std::array<IntegerForm, 3> there;
+  for (Index k = 0; k < 3; ++k) there[k] = {first_[other] + k, -1};
+  return rotated(graph_.rotations[halfFace], there)[axis];
+}
+
+std::vector<adjacency::HalfFace> SharedUnknowns::cutPieces() const {
+  std::vector<adjacency::HalfFace> pieces;
+  for (adjacency::HalfFace h = 0; h < first_.size(); ++h) {
+    if (first_[h] == kNone) continue;
+    pieces.push_back(h);
+    pieces.push_back(topology_.mate[h]);
+  }
+  return pieces;
+}
+
+std::vector<double> SharedUnknowns::measured() const {
+  std::vector<double> sums(size_);
+  std::vector<double> counts(size_);
+  const auto add = [&](std::size_t unknown, double value) {
+    sums[unknown] += value;
+    counts[unknown] += 1;
+  };
+  for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
+    if (!graph_.isCut[h] || first_[pieces_[h]] == kNone) continue;
+    const adjacency::SharedFace face(topology_, h, topology_.mate[h]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& there = graph_.parameters[adjacency::tetOf(topology_.mate[h])][face.there(k)];
+      const Vec3 here = graph_.rotations[h](graph_.parameters[adjacency::tetOf(h)][face.here(k)]);
+      for (std::size_t i = 0; i < 3; ++i) add(first_[pieces_[h]] + i, there[i] - here[i]);
+    }
+  }
+  for (adjacency::CornerIndex corner = 0; corner < graph_.sectors.size(); ++corner) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index unknown = plane(graph_.sectors[corner], i);
+      if (unknown != kNone) add(unknown, graph_.parameters[corner / 4][corner % 4][i]);
+    }
+  }
+  for (std::size_t i = 0; i < size_; ++i) sums[i] /= counts[i];
+  return sums;
+}
+
+VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topology,
+                              const CutGraph& graph, const SharedUnknowns& unknowns,
+                              std::vector<IntegerForm>& equations) {
+  VertexConditions conditions;
+  std::vector<Row> rows;
+  // All sectors from the first one, across the cut; each further way between them is a condition.
+  const std::vector<Crossing> crossings = crossingsAt(vertex, topology, graph);
+  conditions.sectors.push_back({graph.sectors[topology.star(vertex)[0]], {}, {}});
+  const auto find = [&](Index sector) {
+    return std::find_if(conditions.sectors.begin(), conditions.sectors.end(),
+                        [sector](const auto& known) { return known.sector == sector; });
+  };
+  for (std::size_t next = 0; next < conditions.sectors.size(); ++next) {
+    for (const Crossing& crossing : crossings) {
+      if (crossing.from != conditions.sectors[next].sector) continue;
+      const VertexConditions::Sector& from = conditions.sectors[next];
+      const lattice::Rotation turn = graph.rotations[crossing.halfFace];
+      VertexConditions::Sector reached{crossing.to, turn * from.rotation,
+                                       rotated(turn, from.translation)};
+      for (std::size_t k = 0; k < 3; ++k) {
+        reached.translation[k].add(unknowns.translation(crossing.halfFace, k), 1);
+      }
+      const auto known = find(crossing.to);
+      if (known == conditions.sectors.end()) {
+        conditions.sectors.push_back(std::move(reached));
+        continue;
+      }
+      addDifference(reached, *known, rows);
+    }
+  }
+  for (const VertexConditions::Sector& sector : conditions.sectors) {
+    addPlanes(sector, unknowns, rows);
+  }
+  eliminate(rows, conditions, equations);
+  return conditions;
+}
+
+}  // namespace hexhex::quantization
