@@ -53,6 +53,32 @@ std::string heldAsText(const ImproveReport& report) {
   return text;
 }
 
+/// What the caller may not have wanted.
+void warnOfImprovement(const ImproveReport& report) {
+  // Rounding is no distance.
+  const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
+  if (report.distanceAfter.hausdorff() > limit) {
+    printWarning(
+        "The mesh came farther from the surface where cells could not be good nearer to it; "
+        "--report lists what is far from it.");
+  }
+  const double mean = report.before.quality.mean;
+  if (report.after.quality.mean < mean - 1e-6) {
+    printWarning(fmt::format(
+        "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
+        "--target unless beside mended ones, so that those below it are better.",
+        mean, report.after.quality.mean));
+  }
+  if (report.notPositive.empty()) return;
+  printWarning(refutationAsText(report.after));
+  if (report.vertices[2] + report.vertices[3] > 0) {
+    printWarning(
+        "Vertices stay on curves and at corners. Where these are no features of the object, "
+        "--feature-angle 180 leaves out those that are found by angle, and --slack lets vertices "
+        "come farther from the surface.");
+  }
+}
+
 }  // namespace
 
 void printImprovement(const ImproveReport& report) {
@@ -95,28 +121,7 @@ void printImprovement(const ImproveReport& report) {
     printLine("off creases", fmt::format("{} vertices, where nothing else made cells positive",
                                          report.offCreases));
   }
-  // Rounding is no distance.
-  const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
-  if (report.distanceAfter.hausdorff() > limit) {
-    printWarning(
-        "The mesh came farther from the surface where cells could not be good nearer to it; "
-        "--report lists what is far from it.");
-  }
-  const double mean = report.before.quality.mean;
-  if (report.after.quality.mean < mean - 1e-6) {
-    printWarning(fmt::format(
-        "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
-        "--target unless beside mended ones, so that those below it are better.",
-        mean, report.after.quality.mean));
-  }
-  if (left == 0) return;
-  printWarning(refutationAsText(report.after));
-  if (report.vertices[2] + report.vertices[3] > 0) {
-    printWarning(
-        "Vertices stay on curves and at corners. Where these are no features of the object, "
-        "--feature-angle 180 leaves out those that are found by angle, and --slack lets vertices "
-        "come farther from the surface.");
-  }
+  warnOfImprovement(report);
 }
 
 Json improvementAsJson(const ImproveReport& report) {

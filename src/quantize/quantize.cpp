@@ -331,7 +331,7 @@ class Quantizer {
     BentMap bent = bend(std::move(problem), {.maxGrowth = growth}, stage);
     if (!bent.isValid()) {
       failed_.insert({growth, report_.blocks, choice->integers});
-      const double flipped = static_cast<double>(bent.flippedTets.size());
+      const auto flipped = static_cast<double>(bent.flippedTets.size());
       if (flipped > 0) {
         leastFlipped_ = std::min(leastFlipped_, flipped / static_cast<double>(bent.tets.size()));
       }

@@ -241,9 +241,9 @@ class VerifySink::Prover {
   }
 
   void points(const PointPiece& piece) {
-    if (truth_)
-      compare(piece.first, piece.points, verification::expectedElements(truth_->expected).vertices,
-              points_);
+    if (!truth_) return;
+    compare(piece.first, piece.points, verification::expectedElements(truth_->expected).vertices,
+            points_);
   }
   template <class Cell>
   void cells(std::uint64_t first, std::span<const Cell> cells) {

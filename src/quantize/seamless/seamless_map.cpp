@@ -402,24 +402,75 @@ void requireDisplacement(const SeamlessMap& map, double tolerance) {
   notSeamless(map, what.str(), {PlaceKind::Tet, map.mostDisplaced});
 }
 
-/// Values of shared unknowns for the seamless map that is nearest under all equations.
-/// @param wishes  further equations, as far as they make no fractions
-/// @return empty if they are not on the lattice
-std::vector<std::int64_t> nearestValues(const SharedUnknowns& unknowns, double unit,
-                                        const std::vector<IntegerForm>& equations,
-                                        const std::vector<IntegerForm>& wishes = {}) {
-  const IntegerSystem system(unknowns.size(), equations, wishes);
-  std::vector<double> wanted = system.nearest(unknowns.measured());
-  for (double& x : wanted) x *= unit;
-  // Nearly all that depends on others is their sum, or half of it, and the step is a power of two;
-  // some is a third, a ninth ...
-  std::vector<std::int64_t> values;
-  for (const std::int64_t divisible : {1, 3, 15, 105, 315, 945}) {
-    if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
+/// Corners of the nearest seamless map, by conditions on unknowns that they share.
+class NearestMap {
+ public:
+  NearestMap(SeamlessMap& map, const CutGraph& graph, const SharedUnknowns& unknowns)
+      : map_(map), graph_(graph), unknowns_(unknowns), equations_(unknowns.equations()) {
+    const adjacency::TetTopology& topology = map.topology;
+    conditions_.resize(topology.pointCount);
+    for (Index v = 0; v < topology.pointCount; ++v) {
+      if (topology.isIsolated(v)) continue;
+      conditions_[v] = conditionsOf(v, topology, graph, unknowns, equations_);
+    }
   }
-  if (values.size() != unknowns.size()) values.clear();
-  return values;
-}
+
+  void find() {
+    values_ = nearest({});
+    if (values_.empty() && unknowns_.size() > 0) {
+      notSeamless(map_, "conditions of singular curves have no solution on the lattice.", {});
+    }
+    take(values_);
+  }
+
+  /// Finds it once more with all planes as one that noise alone keeps apart: walls between them
+  /// were a mess. @pre find()
+  void joinPlanes(double noise) {
+    std::vector<IntegerForm> wishes;
+    std::vector<std::int64_t> best = values_;
+    for (int round = 0; round < kRoundsOfWishes; ++round) {
+      const auto more = coincidences(graph_, unknowns_, conditions_, best, noise * map_.unit,
+                                     map_.size * map_.unit);
+      if (more.empty()) break;
+      wishes.insert(wishes.end(), more.begin(), more.end());
+      best = nearest(wishes);
+      if (best.empty()) break;
+      take(best);
+    }
+    // Chains of near coincidences may lead far away.
+    if (map_.maxDisplacement > kChainedNoise * noise) take(values_);
+  }
+
+ private:
+  /// Values of shared unknowns for the seamless map that is nearest under all equations.
+  /// @param wishes  further equations, as far as they make no fractions
+  /// @return empty if they are not on the lattice
+  [[nodiscard]] std::vector<std::int64_t> nearest(const std::vector<IntegerForm>& wishes) const {
+    const IntegerSystem system(unknowns_.size(), equations_, wishes);
+    std::vector<double> wanted = system.nearest(unknowns_.measured());
+    for (double& x : wanted) x *= map_.unit;
+    // Nearly all that depends on others is their sum, or half of it, and the step is a power of
+    // two; some is a third, a ninth ...
+    std::vector<std::int64_t> values;
+    for (const std::int64_t divisible : {1, 3, 15, 105, 315, 945}) {
+      if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
+    }
+    if (values.size() != unknowns_.size()) values.clear();
+    return values;
+  }
+
+  void take(std::span<const std::int64_t> values) {
+    solveVertices(map_, graph_, conditions_, values);
+    measureDisplacement(map_, graph_);
+  }
+
+  SeamlessMap& map_;
+  const CutGraph& graph_;
+  const SharedUnknowns& unknowns_;
+  std::vector<IntegerForm> equations_;
+  std::vector<VertexConditions> conditions_;
+  std::vector<std::int64_t> values_;
+};
 
 }  // namespace
 
@@ -461,39 +512,13 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   requireAxesOfCurves(result, edges, graph, options.tolerance * result.size);
   const SharedUnknowns unknowns(topology, edges, graph,
                                 findAlignment(result, edges, graph, options));
-  std::vector<IntegerForm> equations = unknowns.equations();
-  std::vector<VertexConditions> conditions(topology.pointCount);
-  for (Index v = 0; v < topology.pointCount; ++v) {
-    if (topology.isIsolated(v)) continue;
-    conditions[v] = conditionsOf(v, topology, graph, unknowns, equations);
-  }
-  const std::vector<std::int64_t> values = nearestValues(unknowns, result.unit, equations);
-  if (values.empty() && unknowns.size() > 0) {
-    notSeamless(result, "conditions of singular curves have no solution on the lattice.", {});
-  }
-  const auto take = [&](std::span<const std::int64_t> chosen) {
-    solveVertices(result, graph, conditions, chosen);
-    measureDisplacement(result, graph);
-  };
-  take(values);
+  NearestMap nearest(result, graph, unknowns);
+  nearest.find();
   if (flippedTets(result.corners).empty()) result.flippedAsGiven.clear();
   requireDisplacement(result, options.tolerance * result.size);
-  // Once more with all planes as one that noise alone keeps apart: walls between them were a mess.
   const double noise =
       std::max(std::max(kNoise, options.apart) * result.size, result.maxDisplacement);
-  std::vector<IntegerForm> wishes;
-  std::vector<std::int64_t> best = values;
-  for (int round = 0; round < kRoundsOfWishes; ++round) {
-    const auto more = coincidences(graph, unknowns, conditions, best, noise * result.unit,
-                                   result.size * result.unit);
-    if (more.empty()) break;
-    wishes.insert(wishes.end(), more.begin(), more.end());
-    best = nearestValues(unknowns, result.unit, equations, wishes);
-    if (best.empty()) break;
-    take(best);
-  }
-  // Chains of near coincidences may lead far away.
-  if (result.maxDisplacement > kChainedNoise * noise) take(values);
+  nearest.joinPlanes(noise);
   findChanges(result, graph);
   requireDisplacement(result, std::max(options.tolerance * result.size, kChainedNoise * noise));
   result.input.view.parameters = {};
