@@ -44,6 +44,8 @@ Error obstacleAt(ErrorCode code, const Edge& edge, const char* what) {
           Place{PlaceKind::Edge, edge[0], edge[1]}};
 }
 
+constexpr const char* kNarrow = "an inner face or curve is there only one cell wide";
+
 Error obstacleAt(Index vertex, const char* what) {
   return {ErrorCode::InvalidArgument,
           "A layer of cells under the boundary cannot pass vertex " + std::to_string(vertex) +
@@ -191,17 +193,26 @@ class PillowMaker {
       }
       const Index leader = curve != kNone ? curve : wall;
       if (leader == kNone || isOuter(leader)) {
-        obstacle = obstacleAt(v, "an inner face or curve is there only one cell wide");
+        obstacle = obstacleAt(v, kNarrow);
       }
       leaders[innerOf_[v] - mesh_.points.size()] = leader;
     });
-    for (const Edge& edge : wallEdges_) {
-      for (const Index v : edge) {
-        if (leaders[innerOf_[v] - mesh_.points.size()] != kNone || obstacle) continue;
-        obstacle = obstacleAt(v, "an inner face has two of its edges on the boundary");
+    if (!obstacle) obstacle = leadFromCorners(leaders);
+    return obstacle;
+  }
+
+  /// At a corner of a wall, with both edges there on the boundary, the corner across leads.
+  std::optional<Error> leadFromCorners(Array<Index>& leaders) const {
+    for (const Quad& wall : walls_) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (!isOuter(edgeOf(wall, i)) || !isOuter(edgeOf(wall, (i + 3) % 4))) continue;
+        const Index across = wall[(i + 2) % 4];
+        if (isOuter(across)) return obstacleAt(wall[i], kNarrow);
+        Index& leader = leaders[innerOf_[wall[i]] - mesh_.points.size()];
+        if (leader == kNone) leader = across;
       }
     }
-    return obstacle;
+    return std::nullopt;
   }
 
   /// Where a new vertex is put: half way to the middle of the cells' centres, which is inside
