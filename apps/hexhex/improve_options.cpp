@@ -71,7 +71,7 @@ void warnOfImprovement(const ImproveReport& report) {
         "--report lists what is far from it.");
   }
   const double mean = report.before.quality.mean;
-  if (report.after.quality.mean < mean - 1e-6) {
+  if (report.addedCells == 0 && report.after.quality.mean < mean - 1e-6) {
     printWarning(fmt::format(
         "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
         "--target unless beside mended ones, so that those below it are better.",

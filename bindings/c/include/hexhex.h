@@ -1204,7 +1204,8 @@ typedef struct hexhex_improve_report {
         0, 0, 0, 0, 0, 0, 0                                                                       \
   }
 
-/** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
+/** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>. With a pillow,
+ * the mesh gets more vertices and cells: arrays that were asked for before are no longer there.
  * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary
  * @param options      or NULL
  * @param[out] report  made with HEXHEX_IMPROVE_REPORT_INIT, or NULL */
