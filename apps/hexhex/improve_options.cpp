@@ -123,6 +123,11 @@ void printImprovement(const ImproveReport& report) {
       fmt::format("{:.2g} of the diagonal ({:.2g} from it to the mesh); before {:.2g} ({:.2g})",
                   report.distanceAfter.fromMesh, report.distanceAfter.fromSurface,
                   report.distanceBefore.fromMesh, report.distanceBefore.fromSurface));
+  if (report.curveLength > 0) {
+    printLine("curves", fmt::format("edges of the mesh follow {:.3g} % of {:.3g} diagonals of the "
+                                    "object's curves",
+                                    100 * report.curvesFollowed, report.curveLength));
+  }
   if (report.innerDistanceBefore > 0 || report.innerDistanceAfter > 0) {
     printLine("faces inside", fmt::format("at most {:.2g} of the diagonal off; before {:.2g}",
                                           report.innerDistanceAfter, report.innerDistanceBefore));
@@ -175,6 +180,8 @@ Json improvementAsJson(const ImproveReport& report) {
       {"off_surface", report.offSurface},
       {"off_creases", report.offCreases},
       {"added_cells", report.addedCells},
+      {"curve_length", report.curveLength},
+      {"curves_followed", report.curvesFollowed},
       {"seconds", report.seconds}};
 }
 

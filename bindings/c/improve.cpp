@@ -36,7 +36,9 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .tagged_vertices = r.taggedVertices,
           .boundary_vertices = r.boundaryVertices,
           .off_creases = r.offCreases,
-          .added_cells = r.addedCells};
+          .added_cells = r.addedCells,
+          .curve_length = r.curveLength,
+          .curves_followed = r.curvesFollowed};
 }
 
 hexhex::PillowMode pillowOf(hexhex_pillow_mode mode) {

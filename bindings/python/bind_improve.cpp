@@ -54,6 +54,8 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["off_surface"] = report.offSurface;
   d["off_creases"] = report.offCreases;
   d["added_cells"] = report.addedCells;
+  d["curve_length"] = report.curveLength;
+  d["curves_followed"] = report.curvesFollowed;
   d["seconds"] = report.seconds;
   return nb::make_tuple(std::move(moved), asTuple(std::move(report.before)),
                         asTuple(std::move(report.after)), d);

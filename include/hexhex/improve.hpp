@@ -84,6 +84,9 @@ struct ImproveReport {
   /// missing.
   std::uint64_t addedCells = 0;
   Array<Vec3> addedPoints;  ///< its vertices, where they were put before they moved
+  /// Curves of the object: its sharp and its tagged edges.
+  double curveLength = 0;     ///< in diagonals
+  double curvesFollowed = 1;  ///< share of it near which edges of the mesh run along, 0 to 1
 };
 
 /// Moves vertices, and adds a pillow if that is wanted. The surface is that of the map: its

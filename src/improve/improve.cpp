@@ -16,6 +16,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/curved_cells.hpp>
+#include <improve/followed_curves.hpp>
 #include <improve/moving.hpp>
 #include <improve/pillowed.hpp>
 #include <improve/sound_input.hpp>
@@ -153,6 +154,10 @@ void reportAfter(const Subject& subject, const Boundary& boundary, const VertexP
   report.distanceAfter = distance.largest;
   report.innerDistanceAfter = distanceInside(places, subject.mesh, report, stage);
   report.farCells = boundary.cellsBeyond(kSurfaceTolerance, distance, subject.parts());
+  const FollowedCurves curves =
+      followedCurves(subject.mesh, places, kSurfaceTolerance * report.diagonal, stage);
+  report.curveLength = curves.length / report.diagonal;
+  report.curvesFollowed = curves.share;
   reportMoves(before, subject.mesh.points, report);
   reportOff(subject.mesh.points, places, report);
   listNotPositive(report);

@@ -1195,13 +1195,15 @@ typedef struct hexhex_improve_report {
   double inner_distance_after;  /**< from such triangles; 0 if there are none */
   uint64_t tagged_vertices;     /**< of fixed_vertices: that have a tag, */
   uint64_t boundary_vertices;   /**< and that only fix_boundary holds; the rest are corners */
-  uint64_t off_creases; /**< vertices that left creases, where nothing else made cells positive */
-  uint64_t added_cells; /**< of a pillow, last in the mesh */
+  uint64_t off_creases;   /**< vertices that left creases, where nothing else made cells positive */
+  uint64_t added_cells;   /**< of a pillow, last in the mesh */
+  double curve_length;    /**< of the object's sharp and tagged edges, */
+  double curves_followed; /**< and the share of it that edges of the mesh follow */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
     sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0, 0, 0                                                                       \
+        0, 0, 0, 0, 0, 0, 0, 0, 0                                                                 \
   }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>. With a pillow,
