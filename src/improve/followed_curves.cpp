@@ -50,6 +50,7 @@ FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places, d
   if (surface.segmentCount() == 0) return {};
   const std::vector<std::array<Index, 2>> edges = edgesOnCurves(mesh, places);
   std::vector<std::array<Vec3, 3>> ends;
+  ends.reserve(edges.size());
   for (const auto& [a, b] : edges) ends.push_back({mesh.points[a], mesh.points[b], mesh.points[b]});
   const TriangleTree tree(ends);
   std::vector<double> followed(surface.segmentCount(), 0);
