@@ -28,6 +28,7 @@
 #include "extract_parts.hpp"
 #include "extract_stream.hpp"
 #include "extract_text.hpp"
+#include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -90,7 +91,7 @@ Array<Vec3> improveOrCertify(const ExtractArguments& arguments, const TetMap& ma
     return improve(mesh, extractedMap(map, record.statistics), arguments.improveOptions, context);
   });
   record.certificate = record.improved->after;
-  return before;
+  return pointsBefore(std::move(before), *record.improved);
 }
 
 /// @param mesh  straight or curved  @param before  as improveOrCertify() returned it

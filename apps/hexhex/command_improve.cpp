@@ -92,7 +92,7 @@ ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRu
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
-  writeComparison(arguments, mesh, before, report, longRun);
+  writeComparison(arguments, mesh, pointsBefore(before, report), report, longRun);
   return report;
 }
 

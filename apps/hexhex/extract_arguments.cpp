@@ -85,6 +85,10 @@ void requireImprovable(const ExtractArguments& arguments) {
                 "--improve moves nodes of cells up to order 3, away from the map that arcs and "
                 "patches follow. Leave out --improve, or --arcs and --patches, or lower --order.");
   }
+  if (arguments.order > 1 && arguments.improveOptions.pillow != PillowMode::Never) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--pillow adds straight cells. Leave out --pillow or --order.");
+  }
 }
 
 /// A page shows a mesh that is whole and valid.

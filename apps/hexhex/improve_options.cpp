@@ -34,7 +34,15 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
                           "Where nothing else helps, vertices without tags may leave\n"
                           "the surface by so many diagonals of its bounding box")
               ->check(CLI::Range(0.0, 0.1))
-              ->option_text("NUMBER [1e-3]")};
+              ->option_text("NUMBER [1e-3]"),
+          addChoice<PillowMode>(parser, "--pillow", options.pillow,
+                                {{"auto", PillowMode::Auto},
+                                 {"always", PillowMode::Always},
+                                 {"never", PillowMode::Never}},
+                                "Add a layer of cells under the boundary. auto: if fewer\n"
+                                "cells stay that are not positive, or the minimum rises by\n"
+                                "0.02 at least")
+              ->option_text("MODE [never]")};
 }
 
 namespace {
@@ -63,7 +71,7 @@ void warnOfImprovement(const ImproveReport& report) {
         "--report lists what is far from it.");
   }
   const double mean = report.before.quality.mean;
-  if (report.after.quality.mean < mean - 1e-6) {
+  if (report.addedCells == 0 && report.after.quality.mean < mean - 1e-6) {
     printWarning(fmt::format(
         "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
         "--target unless beside mended ones, so that those below it are better.",
@@ -81,6 +89,13 @@ void warnOfImprovement(const ImproveReport& report) {
 
 }  // namespace
 
+Array<Vec3> pointsBefore(Array<Vec3> points, const ImproveReport& report) {
+  if (!points.empty()) {
+    points.insert(points.end(), report.addedPoints.begin(), report.addedPoints.end());
+  }
+  return points;
+}
+
 void printImprovement(const ImproveReport& report) {
   const std::uint64_t bad = report.before.refuted + report.before.undecided;
   const std::uint64_t left = report.notPositive.size();
@@ -91,6 +106,11 @@ void printImprovement(const ImproveReport& report) {
             fmt::format("at least {:.4g}, {:.4g} on average", report.before.quality.minimum,
                         report.before.quality.mean));
   printQuality(report.after);
+  if (report.addedCells > 0) {
+    printLine("pillow",
+              fmt::format("{} added under the boundary, {} in all",
+                          counted(report.addedCells, "cell"), report.after.validity.size()));
+  }
   printLine("moved",
             fmt::format("{} vertices, by {:.2g} of the diagonal on average, at most {:.2g}",
                         report.movedVertices, report.meanMove, report.largestMove));
@@ -103,6 +123,11 @@ void printImprovement(const ImproveReport& report) {
       fmt::format("{:.2g} of the diagonal ({:.2g} from it to the mesh); before {:.2g} ({:.2g})",
                   report.distanceAfter.fromMesh, report.distanceAfter.fromSurface,
                   report.distanceBefore.fromMesh, report.distanceBefore.fromSurface));
+  if (report.curveLength > 0) {
+    printLine("curves", fmt::format("edges of the mesh follow {:.3g} % of {:.3g} diagonals of the "
+                                    "object's curves",
+                                    100 * report.curvesFollowed, report.curveLength));
+  }
   if (report.innerDistanceBefore > 0 || report.innerDistanceAfter > 0) {
     printLine("faces inside", fmt::format("at most {:.2g} of the diagonal off; before {:.2g}",
                                           report.innerDistanceAfter, report.innerDistanceBefore));
@@ -154,6 +179,9 @@ Json improvementAsJson(const ImproveReport& report) {
       {"mean_move", report.meanMove},
       {"off_surface", report.offSurface},
       {"off_creases", report.offCreases},
+      {"added_cells", report.addedCells},
+      {"curve_length", report.curveLength},
+      {"curves_followed", report.curvesFollowed},
       {"seconds", report.seconds}};
 }
 

@@ -1,5 +1,6 @@
 #include <optional>
 
+#include <hexhex/error.hpp>
 #include <hexhex/improve.hpp>
 
 #include "handles.hpp"
@@ -34,7 +35,17 @@ hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
           .inner_distance_after = r.innerDistanceAfter,
           .tagged_vertices = r.taggedVertices,
           .boundary_vertices = r.boundaryVertices,
-          .off_creases = r.offCreases};
+          .off_creases = r.offCreases,
+          .added_cells = r.addedCells,
+          .curve_length = r.curveLength,
+          .curves_followed = r.curvesFollowed};
+}
+
+hexhex::PillowMode pillowOf(hexhex_pillow_mode mode) {
+  if (mode < HEXHEX_PILLOW_NEVER || mode > HEXHEX_PILLOW_ALWAYS) {
+    throw hexhex::Error(hexhex::ErrorCode::InvalidArgument, "There is no such mode of pillows.");
+  }
+  return static_cast<hexhex::PillowMode>(mode);
 }
 
 /// @param meshOf  the mesh of a handle
@@ -53,7 +64,8 @@ hexhex_status improveMesh(Handle* mesh, const hexhex_map* map,
                                            .passes = o.passes,
                                            .fixBoundary = o.fix_boundary != 0,
                                            .featureAngle = o.feature_angle,
-                                           .slack = o.slack};
+                                           .slack = o.slack,
+                                           .pillow = pillowOf(o.pillow)};
     requireStruct(report, "report");
     ContextOrDefault working(context);
     auto& improved = meshOf(*used);

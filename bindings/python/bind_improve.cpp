@@ -13,13 +13,14 @@ namespace {
 /// A mesh that is moved, straight or curved, of a copy of one that others may hold.
 template <class AnyMesh>
 nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, int passes,
-                      bool fixBoundary, double featureAngle, double slack, int threads,
-                      const Progress& progress) {
+                      bool fixBoundary, double featureAngle, double slack, PillowMode pillow,
+                      int threads, const Progress& progress) {
   const ImproveOptions options = {.target = target,
                                   .passes = passes,
                                   .fixBoundary = fixBoundary,
                                   .featureAngle = featureAngle,
-                                  .slack = slack};
+                                  .slack = slack,
+                                  .pillow = pillow};
   AnyMesh moved;
   ImproveReport report = run(threads, progress, [&](Context& context) {
     moved = mesh;
@@ -52,6 +53,9 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["mean_move"] = report.meanMove;
   d["off_surface"] = report.offSurface;
   d["off_creases"] = report.offCreases;
+  d["added_cells"] = report.addedCells;
+  d["curve_length"] = report.curveLength;
+  d["curves_followed"] = report.curvesFollowed;
   d["seconds"] = report.seconds;
   return nb::make_tuple(std::move(moved), asTuple(std::move(report.before)),
                         asTuple(std::move(report.after)), d);
@@ -60,9 +64,14 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
 }  // namespace
 
 void bindImprove(nb::module_& module) {
+  nb::enum_<PillowMode>(module, "PillowMode")
+      .value("never", PillowMode::Never)
+      .value("auto", PillowMode::Auto)
+      .value("always", PillowMode::Always);
   const auto define = [&module](auto function) {
     module.def("improve", function, "mesh"_a, "map"_a.none(), "target"_a, "passes"_a,
-               "fix_boundary"_a, "feature_angle"_a, "slack"_a, "threads"_a, "progress"_a.none());
+               "fix_boundary"_a, "feature_angle"_a, "slack"_a, "pillow"_a, "threads"_a,
+               "progress"_a.none());
   };
   define(&improveMesh<HexMesh>);
   define(&improveMesh<LagrangeMesh>);

@@ -13,6 +13,15 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
+/// Whether a layer of cells is added under the boundary. In it, each cell has one face on the
+/// boundary: no position of its vertices makes a cell good that has two where the boundary hardly
+/// turns, as at borders of labels on a smooth surface.
+enum class PillowMode : std::uint8_t {
+  Never,
+  Auto,   ///< where fewer cells stay that are not positive, or the minimum rises by 0.02 or more
+  Always  ///< if there cannot be one, that is an error
+};
+
 struct ImproveOptions {
   /// Cells whose scaled Jacobian is below are improved until none is, or no vertex helps any more.
   /// 0 to 1; 0: cells are only made positive.
@@ -21,12 +30,13 @@ struct ImproveOptions {
   int passes = 2;
   bool fixBoundary = false;  ///< vertices on the surface and on tagged faces inside stay
   /// Edges of the surface where it turns by more than that are curves, which vertices on them do
-  /// not leave; in degrees, 0 to 180. Tagged edges are curves, too, and without any, so are edges
-  /// of the boundary with other than two cells.
+  /// not leave; in degrees, 0 to 180. Tagged edges are curves, too, and without a map or any of
+  /// these, so are edges of the boundary with other than two cells.
   double featureAngle = 40;
   /// Where vertices on the surface cannot make cells positive, those without tags may leave it by
   /// so much, in diagonals of the bounding box. 0 to 0.1.
   double slack = 1e-3;
+  PillowMode pillow = PillowMode::Never;  ///< of straight cells only
 };
 
 /// Between the boundaries of the object and of the mesh, in diagonals of the surface's bounding
@@ -70,14 +80,23 @@ struct ImproveReport {
   /// Vertices that left creases where nothing else made cells positive. Creases are curves that
   /// have no tag, and on both sides of which the surface goes on.
   std::uint64_t offCreases = 0;
+  /// Of a pillow: they are last in the mesh, and so are their vertices. In `before`, they are
+  /// missing.
+  std::uint64_t addedCells = 0;
+  Array<Vec3> addedPoints;  ///< its vertices, where they were put before they moved
+  /// Curves of the object: its sharp and its tagged edges.
+  double curveLength = 0;     ///< in diagonals
+  double curvesFollowed = 1;  ///< share of it near which edges of the mesh run along, 0 to 1
 };
 
-/// Moves vertices. The surface is that of the map: its boundary, tagged triangles and those between
-/// regions.
+/// Moves vertices, and adds a pillow if that is wanted. The surface is that of the map: its
+/// boundary, tagged triangles and those between regions.
 ///
 /// The least scaled Jacobian is no less in the end, and no cell that is certified loses that. Cells
 /// at the target or above end there, unless cells beside them were untangled. Connectivity, tags
-/// and regions stay as they are; so do vertices at tagged corners. Vertices on tagged curves and
+/// and regions stay as they are; so do vertices at tagged corners. (With PillowMode::Always, cells
+/// may be worse than before, and a pillow changes the connectivity; tags and regions inside go on
+/// through it to the boundary.) Vertices on tagged curves and
 /// patches stay on them. The result does not depend on the number of threads. If it throws, the
 /// mesh is as it was.
 ///
@@ -88,7 +107,9 @@ struct ImproveReport {
 ///         coordinate; TooLarge unless the mesh extends over 1e-10 to 1e30; RepeatedVertex for a
 ///         cell that names a vertex twice; NonManifoldFace for a face of more than two cells;
 ///         Orientation for cells that list their corners the other way round; EmptyMesh; those of
-///         broken maps
+///         broken maps; with PillowMode::Always, NonManifoldEdge for edges with other than two
+///         quads of the boundary, and InvalidArgument where tags or regions inside leave no room
+///         for a layer
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);
 

@@ -1,4 +1,4 @@
-// Untangling, then the worst cells, then the mean.
+// What is asked for, and what is told of it.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <adjacency/corner_range.hpp>
-#include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/improve.hpp>
@@ -17,10 +16,11 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/curved_cells.hpp>
+#include <improve/followed_curves.hpp>
+#include <improve/moving.hpp>
+#include <improve/pillowed.hpp>
 #include <improve/sound_input.hpp>
 #include <improve/surface_distance.hpp>
-#include <improve/sweeps.hpp>
-#include <improve/untangling.hpp>
 #include <improve/vertex_places.hpp>
 #include <mesh/lagrange_check.hpp>
 
@@ -118,42 +118,6 @@ std::uint64_t fixBoundary(VertexPlaces& places) {
   return count;
 }
 
-/// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
-std::vector<Index> worsened(const ImproveReport& report) {
-  std::vector<Index> cells;
-  for (Index c = 0; c < report.after.validity.size(); ++c) {
-    const bool isLost = report.before.validity[c] == Validity::Positive &&
-                        report.after.validity[c] != Validity::Positive;
-    if (isLost || report.after.scaledJacobians[c] < report.before.quality.minimum) {
-      cells.push_back(c);
-    }
-  }
-  return cells;
-}
-
-/// What is improved: a mesh whose points move, and the curved cells between these, if there are
-/// any.
-struct Subject {
-  HexMesh& mesh;
-  LagrangeMesh* curved = nullptr;
-
-  /// Cells of the mesh for each that counts.
-  [[nodiscard]] std::size_t parts() const {
-    if (curved == nullptr) return 1;
-    const auto order = static_cast<std::size_t>(curved->order);
-    return order * order * order;
-  }
-  [[nodiscard]] Certificate certifyNow(Context& context) const {
-    if (curved == nullptr) return certify(mesh, context);
-    std::copy(mesh.points.begin(), mesh.points.end(), curved->points.begin());
-    return certify(*curved, context);
-  }
-  void putBack(const Array<Vec3>& points) const {
-    std::copy(points.begin(), points.end(), mesh.points.begin());
-    if (curved != nullptr) std::copy(points.begin(), points.end(), curved->points.begin());
-  }
-};
-
 /// Per vertex: 1 if a cell there is not positive.
 std::vector<std::uint8_t> atBadCells(const Subject& subject, const Certificate& certificate) {
   std::vector<std::uint8_t> isAtBad(subject.mesh.points.size(), 0);
@@ -164,84 +128,67 @@ std::vector<std::uint8_t> atBadCells(const Subject& subject, const Certificate& 
   return isAtBad;
 }
 
-/// The boundary of the mesh, and the surface that it must be near.
-struct Boundary {
-  std::vector<std::uint64_t> faces;  ///< as of boundaryPlaces()
-  Array<Quad> quads;
-  TriangleTree surface{{}};
-
-  [[nodiscard]] BoundaryDistance distanceTo(const VertexPlaces& places, const Array<Vec3>& points,
-                                            double diagonal, Stage& stage) const {
-    return distanceBetween(points, quads, places.surface, surface, diagonal, stage);
-  }
-  /// @param parts  cells of the mesh for each that counts
-  [[nodiscard]] Array<std::uint64_t> cellsBeyond(double limit, const BoundaryDistance& distance,
-                                                 std::size_t parts) const {
-    Array<std::uint64_t> cells;
-    for (const Index q : distance.quadsBeyond(limit)) {
-      const std::uint64_t cell = faces[q] / 8 / parts;
-      if (cells.empty() || cells.back() != cell) cells.push_back(cell);
-    }
-    return cells;
-  }
-};
-
-/// Of distances that are the same but for rounding.
-constexpr double kSame = 1 + 1e-6;
-
-/// Moves points and certifies. What did not become better in spite of all is put back.
-/// @return how far the boundary is in the end
-BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
-                            const ImproveOptions& options, const Array<Vec3>& before,
-                            ImproveReport& report, Context& context, Stage& stage) {
-  std::optional<CurvedCells> curved;
-  if (subject.curved != nullptr) curved.emplace(*subject.curved);
-  Array<Index> simplices = places.simplex;
-  const auto newSweeps = [&] {
-    return Sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
-  };
-  const auto distance = [&] {
-    return boundary.distanceTo(places, subject.mesh.points, report.diagonal, stage);
-  };
-  const double limit = kSame * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
-  const auto quadsBeyond = [&](const std::vector<double>& distances) {
-    Array<Quad> far;
-    for (Index q = 0; q < distances.size(); ++q) {
-      if (distances[q] > limit) far.push_back(boundary.quads[q]);
-    }
-    return far;
-  };
-  BoundaryDistance after;
-  {
-    Sweeps sweeps = newSweeps();
-    const double slack = options.slack * report.diagonal;
-    sweeps.untangle(slack);
-    const std::vector<Index> loose =
-        sweeps.untangleAcrossCreases(slack, [&] { return quadsBeyond(distance().fromQuads); });
-    report.offCreases = loose.size();
-    for (const Index v : loose) {
-      simplices[v] = places.surface.acrossCreases(before[v], places.simplex[v]).simplex;
-    }
-    sweeps.raiseWorst(options.target);
-    const double floor = std::max(options.target, report.before.quality.minimum);
-    sweeps.smooth(options.passes, floor);
-    after = distance();
-    for (int i = 0; i < Sweeps::kReturns && after.largest.hausdorff() > limit; ++i) {
-      sweeps.moveBack(quadsBeyond(after.ofQuads), before, simplices, floor);
-      after = distance();
-    }
-  }  // its memory is free for certificates
-  report.after = subject.certifyNow(context);
-  const std::vector<Index> worse = worsened(report);
-  if (worse.empty()) return after;
-  putBack(newSweeps().cellPoints(), worse, before, simplices, subject.mesh.points, places);
-  report.after = subject.certifyNow(context);
-  return distance();
-}
-
 void listNotPositive(ImproveReport& report) {
   for (std::size_t c = 0; c < report.after.validity.size(); ++c) {
     if (report.after.validity[c] != Validity::Positive) report.notPositive.push_back(c);
+  }
+}
+
+void reportBefore(const Subject& subject, const Boundary& boundary, const VertexPlaces& places,
+                  ImproveReport& report, Stage& stage) {
+  const Array<Vec3>& points = subject.mesh.points;
+  const BoundaryDistance distance = boundary.distanceTo(places, points, report.diagonal, stage);
+  report.taggedVertices = places.tagged;
+  report.distanceBefore = distance.largest;
+  report.innerDistanceBefore = distanceInside(places, subject.mesh, report, stage);
+  report.farCellsBefore = boundary.cellsBeyond(kSurfaceTolerance, distance, subject.parts()).size();
+}
+
+/// @param before  the points, where they were at first
+void reportAfter(const Subject& subject, const Boundary& boundary, const VertexPlaces& places,
+                 const BoundaryDistance& distance, const Array<Vec3>& before, ImproveReport& report,
+                 Stage& stage) {
+  for (const Freedom freedom : places.freedom) {
+    ++report.vertices[static_cast<std::size_t>(freedom)];
+  }
+  report.distanceAfter = distance.largest;
+  report.innerDistanceAfter = distanceInside(places, subject.mesh, report, stage);
+  report.farCells = boundary.cellsBeyond(kSurfaceTolerance, distance, subject.parts());
+  const FollowedCurves curves =
+      followedCurves(subject.mesh, places, kSurfaceTolerance * report.diagonal, stage);
+  report.curveLength = curves.length / report.diagonal;
+  report.curvesFollowed = curves.share;
+  reportMoves(before, subject.mesh.points, report);
+  reportOff(subject.mesh.points, places, report);
+  listNotPositive(report);
+}
+
+/// Moves points, and adds a layer where one is wanted and helps.
+void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions& options,
+             ImproveReport& report, Context& context, Stage& stage) {
+  HexMesh& mesh = subject.mesh;
+  const Boundary boundary(mesh, treeOf(places.surface), stage);
+  reportBefore(subject, boundary, places, report, stage);
+  Array<Vec3> points = mesh.points;
+  try {
+    const BoundaryDistance distance =
+        movePoints(subject, boundary, places, options, points, report, context, stage);
+    std::optional<Improved> pillowed =
+        improvedWithPillow(mesh, boundary, places, distance, options, report, context, stage);
+    if (!pillowed) {
+      reportAfter(subject, boundary, places, distance, points, report, stage);
+    } else {
+      report = std::move(pillowed->report);
+      points.insert(points.end(), report.addedPoints.begin(), report.addedPoints.end());
+      reportAfter({pillowed->mesh}, pillowed->boundary, pillowed->places, pillowed->distance,
+                  points, report, stage);
+    }
+    stage.finish();
+    if (pillowed) mesh = std::move(pillowed->mesh);
+  } catch (...) {
+    points.resize(mesh.points.size());
+    subject.putBack(points);
+    throw;
   }
 }
 
@@ -252,54 +199,20 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
                         const PlacesOf& placesOf) {
   requireOptions(options);
   const auto begin = std::chrono::steady_clock::now();
-  constexpr std::array<WorkStep, 5> kSteps = {{{"input", 0.1},
-                                               {"findCellFaults", 0.2},
-                                               {"certify", 0.4},
-                                               {"findMapStructure", 0.1},
-                                               {"moving", 10}}};
+  constexpr std::array<WorkStep, 4> kSteps = {
+      {{"input", 0.1}, {"findCellFaults", 0.2}, {"certify", 0.4}, {"moving", 10}}};
   WorkSteps steps(context, "improve", kSteps);
   ImproveReport report;
   withThreads(context.threads(), [&] {
     const Subject subject = subjectOf(context);
-    HexMesh& mesh = subject.mesh;
-    requireSoundCells(mesh, subject.parts(), context);
+    requireSoundCells(subject.mesh, subject.parts(), context);
     report.before = subject.certifyNow(context);
     Stage stage(context, "moving");
-    Boundary boundary;
-    boundary.faces = adjacency::boundaryPlaces(mesh, stage);
-    boundary.quads = adjacency::quadsAt(mesh, boundary.faces);
-    VertexPlaces places = placesOf(mesh, atBadCells(subject, report.before), stage);
-    report.taggedVertices = places.tagged;
+    VertexPlaces places = placesOf(subject.mesh, atBadCells(subject, report.before), stage);
     if (options.fixBoundary) report.boundaryVertices = fixBoundary(places);
-    for (const Freedom freedom : places.freedom) {
-      ++report.vertices[static_cast<std::size_t>(freedom)];
-    }
     report.diagonal = diagonalOf(places.surface);
     if (report.diagonal < kSmallest) refuseSize("The surface is smaller than 1e-10");
-    boundary.surface = treeOf(places.surface);
-    const std::size_t parts = subject.parts();
-    {
-      const BoundaryDistance distance =
-          boundary.distanceTo(places, mesh.points, report.diagonal, stage);
-      report.distanceBefore = distance.largest;
-      report.innerDistanceBefore = distanceInside(places, mesh, report, stage);
-      report.farCellsBefore = boundary.cellsBeyond(kSurfaceTolerance, distance, parts).size();
-    }
-    const Array<Vec3> points = mesh.points;
-    try {
-      const BoundaryDistance distance =
-          movePoints(subject, boundary, places, options, points, report, context, stage);
-      report.distanceAfter = distance.largest;
-      report.innerDistanceAfter = distanceInside(places, mesh, report, stage);
-      report.farCells = boundary.cellsBeyond(kSurfaceTolerance, distance, parts);
-      reportMoves(points, mesh.points, report);
-      reportOff(mesh.points, places, report);
-      listNotPositive(report);
-      stage.finish();
-    } catch (...) {
-      subject.putBack(points);
-      throw;
-    }
+    moveAll(subject, places, options, report, context, stage);
   });
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   report.seconds = seconds.count();
@@ -308,11 +221,11 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
 }
 
 /// How to find places on the surface of a map, and on the mesh's own.
-auto onMap(const TetMapView& map, const ImproveOptions& options, Context& context) {
-  return [&map, &options, &context](const HexMesh& mesh, std::span<const std::uint8_t> /*isAtBad*/,
-                                    Stage& stage) {
+auto onMap(const TetMapView& map, const ImproveOptions& options) {
+  return [&map, &options](const HexMesh& mesh, std::span<const std::uint8_t> /*isAtBad*/,
+                          Stage& stage) {
     requirePositions(map.points, "the map", stage);
-    return placesOnMap(mesh, map, options.featureAngle, context, stage);
+    return placesOnMap(mesh, map, options.featureAngle, stage);
   };
 }
 auto onItself(const ImproveOptions& options) {
@@ -331,8 +244,13 @@ ImproveReport improveStraight(HexMesh& mesh, const ImproveOptions& options, Cont
   return improveOn(options, context, subjectOf, placesOf);
 }
 
-void requireImprovable(const LagrangeMesh& mesh) {
+void requireImprovable(const LagrangeMesh& mesh, const ImproveOptions& options) {
   mesh::requireConsistent(mesh);
+  if (options.pillow != PillowMode::Never) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Layers under the boundary are added to straight cells, not to those of a curved "
+                "mesh. Leave out the pillow.");
+  }
   if (mesh.order <= CurvedCells::kMaxOrder) return;
   throw Error(ErrorCode::InvalidArgument, "Cells of order " + std::to_string(mesh.order) +
                                               " are not improved, only those of orders 1 to " +
@@ -345,7 +263,7 @@ ImproveReport improveCurved(LagrangeMesh& mesh, const ImproveOptions& options, C
                             const PlacesOf& placesOf) {
   HexMesh refined;
   const auto subjectOf = [&](Context& working) {
-    requireImprovable(mesh);
+    requireImprovable(mesh, options);
     {
       Stage stage(working, "nodes");
       refined = refinedMesh(mesh, stage);
@@ -364,8 +282,7 @@ namespace hexhex {
 
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context) {
-  return improvement::improveStraight(mesh, options, context,
-                                      improvement::onMap(map, options, context));
+  return improvement::improveStraight(mesh, options, context, improvement::onMap(map, options));
 }
 
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context) {
@@ -374,8 +291,7 @@ ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& con
 
 ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context) {
-  return improvement::improveCurved(mesh, options, context,
-                                    improvement::onMap(map, options, context));
+  return improvement::improveCurved(mesh, options, context, improvement::onMap(map, options));
 }
 
 ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context) {

@@ -8,11 +8,10 @@
 #include <adjacency/tet_topology.hpp>
 
 #include <hexhex/error.hpp>
-#include <hexhex/extract.hpp>
-#include <hexhex/map_structure.hpp>
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <igm/input.hpp>
 #include <improve/crease_chains.hpp>
 #include <improve/sound_input.hpp>
 #include <improve/vertex_places.hpp>
@@ -83,8 +82,8 @@ void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage)
               Place{PlaceKind::Vertex, bad, 0});
 }
 
-/// Tagged vertices and edges, and singular edges if there are no tags.
-void addCurves(const auto& features, const auto& singularEdges, SurfaceParts& parts) {
+/// Tagged vertices and edges.
+void addTags(const auto& features, SurfaceParts& parts) {
   for (const FeatureVertex& vertex : features.vertices) {
     if (vertex.tag != 0) parts.corners.push_back(vertex.vertex);
   }
@@ -92,10 +91,6 @@ void addCurves(const auto& features, const auto& singularEdges, SurfaceParts& pa
     if (edge.tag != 0) parts.curves.push_back(edge.vertices);
   }
   parts.areTagged = !parts.curves.empty();
-  if (parts.areTagged) return;
-  for (const auto& edge : singularEdges) {
-    if (edge.boundary) parts.curves.push_back({edge.vertex0, edge.vertex1});
-  }
 }
 
 void addQuad(const Array<Vec3>& points, Quad quad, std::int32_t tag, SurfaceParts& parts) {
@@ -162,6 +157,17 @@ void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
   }
 }
 
+/// Edges of the boundary with other than two cells: where the boundary is folded, its angles do not
+/// tell where the object's edges are. (The surface of a map is not folded, so there, the angle
+/// alone tells: labels change along any zigzag of its edges.)
+void addSingularEdges(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
+  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
+  const adjacency::HexFaces faces = adjacency::findFaces(mesh, around, stage);
+  for (const SingularHexEdge& edge : adjacency::findEdges(mesh, around, faces, stage).singular) {
+    if (edge.boundary) parts.curves.push_back({edge.vertex0, edge.vertex1});
+  }
+}
+
 void requireFeatures(const HexFeatures& features, std::size_t points) {
   bool inRange = true;
   for (const FeatureVertex& vertex : features.vertices) inRange &= vertex.vertex < points;
@@ -210,18 +216,17 @@ void place(const Array<Vec3>& points, const Features& features, const GeneratorO
 
 }  // namespace
 
-VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle, Context& context,
-                         Stage& stage) {
+VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle, Stage& stage) {
   requireGenerators(mesh, map, stage);
-  adjacency::requireCornersInRange(map, stage);  // flipped tets do not matter
+  adjacency::requireCornersInRange(map, stage);
   requireSameObject(mesh, map, stage);
-  // Looks whether features are there, too.
-  const MapStructure structure = findMapStructure(map, ExtractOptions{}.tolerance, context);
+  igm::DefectCollector defects;  // flipped tets do not matter here
+  [[maybe_unused]] const igm::OrientedMap read = igm::readInput(map, stage, defects);
   SurfaceParts parts;
   parts.angle = angle;
   parts.points.assign(map.points.begin(), map.points.end());
   addTriangles(map, stage, parts);
-  addCurves(map.features, structure.singularEdges, parts);
+  addTags(map.features, parts);
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
@@ -247,11 +252,8 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isA
   parts.angle = angle;
   parts.points = mesh.points;
   addQuads(mesh, stage, parts);
-  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
-  addCurves(
-      mesh.features,
-      adjacency::findEdges(mesh, around, adjacency::findFaces(mesh, around, stage), stage).singular,
-      parts);
+  addTags(mesh.features, parts);
+  if (!parts.areTagged) addSingularEdges(mesh, stage, parts);
   parts.sharp = creaseChains(parts, isAtBad, stage);
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);

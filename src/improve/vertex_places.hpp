@@ -40,7 +40,7 @@ struct VertexPlaces {
 /// @throws Error InvalidArgument for generators that are not in the map, and for a map whose tets
 ///         do not form a manifold
 [[nodiscard]] VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle,
-                                       Context& context, Stage& stage);
+                                       Stage& stage);
 
 /// The surface is the mesh's own boundary with its tagged quads, two triangles each.
 /// @param isAtBad  per vertex: 1 if a cell there is not positive; as of creaseChains()

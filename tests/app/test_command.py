@@ -1030,6 +1030,23 @@ class Repair(CommandTest):
         (self.folder / "sheared.mesh").write_text("\n".join(lines))
         return "sheared.mesh"
 
+    def test_improve_adds_a_pillow(self):
+        self.run_command("generate", "box", "--cells", "2", "--quiet", "-o", "map.hexex")
+        run = self.run_command("extract", "map.hexex", "-o", "one.vtu", "--improve", "--pillow", "always",
+                               "--report", "r.json")
+        self.assertIn("96 cells added under the boundary, 160 in all", run.stdout)
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual((report["cells"], report["improvement"]["added_cells"]), (160, 96))
+        # The mesh, which the map does not imply any more, can still be improved on its surface.
+        self.run_command("improve", "one.vtu", "--map", "map.hexex", "-o", "two.vtu", "--report", "i.json", "--quiet")
+        self.assertEqual(json.loads((self.folder / "i.json").read_text())["added_cells"], 0)
+        self.run_command("extract", "map.hexex", "-o", "plain.vtu", "--quiet")
+        run = self.run_command("improve", "plain.vtu", "--map", "map.hexex", "-o", "same.vtu", "--pillow", "auto")
+        self.assertNotIn("pillow", run.stdout)
+        self.run_command("improve", "plain.vtu", "-o", "bad.vtu", "--pillow", "maybe", expect=BAD_USAGE)
+        self.assert_fails("extract", "map.hexex", "-o", "bad.vtu", "--improve", "--order", "2", "--pillow", "auto",
+                          expect=BAD_USAGE, code="InvalidArgument", words=["--pillow adds straight cells"])
+
     def test_improve(self):
         self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
         self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2", "--quiet")

@@ -367,10 +367,11 @@ static void test_mixed_cells(const char* folder) {
   hexhex_read_options options = HEXHEX_READ_OPTIONS_INIT;
   snprintf(name, sizeof name, "%s/mixed.mesh", folder);
   FILE* out = fopen(name, "w");
-  fputs("MeshVersionFormatted 2 Dimension 3 Vertices 9 0 0 0 0 1 0 0 0 1 1 0 0 0 1 0 0\n"
-        "0 0 1 0 1 0 1 0 1 1 1 0 0 1 1 0 0 0 2 0 Hexahedra 1 1 2 3 4 5 6 7 8 0\n"
-        "Pyramids 1 5 6 7 8 9 0 End\n",
-        out);
+  fputs(
+      "MeshVersionFormatted 2 Dimension 3 Vertices 9 0 0 0 0 1 0 0 0 1 1 0 0 0 1 0 0\n"
+      "0 0 1 0 1 0 1 0 1 1 1 0 0 1 1 0 0 0 2 0 Hexahedra 1 1 2 3 4 5 6 7 8 0\n"
+      "Pyramids 1 5 6 7 8 9 0 End\n",
+      out);
   fclose(out);
   CHECK(hexhex_mesh_read(name, &options, NULL, &mesh, &error) == HEXHEX_FILE_UNSUPPORTED);
   CHECK(strstr(error.message, "1 hexahedron and 1 pyramid") != NULL);
@@ -665,6 +666,15 @@ static void test_improve(void) {
   CHECK(report.patch_vertices == 0 && report.curve_vertices == 0 && report.fixed_vertices > 0);
   CHECK(report.tagged_vertices == 0 && report.boundary_vertices > 0);
   CHECK(report.boundary_vertices <= report.fixed_vertices);
+  CHECK(report.added_cells == 0);
+  /* A layer under the boundary. */
+  hexhex_mesh_arrays before = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &before, &error));
+  const size_t cells = before.cell_count;
+  options.pillow = HEXHEX_PILLOW_ALWAYS;
+  CHECK_OK(hexhex_mesh_improve(mesh, map, &options, NULL, &report, &error));
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &before, &error));
+  CHECK(report.added_cells > 0 && before.cell_count == cells + report.added_cells);
   hexhex_mesh_destroy(mesh);
   hexhex_map_destroy(map);
 }

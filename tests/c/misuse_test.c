@@ -801,6 +801,9 @@ static void test_improvements(const char* file) {
   REFUSED(hexhex_mesh_improve(h.mesh, NULL, &options, NULL, &report, &error));
   options.passes = INT_MAX;
   REFUSED(hexhex_mesh_improve(h.mesh, NULL, &options, NULL, &report, &error));
+  options.passes = 2;
+  options.pillow = (hexhex_pillow_mode)3;
+  REFUSED(hexhex_mesh_improve(h.mesh, NULL, &options, NULL, &report, &error));
   CHECK(report.moved_vertices == 17);
 
   /* Vertices inside of a cube, which would be moved. */

@@ -128,7 +128,7 @@ TEST(Surface, TagsOfAMapHoldVertices) {
   Context context(1);
   Stage stage(context, "test");
   const auto count = [&](Freedom freedom) {
-    const VertexPlaces places = placesOnMap(mesh, map, 40, context, stage);
+    const VertexPlaces places = placesOnMap(mesh, map, 40, stage);
     return std::count(places.freedom.begin(), places.freedom.end(), freedom);
   };
   EXPECT_EQ(count(Freedom::Free), 1);

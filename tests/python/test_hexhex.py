@@ -391,6 +391,20 @@ def test_improve_moves_a_copy_until_cells_are_positive():
         hexhex.improve(mesh, hexhex.generate("box", cells=3))
 
 
+def test_improve_adds_a_layer_of_cells():
+    map = hexhex.generate("box", cells=2)
+    mesh = hexhex.extract(map)
+    better, report = hexhex.improve(mesh, map, pillow="always")
+    assert report.added_cells == 6 * 16 == len(better.cells) - len(mesh.cells)
+    assert report.after.all_positive and len(report.after.scaled_jacobians) == len(better.cells)
+    assert len(report.before.scaled_jacobians) == len(mesh.cells)
+    assert hexhex.improve(mesh, map, pillow="auto")[1].added_cells == 0  # cells are perfect
+    with pytest.raises(hexhex.ArgumentError, match='no pillow "yes"'):
+        hexhex.improve(mesh, pillow="yes")
+    with pytest.raises(hexhex.ArgumentError, match="straight cells"):
+        hexhex.improve(hexhex.extract(map, order=2).curved, map, pillow="auto")
+
+
 def test_improve_moves_nodes_of_curved_cells():
     map = hexhex.generate("sphere", cells=1, jitter=0.5)
     curved = hexhex.extract(map, order=2).curved

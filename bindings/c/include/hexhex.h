@@ -1144,6 +1144,13 @@ HEXHEX_API hexhex_status hexhex_mesh_certify(const hexhex_mesh* mesh, hexhex_con
 
 /* ---- Improvement ----------------------------------------------------------------------------- */
 
+/** Whether a layer of cells is added under the boundary; see PillowMode in <hexhex/improve.hpp>. */
+typedef enum hexhex_pillow_mode HEXHEX_AS_INT {
+  HEXHEX_PILLOW_NEVER = 0,
+  HEXHEX_PILLOW_AUTO = 1,  /**< where it makes the mesh better */
+  HEXHEX_PILLOW_ALWAYS = 2 /**< an error where there cannot be one */
+} hexhex_pillow_mode;
+
 /** See ImproveOptions in <hexhex/improve.hpp>. */
 typedef struct hexhex_improve_options {
   size_t size;
@@ -1153,9 +1160,10 @@ typedef struct hexhex_improve_options {
   double feature_angle; /**< where the surface turns by more is a curve; degrees, 0 to 180 */
   double
       slack; /**< so far may vertices leave the surface if nothing else helps; diagonals, to 0.1 */
+  hexhex_pillow_mode pillow; /**< of straight cells only */
 } hexhex_improve_options;
 #define HEXHEX_IMPROVE_OPTIONS_INIT \
-  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3 }
+  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3, HEXHEX_PILLOW_NEVER }
 
 /** What an improvement did. See ImproveReport in <hexhex/improve.hpp>; lengths are in diagonals of
  * the surface's bounding box. hexhex_mesh_certify() says which cells are not positive. */
@@ -1187,15 +1195,19 @@ typedef struct hexhex_improve_report {
   double inner_distance_after;  /**< from such triangles; 0 if there are none */
   uint64_t tagged_vertices;     /**< of fixed_vertices: that have a tag, */
   uint64_t boundary_vertices;   /**< and that only fix_boundary holds; the rest are corners */
-  uint64_t off_creases; /**< vertices that left creases, where nothing else made cells positive */
+  uint64_t off_creases;   /**< vertices that left creases, where nothing else made cells positive */
+  uint64_t added_cells;   /**< of a pillow, last in the mesh */
+  double curve_length;    /**< of the object's sharp and tagged edges, */
+  double curves_followed; /**< and the share of it that edges of the mesh follow */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
     sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0, 0                                                                          \
+        0, 0, 0, 0, 0, 0, 0, 0, 0                                                                 \
   }
 
-/** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>.
+/** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>. With a pillow,
+ * the mesh gets more vertices and cells: arrays that were asked for before are no longer there.
  * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary
  * @param options      or NULL
  * @param[out] report  made with HEXHEX_IMPROVE_REPORT_INIT, or NULL */

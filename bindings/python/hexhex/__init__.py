@@ -966,7 +966,7 @@ def _quality_of(fields: Any) -> Quality:
 
 def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passes: int = 2,
             fix_boundary: bool = False, feature_angle: float = 40.0, slack: float = 1e-3,
-            threads: int | None = None,
+            pillow: str = "never", threads: int | None = None,
             progress: Progress | None = None) -> tuple[AnyMesh, ImproveReport]:
     """The same mesh with vertices moved: all cells become positive, then the worst ones better, then
     all. Vertices on the surface slide on it; the given mesh stays as it is.
@@ -982,6 +982,8 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
             ones: vertices do not leave them.
         slack: where nothing else makes cells positive, vertices without tags may leave the surface
             by so much, in diagonals of its bounding box, 0 to 0.1.
+        pillow: whether straight cells get a layer of cells under the boundary: "never", "always", or
+            "auto" if fewer cells stay that are not positive, or the minimum rises by 0.02 at least.
         threads, progress: as in extract().
 
     >>> map = hexhex.generate("torus", cells=2, jitter=0.6)
@@ -989,9 +991,12 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
     >>> report.after.all_positive and report.after.minimum >= report.before.minimum
     True
     """
+    if pillow not in ("never", "auto", "always"):
+        raise ArgumentError(f'There is no pillow "{pillow}". Choose "never", "auto" or "always".',
+                            "InvalidArgument")
     handle, before, after, values = _hexhex.improve(
         mesh._handle, None if map is None else map._arrays(), target, passes, fix_boundary,
-        feature_angle, slack, _threads(threads), progress)
+        feature_angle, slack, getattr(_hexhex.PillowMode, pillow), _threads(threads), progress)
     return (type(mesh)._from_handle(handle),
             ImproveReport(_quality_of(before), _quality_of(after), **values))
 

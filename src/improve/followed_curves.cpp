@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <adjacency/cell_faces.hpp>
+
+#include <base/parallel.hpp>
+#include <base/vector3.hpp>
+#include <improve/followed_curves.hpp>
+#include <improve/triangle_edges.hpp>
+#include <improve/triangle_tree.hpp>
+
+namespace hexhex::improvement {
+
+namespace {
+
+constexpr std::size_t kFollowedCurvesGrain = 1024;
+
+/// An edge of the mesh is a chord of a curve: it may be so far from it, as a share of its length.
+constexpr double kChordHeight = 0.1;
+/// Edges that turn by more from the curve than 45 degrees cross it.
+constexpr double kAlong = 0.70710678;
+
+/// In the middle of thirds of a segment.
+constexpr std::array<double, 3> kSamples = {1.0 / 6, 3.0 / 6, 5.0 / 6};
+
+bool isOnCurve(Freedom freedom) { return freedom == Freedom::OnCurve || freedom == Freedom::Fixed; }
+
+/// Edges of cells with both ends on curves or at corners.
+std::vector<std::array<Index, 2>> edgesOnCurves(const HexMesh& mesh, const VertexPlaces& places) {
+  std::vector<std::array<Index, 2>> edges;
+  for (const Hex& cell : mesh.cells) {
+    for (const auto& [a, b] : adjacency::kHexEdges) {
+      if (!isOnCurve(places.freedom[cell[a]]) || !isOnCurve(places.freedom[cell[b]])) continue;
+      edges.push_back(ascending(cell[a], cell[b]));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+}  // namespace
+
+FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places, double tolerance,
+                              Stage& stage) {
+  const ReferenceSurface& surface = places.surface;
+  if (surface.segmentCount() == 0) return {};
+  const std::vector<std::array<Index, 2>> edges = edgesOnCurves(mesh, places);
+  std::vector<std::array<Vec3, 3>> ends;
+  ends.reserve(edges.size());
+  for (const auto& [a, b] : edges) ends.push_back({mesh.points[a], mesh.points[b], mesh.points[b]});
+  const TriangleTree tree(ends);
+  std::vector<double> followed(surface.segmentCount(), 0);
+  parallelFor(stage, followed.size(), kFollowedCurvesGrain, [&](std::size_t s) {
+    const auto [begin, end] = surface.segment(static_cast<Index>(s));
+    const Vec3 step = minus(end, begin);
+    for (const double share : kSamples) {
+      if (edges.empty()) break;
+      const Vec3 point = {begin[0] + share * step[0], begin[1] + share * step[1],
+                          begin[2] + share * step[2]};
+      const TriangleTree::Nearest nearest = tree.nearest(point);
+      const Vec3 edge = minus(ends[nearest.triangle][1], ends[nearest.triangle][0]);
+      if (nearest.distance > std::max(tolerance, kChordHeight * length(edge))) continue;
+      if (std::abs(cosineBetween(edge, step)) >= kAlong) followed[s] += length(step) / 3;
+    }
+  });
+  FollowedCurves result;
+  double sum = 0;
+  for (std::size_t s = 0; s < followed.size(); ++s) {
+    const auto [begin, end] = surface.segment(static_cast<Index>(s));
+    result.length += length(minus(end, begin));
+    sum += followed[s];
+  }
+  if (result.length > 0) result.share = std::min(1.0, sum / result.length);
+  return result;
+}
+
+}  // namespace hexhex::improvement

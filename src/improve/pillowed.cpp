@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <improve/pillowed.hpp>
+#include <mesh/pillow.hpp>
+
+namespace hexhex::improvement {
+
+namespace {
+
+/// A layer costs cells, and cells at edges and corners of the object become worse: the minimum has
+/// to rise by more than a user can do without.
+constexpr double kWorthwhile = 0.02;
+
+/// Whether a cell below the target has several faces on the boundary, which a pillow divides.
+bool couldHelp(const Boundary& boundary, const ImproveOptions& options,
+               const Certificate& certificate) {
+  const auto isLow = [&](std::uint64_t cell) {
+    return certificate.validity[cell] != Validity::Positive ||
+           certificate.scaledJacobians[cell] < options.target;
+  };
+  const auto isSameCell = [](std::uint64_t a, std::uint64_t b) { return a / 8 == b / 8; };
+  auto face = boundary.faces.begin();
+  while ((face = std::adjacent_find(face, boundary.faces.end(), isSameCell)) !=
+         boundary.faces.end()) {
+    if (isLow(*face / 8)) return true;
+    ++face;
+  }
+  return false;
+}
+
+bool isBetter(const Improved& pillowed, const BoundaryDistance& distance,
+              const ImproveReport& report) {
+  if (pillowed.distance.largest.hausdorff() > farthestAllowed(distance.largest)) return false;
+  const std::uint64_t bad = notPositive(pillowed.report.after);
+  const std::uint64_t badWithout = notPositive(report.after);
+  if (bad != badWithout) return bad < badWithout;
+  return pillowed.report.after.quality.minimum > report.after.quality.minimum + kWorthwhile;
+}
+
+/// New vertices are free, or where their leaders are.
+/// @return a vertex whose leader cannot move along anything; kNone: there is none
+Index extend(VertexPlaces& places, const mesh::Pillow& pillow) {
+  const std::size_t n = places.freedom.size();
+  for (std::size_t i = 0; i < pillow.leaders.size(); ++i) {
+    const Index leader = pillow.leaders[i];
+    const auto vertex = static_cast<Index>(n + i);
+    places.freedom.push_back(leader != kNone ? places.freedom[leader] : Freedom::Free);
+    places.simplex.push_back(leader != kNone ? places.simplex[leader] : kNone);
+    places.isLoose.push_back(0);
+    if (places.freedom[vertex] == Freedom::Fixed) return leader;
+    places.simplex[vertex] = places.nearest(vertex, pillow.mesh.points[vertex]).simplex;
+  }
+  places.innerQuads = pillow.walls;
+  return kNone;
+}
+
+}  // namespace
+
+std::optional<Improved> improvedWithPillow(const HexMesh& mesh, const Boundary& boundary,
+                                           const VertexPlaces& places,
+                                           const BoundaryDistance& distance,
+                                           const ImproveOptions& options,
+                                           const ImproveReport& report, Context& context,
+                                           Stage& stage) {
+  const bool isAlways = options.pillow == PillowMode::Always;
+  if (!isAlways &&
+      (options.pillow == PillowMode::Never || !couldHelp(boundary, options, report.after)))
+    return std::nullopt;
+  mesh::Pillow pillow = mesh::addPillow(mesh, places.innerQuads, stage);
+  Improved result{{}, {}, places, {}, report};
+  if (!pillow.obstacle) {
+    const Index held = extend(result.places, pillow);
+    if (held != kNone) {
+      pillow.obstacle =
+          Error(ErrorCode::InvalidArgument,
+                "A layer of cells under the boundary cannot pass a face or curve inside that ends "
+                "at vertex " +
+                    std::to_string(held) + ", which cannot move. Improve without a pillow.",
+                Place{PlaceKind::Vertex, held, 0});
+    }
+  }
+  if (pillow.obstacle) {
+    if (isAlways) throw Error(*pillow.obstacle);
+    return std::nullopt;
+  }
+  result.mesh = std::move(pillow.mesh);
+  result.boundary = Boundary(result.mesh, boundary.surface, stage);
+  ImproveReport& after = result.report;
+  after.addedCells = result.mesh.cells.size() - mesh.cells.size();
+  const auto firstAdded = static_cast<std::ptrdiff_t>(mesh.points.size());
+  after.addedPoints.assign(result.mesh.points.begin() + firstAdded, result.mesh.points.end());
+  const Subject subject{result.mesh};
+  after.before = subject.certifyNow(context);
+  const Array<Vec3> points = result.mesh.points;
+  result.distance =
+      movePoints(subject, result.boundary, result.places, options, points, after, context, stage);
+  after.before = report.before;
+  if (!isAlways && !isBetter(result, distance, report)) return std::nullopt;
+  return result;
+}
+
+}  // namespace hexhex::improvement
