@@ -52,6 +52,13 @@ struct GridMotion {
     for (std::size_t k = 0; k < 3; ++k) image[k] += static_cast<Number>(translation[k]) * unit;
     return image;
   }
+  /// The same for the corners of a tet.
+  template <class Number>
+  [[nodiscard]] constexpr std::array<std::array<Number, 3>, 4> operator()(
+      const std::array<std::array<Number, 3>, 4>& tet, Number unit) const noexcept {
+    return {(*this)(tet[0], unit), (*this)(tet[1], unit), (*this)(tet[2], unit),
+            (*this)(tet[3], unit)};
+  }
   [[nodiscard]] constexpr Direction operator()(Direction d) const noexcept { return rotation(d); }
 
   /// Where the cell with smallest corner z goes, by its smallest corner there.
