@@ -98,22 +98,17 @@ std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
   return stretches;
 }
 
-/// The triangles, edges and vertices of features that are aligned.
+/// Across an axis of an integer chart, through a point of it, in the chart beyond.
+BoundaryPlane toPlane(std::size_t axis, const lattice::LatticePoint& node,
+                      const lattice::LatticeMotion& way) {
+  const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(way);
+  return {static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
+}
+
+/// The edges and vertices of features that are aligned.
 void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers,
                  const std::vector<lattice::LatticeMotion>& ways, BendProblem& problem) {
   const WallMesh& mesh = complex.mesh;
-  const auto toPlane = [&](Index tet, std::size_t axis, const lattice::LatticePoint& node) {
-    const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
-    return BoundaryPlane{static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
-  };
-  for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
-    if (!mesh.isFeature[h] || mesh.originalFace[h] == kInside) continue;
-    const Index tet = adjacency::tetOf(h);
-    const PatchSide& patch = complex.patches[complex.patchOf[h]];
-    const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
-    problem.planes[adjacency::halfFaceOf(mesh.original[tet], mesh.originalFace[h])] =
-        toPlane(tet, axis, integers(patch.block, patch.border.front().start));
-  }
   for (const FeatureCorner& at : complex.featureCorners) {
     const Index vertex = mesh.tets[at.tet][at.corner];
     if (vertex >= problem.points.size()) continue;
@@ -122,7 +117,7 @@ void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers
         problem.fixedCorners[4 * tet + adjacency::localCorner(problem.tets[tet], vertex)];
     const lattice::LatticePoint node = integers(complex.blockOf[at.tet], at.node);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const BoundaryPlane plane = toPlane(at.tet, axis, node);
+      const BoundaryPlane plane = toPlane(axis, node, ways[at.tet]);
       const bool isKnown = std::find(planes.begin(), planes.end(), plane) != planes.end();
       if (axis != at.freeAxis && !isKnown) planes.push_back(plane);
     }
@@ -161,13 +156,13 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
     const Index tet = adjacency::tetOf(h);
     const adjacency::HalfFace original =
         adjacency::halfFaceOf(mesh.original[tet], mesh.originalFace[h]);
-    if (mesh.mate[h] == kNone) {
+    if (mesh.mate[h] == kNone || mesh.isFeature[h]) {
       const PatchSide& patch = complex.patches[complex.patchOf[h]];
       const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
-      const lattice::LatticePoint node = integers(patch.block, patch.border.front().start);
-      const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
-      problem.planes[original] = {static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
-    } else {
+      problem.planes[original] =
+          toPlane(axis, integers(patch.block, patch.border.front().start), ways[tet]);
+    }
+    if (mesh.mate[h] != kNone) {
       problem.transitions[original] = toTransition(
           ways[adjacency::tetOf(mesh.mate[h])] * integers.across(complex, h) * ways[tet].inverse());
     }
