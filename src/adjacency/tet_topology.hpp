@@ -120,6 +120,24 @@ class SharedFace {
   const Turn* there_ = nullptr;
 };
 
+/// What the tets of an inner face have at its corners.
+template <class Value>
+struct SharedCorners {
+  std::array<Value, 3> here;
+  std::array<Value, 3> there;
+
+  /// @param at  at(tet, corner)
+  template <class At>
+  SharedCorners(const TetTopology& topology, HalfFace halfFace, const At& at) noexcept {
+    const HalfFace mate = topology.mate[halfFace];
+    const SharedFace face(topology, halfFace, mate);
+    for (std::size_t k = 0; k < 3; ++k) {
+      here[k] = at(tetOf(halfFace), face.here(k));
+      there[k] = at(tetOf(mate), face.there(k));
+    }
+  }
+};
+
 /// A simplex of a face as the neighbour has it.
 /// @param here  the face, as a half-face that is not on the boundary
 [[nodiscard]] inline lattice::CornerMask acrossFace(const TetTopology& topology, HalfFace here,

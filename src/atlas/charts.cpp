@@ -5,6 +5,7 @@
 #include <atlas/charts.hpp>
 #include <base/disjoint_sets.hpp>
 #include <base/low_level.hpp>
+#include <lattice/charts_along_trees.hpp>
 
 namespace hexhex::atlas {
 
@@ -84,32 +85,22 @@ Borders findBorders(const igm::PreparedMap& map, const Patches& patches) {
 Charts buildCharts(const igm::PreparedMap& map, Stage& stage) {
   Patches patches(map, stage);
   const Borders borders = findBorders(map, patches);
-  Charts charts;
-  charts.gauges.resize(patches.count());
-  std::vector<Index> chartOfPatch(patches.count(), kNone);
-  std::vector<Index> queue;
-  for (Index root = 0; root < patches.count(); ++root) {
-    if (chartOfPatch[root] != kNone) continue;
-    chartOfPatch[root] = charts.count;
-    charts.gauges[root] = {};
-    queue.assign(1, root);
-    for (std::size_t head = 0; head < queue.size(); ++head) {
-      const Index patch = queue[head];
-      for (std::size_t i = borders.begin[patch]; i < borders.begin[patch + 1]; ++i) {
-        const adjacency::HalfFace mate = map.topology.mate[borders.halfFaces[i]];
-        const Index neighbour = patches.of(adjacency::tetOf(mate));
-        if (chartOfPatch[neighbour] != kNone) continue;
-        chartOfPatch[neighbour] = charts.count;
-        charts.gauges[neighbour] = charts.gauges[patch] * map.exact.transitions.across(mate);
-        queue.push_back(neighbour);
-      }
+  const auto forEachNeighbour = [&](Index patch, const auto& visit) {
+    for (std::size_t i = borders.begin[patch]; i < borders.begin[patch + 1]; ++i) {
+      const adjacency::HalfFace mate = map.topology.mate[borders.halfFaces[i]];
+      visit(patches.of(adjacency::tetOf(mate)), [&](const lattice::Gauge& gauge) {
+        return gauge * map.exact.transitions.across(mate);
+      });
     }
-    ++charts.count;
-  }
+  };
+  auto trees = lattice::chartsAlongTrees<lattice::Gauge>(patches.count(), forEachNeighbour);
+  Charts charts;
+  charts.gauges = std::move(trees.motions);
+  charts.count = trees.trees;
   charts.gaugeOf = std::move(patches).release();
   charts.chart.resize(charts.gaugeOf.size());
   parallelFor(stage, charts.chart.size(), kChartsGrain,
-              [&](std::size_t t) { charts.chart[t] = chartOfPatch[charts.gaugeOf[t]]; });
+              [&](std::size_t t) { charts.chart[t] = trees.tree[charts.gaugeOf[t]]; });
   return charts;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -17,7 +18,7 @@ struct Charts {
 
   Array<Index> chart;    ///< per tet
   Array<Index> gaugeOf;  ///< per tet: index in `gauges`
-  Array<lattice::Gauge> gauges;
+  std::vector<lattice::Gauge> gauges;
   Index count = 0;  ///< charts
 
   [[nodiscard]] const lattice::Gauge& gauge(Index tet) const noexcept {

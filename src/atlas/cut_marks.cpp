@@ -92,12 +92,12 @@ CutTransitionId CutTransitions::across(const igm::PreparedMap& map, const Charts
   const Index to = charts.chart[there];
   if (from == Charts::kNoChart || to == Charts::kNoChart) return kAnyCuts;
   const lattice::Gauge forth =
-      charts.gauge(there) * map.exact.transitions.across(halfFace) / charts.gauge(here);
+      charts.gauge(there) * map.exact.transitions.across(halfFace) * charts.gauge(here).inverse();
   const auto id = static_cast<CutTransitionId>(all_.size());
   const auto [known, isNew] = ids_.try_emplace(keyOf(from, to, forth), id);
   if (!isNew) return known->second;
   if (all_.size() + 2 > kAnyCuts) return known->second = kAnyCuts;
-  const lattice::Gauge back = lattice::Gauge{} / forth;
+  const lattice::Gauge back = forth.inverse();
   const auto [inverse, isOther] = ids_.try_emplace(keyOf(to, from, back), id + 1);
   all_.push_back({from, to, forth, inverse->second});
   if (isOther) all_.push_back({to, from, back, id});

@@ -37,9 +37,9 @@ void ArcTracer::fail(Index tet, const char* what) {
 
 void ArcTracer::trace(const SimplexInTet& middle) {
   const std::size_t firstPoint = pieces_.points();
-  const Found from = vertices_.find(middle.tet, middle.frame.origin);
+  const Found from = vertices_.find(middle.tet, middle.frame.origin());
   const Found to =
-      vertices_.find(middle.tet, lattice::step(middle.frame.origin, middle.frame.axes[0]));
+      vertices_.find(middle.tet, lattice::step(middle.frame.origin(), middle.frame.axis(0)));
   Ends ends = {from.vertex, to.vertex};
   if (from.vertex != kNone && to.vertex != kNone) {
     // By convexity, all between lies in the smallest simplex that contains both ends.

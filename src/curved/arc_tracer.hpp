@@ -61,7 +61,7 @@ class ArcTracer {
 
   /// The hex vertex at the end of the edge, if the closed tet has it.
   [[nodiscard]] Index vertexIn(const SimplexInTet& at) const {
-    return vertices_.find(at.tet, lattice::step(at.frame.origin, at.frame.axes[0])).vertex;
+    return vertices_.find(at.tet, lattice::step(at.frame.origin(), at.frame.axis(0))).vertex;
   }
   [[nodiscard]] lattice::LatticeTet see(const SimplexInTet& at) const {
     return at.frame.see(exact_.corners[at.tet], exact_.unit);

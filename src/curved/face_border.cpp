@@ -123,7 +123,8 @@ lattice::CornerMask FaceBorder::setInsideOneTet(Index tet, const Frame& frame) {
   std::array<lattice::CornerMask, 4> simplices{};
   lattice::CornerMask carrier = lattice::kNoSimplex;
   for (std::size_t i = 0; i < 4; ++i) {
-    const sweep::VertexTables::Found found = input_.vertices.find(tet, frame.at(kSquareCorners[i]));
+    const sweep::VertexTables::Found found =
+        input_.vertices.find(tet, frame.toChart(kSquareCorners[i]));
     if (found.vertex == kNone) return lattice::kNoSimplex;
     vertices_[i] = found.vertex;
     simplices[i] = found.simplex;
@@ -183,10 +184,10 @@ void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
     if (!found) failToCut(midpoint.tet, "the owner of an edge was not found");
   }
   // Sides 1 and 2 are one step from the origin; sides 2 and 3 run backward.
-  const lattice::Direction along = frame.axes[side % 2];
+  const lattice::Direction along = frame.axis(side % 2);
   const bool backward = lattice::signOf(along) < 0;
-  lattice::GridPoint smaller = frame.origin;
-  if (boundsAtOne(side)) smaller = lattice::step(smaller, frame.axes[axisAcross(side)]);
+  lattice::GridPoint smaller = frame.origin();
+  if (boundsAtOne(side)) smaller = lattice::step(smaller, frame.axis(axisAcross(side)));
   if (backward) smaller = lattice::step(smaller, along);
   const int axis = lattice::axisOf(along);
   arcs_[side] = input_.edges.find(owner, axis, smaller, lineHints_[side]);

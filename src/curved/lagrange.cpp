@@ -95,7 +95,7 @@ class NodeCollector {
     std::fill(nodes.begin(), nodes.end(), kNone);
     missing_ = nodes.size();
     Frame frame = Frame::along(cell.z, 0);
-    for (std::int32_t& coordinate : frame.origin) coordinate *= order_;
+    for (std::int32_t& coordinate : frame.toChart.translation) coordinate *= order_;
     queue_.assign(1, {cell.tet, lattice::kWholeTet, frame});
     // NOLINTNEXTLINE(modernize-loop-convert): the queue grows meanwhile.
     for (std::size_t head = 0; head < queue_.size(); ++head) {
@@ -130,7 +130,8 @@ class NodeCollector {
               static_cast<std::size_t>(i) +
               stride * (static_cast<std::size_t>(j) + stride * static_cast<std::size_t>(k));
           if (nodes[n] != kNone) continue;
-          nodes[n] = numbers_.find(here.tet, here.frame.at({i, j, k})).vertex;
+          nodes[n] =
+              numbers_.find(here.tet, here.frame.toChart(lattice::GridPoint{i, j, k})).vertex;
           if (nodes[n] != kNone) --missing_;
         }
       }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include <igm/transition_fit.hpp>
 
@@ -62,12 +61,6 @@ std::optional<lattice::Rotation> exactRotation(const VectorPair& vectors,
   const lattice::Rotation rotation = lattice::Rotation::fromAxes(source[0], source[1]).inverse();
   if (rotation(vectors[0]) != images[0] || rotation(vectors[1]) != images[1]) return std::nullopt;
   return rotation;
-}
-
-lattice::Rotation rotationOf(const SharedTriangle& triangle) {
-  return bestRotation(
-      {minus(triangle.here[1], triangle.here[0]), minus(triangle.here[2], triangle.here[0])},
-      {minus(triangle.there[1], triangle.there[0]), minus(triangle.there[2], triangle.there[0])});
 }
 
 /// The integers nearest to the mean of what is left of the corners after the rotation.
@@ -133,15 +126,10 @@ lattice::Rotation bestRotation(const VectorPair& vectors, const VectorPair& imag
   return exact ? *exact : bestRotationOfAll(vectors, images);
 }
 
-SharedTriangle::SharedTriangle(const adjacency::TetTopology& topology,
-                               const LocalParameters& parameters,
-                               adjacency::HalfFace halfFace) noexcept {
-  const adjacency::HalfFace mate = topology.mate[halfFace];
-  const adjacency::SharedFace face(topology, halfFace, mate);
-  for (std::size_t k = 0; k < 3; ++k) {
-    here[k] = parameters.at(adjacency::tetOf(halfFace), face.here(k));
-    there[k] = parameters.at(adjacency::tetOf(mate), face.there(k));
-  }
+lattice::Rotation bestRotation(const SharedTriangle& triangle) noexcept {
+  return bestRotation(
+      {minus(triangle.here[1], triangle.here[0]), minus(triangle.here[2], triangle.here[0])},
+      {minus(triangle.there[1], triangle.there[0]), minus(triangle.there[2], triangle.there[0])});
 }
 
 bool agree(const adjacency::TetTopology& topology, const LocalParameters& parameters,
@@ -151,7 +139,7 @@ bool agree(const adjacency::TetTopology& topology, const LocalParameters& parame
 }
 
 FittedTransition fitTransition(const SharedTriangle& triangle) noexcept {
-  return fitTransition(triangle, rotationOf(triangle));
+  return fitTransition(triangle, bestRotation(triangle));
 }
 
 FittedTransition fitTransition(const SharedTriangle& triangle,

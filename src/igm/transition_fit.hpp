@@ -3,6 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
@@ -10,7 +13,7 @@
 #include <hexhex/types.hpp>
 
 #include <igm/input.hpp>
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 namespace hexhex::igm {
 
@@ -27,13 +30,28 @@ using VectorPair = std::array<Vec3, 2>;
                                                   const VectorPair& images) noexcept;
 
 /// The three corners of an inner triangle in the charts of both its tets.
-struct SharedTriangle {
-  std::array<Vec3, 3> here;
-  std::array<Vec3, 3> there;
-
+struct SharedTriangle : adjacency::SharedCorners<Vec3> {
   SharedTriangle(const adjacency::TetTopology& topology, const LocalParameters& parameters,
-                 adjacency::HalfFace halfFace) noexcept;
+                 adjacency::HalfFace halfFace) noexcept
+      : SharedCorners(topology, halfFace,
+                      [&](Index tet, std::size_t corner) { return parameters.at(tet, corner); }) {}
+  SharedTriangle(const adjacency::TetTopology& topology, std::span<const TetParameters> parameters,
+                 adjacency::HalfFace halfFace) noexcept
+      : SharedCorners(topology, halfFace,
+                      [&](Index tet, std::size_t corner) { return parameters[tet][corner]; }) {}
 };
+
+/// Of its edges at the first corner.
+[[nodiscard]] lattice::Rotation bestRotation(const SharedTriangle& triangle) noexcept;
+
+/// Across a half-face, if the caller knows it.
+/// @param rotations  as in TetMapView
+[[nodiscard]] inline std::optional<lattice::Rotation> knownRotation(
+    std::span<const std::array<std::int8_t, 4>> rotations, adjacency::HalfFace halfFace) {
+  const int known = rotations.empty() ? -1 : rotations[adjacency::tetOf(halfFace)][halfFace % 4];
+  if (known < 0 || known >= lattice::Rotation::kCount) return std::nullopt;
+  return lattice::rotationFromAlgoHex(known);
+}
 
 /// Whether two tets agree on the parameters of the corners of their common face.
 [[nodiscard]] bool agree(const adjacency::TetTopology& topology, const LocalParameters& parameters,

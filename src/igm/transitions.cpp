@@ -45,10 +45,8 @@ class TransitionFitter {
  private:
   [[nodiscard]] FittedTransition fit(adjacency::HalfFace here) const {
     const SharedTriangle triangle(topology_, parameters_, here);
-    const int known = rotations_.empty() ? -1 : rotations_[adjacency::tetOf(here)][here % 4];
-    return known >= 0 && known < lattice::Rotation::kCount
-               ? fitTransition(triangle, lattice::rotationFromAlgoHex(known))
-               : fitTransition(triangle);
+    const auto known = knownRotation(rotations_, here);
+    return known ? fitTransition(triangle, *known) : fitTransition(triangle);
   }
 
   const adjacency::TetTopology& topology_;

@@ -11,7 +11,7 @@
 #include <igm/half_face_crossing.hpp>
 #include <igm/input.hpp>
 #include <igm/regular_vertices.hpp>
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 namespace hexhex::igm {
 

@@ -10,6 +10,7 @@
 #include <base/vector3.hpp>
 #include <igm/transition_fit.hpp>
 #include <igm/unfold_charts.hpp>
+#include <lattice/charts_along_trees.hpp>
 
 namespace hexhex::igm {
 
@@ -124,28 +125,16 @@ class GaugeSearch {
       for (const std::size_t end : block.ends) begin.push_back(exits.size() + end);
       exits.insert(exits.end(), block.exits.begin(), block.exits.end());
     }
-    const auto count = static_cast<Index>(begin.size() - 1);
-    std::vector<lattice::Gauge> gauges(count);
-    std::vector<bool> reached(count, false);
-    std::vector<Index> queue;
-    for (Index root = 0; root < count; ++root) {
-      if (reached[root]) continue;
-      reached[root] = true;
-      queue.assign(1, root);
-      for (std::size_t head = 0; head < queue.size(); ++head) {
-        const Index piece = queue[head];
-        for (std::size_t i = begin[piece]; i < begin[piece + 1]; ++i) {
-          const Index there = adjacency::tetOf(exits[i]);
-          const Index neighbour = pieceOf(there);
-          if (reached[neighbour]) continue;
-          reached[neighbour] = true;
+    const auto forEachNeighbour = [&](Index piece, const auto& visit) {
+      for (std::size_t i = begin[piece]; i < begin[piece + 1]; ++i) {
+        const Index there = adjacency::tetOf(exits[i]);
+        visit(pieceOf(there), [&](const lattice::Gauge& gauge) {
           const lattice::Gauge& here = gauges_[adjacency::tetOf(topology_.mate[exits[i]])];
-          gauges[neighbour] = gauges[piece] * (here * transitionAcross(exits[i])) / gauges_[there];
-          queue.push_back(neighbour);
-        }
+          return gauge * here * transitionAcross(exits[i]) * gauges_[there].inverse();
+        });
       }
-    }
-    return gauges;
+    };
+    return lattice::chartsAlongTrees<lattice::Gauge>(begin.size() - 1, forEachNeighbour).motions;
   }
 
   [[nodiscard]] lattice::Transition transitionAcross(adjacency::HalfFace halfFace) const {

@@ -30,6 +30,8 @@ class Rotation {
       const std::array<Number, 3>& v) const noexcept;
 
   [[nodiscard]] constexpr Rotation inverse() const noexcept;
+  /// The axis about which it turns; -1 for the identity and for rotations about diagonals.
+  [[nodiscard]] constexpr int axis() const noexcept;
   /// Composition: (a * b)(v) = a(b(v)).
   friend constexpr Rotation operator*(Rotation a, Rotation b) noexcept;
 
@@ -128,6 +130,13 @@ constexpr Rotation operator*(Rotation a, Rotation b) noexcept {
 
 constexpr Rotation Rotation::inverse() const noexcept {
   return Rotation(detail::kRotationTables.inverse[index_]);
+}
+
+constexpr int Rotation::axis() const noexcept {
+  for (int k = 0; k < 3 && !isIdentity(); ++k) {
+    if ((*this)(direction(k, 1)) == direction(k, 1)) return k;
+  }
+  return -1;
 }
 
 /// A set of coordinate axes: bit k for axis k.

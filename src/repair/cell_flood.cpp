@@ -27,13 +27,6 @@ int wallOf(const Vec3& point) {
   return -1;
 }
 
-lattice::LatticeTet carried(const lattice::LatticeTet& corners,
-                            const lattice::Transition& transition, std::int64_t unit) {
-  lattice::LatticeTet image{};
-  for (std::size_t i = 0; i < 4; ++i) image[i] = transition(corners[i], unit);
-  return image;
-}
-
 /// The four weights of a point in a tet, times the tet's determinant.
 std::array<lattice::Int192, 4> weightsOf(const lattice::LatticeTet& c,
                                          const lattice::LatticePoint& at) {
@@ -154,7 +147,7 @@ bool CellFlood::visit(Index tet, const lattice::Transition& fromFirst) {
   }
   Piece piece{tet, fromFirst, map_.exact.corners[tet], 0};
   if (!fromFirst.isIdentity()) {
-    piece.corners = carried(piece.corners, fromFirst.inverse(), map_.exact.unit);
+    piece.corners = fromFirst.inverse()(piece.corners, map_.exact.unit);
   }
   piece.volume = volumeInCube(relative(piece.corners));
   pieces_.push_back(piece);

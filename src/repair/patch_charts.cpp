@@ -19,16 +19,6 @@ constexpr double kImpossible = 100;
 /// Ties are broken towards the choice that fits best.
 constexpr double kPerChoice = 1e-4;
 
-/// The axis that a rotation leaves as it is; -1 for the identity and for those about diagonals.
-int fixedAxis(lattice::Rotation rotation) {
-  if (rotation.isIdentity()) return -1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const lattice::Direction d = lattice::direction(axis, 1);
-    if (rotation(d) == d) return axis;
-  }
-  return -1;
-}
-
 bool isHalfTurn(lattice::Rotation rotation) { return (rotation * rotation).isIdentity(); }
 
 /// Whether a vector is parallel to an axis, or too short to tell.
@@ -122,11 +112,8 @@ void PatchCharts::findCandidates() {
 /// All rotations, or the one that the caller knows.
 std::vector<igm::FittedTransition> PatchCharts::fitsOf(adjacency::HalfFace halfFace) const {
   const igm::SharedTriangle triangle(topology_, parameters_, halfFace);
-  const int known =
-      map_.rotations.empty() ? -1 : map_.rotations[adjacency::tetOf(halfFace)][halfFace % 4];
-  if (known >= 0 && known < lattice::Rotation::kCount) {
-    return {igm::fitTransition(triangle, lattice::rotationFromAlgoHex(known))};
-  }
+  const auto known = igm::knownRotation(map_.rotations, halfFace);
+  if (known) return {igm::fitTransition(triangle, *known)};
   return igm::fitAllTransitions(triangle);
 }
 
@@ -269,7 +256,7 @@ double PatchCharts::edgeCost(std::size_t e) const {
   }
   const lattice::Rotation total = holonomy(fan);
   if (total.isIdentity()) return 0;
-  const int axis = fixedAxis(total);
+  const int axis = total.axis();
   if (axis < 0 || !isAlong(fan.vector, axis, tolerance_)) return kImpossible;
   return isHalfTurn(total) ? kHalfTurn : kSingular;
 }
@@ -417,7 +404,7 @@ bool PatchCharts::classifyByHolonomy(std::size_t e) {
       total.isIdentity() ? rest == 0 : (isHalfTurn(total) ? rest == 2 : rest % 2 == 1);
   if (!confirmed) edge.valence = 0;
   if (total.isIdentity()) return false;
-  const int axis = fixedAxis(total);
+  const int axis = total.axis();
   edge.singular = true;
   edge.axis = axis >= 0 ? axis : static_cast<int>(dominantAxis(fans_[e].vector));
   return true;

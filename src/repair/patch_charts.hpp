@@ -20,7 +20,7 @@
 
 #include <igm/input.hpp>
 #include <igm/transition_fit.hpp>
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 #include <repair/patch.hpp>
 
 namespace hexhex::repairs {

@@ -69,17 +69,13 @@ std::vector<Index> findExactlyBadTets(const igm::ExactMap& map, Stage& stage) {
 }
 
 bool isCarriedOver(const igm::PreparedMap& map, adjacency::HalfFace halfFace) noexcept {
-  const adjacency::TetTopology& topology = map.topology;
-  const adjacency::HalfFace mate = topology.mate[halfFace];
-  for (const int c : lattice::kFaceCorners[halfFace % 4]) {
-    const auto corner = static_cast<std::size_t>(c);
-    const Index v = topology.tets[adjacency::tetOf(halfFace)][corner];
-    const auto other = static_cast<std::size_t>(topology.localCorner(adjacency::tetOf(mate), v));
-    const lattice::LatticePoint& here = map.exact.corners[adjacency::tetOf(halfFace)][corner];
-    const lattice::LatticePoint& there = map.exact.corners[adjacency::tetOf(mate)][other];
-    if (map.exact.transitions.across(halfFace)(here, map.exact.unit) != there) return false;
-  }
-  return true;
+  const adjacency::SharedCorners<lattice::LatticePoint> face(
+      map.topology, halfFace,
+      [&](Index tet, std::size_t corner) { return map.exact.corners[tet][corner]; });
+  return std::equal(face.here.begin(), face.here.end(), face.there.begin(),
+                    [&](const lattice::LatticePoint& here, const lattice::LatticePoint& there) {
+                      return map.exact.transitions.across(halfFace)(here, map.exact.unit) == there;
+                    });
 }
 
 std::vector<std::uint8_t> findValidTets(const igm::PreparedMap& map,

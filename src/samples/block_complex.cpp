@@ -40,11 +40,8 @@ lattice::Transition transitionAcross(const Occurrence& from, const Occurrence& t
                 "Two neighbouring blocks of a sample have opposite orientation; please report this "
                 "as a bug.");
   }
-  lattice::Transition across{lattice::Rotation::fromAxes(image[0], image[1]),
-                             cornerPoint(to.origin)};
-  const lattice::GridPoint turned = across.rotation(cornerPoint(from.origin));
-  for (std::size_t a = 0; a < 3; ++a) across.translation[a] -= turned[a];
-  return across;
+  return lattice::Transition::taking(cornerPoint(from.origin), cornerPoint(to.origin),
+                                     lattice::Rotation::fromAxes(image[0], image[1]));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 namespace hexhex::samples {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <base/disjoint_sets.hpp>
+#include <lattice/charts_along_trees.hpp>
 #include <samples/random.hpp>
 #include <samples/steps.hpp>
 
@@ -50,26 +51,24 @@ lattice::Transition randomChart(std::int64_t limit, Random& random) {
 /// all are moved by the same translation.
 std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, int cells,
                                                const lattice::GridPoint& translation) {
-  std::vector<lattice::Transition> charts(complex.blockCount(),
-                                          lattice::Transition{{}, translation});
-  std::vector<bool> hasChart(charts.size(), false);
-  for (std::size_t root = 0; root < charts.size(); ++root) {
-    if (hasChart[root]) continue;
-    hasChart[root] = true;
-    std::vector<std::size_t> reached = {root};
-    for (std::size_t next = 0; next < reached.size(); ++next) {
-      for (std::size_t face = 0; face < 6; ++face) {
-        const auto other = complex.neighbour(reached[next], face / 2, static_cast<int>(face % 2));
-        if (!other || hasChart[other->block]) continue;
+  const auto forEachNeighbour = [&](Index block, const auto& visit) {
+    for (std::size_t face = 0; face < 6; ++face) {
+      const auto other = complex.neighbour(block, face / 2, static_cast<int>(face % 2));
+      if (!other) continue;
+      visit(static_cast<Index>(other->block), [&](const lattice::Transition& chart) {
         lattice::Transition across = other->transition;
         for (std::int32_t& coordinate : across.translation) coordinate *= cells;
-        charts[other->block] = charts[reached[next]] * across.inverse();
-        hasChart[other->block] = true;
-        reached.push_back(other->block);
-      }
+        return chart * across.inverse();
+      });
     }
-  }
-  return charts;
+  };
+  return lattice::chartsAlongTrees<lattice::Transition>(
+             complex.blockCount(),
+             [&](Index /*root*/) {
+               return lattice::Transition{{}, translation};
+             },
+             forEachNeighbour)
+      .motions;
 }
 
 /// From the frames of blocks to their charts.

@@ -32,15 +32,6 @@ lattice::ChartPoint anyPoint() {
           *rc::gen::arbitrary<std::uint32_t>()};
 }
 
-TEST(Gauge, QuotientTakesTheOneChartToTheOther) {
-  EXPECT_TRUE(rc::check("(a / b)(b(u)) = a(u)", [] {
-    const lattice::Gauge a = anyGauge();
-    const lattice::Gauge b = anyGauge();
-    const lattice::ChartPoint u = anyPoint();
-    RC_ASSERT((a / b)(b(u)) == a(u));
-  }));
-}
-
 TEST(Gauge, CornersOfACellAreCornersOfItsImage) {
   EXPECT_TRUE(rc::check("a cell's corners turn with it", [] {
     const lattice::Gauge gauge = anyGauge();

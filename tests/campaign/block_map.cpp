@@ -8,6 +8,7 @@
 
 #include <base/disjoint_sets.hpp>
 #include <base/vector3.hpp>
+#include <lattice/charts_along_trees.hpp>
 #include <samples/steps.hpp>
 #include <samples/tet_grid.hpp>
 
@@ -112,35 +113,25 @@ lattice::Transition stretched(const lattice::Transition& across, std::size_t axi
     corner[a] *= static_cast<std::int32_t>(here[a]);
     image[a] *= static_cast<std::int32_t>(there[a]);
   }
-  lattice::Transition result{across.rotation, image};
-  const lattice::GridPoint turned = across.rotation(corner);
-  for (std::size_t a = 0; a < 3; ++a) result.translation[a] -= turned[a];
-  return result;
+  return lattice::Transition::taking(corner, image, across.rotation);
 }
 
 /// Per block: the chart in which most neighbours agree.
 std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, const Lengths& boxes) {
-  std::vector<lattice::Transition> charts(complex.blockCount());
-  std::vector<bool> hasChart(charts.size(), false);
-  for (std::size_t root = 0; root < charts.size(); ++root) {
-    if (hasChart[root]) continue;
-    hasChart[root] = true;
-    std::vector<std::size_t> reached = {root};
-    for (std::size_t next = 0; next < reached.size(); ++next) {
-      const std::size_t block = reached[next];
-      for (std::size_t face = 0; face < 6; ++face) {
-        const int side = static_cast<int>(face % 2);
-        const std::optional<Neighbour> other = complex.neighbour(block, face / 2, side);
-        if (!other || hasChart[other->block]) continue;
-        hasChart[other->block] = true;
-        const lattice::Transition across =
-            stretched(other->transition, face / 2, side, boxes[block], boxes[other->block]);
-        charts[other->block] = charts[block] * across.inverse();
-        reached.push_back(other->block);
-      }
+  const auto forEachNeighbour = [&](Index block, const auto& visit) {
+    for (std::size_t face = 0; face < 6; ++face) {
+      const int side = static_cast<int>(face % 2);
+      const std::optional<Neighbour> other = complex.neighbour(block, face / 2, side);
+      if (!other) continue;
+      visit(static_cast<Index>(other->block), [&](const lattice::Transition& chart) {
+        return chart *
+               stretched(other->transition, face / 2, side, boxes[block], boxes[other->block])
+                   .inverse();
+      });
     }
-  }
-  return charts;
+  };
+  return lattice::chartsAlongTrees<lattice::Transition>(complex.blockCount(), forEachNeighbour)
+      .motions;
 }
 
 /// The tets of a grid: of each sub-block 12 around its centre, or 6 from one corner.

@@ -1,7 +1,7 @@
 // Changes of a map that leave its mesh as it is, but for numbers and places of elements.
 #pragma once
 
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 #include "campaign/block_map.hpp"
 

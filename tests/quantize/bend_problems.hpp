@@ -14,6 +14,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/vector3.hpp>
+#include <igm/transition_fit.hpp>
 
 namespace hexhex::test {
 
@@ -35,24 +36,6 @@ inline TetMap oriented(TetMap map) {
     std::swap(map.parameters[t][2], map.parameters[t][3]);
   }
   return map;
-}
-
-/// The one that carries a triangle's corners over exactly.
-inline lattice::Transition transitionBetween(const std::array<Vec3, 3>& here,
-                                             const std::array<Vec3, 3>& there) {
-  for (int r = 0; r < lattice::Rotation::kCount; ++r) {
-    lattice::Transition transition{lattice::Rotation(r), {}};
-    for (std::size_t k = 0; k < 3; ++k) {
-      transition.translation[k] =
-          static_cast<std::int32_t>(std::lround(there[0][k] - transition.rotation(here[0])[k]));
-    }
-    bool fits = true;
-    for (std::size_t i = 0; i < 3; ++i) {
-      fits = fits && length(minus(transition(here[i], 1.0), there[i])) < 1e-9;
-    }
-    if (fits) return transition;
-  }
-  throw std::runtime_error("no transition fits");
 }
 
 /// The boundary plane that a triangle lies in.
@@ -92,9 +75,8 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
   problem.irregularEdges = irregularEdges(EdgeFans(topology), topology.tets,
                                           std::span<const TetParameters>(reference.parameters));
   for (adjacency::HalfFace h = 0; h < problem.transitions.size(); ++h) {
-    std::array<Vec3, 3> here{};
-    std::array<Vec3, 3> there{};
     if (topology.isBoundary(h)) {
+      std::array<Vec3, 3> here{};
       for (std::size_t k = 0; k < 3; ++k) {
         here[k] = target.parameters[adjacency::tetOf(h)]
                                    [static_cast<std::size_t>(lattice::kFaceCorners[h % 4][k])];
@@ -102,12 +84,10 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
       problem.planes[h] = planeOf(here);
       continue;
     }
-    const adjacency::SharedFace face(topology, h, topology.mate[h]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      here[k] = target.parameters[adjacency::tetOf(h)][face.here(k)];
-      there[k] = target.parameters[adjacency::tetOf(topology.mate[h])][face.there(k)];
-    }
-    problem.transitions[h] = transitionBetween(here, there);
+    const igm::FittedTransition fit =
+        igm::fitTransition(igm::SharedTriangle(topology, target.parameters, h));
+    if (fit.residual > 1e-9) throw std::runtime_error("no transition fits");
+    problem.transitions[h] = fit.transition;
   }
   return problem;
 }

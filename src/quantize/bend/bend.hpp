@@ -14,7 +14,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 namespace hexhex::quantization {
 

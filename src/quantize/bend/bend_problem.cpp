@@ -3,34 +3,29 @@
 
 #include <quantize/bend/bend_problem.hpp>
 
+#include <lattice/charts_along_trees.hpp>
+
 namespace hexhex::quantization {
 
 namespace {
 
 /// Walls may cut a tet into parts in several blocks. Its chart is that of the block of one of them;
-/// this is the way from the other ones' integer charts into it.
-std::vector<ChartChange> waysToOriginal(const MotorcycleComplex& complex,
-                                        const BlockIntegers& integers, std::size_t originals) {
+/// this is the way from the other ones' integer charts into it: that with the tet's own number,
+/// which comes before them.
+std::vector<lattice::LatticeMotion> waysToOriginal(const MotorcycleComplex& complex,
+                                                   const BlockIntegers& integers) {
   const WallMesh& mesh = complex.mesh;
-  std::vector<ChartChange> ways(mesh.tetCount());
-  std::vector<bool> isReached(mesh.tetCount());
-  std::vector<Index> queue;
-  for (Index root = 0; root < originals; ++root) {
-    isReached[root] = true;
-    queue.assign(1, root);
-    for (std::size_t next = 0; next < queue.size(); ++next) {
-      for (int face = 0; face < 4; ++face) {
-        const adjacency::HalfFace h = adjacency::halfFaceOf(queue[next], face);
-        if (mesh.originalFace[h] != kInside) continue;
-        const Index there = adjacency::tetOf(mesh.mate[h]);
-        if (isReached[there]) continue;
-        isReached[there] = true;
-        ways[there] = ways[queue[next]] * integers.across(complex, h).inverse();
-        queue.push_back(there);
-      }
+  const auto forEachNeighbour = [&](Index part, const auto& visit) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace h = adjacency::halfFaceOf(part, face);
+      if (mesh.originalFace[h] != kInside) continue;
+      visit(adjacency::tetOf(mesh.mate[h]), [&](const lattice::LatticeMotion& way) {
+        return way * integers.across(complex, h).inverse();
+      });
     }
-  }
-  return ways;
+  };
+  return lattice::chartsAlongTrees<lattice::LatticeMotion>(mesh.tetCount(), forEachNeighbour)
+      .motions;
 }
 
 std::int32_t toInt32(std::int64_t x) {
@@ -42,7 +37,7 @@ std::int32_t toInt32(std::int64_t x) {
   return static_cast<std::int32_t>(x);
 }
 
-lattice::Transition toTransition(const ChartChange& change) {
+lattice::Transition toTransition(const lattice::LatticeMotion& change) {
   const lattice::LatticePoint& t = change.translation;
   return {change.rotation, {toInt32(t[0]), toInt32(t[1]), toInt32(t[2])}};
 }
@@ -78,7 +73,7 @@ std::vector<Vec3> blockRatios(const MotorcycleComplex& complex, const BlockInteg
 /// By what the reference of each tet is stretched along its axes: the mean over its parts, beyond
 /// what the solver is left to make up for.
 std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
-                               const std::vector<ChartChange>& ways,
+                               const std::vector<lattice::LatticeMotion>& ways,
                                const std::vector<Vec3>& ratios, std::size_t originals) {
   const WallMesh& mesh = complex.mesh;
   std::vector<Vec3> stretches(originals);
@@ -103,22 +98,17 @@ std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
   return stretches;
 }
 
-/// The triangles, edges and vertices of features that are aligned.
+/// Across an axis of an integer chart, through a point of it, in the chart beyond.
+BoundaryPlane toPlane(std::size_t axis, const lattice::LatticePoint& node,
+                      const lattice::LatticeMotion& way) {
+  const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(way);
+  return {static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
+}
+
+/// The edges and vertices of features that are aligned.
 void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers,
-                 const std::vector<ChartChange>& ways, BendProblem& problem) {
+                 const std::vector<lattice::LatticeMotion>& ways, BendProblem& problem) {
   const WallMesh& mesh = complex.mesh;
-  const auto toPlane = [&](Index tet, std::size_t axis, const lattice::LatticePoint& node) {
-    const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
-    return BoundaryPlane{static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
-  };
-  for (adjacency::HalfFace h = 0; h < mesh.mate.size(); ++h) {
-    if (!mesh.isFeature[h] || mesh.originalFace[h] == kInside) continue;
-    const Index tet = adjacency::tetOf(h);
-    const PatchSide& patch = complex.patches[complex.patchOf[h]];
-    const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
-    problem.planes[adjacency::halfFaceOf(mesh.original[tet], mesh.originalFace[h])] =
-        toPlane(tet, axis, integers(patch.block, patch.border.front().start));
-  }
   for (const FeatureCorner& at : complex.featureCorners) {
     const Index vertex = mesh.tets[at.tet][at.corner];
     if (vertex >= problem.points.size()) continue;
@@ -127,7 +117,7 @@ void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers
         problem.fixedCorners[4 * tet + adjacency::localCorner(problem.tets[tet], vertex)];
     const lattice::LatticePoint node = integers(complex.blockOf[at.tet], at.node);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const BoundaryPlane plane = toPlane(at.tet, axis, node);
+      const BoundaryPlane plane = toPlane(axis, node, ways[at.tet]);
       const bool isKnown = std::find(planes.begin(), planes.end(), plane) != planes.end();
       if (axis != at.freeAxis && !isKnown) planes.push_back(plane);
     }
@@ -144,7 +134,7 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
   problem.points.assign(view.points.begin(), view.points.end());
   problem.tets.assign(view.tets.begin(), view.tets.end());
   problem.reference.resize(problem.tets.size());
-  const std::vector<ChartChange> ways = waysToOriginal(complex, integers, problem.tets.size());
+  const std::vector<lattice::LatticeMotion> ways = waysToOriginal(complex, integers);
   const std::vector<Vec3> stretches = tetStretches(
       complex, ways, blockRatios(complex, integers, map.unit / scale), problem.tets.size());
   for (std::size_t t = 0; t < problem.tets.size(); ++t) {
@@ -166,13 +156,13 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
     const Index tet = adjacency::tetOf(h);
     const adjacency::HalfFace original =
         adjacency::halfFaceOf(mesh.original[tet], mesh.originalFace[h]);
-    if (mesh.mate[h] == kNone) {
+    if (mesh.mate[h] == kNone || mesh.isFeature[h]) {
       const PatchSide& patch = complex.patches[complex.patchOf[h]];
       const std::size_t axis = planeOf(mesh, h).beyond(complex.toBlock[tet]).axis;
-      const lattice::LatticePoint node = integers(patch.block, patch.border.front().start);
-      const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(ways[tet]);
-      problem.planes[original] = {static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
-    } else {
+      problem.planes[original] =
+          toPlane(axis, integers(patch.block, patch.border.front().start), ways[tet]);
+    }
+    if (mesh.mate[h] != kNone) {
       problem.transitions[original] = toTransition(
           ways[adjacency::tetOf(mesh.mate[h])] * integers.across(complex, h) * ways[tet].inverse());
     }

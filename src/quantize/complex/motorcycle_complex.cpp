@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include <quantize/complex/arcs_and_patches.hpp>
 #include <quantize/complex/motorcycle_complex.hpp>
 #include <quantize/complex/wall_remover.hpp>
+
+#include <lattice/charts_along_trees.hpp>
 
 namespace hexhex::quantization {
 
@@ -17,32 +20,26 @@ constexpr int kNoiseBits = 24;
 /// @return a tet where a block does not close up, as it is a ring; or kNone
 Index findBlocks(MotorcycleComplex& complex) {
   const WallMesh& mesh = complex.mesh;
-  complex.blockOf.assign(mesh.tetCount(), kNone);
-  complex.toBlock.assign(mesh.tetCount(), {});
-  complex.blockCount = 0;
-  Index inRing = kNone;
-  std::vector<Index> queue;
-  for (Index root = 0; root < mesh.tetCount(); ++root) {
-    if (complex.blockOf[root] != kNone) continue;
-    const auto block = static_cast<Index>(complex.blockCount++);
-    complex.blockOf[root] = block;
-    queue.assign(1, root);
-    for (std::size_t next = 0; next < queue.size(); ++next) {
-      for (int face = 0; face < 4; ++face) {
-        const adjacency::HalfFace h = adjacency::halfFaceOf(queue[next], face);
-        if (mesh.isWall[h]) continue;
-        const Index there = adjacency::tetOf(mesh.mate[h]);
-        if (complex.blockOf[there] == kNone) {
-          complex.blockOf[there] = block;
-          complex.toBlock[there] = complex.toBlock[queue[next]] * mesh.change[h].inverse();
-          queue.push_back(there);
-        } else if (inRing == kNone && !complex.across(h).isIdentity()) {
-          inRing = there;
-        }
-      }
+  const auto forEachNeighbour = [&](Index tet, const auto& visit) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace h = adjacency::halfFaceOf(tet, face);
+      if (mesh.isWall[h]) continue;
+      visit(adjacency::tetOf(mesh.mate[h]), [&](const lattice::LatticeMotion& toBlock) {
+        return toBlock * mesh.change[h].inverse();
+      });
+    }
+  };
+  auto trees = lattice::chartsAlongTrees<lattice::LatticeMotion>(mesh.tetCount(), forEachNeighbour);
+  complex.blockOf = std::move(trees.tree);
+  complex.toBlock = std::move(trees.motions);
+  complex.blockCount = trees.trees;
+  for (const Index tet : trees.order) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace h = adjacency::halfFaceOf(tet, face);
+      if (!mesh.isWall[h] && !complex.across(h).isIdentity()) return adjacency::tetOf(mesh.mate[h]);
     }
   }
-  return inRing;
+  return kNone;
 }
 
 /// Cuts a block that returns to itself, and is no box, across.
@@ -81,7 +78,7 @@ class RingCutter {
       for (int face = 0; face < 4; ++face) {
         const adjacency::HalfFace h = adjacency::halfFaceOf(t, face);
         if (mesh_.isWall[h]) continue;
-        const ChartChange way = complex_.across(h);
+        const lattice::LatticeMotion way = complex_.across(h);
         for (std::size_t k = 0; k < 3; ++k) {
           const lattice::Direction d = lattice::direction(static_cast<int>(k), 1);
           if (way.rotation(d) == d) most[k] = std::max(most[k], std::abs(way.translation[k]));
@@ -113,7 +110,7 @@ class RingCutter {
     WallTracer tracer(mesh_);
     const auto before = static_cast<Index>(mesh_.tetCount());
     for (const Index t : tets_) {
-      const ChartChange back = complex_.toBlock[t].inverse();
+      const lattice::LatticeMotion back = complex_.toBlock[t].inverse();
       const lattice::LatticePoint point = complex_.toBlock[t](pointIn(t, plane.beyond(back)));
       if (!tracer.startIn(t, plane.beyond(back))) continue;
       for (std::size_t k = 0; k < 3; ++k) {

@@ -48,8 +48,9 @@ struct PatchSide {
 
 struct MotorcycleComplex {
   WallMesh mesh;
-  std::vector<Index> blockOf = {};        ///< per tet of the mesh
-  std::vector<ChartChange> toBlock = {};  ///< per tet: from its chart to that of its block
+  std::vector<Index> blockOf = {};  ///< per tet of the mesh
+  std::vector<lattice::LatticeMotion> toBlock =
+      {};  ///< per tet: from its chart to that of its block
   std::size_t blockCount = 0;
   std::vector<Arc> arcs = {};
   std::vector<Index> patchOf = {};  ///< per half-face on a wall: the side of a patch, else kNone
@@ -62,7 +63,7 @@ struct MotorcycleComplex {
     return mate == kNone ? kNone : patchOf[mate];
   }
   /// From the chart of a tet's block into that beyond one of its faces.
-  [[nodiscard]] ChartChange across(adjacency::HalfFace h) const {
+  [[nodiscard]] lattice::LatticeMotion across(adjacency::HalfFace h) const {
     return toBlock[adjacency::tetOf(mesh.mate[h])] * mesh.change[h] *
            toBlock[adjacency::tetOf(h)].inverse();
   }

@@ -103,7 +103,7 @@ class WallMesh {
   std::vector<Tet> tets;
   std::vector<lattice::LatticeTet> corners;
   std::vector<adjacency::HalfFace> mate;
-  FaceChanges change;
+  FaceMotions change;
   std::vector<bool> isWall;           ///< per half-face; the boundary is a wall, too
   std::vector<bool> isFeature;        ///< per half-face
   std::set<VertexPair> featureEdges;  ///< that walls alone keep where they are

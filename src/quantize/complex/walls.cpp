@@ -22,7 +22,7 @@ int otherAxis(std::size_t a, std::size_t b) { return static_cast<int>(3 - a - b)
 
 }  // namespace
 
-AxisPlane AxisPlane::beyond(const ChartChange& change) const noexcept {
+AxisPlane AxisPlane::beyond(const lattice::LatticeMotion& change) const noexcept {
   const lattice::Direction to = change.rotation(lattice::direction(static_cast<int>(axis), 1));
   const auto there = static_cast<std::size_t>(lattice::axisOf(to));
   return {there, lattice::signOf(to) * value + change.translation[there]};
@@ -66,7 +66,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn tu
     }
     if (turn.isAtBoundary()) return meeting;
     meeting.wallBefore = meeting.wallBefore || mesh.isWall[turn.out()];
-    const ChartChange& change = mesh.change[turn.out()];
+    const lattice::LatticeMotion& change = mesh.change[turn.out()];
     const lattice::Direction to =
         change.rotation(lattice::direction(static_cast<int>(plane.axis), 1));
     plane = plane.beyond(change);

@@ -20,7 +20,7 @@ struct AxisPlane {
     return (u[axis] > value ? 1 : 0) - (u[axis] < value ? 1 : 0);
   }
   /// The same in the chart beyond.
-  [[nodiscard]] AxisPlane beyond(const ChartChange& change) const noexcept;
+  [[nodiscard]] AxisPlane beyond(const lattice::LatticeMotion& change) const noexcept;
 };
 
 /// Where a turn around an edge meets a plane.

@@ -88,16 +88,13 @@ void BlockIntegers::findTransitions(const MotorcycleComplex& complex) {
     const Index other = complex.acrossPatch(p);
     if (other == kNone) continue;
     const PatchSide& here = complex.patches[p];
-    const ChartChange real = complex.across(here.first);
-    ChartChange& change = across_[p];
-    change.rotation = real.rotation;
-    bool isFirst = true;
+    const lattice::LatticeMotion real = complex.across(here.first);
     for (const ArcSide& side : here.border) {
       const lattice::LatticePoint from = (*this)(here.block, side.start);
       const lattice::LatticePoint to = (*this)(complex.patches[other].block, real(side.start));
-      if (isFirst) change.translation = to - change.rotation(from);
-      if (change(from) != to) failClosed("the sides of a patch differ.");
-      isFirst = false;
+      const auto change = lattice::LatticeMotion::taking(from, to, real.rotation);
+      if (&side == &here.border.front()) across_[p] = change;
+      if (change != across_[p]) failClosed("the sides of a patch differ.");
     }
   }
 }

@@ -25,8 +25,9 @@ class BlockIntegers {
     return positions_[block].at(position);
   }
   /// Across a half-face, between the integer charts of the blocks on its sides.
-  [[nodiscard]] ChartChange across(const MotorcycleComplex& complex, adjacency::HalfFace h) const {
-    return complex.mesh.isWall[h] ? across_[complex.patchOf[h]] : ChartChange{};
+  [[nodiscard]] lattice::LatticeMotion across(const MotorcycleComplex& complex,
+                                              adjacency::HalfFace h) const {
+    return complex.mesh.isWall[h] ? across_[complex.patchOf[h]] : lattice::LatticeMotion{};
   }
   [[nodiscard]] double cellCount() const noexcept { return cells_; }
 
@@ -35,7 +36,7 @@ class BlockIntegers {
   void findTransitions(const MotorcycleComplex& complex);
 
   std::vector<std::map<lattice::LatticePoint, lattice::LatticePoint>> positions_;  ///< per block
-  std::vector<ChartChange> across_;  ///< per side of a patch
+  std::vector<lattice::LatticeMotion> across_;  ///< per side of a patch
   double cells_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <base/disjoint_sets.hpp>
 #include <base/vector3.hpp>
 #include <igm/transition_fit.hpp>
+#include <lattice/charts_along_trees.hpp>
 
 namespace hexhex::quantization {
 
@@ -25,27 +26,19 @@ lattice::CornerMask endsOf(const adjacency::EdgeCorner& at) {
 }
 
 /// How charts are moved on their way from tet to tet.
-struct Motion {
-  lattice::Rotation rotation;
-  Vec3 translation{};
-
-  [[nodiscard]] Vec3 operator()(const Vec3& u) const { return plus(rotation(u), translation); }
-};
+using Motion = lattice::GridMotion<double>;
 
 /// The same triangle's middle in both its tets.
-std::array<Vec3, 2> middles(const adjacency::TetTopology& topology, adjacency::HalfFace halfFace,
-                            std::span<const TetParameters> parameters) {
-  const adjacency::HalfFace mate = topology.mate[halfFace];
-  const adjacency::SharedFace face(topology, halfFace, mate);
-  std::array<Vec3, 2> sums{};
+std::array<Vec3, 2> middlesOf(const igm::SharedTriangle& triangle) {
+  std::array<Vec3, 2> middles{};
   for (std::size_t k = 0; k < 3; ++k) {
-    sums[0] = plus(sums[0], parameters[adjacency::tetOf(halfFace)][face.here(k)]);
-    sums[1] = plus(sums[1], parameters[adjacency::tetOf(mate)][face.there(k)]);
+    middles[0] = plus(middles[0], triangle.here[k]);
+    middles[1] = plus(middles[1], triangle.there[k]);
   }
-  for (Vec3& sum : sums) {
-    for (double& x : sum) x /= 3;
+  for (Vec3& middle : middles) {
+    for (double& x : middle) x /= 3;
   }
-  return sums;
+  return middles;
 }
 
 /// The one after which two edges of a tet come last in the alphabet: the same in whatever chart the
@@ -67,38 +60,40 @@ lattice::Rotation canonicalRotation(const TetParameters& u) {
   return best;
 }
 
+/// Per half-face, the rotation that takes its triangle nearest to the neighbour's.
+std::vector<lattice::Rotation> fitRotations(const adjacency::TetTopology& topology,
+                                            std::span<const TetParameters> parameters) {
+  std::vector<lattice::Rotation> rotations(topology.mate.size());
+  for (adjacency::HalfFace h = 0; h < rotations.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    rotations[h] = igm::bestRotation(igm::SharedTriangle(topology, parameters, h));
+    rotations[mate] = rotations[h].inverse();
+  }
+  return rotations;
+}
+
 /// Walks a tree of each component and puts all tets into the chart of its first one.
 /// @return the motion of each tet; marks triangles of the tree in `isTree`
 std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
                                   std::span<const TetParameters> parameters,
                                   std::span<const lattice::Rotation> rotations,
                                   std::vector<bool>& isTree) {
-  std::vector<Motion> motions(topology.tetCount());
-  std::vector<bool> isMoved(topology.tetCount());
-  std::vector<Index> queue;
-  queue.reserve(topology.tetCount());
-  for (Index root = 0; root < topology.tetCount(); ++root) {
-    if (isMoved[root]) continue;
-    isMoved[root] = true;
-    motions[root].rotation = canonicalRotation(parameters[root]);
-    queue.push_back(root);
-    for (std::size_t next = queue.size() - 1; next < queue.size(); ++next) {
-      const Motion& here = motions[queue[next]];
-      for (int face = 0; face < 4; ++face) {
-        const adjacency::HalfFace out = adjacency::halfFaceOf(queue[next], face);
-        const adjacency::HalfFace mate = topology.mate[out];
-        if (mate == kNone || isMoved[adjacency::tetOf(mate)]) continue;
-        Motion& there = motions[adjacency::tetOf(mate)];
-        there.rotation = here.rotation * rotations[out].inverse();
-        const auto middle = middles(topology, out, parameters);
-        there.translation = minus(here(middle[0]), there.rotation(middle[1]));
+  const auto begin = [&](Index root) { return Motion{canonicalRotation(parameters[root])}; };
+  const auto forEachNeighbour = [&](Index tet, const auto& visit) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace out = adjacency::halfFaceOf(tet, face);
+      const adjacency::HalfFace mate = topology.mate[out];
+      if (mate == kNone) continue;
+      visit(adjacency::tetOf(mate), [&](const Motion& here) {
         isTree[out] = isTree[mate] = true;
-        isMoved[adjacency::tetOf(mate)] = true;
-        queue.push_back(adjacency::tetOf(mate));
-      }
+        const auto middles = middlesOf({topology, parameters, out});
+        return Motion::taking(middles[1], here(middles[0]),
+                              here.rotation * rotations[out].inverse());
+      });
     }
-  }
-  return motions;
+  };
+  return lattice::chartsAlongTrees<Motion>(topology.tetCount(), begin, forEachNeighbour).motions;
 }
 
 /// Takes triangles out of the cut that are its last ones at an edge around which nothing rotates.
@@ -149,8 +144,8 @@ void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
     if (mate == kNone || mate < h || graph.isCut[h]) continue;
     const Index t = adjacency::tetOf(h);
     const Index other = adjacency::tetOf(mate);
-    const auto middle = middles(topology, h, graph.parameters);
-    const Vec3 apart = minus(middle[1], middle[0]);
+    const auto middles = middlesOf({topology, graph.parameters, h});
+    const Vec3 apart = minus(middles[1], middles[0]);
     for (std::size_t k = 0; k < 3; ++k) {
       differences(t, static_cast<Eigen::Index>(k)) += apart[k];
       differences(other, static_cast<Eigen::Index>(k)) -= apart[k];
@@ -234,28 +229,10 @@ Index EdgeFans::edgeOf(Index tet, lattice::CornerMask ends) const noexcept {
   return edges_[tet][numberOf(ends)];
 }
 
-std::vector<lattice::Rotation> fitRotations(const adjacency::TetTopology& topology,
-                                            std::span<const TetParameters> parameters) {
-  std::vector<lattice::Rotation> rotations(topology.mate.size());
-  for (adjacency::HalfFace h = 0; h < rotations.size(); ++h) {
-    const adjacency::HalfFace mate = topology.mate[h];
-    if (mate == kNone || mate < h) continue;
-    const adjacency::SharedFace face(topology, h, mate);
-    const TetParameters& here = parameters[adjacency::tetOf(h)];
-    const TetParameters& there = parameters[adjacency::tetOf(mate)];
-    rotations[h] = igm::bestRotation({minus(here[face.here(1)], here[face.here(0)]),
-                                      minus(here[face.here(2)], here[face.here(0)])},
-                                     {minus(there[face.there(1)], there[face.there(0)]),
-                                      minus(there[face.there(2)], there[face.there(0)])});
-    rotations[mate] = rotations[h].inverse();
-  }
-  return rotations;
-}
-
 CutGraph cutOpen(const adjacency::TetTopology& topology, const EdgeFans& edges,
-                 std::span<const TetParameters> parameters,
-                 std::span<const lattice::Rotation> rotations) {
+                 std::span<const TetParameters> parameters) {
   CutGraph graph;
+  const std::vector<lattice::Rotation> rotations = fitRotations(topology, parameters);
   std::vector<bool> isTree(topology.mate.size());
   // Charts may lie anywhere: far away, sums would lose what differences still have.
   graph.parameters.assign(parameters.begin(), parameters.end());

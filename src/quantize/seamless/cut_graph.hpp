@@ -78,10 +78,6 @@ template <class Corners>
   return quarters != regular && quarters % regular == 0;
 }
 
-/// Per half-face, the rotation of the grid that takes its triangle nearest to the neighbour's.
-[[nodiscard]] std::vector<lattice::Rotation> fitRotations(
-    const adjacency::TetTopology& topology, std::span<const TetParameters> parameters);
-
 /// A seamless map in charts that agree across all triangles but those of a cut.
 struct CutGraph {
   std::vector<TetParameters> parameters;     ///< per tet, in the common charts
@@ -93,10 +89,8 @@ struct CutGraph {
 
 /// Moves charts along a tree of tets, cuts all other triangles, then mends the cut where it ends:
 /// across the last triangle of the cut at an inner edge charts agree, unless the edge is singular.
-/// @param rotations  per half-face, between the charts given
 [[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology, const EdgeFans& edges,
-                               std::span<const TetParameters> parameters,
-                               std::span<const lattice::Rotation> rotations);
+                               std::span<const TetParameters> parameters);
 
 /// Calls visit(half-face) for the triangles of the tet at an edge.
 template <class Visit>

@@ -3,13 +3,13 @@
 #include <utility>
 #include <vector>
 
-#include <quantize/seamless/cut_graph.hpp>
 #include <quantize/seamless/integer_factor.hpp>
 
 #include <hexhex/extract.hpp>
 
 #include <base/vector3.hpp>
 #include <igm/prepare.hpp>
+#include <igm/transition_fit.hpp>
 
 namespace hexhex::quantization {
 namespace {
@@ -38,17 +38,15 @@ double planeOf(const TetParameters& corners, adjacency::HalfFace face) {
 std::vector<double> conditions(const adjacency::TetTopology& topology,
                                std::span<const TetParameters> parameters) {
   std::vector<double> sizes;
-  const std::vector<lattice::Rotation> rotations = fitRotations(topology, parameters);
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
-    const TetParameters& here = parameters[adjacency::tetOf(h)];
     if (topology.isBoundary(h)) {
-      sizes.push_back(std::abs(planeOf(here, h)));
+      sizes.push_back(std::abs(planeOf(parameters[adjacency::tetOf(h)], h)));
       continue;
     }
-    const adjacency::HalfFace mate = topology.mate[h];
-    const adjacency::SharedFace face(topology, h, mate);
+    if (topology.mate[h] < h) continue;
+    const igm::SharedTriangle triangle(topology, parameters, h);
     const Vec3 translation =
-        minus(parameters[adjacency::tetOf(mate)][face.there(0)], rotations[h](here[face.here(0)]));
+        minus(triangle.there[0], igm::bestRotation(triangle)(triangle.here[0]));
     for (const double x : translation) sizes.push_back(std::abs(x));
   }
   std::sort(sizes.begin(), sizes.end());

@@ -5,6 +5,7 @@
 #include <quantize/seamless/seamless_conditions.hpp>
 
 #include <base/disjoint_sets.hpp>
+#include <igm/transition_fit.hpp>
 
 namespace hexhex::quantization {
 
@@ -242,11 +243,12 @@ std::vector<double> SharedUnknowns::measured() const {
   };
   for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (!graph_.isCut[h] || first_[pieces_[h]] == kNone) continue;
-    const adjacency::SharedFace face(topology_, h, topology_.mate[h]);
+    const igm::SharedTriangle triangle(topology_, graph_.parameters, h);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& there = graph_.parameters[adjacency::tetOf(topology_.mate[h])][face.there(k)];
-      const Vec3 here = graph_.rotations[h](graph_.parameters[adjacency::tetOf(h)][face.here(k)]);
-      for (std::size_t i = 0; i < 3; ++i) add(first_[pieces_[h]] + i, there[i] - here[i]);
+      const Vec3 here = graph_.rotations[h](triangle.here[k]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        add(first_[pieces_[h]] + i, triangle.there[k][i] - here[i]);
+      }
     }
   }
   for (adjacency::CornerIndex corner = 0; corner < graph_.sectors.size(); ++corner) {

@@ -10,6 +10,7 @@
 
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>
+#include <igm/transition_fit.hpp>
 
 namespace hexhex::quantization {
 
@@ -281,13 +282,11 @@ void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double to
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
     const adjacency::HalfFace mate = topology.mate[h];
     if (mate == kNone || mate < h) continue;
-    const adjacency::SharedFace face(topology, h, mate);
+    const igm::SharedTriangle triangle(topology, graph.parameters, h);
     const lattice::Rotation rotation = graph.isCut[h] ? graph.rotations[h] : lattice::Rotation{};
-    const TetParameters& here = graph.parameters[adjacency::tetOf(h)];
-    const TetParameters& there = graph.parameters[adjacency::tetOf(mate)];
     std::array<Vec3, 3> translations;
     for (std::size_t k = 0; k < 3; ++k) {
-      translations[k] = minus(there[face.there(k)], rotation(here[face.here(k)]));
+      translations[k] = minus(triangle.there[k], rotation(triangle.here[k]));
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto [least, most] =
@@ -316,15 +315,12 @@ bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& g
     turn.step();
   } while (turn.tet() != at.tet);
   if (around.isIdentity()) return true;
+  if (around.axis() < 0) return false;
+  const auto axis = static_cast<std::size_t>(around.axis());
+  // Each end moves by the tolerance at most.
   const TetParameters& u = graph.parameters[at.tet];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const lattice::Direction along = lattice::direction(static_cast<int>(axis), 1);
-    if (around(along) != along) continue;
-    // Each end moves by the tolerance at most.
-    return areLevel(u, at.corner0, at.corner1, (axis + 1) % 3, 2 * tolerance) &&
-           areLevel(u, at.corner0, at.corner1, (axis + 2) % 3, 2 * tolerance);
-  }
-  return false;
+  return areLevel(u, at.corner0, at.corner1, (axis + 1) % 3, 2 * tolerance) &&
+         areLevel(u, at.corner0, at.corner1, (axis + 2) % 3, 2 * tolerance);
 }
 
 /// Around any other edge, no hexahedra fit; and all that charts demand of a vertex are coordinates.
@@ -360,19 +356,16 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
 
 /// Between charts as they are after the cut.
 void findChanges(SeamlessMap& map, const CutGraph& graph) {
-  map.changes = FaceChanges(map.topology.mate.size());
+  map.changes = FaceMotions(map.topology.mate.size());
   for (adjacency::HalfFace h = 0; h < map.topology.mate.size(); ++h) {
-    const adjacency::HalfFace mate = map.topology.mate[h];
-    if (mate == kNone) continue;
-    const adjacency::SharedFace face(map.topology, h, mate);
-    const lattice::LatticeTet& here = map.corners[adjacency::tetOf(h)];
-    const lattice::LatticeTet& there = map.corners[adjacency::tetOf(mate)];
-    ChartChange change;
-    if (graph.isCut[h]) change.rotation = graph.rotations[h];
-    change.translation = there[face.there(0)] - change.rotation(here[face.here(0)]);
+    if (map.topology.mate[h] == kNone) continue;
+    const adjacency::SharedCorners<lattice::LatticePoint> face(
+        map.topology, h, [&](Index tet, std::size_t corner) { return map.corners[tet][corner]; });
+    const auto change = lattice::LatticeMotion::taking(
+        face.here[0], face.there[0], graph.isCut[h] ? graph.rotations[h] : lattice::Rotation{});
     map.changes.set(h, change);
     for (std::size_t k = 1; k < 3; ++k) {
-      if (change(here[face.here(k)]) == there[face.there(k)]) continue;
+      if (change(face.here[k]) == face.there[k]) continue;
       throw Error(ErrorCode::Internal, "A map that was made seamless is not. This is a bug.",
                   {PlaceKind::Face, adjacency::tetOf(h), h % 4});
     }
@@ -502,8 +495,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   defects.throwIfAny();
   const adjacency::TetTopology& topology = result.topology;
   const EdgeFans edges(topology);
-  const std::span<const TetParameters> parameters = result.input.view.parameters;
-  const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
+  const CutGraph graph = cutOpen(topology, edges, result.input.view.parameters);
   result.size = largestCoordinate(graph);
   requireSize(result.size);
   result.unit = std::exp2(std::floor(std::log2(kLargest / result.size)));

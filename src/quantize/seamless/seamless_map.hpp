@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
-#include <quantize/seamless/chart_change.hpp>
+#include <quantize/seamless/face_motions.hpp>
 
 #include <hexhex/context.hpp>
 #include <hexhex/types.hpp>
@@ -22,7 +22,7 @@ struct SeamlessMap {
   igm::OrientedMap input;                    ///< without parameters
   adjacency::TetTopology topology;           ///< with stars
   std::vector<lattice::LatticeTet> corners;  ///< per tet, in charts that mostly agree
-  FaceChanges changes;                       ///< from here to the neighbour's chart
+  FaceMotions changes;                       ///< from here to the neighbour's chart
   /// Features that are aligned with axes, and to stay so, and what else charts do not tell of:
   /// edges, inner faces.
   std::vector<adjacency::EdgeCorner> featureEdges;

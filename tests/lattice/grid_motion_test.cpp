@@ -1,11 +1,11 @@
-// Transition functions: a group, acting on grid points, lattice points and directions alike.
+// Motions of the grid: a group, acting on points of all kinds and on directions alike.
 #include <rapidcheck.h>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <lattice/gauge.hpp>
 #include <lattice/tet_geometry.hpp>
-#include <lattice/transition.hpp>
 
 namespace hexhex::lattice {
 namespace {
@@ -83,6 +83,44 @@ RC_GTEST_PROP(Transition, CommutesWithSteps, ()) {
   const GridPoint z = anyGridPoint();
   const Direction d = anyDirection();
   RC_ASSERT(a(step(z, d)) == step(a(z), a(d)));
+}
+
+RC_GTEST_PROP(Transition, IsTakingAPointToItsImage, ()) {
+  const Transition a = anyTransition();
+  const GridPoint z = anyGridPoint();
+  RC_ASSERT(Transition::taking(z, a(z), a.rotation) == a);
+}
+
+Gauge anyGauge() {
+  Gauge gauge{Rotation(*rc::gen::inRange(0, Rotation::kCount)), {}};
+  for (std::uint32_t& t : gauge.translation) t = *rc::gen::arbitrary<std::uint32_t>();
+  return gauge;
+}
+
+RC_GTEST_PROP(Gauge, QuotientTakesTheOneChartToTheOther, ()) {
+  const Gauge a = anyGauge();
+  const Gauge b = anyGauge();
+  const ChartPoint u = anyGauge().translation;
+  RC_ASSERT((a * b.inverse())(b(u)) == a(u));
+}
+
+RC_GTEST_PROP(Gauge, FollowsTransitions, ()) {
+  const Gauge a = anyGauge();
+  const Transition b = anyTransition();
+  const GridPoint z = anyGridPoint();
+  RC_ASSERT((a * b)(z) == a(b(z)));
+}
+
+TEST(Gauge, WrapsAround) {
+  const Gauge gauge = {Rotation::fromAxes(1, 2), {0, 5, 7}};  // +x to -x, +z to -z
+  EXPECT_EQ(gauge(GridPoint{1, 2, -3}), (ChartPoint{0xFFFFFFFF, 7, 10}));
+  EXPECT_EQ(gauge.cell(GridPoint{1, 2, -3}), (ChartPoint{0xFFFFFFFE, 7, 9}));
+}
+
+TEST(GridMotion, AppliesToRealNumbers) {
+  const GridMotion<double> motion = {Rotation::fromAxes(2, 1), {0.5, 0.25, 4}};
+  EXPECT_EQ(motion(std::array{1.0, 2.0, 3.0}), (std::array{-1.5, 1.25, 7.0}));
+  EXPECT_TRUE((motion * motion.inverse()).isIdentity());
 }
 
 }  // namespace
