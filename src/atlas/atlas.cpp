@@ -72,14 +72,15 @@ class Atlas {
       Stage stage(context_, "grid");
       vertices_.fill(arrays, stage);
     }
+    std::uint64_t overlappingTets = 0;
     {
       Stage stage(context_, "overlaps");
-      if (switches_.resolveOverlaps) statistics.overlappingTets = vertices_.resolveOverlaps(stage);
+      if (switches_.resolveOverlaps) overlappingTets = vertices_.resolveOverlaps(stage);
     }
+    statistics.overlappingTets = overlappingTets;
     Stage stage(context_, "cuts");
     if (switches_.markCuts) {
-      const bool identitiesGlue = statistics.overlappingTets == 0;
-      Cuts cuts = markCutCells(map_, charts_, identitiesGlue, vertices_.grid(), stage);
+      Cuts cuts = markCutCells(map_, charts_, overlappingTets == 0, vertices_.grid(), stage);
       statistics.cutFaces = cuts.faces;
       transitions_ = std::move(cuts.transitions);
     }

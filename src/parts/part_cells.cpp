@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include <parts/part_cells.hpp>
 
@@ -14,26 +15,34 @@ constexpr std::size_t kFewTets = 8;
 }  // namespace
 
 template <class Id>
-PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts& counts,
-                       const Partition& partition, atlas::Charts& charts,
-                       std::span<const Index> chartOf, const atlas::GridRegion& region,
-                       Stage& stage)
+PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts counts,
+                       const Partition& partition, atlas::Charts charts)
     : map_(map),
-      counts_(counts),
+      counts_(std::move(counts)),
       partition_(partition),
-      charts_(charts),
-      region_(region),
-      stage_(stage) {
-  for (const Index tet : region.tets) charts_.chart[tet] = chartOf[tet];
-  vertices_.emplace(map, charts_, counts.vertices, region, stage);
-  vertices_->fill({}, stage);
-  vertices_->resolveOverlaps(stage);
-  transitions_ = atlas::markCutCells(map, charts_, region, vertices_->grid(), stage).transitions;
+      charts_(std::move(charts)),
+      chartCount_(charts_.count),
+      chartOf_(std::move(charts_.chart)) {
+  charts_.chart.assign(chartOf_.size(), atlas::Charts::kNoChart);
 }
 
 template <class Id>
-PartGrid<Id>::~PartGrid() {
+void PartGrid<Id>::enter(atlas::GridRegion region, Stage& stage) {
+  clear();
+  region_ = std::move(region);
+  for (const Index tet : region_.tets) charts_.chart[tet] = chartOf_[tet];
+  vertices_.emplace(map_, charts_, counts_.vertices, region_, stage);
+  vertices_->fill({}, stage);
+  vertices_->resolveOverlaps(stage);
+  transitions_ = atlas::markCutCells(map_, charts_, region_, vertices_->grid(), stage).transitions;
+}
+
+template <class Id>
+void PartGrid<Id>::clear() noexcept {
+  vertices_.reset();
   for (const Index tet : region_.tets) charts_.chart[tet] = atlas::Charts::kNoChart;
+  charts_.count = chartCount_;
+  region_ = {};
 }
 
 template <class Id>
@@ -46,7 +55,7 @@ std::vector<lattice::SweptLine> PartGrid<Id>::centersOf(Index tet) const {
 }
 
 template <class Id>
-GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
+GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part, Stage& stage) const {
   const std::span<const Index> tets = partition_.tetsOf(part);
   std::vector<std::uint64_t> begin(tets.size() + 1, 0);
   for (std::size_t i = 0; i < tets.size(); ++i) {
@@ -59,7 +68,7 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
   cells.numbers.resize(count);
   cells.corners.resize(count);
   parallelForWith(
-      stage_, tets.size(), kFewTets,
+      stage, tets.size(), kFewTets,
       [&] { return atlas::CellEmitter<Id>(map_, *vertices_, transitions_, true); },
       [&](std::size_t i, atlas::CellEmitter<Id>& emitter) {
         std::uint64_t at = begin[i];
@@ -114,12 +123,12 @@ void PartGrid<Id>::addNearby(std::size_t i, Surroundings& around,
 }
 
 template <class Id>
-std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
-                                                      const VertexSet* touched) const {
+std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part, const VertexSet* touched,
+                                                      Stage& stage) const {
   using Nearby = NearbyCell<Id>;
   std::vector<std::vector<Nearby>> blocks(blockCount(region_.tets.size(), kFewTets));
   parallelBlocksWith(
-      stage_, region_.tets.size(), kFewTets,
+      stage, region_.tets.size(), kFewTets,
       [&] {
         Surroundings around{
             part, atlas::CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};

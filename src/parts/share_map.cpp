@@ -1,4 +1,5 @@
 // A map of one process for all of a team.
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,15 +10,24 @@ namespace hexhex::parts {
 
 namespace {
 
+/// Process 0 gives copies of pieces: what it shares is what all may write to.
 template <class T>
 void shareArray(ProcessTeam& team, std::span<const T> mine, std::vector<T>& theirs) {
   std::uint64_t size = mine.size();
   team.share(std::as_writable_bytes(std::span(&size, 1)));
   if (team.rank() > 0) theirs.resize(size);
-  // Process 0 gives, and its bytes stay as they are.
-  const std::span<T> items =
-      team.rank() > 0 ? std::span(theirs) : std::span(const_cast<T*>(mine.data()), mine.size());
-  team.share(std::as_writable_bytes(items));
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  std::vector<T> piece;
+  for (std::size_t first = 0; first < size; first += kPiece) {
+    const std::size_t count = std::min<std::size_t>(kPiece, size - first);
+    if (team.rank() == 0) {
+      const std::span<const T> given = mine.subspan(first, count);
+      piece.assign(given.begin(), given.end());
+    }
+    const std::span<T> items =
+        team.rank() == 0 ? std::span(piece) : std::span(theirs).subspan(first, count);
+    team.share(std::as_writable_bytes(items));
+  }
 }
 
 }  // namespace
