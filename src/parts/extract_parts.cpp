@@ -10,7 +10,6 @@
 
 #include <parts/number_hash.hpp>
 #include <parts/part_maker.hpp>
-#include <verify/part_proof.hpp>
 #include <verify/proof.hpp>
 
 #include <hexhex/parts.hpp>

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <parts/partition.hpp>
@@ -15,6 +16,7 @@
 #include <atlas/charts.hpp>
 #include <atlas/cut_marks.hpp>
 #include <atlas/grid_region.hpp>
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex::parts {
 
@@ -106,5 +108,14 @@ class PartGrid {
 
 extern template class PartGrid<std::uint32_t>;
 extern template class PartGrid<std::uint64_t>;
+
+// Where vertices lie in space that are known by global numbers alone.
+
+/// Describes vertices in some places of mesh.points, mesh.generatorTet and mesh.generatorCorners.
+/// @param numbers  of the vertices, ascending
+/// @param first    the place of the first one
+void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
+                      std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
+                      Stage& stage);
 
 }  // namespace hexhex::parts

@@ -5,7 +5,6 @@
 #include <parts/part_borders.hpp>
 #include <parts/part_cells.hpp>
 #include <parts/part_maker.hpp>
-#include <parts/part_positions.hpp>
 #include <parts/part_region.hpp>
 #include <parts/vertex_set.hpp>
 
