@@ -1,5 +1,6 @@
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <limits>
 #include <string>
 #include <utility>
@@ -130,6 +131,7 @@ void forEachPiece(const Array<std::uint64_t>& begin, const Visit& visit) {
   for (std::size_t first = 0, end = 0; first < tets; first = end) {
     end = first + 1;
     while (end < tets && begin[end + 1] - begin[first] <= kPiece) ++end;
+    assert(begin[first] <= begin[end]);
     const auto count = static_cast<std::size_t>(begin[end] - begin[first]);
     if (count > 0) visit(Piece{first, end, begin[first], count});
   }

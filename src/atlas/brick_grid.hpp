@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -260,6 +261,7 @@ class BrickGrid {
     for (Slot& slot : slots_) {
       if (slot.key != kNoBrick) slot.brick = &bricks_[next++];
     }
+    assert(next == count && 2 * used_ <= slots_.size());
     parallelFor(stage, count, 16, [&](std::size_t i) { bricks_[i].clear(); });
   }
 
@@ -273,6 +275,7 @@ class BrickGrid {
 
   /// The brick of a key, added if there is none. Not while others use the grid.
   Brick<Id>& add(BrickKey key) {
+    assert(key != kNoBrick);
     if (Brick<Id>* const brick = find(key)) return *brick;
     if (2 * (used_ + 1) > slots_.size()) grow();
     Brick<Id>& brick = added_.emplace_back();
@@ -315,6 +318,7 @@ class BrickGrid {
   }
   /// Thread-safe.
   void insertKey(BrickKey key) noexcept {
+    assert(key != kNoBrick);
     for (std::size_t i = home(key);; i = (i + 1) & mask_) {
       const std::atomic_ref<BrickKey> slot(slots_[i].key);
       BrickKey found = slot.load(std::memory_order_relaxed);

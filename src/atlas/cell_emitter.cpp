@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include <atlas/cell_emitter.hpp>
 
@@ -141,6 +142,7 @@ std::uint64_t CellEmitter<Id>::emit(Index tet, std::span<const lattice::SweptLin
     resolved += emitSome(frame, {line, first, cells.first(count)});
     cells = cells.subspan(count);
   }
+  assert(cells.empty());  // all that the tet owns
   return resolved;
 }
 

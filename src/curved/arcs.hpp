@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -11,10 +12,6 @@
 #include <curved/batches.hpp>
 #include <curved/crossings.hpp>
 #include <curved/element_numbers.hpp>
-#include <curved/face_walk.hpp>
-#include <curved/simplex_point.hpp>
-#include <curved/simplex_star.hpp>
-#include <igm/prepare.hpp>
 #include <sweep/vertex_tables.hpp>
 
 namespace hexhex::curved {
@@ -57,6 +54,8 @@ class ArcPieces {
   /// @param to  has room
   /// @param firstArc, firstPoint  the numbers that the first ones have there
   void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
+    // Each arc has a segment more than inner points.
+    assert(segments_.size() == points_.size() + arcs_.size());
     for (std::size_t i = 0; i < arcs_.size(); ++i) {
       to.ends[firstArc + i] = arcs_[i].ends;
       to.pointBegin[firstArc + i] = firstPoint + arcs_[i].firstPoint;
@@ -95,75 +94,5 @@ inline void lengthenForPieces(Arcs& arcs, std::uint64_t points, std::uint64_t do
   lengthen(arcs.segmentTet, points + done, share);
   lengthen(arcs.segmentCorners, points + done, share);
 }
-
-// Follows hex edges from simplex to simplex.
-
-/// Traces hex edges from their midpoints to both ends. One per thread. Frames have the edge along
-/// their first axis.
-///
-/// A hex edge is straight in every tet, so inside a closed tet it stays in one simplex, its
-/// carrier, from where it enters to where it leaves.
-class ArcTracer {
- public:
-  /// @param pieces  receives the arcs
-  ArcTracer(const igm::PreparedMap& map, const sweep::VertexTables& vertices, ArcPieces& pieces)
-      : map_(map),
-        exact_(map.exact),
-        topology_(map.topology),
-        vertices_(vertices),
-        pieces_(pieces),
-        walk_(map),
-        star_(map.topology, map.exact) {}
-
-  /// Adds the arc of an edge.
-  /// @param middle  the simplex that holds the midpoint, with the edge's frame
-  void trace(const SimplexInTet& middle);
-
- private:
-  using Found = sweep::VertexTables::Found;
-  using Ends = std::array<Index, 2>;
-
-  [[nodiscard]] Ends traceFromInside(const SimplexInTet& middle, const Found& from,
-                                     const Found& to);
-  [[nodiscard]] Ends traceFromBoundary(const SimplexInTet& middle, const Found& from);
-  template <class Follow>
-  [[nodiscard]] Index traceBack(const SimplexInTet& carrier, const Follow& follow);
-
-  [[nodiscard]] Index follow(const SimplexInTet& at);
-  [[nodiscard]] Index followBeyond(SimplexInTet at, bool walking);
-  [[nodiscard]] Index walkOn(SimplexInTet& at);
-  [[nodiscard]] bool startWalk(const SimplexInTet& at);
-
-  /// The simplex at whose inner point a part ends, and the carrier of the next part.
-  struct HandOver {
-    OwnedSimplex exit;
-    SimplexInTet carrier;
-  };
-  [[nodiscard]] HandOver leave(const SimplexInTet& at, lattice::CornerMask exit);
-  [[nodiscard]] HandOver leaveAlongBoundary(const SimplexInTet& at, lattice::CornerMask edge) const;
-  [[nodiscard]] SimplexInTet carrierBehind(const SimplexInTet& point);
-  [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
-                               const lattice::LatticeTet& seen, const SimplexPoint& point) const;
-
-  /// The hex vertex at the end of the edge, if the closed tet has it.
-  [[nodiscard]] Index vertexIn(const SimplexInTet& at) const {
-    return vertices_.find(at.tet, lattice::step(at.frame.origin, at.frame.axes[0])).vertex;
-  }
-  [[nodiscard]] lattice::LatticeTet see(const SimplexInTet& at) const {
-    return at.frame.see(exact_.corners[at.tet], exact_.unit);
-  }
-  void addSegment(const SimplexInTet& carrier) {
-    pieces_.addSegment(ownedBy(topology_, carrier.tet, carrier.simplex));
-  }
-  [[noreturn]] static void fail(Index tet, const char* what);
-
-  const igm::PreparedMap& map_;
-  const igm::ExactMap& exact_;
-  const adjacency::TetTopology& topology_;
-  const sweep::VertexTables& vertices_;
-  ArcPieces& pieces_;
-  FaceWalk walk_;
-  SimplexStar star_;
-};
 
 }  // namespace hexhex::curved

@@ -2,6 +2,7 @@
 // scale of the last call.
 #pragma once
 
+#include <cassert>
 #include <memory>
 #include <string>
 #include <utility>
@@ -88,6 +89,7 @@ class Extractor::Prepared {
     if (scale == scale_) return;
     Stage stage(context, "scaling");
     keepUnscaled();
+    assert(scale >= 1 && unscaledCorners_.size() == map_.exact.corners.size());
     scale_ = 0;  // neither, until all is done
     map_.exact.transitions.table = unscaledTransitions_;
     constexpr std::size_t kGrain = 4096;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -70,6 +71,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
     std::size_t end;
     double squared;
   };
+  assert(!triangles_.empty());
   double best = kFar;
   std::size_t triangle = 0;
   std::vector<Range> open = {{0, 0, triangles_.size(), boxes_[0].squaredDistance(point)}};

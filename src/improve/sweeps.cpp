@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cassert>
+#include <limits>
+#include <utility>
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
@@ -24,6 +27,19 @@ Colours::Colours(const CellPoints& mesh) : colourOf_(mesh.pointCount) {
     colourOf_[v] = static_cast<std::uint16_t>(colour);
   }
   count_ = takenBy.size();
+  assert(count_ <= std::numeric_limits<std::uint16_t>::max());
+  assert(separates(mesh));
+}
+
+/// Whether the points of each cell differ in colour.
+bool Colours::separates(const CellPoints& mesh) const {
+  std::vector<std::size_t> seenIn(count_, mesh.cellCount());
+  for (std::size_t cell = 0; cell < mesh.cellCount(); ++cell) {
+    for (const Index point : mesh.of(cell)) {
+      if (std::exchange(seenIn[colourOf_[point]], cell) == cell) return false;
+    }
+  }
+  return true;
 }
 
 Colours::Groups Colours::groupsOf(std::span<const Index> vertices) const {
@@ -46,6 +62,7 @@ LooseVertices::LooseVertices(VertexPlaces& places, std::span<const Index> vertic
   for (const Index v : vertices) {
     const Held held{v, places.freedom[v], places.simplex[v], points[v]};
     if (!places.surface.isCrease(held.freedom, held.simplex)) continue;
+    assert(places.isLoose[v] == 0);
     held_.push_back(held);
     places.simplex[v] = places.surface.triangleAt(held.freedom, held.simplex, held.point);
     places.freedom[v] = Freedom::OnPatch;

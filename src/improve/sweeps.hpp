@@ -16,7 +16,6 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <improve/cell_points.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
@@ -38,6 +37,8 @@ class Colours {
   [[nodiscard]] Groups groupsOf(std::span<const Index> vertices) const;
 
  private:
+  [[nodiscard]] bool separates(const CellPoints& mesh) const;
+
   std::vector<std::uint16_t> colourOf_;  ///< per vertex
   std::size_t count_ = 0;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,7 +14,6 @@
 #include <hexhex/types.hpp>
 
 #include <base/vector3.hpp>
-#include <improve/cell_points.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_places.hpp>
@@ -53,6 +53,7 @@ class PointMover {
   template <class Accept>
   double descend(Index point, const EnergyTerms& terms, const EnergyKind& kind,
                  const Accept& isAccepted) {
+    assert(canMove(point));
     std::array<Vec3, 3> directions;
     const std::size_t count = directionsAt(point, directions);
     const EnergySlope slope = slopeOf(terms, kind);
@@ -141,7 +142,10 @@ class VertexMover {
   /// Vertices of one cell must not move at the same time.
   /// @param slack  so far may vertices leave patches and curves without tags
   VertexMover(const MovingMesh& all, double slack)
-      : all_(all), mover_(all.mesh.points, all.places, slack) {}
+      : all_(all), mover_(all.mesh.points, all.places, slack) {
+    assert(all.boxes.size() == all.cells.cellCount());
+    assert(all.qualities.size() == all.cells.cellCount());
+  }
 
   /// Brings all Bezier coefficients of the cells nearer to being positive.
   /// @return the share of the cells' size that it moved by

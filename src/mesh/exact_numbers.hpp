@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +63,10 @@ class BigInteger {
     const double fraction = std::frexp(value, &exponent);  // value = fraction 2^exponent
     auto mantissa = static_cast<std::int64_t>(std::ldexp(fraction, kBits));
     int rest = exponent - kBits + shift;
-    for (; rest < 0; ++rest) mantissa /= 2;  // exact: these bits are 0
+    for (; rest < 0; ++rest) {
+      assert(mantissa % 2 == 0);
+      mantissa /= 2;
+    }
     const auto bits = static_cast<std::uint64_t>(mantissa);
     digits_ = {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32U)};
     trim();
@@ -79,6 +83,7 @@ class BigInteger {
   }
 
   [[nodiscard]] BigInteger shifted(int bits) const {
+    assert(bits >= 0);
     if (digits_.empty()) return *this;
     BigInteger result;
     const auto whole = static_cast<std::size_t>(bits / 32);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -31,6 +32,8 @@ PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts counts,
 template <class Id>
 void PartGrid<Id>::enter(atlas::GridRegion region, Stage& stage) {
   clear();
+  assert(std::ranges::all_of(charts_.chart,
+                             [](Index chart) { return chart == atlas::Charts::kNoChart; }));
   region_ = std::move(region);
   for (const Index tet : region_.tets) charts_.chart[tet] = chartOf_[tet];
   vertices_.emplace(map_, charts_, counts_.vertices, region_, stage);
@@ -83,6 +86,7 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part, Stage& stage) const {
                        cells.numbers[at++] = counts_.cells[tet] + number + k;
                      }
                    });
+        assert(at == begin[i + 1]);
       });
   return cells;
 }
@@ -226,6 +230,8 @@ class Describer {
 void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
                       std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
                       Stage& stage) {
+  assert(std::is_sorted(numbers.begin(), numbers.end()));
+  assert(first + numbers.size() <= mesh.points.size());
   const std::vector<OwnersVertices> groups = groupByOwner(counts, numbers);
   constexpr std::size_t kFewGroups = 8;
   parallelForWith(

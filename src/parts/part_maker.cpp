@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <string>
 
@@ -168,6 +169,7 @@ class Maker final : public PartMaker {
     Stage& stage = assembly.stage;
     requireNarrow(own.numbers.size(), "cells");
     requireNarrow(vertices.size(), "vertices");
+    assert(std::is_sorted(own.numbers.begin(), own.numbers.end()));
     part.globalPoints = vertices.list();
     part.ownPoints = vertices.size();
     part.ownCells = own.numbers.size();
@@ -248,6 +250,7 @@ class Maker final : public PartMaker {
     for (const std::array<Id, 8>& cell : corners) {
       Hex& hex = part.mesh.cells.emplace_back();
       for (std::size_t k = 0; k < 8; ++k) hex[k] = localOf(cell[k]);
+      assert(std::find(hex.begin(), hex.end(), kNone) == hex.end());
     }
     part.pointOwners.resize(count, part.parts);
     for (const auto& layer : layers) {

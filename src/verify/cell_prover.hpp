@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -171,6 +172,7 @@ struct NumberedCells {
 
   /// To find those from a number on.
   [[nodiscard]] NumberedCells from(std::uint64_t number) const {
+    assert(cells.size() == numbers.size());
     const auto first = std::lower_bound(numbers.begin(), numbers.end(), number);
     return {numbers, cells, static_cast<std::size_t>(first - numbers.begin())};
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -181,6 +182,7 @@ void LatticePlaces::proveTet(Index tet, const sweep::VertexNumbers& numbers,
 }
 
 void LatticePlaces::prove(Stage& stage, Faults& wrong) {
+  assert(given_ == nullptr);  // or there were no lines
   if (indexed_) runOf_.resize(count());
   runs_ = sweep::TetLists<PlaceRun>(map_.topology.tetCount());
   parallelBlocksWith(
@@ -200,6 +202,7 @@ void LatticePlaces::prove(Stage& stage, Faults& wrong) {
 }
 
 void LatticePlaces::proveOnly(std::span<const Index> tets, Stage& stage, Faults& wrong) {
+  assert(given_ != nullptr && std::is_sorted(tets.begin(), tets.end()));
   runs_ = sweep::TetLists<PlaceRun>(map_.topology.tetCount());
   struct Working {
     sweep::BlockLists<PlaceRun> runs{true};
@@ -283,6 +286,7 @@ Index LatticePlaces::ownerOf(std::uint64_t number) const {
 }
 
 const PlaceRun& LatticePlaces::runWith(Index owner, std::uint64_t number) const {
+  assert(owns(owner, number));
   const std::span<const PlaceRun> runs = runsOf(owner);
   const std::uint16_t known = indexed_ ? runOf_[number] : kUnknownRun;
   if (known != kUnknownRun) return runs[known];

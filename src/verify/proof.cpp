@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <string>
 
 #include <verify/cell_prover.hpp>
@@ -144,6 +145,8 @@ void PartProof::compare(const MeshPart& part, Stage& stage) {
   Faults hints;
   Faults points;
   Faults cells;
+  assert(part.mesh.points.size() == part.globalPoints.size());
+  assert(part.mesh.cells.size() == part.globalCells.size());
   const std::vector<Index> tets = tetsOf(part, points, cells);
   requireNone(points, part.part, "vertices that there are not");
   requireNone(cells, part.part, "cells that there are not");

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <igm/measures.hpp>
-#include <propeller/global_connectivity.hpp>
 #include <propeller/propeller.hpp>
 
 #include "extract/support.hpp"
