@@ -1,6 +1,7 @@
 // Points by weights of the corners of a tet: exact comparison of their coordinates.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -36,7 +37,7 @@ struct SimplexPoint {
   /// given values of opposite signs there.
   [[nodiscard]] static constexpr SimplexPoint between(std::size_t i, std::size_t j,
                                                       std::int64_t atI, std::int64_t atJ) noexcept {
-    assert(atI != 0 && atJ != 0 && (atI < 0) != (atJ < 0));
+    assert(std::min(atI, atJ) <= 0 && std::max(atI, atJ) >= 0 && atI != atJ);
     SimplexPoint point;
     point.weights[i] =
         atJ < 0 ? -static_cast<lattice::Int128>(atJ) : static_cast<lattice::Int128>(atJ);
