@@ -28,12 +28,6 @@
 #include <sys/resource.h>
 #endif
 
-#include <hexhex/version.hpp>
-
-#include "improve_options.hpp"
-#include "json.hpp"
-#include "quantize_options.hpp"
-
 namespace hexhex::command {
 namespace {
 
