@@ -8,11 +8,10 @@
 #include <hexhex/check.hpp>
 #include <hexhex/quantize.hpp>
 
-#include "check_text.hpp"
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
+#include "map_text.hpp"
 #include "output.hpp"
 #include "quantize_options.hpp"
 #include "shared_options.hpp"

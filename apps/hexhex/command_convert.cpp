@@ -12,7 +12,6 @@
 #include <hexhex/structure.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
@@ -106,9 +105,7 @@ std::string convertInPieces(const ConvertArguments& arguments, std::vector<CellC
 }
 
 int run(const ConvertArguments& arguments) {
-  for (const std::filesystem::path& input : arguments.input.files()) {
-    requireDifferent(input, arguments.output);
-  }
+  requireAllDifferent(arguments.input.files(), {arguments.output});
   if (arguments.stream && arguments.input.isPair()) {
     throw Error(ErrorCode::InvalidArgument,
                 "--stream converts hexahedral meshes, but --tets and --polycube are a map.");

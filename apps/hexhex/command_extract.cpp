@@ -23,22 +23,18 @@
 #include <hexhex/verify.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "extract_arguments.hpp"
 #include "extract_parts.hpp"
+#include "extract_report.hpp"
 #include "extract_stream.hpp"
-#include "extract_text.hpp"
 #include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
+#include "map_text.hpp"
 #include "output.hpp"
-#include "partial_text.hpp"
 #include "quantize_options.hpp"
-#include "repair_text.hpp"
-#include "report.hpp"
 #include "shared_options.hpp"
 #include "started_team.hpp"
-#include "verification.hpp"
 #include "view_page.hpp"
 
 namespace hexhex::command {

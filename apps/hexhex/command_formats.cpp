@@ -6,7 +6,6 @@
 #include <hexhex/io.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 
 namespace hexhex::command {
 namespace {

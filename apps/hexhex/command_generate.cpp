@@ -11,10 +11,9 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
-#include "check_text.hpp"
 #include "command.hpp"
-#include "exit_codes.hpp"
-#include "interrupt.hpp"
+#include "long_run.hpp"
+#include "map_text.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
 #include "suggestions.hpp"
@@ -112,11 +111,7 @@ Command addGenerate(CLI::App& app) {
       ->required()
       ->check(oneOf(namesOf(sampleKinds())))
       ->option_text("REQUIRED");
-  parser
-      ->add_option("-o,--output", arguments->output,
-                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapOutput(*parser, arguments->output);
   addOutputChoice(*parser, arguments->choice);
   parser
       ->add_option("--map-array", arguments->choice.mapArray,

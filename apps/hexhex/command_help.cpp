@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "suggestions.hpp"
 
 namespace hexhex::command {

@@ -1,5 +1,4 @@
 // `hexhex improve`: a mesh whose cells are positive, and better.
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,7 +10,6 @@
 #include <hexhex/io.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
@@ -34,20 +32,6 @@ struct ImproveArguments {
   RunOptions run;
   bool hexesOnly = false;
 };
-
-void requireAllDifferent(const ImproveArguments& arguments) {
-  for (const std::string* const input : {&arguments.mesh, &arguments.map}) {
-    for (const std::string* const output :
-         {&arguments.output, &arguments.report, &arguments.page}) {
-      if (!input->empty() && !output->empty()) requireDifferent(*input, *output);
-    }
-  }
-  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
-  if (!arguments.page.empty()) requireDifferent(arguments.output, arguments.page);
-  if (!arguments.page.empty() && !arguments.report.empty()) {
-    requireDifferent(arguments.page, arguments.report);
-  }
-}
 
 /// Positions that a page is to show, taken before they change.
 Array<Vec3> pointsForPage(const ImproveArguments& arguments, const Array<Vec3>& points) {
@@ -126,7 +110,8 @@ bool requireFormats(const ImproveArguments& arguments, Context& context) {
 }
 
 int run(const ImproveArguments& arguments) {
-  requireAllDifferent(arguments);
+  requireAllDifferent({arguments.mesh, arguments.map},
+                      {arguments.output, arguments.report, arguments.page});
   LongRun longRun(arguments.run, {{"readHexMesh", 1},
                                   {"readLagrangeMesh", 1},
                                   {"readMap", 0.5},
@@ -158,11 +143,7 @@ Command addImprove(CLI::App& app) {
   parser->add_option("MESH", arguments->mesh, "The mesh, in any format that is read")
       ->required()
       ->option_text("FILE REQUIRED");
-  parser
-      ->add_option("-o,--output", arguments->output,
-                   "The mesh to write; `hexhex formats` lists the formats")
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMeshOutput(*parser, arguments->output);
   parser
       ->add_option("--map", arguments->map,
                    "The map that the mesh was extracted from: its surface\n"

@@ -19,7 +19,6 @@
 #include <hexhex/survey.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"

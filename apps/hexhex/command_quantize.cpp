@@ -1,5 +1,4 @@
 // `hexhex quantize`: from a seamless map to an integer-grid map.
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -10,7 +9,6 @@
 #include <hexhex/quantize.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -29,14 +27,6 @@ struct QuantizeArguments {
   RunOptions run;
 };
 
-void requireAllDifferent(const QuantizeArguments& arguments) {
-  for (const std::filesystem::path& input : arguments.input.files()) {
-    requireDifferent(input, arguments.output);
-    if (!arguments.report.empty()) requireDifferent(input, arguments.report);
-  }
-  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
-}
-
 void printQuantized(const QuantizeReport& report) {
   printLine("quantization", quantizeSummary(report));
   printLine("motorcycle complex", counted(report.blocks, "block"));
@@ -54,7 +44,7 @@ void printQuantized(const QuantizeReport& report) {
 int run(const QuantizeArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
-  requireAllDifferent(arguments);
+  requireAllDifferent(arguments.input.files(), {arguments.output, arguments.report});
   LongRun longRun(arguments.run,
                   {{"readMap", 1}, {"readMapPair", 1}, {"quantize", 20}, {"writeMap", 0.5}});
   Context& context = longRun.context();
@@ -84,11 +74,7 @@ Command addQuantize(CLI::App& app) {
       app.add_subcommand("quantize", "Make a seamless map an integer-grid map");
   addMapSource(*parser, arguments->input);
   addKeepWalls(*parser, arguments->input);
-  parser
-      ->add_option("-o,--output", arguments->output,
-                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapOutput(*parser, arguments->output);
   addOutputChoice(*parser, arguments->choice);
   addQuantizeOptions(*parser, arguments->options, "--scale");
   parser

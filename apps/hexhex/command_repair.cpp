@@ -1,5 +1,4 @@
 // `hexhex repair`: from a defective map to a valid one.
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -11,10 +10,9 @@
 #include <hexhex/repair.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "long_run.hpp"
+#include "map_text.hpp"
 #include "output.hpp"
-#include "repair_text.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
@@ -30,18 +28,10 @@ struct RepairArguments {
   bool noRefine = false;
 };
 
-void requireAllDifferent(const RepairArguments& arguments) {
-  for (const std::filesystem::path& input : arguments.input.files()) {
-    requireDifferent(input, arguments.output);
-    if (!arguments.report.empty()) requireDifferent(input, arguments.report);
-  }
-  if (!arguments.report.empty()) requireDifferent(arguments.output, arguments.report);
-}
-
 int run(const RepairArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
-  requireAllDifferent(arguments);
+  requireAllDifferent(arguments.input.files(), {arguments.output, arguments.report});
   LongRun longRun(arguments.run,
                   {{"readMap", 1}, {"readMapPair", 1}, {"repair", 20}, {"writeMap", 0.5}});
   Context& context = longRun.context();
@@ -73,11 +63,7 @@ Command addRepair(CLI::App& app) {
   CLI::App* const parser =
       app.add_subcommand("repair", "Repair flipped and flat tets of a map by moving parameters");
   addMapSource(*parser, arguments->input);
-  parser
-      ->add_option("-o,--output", arguments->output,
-                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapOutput(*parser, arguments->output);
   addOutputChoice(*parser, arguments->choice);
   addTolerance(*parser, arguments->options.tolerance);
   addScale(*parser, arguments->options.scale, "The largest scale that the map is going to have");

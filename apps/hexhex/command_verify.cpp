@@ -13,7 +13,6 @@
 #include <hexhex/verify.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"

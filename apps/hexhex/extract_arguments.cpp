@@ -1,7 +1,6 @@
 #include "extract_arguments.hpp"
 
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,17 +17,6 @@
 
 namespace hexhex::command {
 namespace {
-
-void requireAllDifferent(const ExtractArguments& arguments) {
-  std::vector<std::filesystem::path> files = arguments.input.files();
-  for (const std::string& output :
-       {arguments.output, arguments.report, arguments.arcs, arguments.patches, arguments.page}) {
-    for (const std::filesystem::path& file : files) {
-      if (!output.empty()) requireDifferent(file, output);
-    }
-    if (!output.empty()) files.emplace_back(output);
-  }
-}
 
 void requireCurvedOutputs(const ExtractArguments& arguments) {
   const bool piecewise = !arguments.arcs.empty() || !arguments.patches.empty();
@@ -189,11 +177,7 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   arguments.options.repair = RepairMode::Auto;
   addMapSource(parser, arguments.input);
   addKeepWalls(parser, arguments.input);
-  parser
-      .add_option("-o,--output", arguments.output,
-                  "The mesh to write; `hexhex formats` lists the formats")
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMeshOutput(parser, arguments.output);
   addOutputChoice(parser, arguments.choice);
   addScale(parser, arguments.options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
@@ -219,7 +203,8 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
 }
 
 void requireOutputs(const ExtractArguments& arguments) {
-  requireAllDifferent(arguments);
+  requireAllDifferent(arguments.input.files(), {arguments.output, arguments.report, arguments.arcs,
+                                                arguments.patches, arguments.page});
   requireCurvedOutputs(arguments);
   requirePartialOutputs(arguments);
   requireImprovable(arguments);

@@ -3,17 +3,95 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <unistd.h>
+
+#include <fmt/core.h>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 
 #include "output.hpp"
-#include "pending_file.hpp"
-#include "verification.hpp"
 
 namespace hexhex::command {
 namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& why) {
+  throw Error(ErrorCode::FileWrite,
+              fmt::format("{}: the file cannot be written: {}.", file.string(), why));
+}
+
+/// What a target is in the end. Renaming onto a link would replace the link.
+/// @throws Error FileWrite if the file is there but cannot be read back after it was written (a
+///         folder, a device, a pipe), or is a link to nowhere
+std::filesystem::path realFile(const std::filesystem::path& target) {
+  std::error_code error;
+  std::filesystem::path real = target;
+  if (std::filesystem::is_symlink(target, error)) {
+    real = std::filesystem::canonical(target, error);
+    if (error) fail(target, "its link leads nowhere: " + error.message());
+  }
+  const std::filesystem::file_status status = std::filesystem::status(real, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    fail(target, "it is a folder, a device or a pipe, from which it could not be read back");
+  }
+  return real;
+}
+
+/// Beside `file`, with the extension of `target`, but not its name, which may be as long as the
+/// file system allows. As one string: libstdc++'s paths that grow leave a broken path where memory
+/// ends.
+std::string nameBeside(const std::filesystem::path& file, const std::filesystem::path& target) {
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() + '/' : "";
+  return fmt::format("{}.hexhex-{}-unread{}", folder, ::getpid(), target.extension().string());
+}
+
+/// A name beside the target, with its extension, for a file that somebody else writes. keep()
+/// renames the file to the target; without keep() the file vanishes, and the target stays as it
+/// was.
+class PendingFile {
+ public:
+  /// @throws Error  as realFile()
+  explicit PendingFile(const std::filesystem::path& target);
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return pending_; }
+
+  /// @throws Error FileWrite
+  void keep();
+
+  /// The same error, in terms of the target instead of the name that nobody has heard of.
+  [[nodiscard]] Error named(const Error& error) const;
+
+ private:
+  std::filesystem::path target_;   ///< as given, for sentences
+  std::filesystem::path real_;     ///< what it is if it is a link
+  std::filesystem::path pending_;  ///< in the folder of `real_`
+};
+
+PendingFile::PendingFile(const std::filesystem::path& target)
+    : target_(target), real_(realFile(target)), pending_(nameBeside(real_, target)) {}
+
+PendingFile::~PendingFile() {
+  std::error_code ignored;  // e.g. if it was never written
+  if (!pending_.empty()) std::filesystem::remove(pending_, ignored);
+}
+
+void PendingFile::keep() {
+  replaceFile(pending_, real_);
+  pending_.clear();
+}
+
+Error PendingFile::named(const Error& error) const {
+  const std::string unknown = pending_.string();
+  std::string sentence = error.what();
+  const std::size_t place = unknown.empty() ? std::string::npos : sentence.find(unknown);
+  if (place != std::string::npos) sentence.replace(place, unknown.size(), target_.string());
+  return {error.code(), sentence, error.place()};
+}
 
 /// Hands every call to two sinks, one after the other.
 class TwoSinks final : public MeshSink {
@@ -79,7 +157,7 @@ void requireStreamable(const std::filesystem::path& output, const WriteOptions& 
                 "--stream works with the engine atlas only; the engine propeller needs the whole "
                 "mesh in memory. Leave out one of --stream and --engine.");
   }
-  requireReadableBack(output);
+  static_cast<void>(realFile(output));
   // A sink that is destroyed at once leaves nothing, but says what is wrong.
   Context context;
   static_cast<void>(openMeshSink(output, writing, context));

@@ -1,4 +1,5 @@
-// `hexhex extract --stream`: a mesh that never stands in memory as a whole, from a map into a file.
+// `hexhex extract --stream`: a mesh that never stands in memory as a whole, from a map into a file
+// that gets its name only when it was read back.
 #pragma once
 
 #include <filesystem>

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "extract_report.hpp"
 #include "output.hpp"
-#include "report.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {

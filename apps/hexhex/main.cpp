@@ -18,7 +18,6 @@
 #include <hexhex/version.hpp>
 
 #include "command.hpp"
-#include "exit_codes.hpp"
 #include "output.hpp"
 #include "suggestions.hpp"
 

@@ -1,5 +1,6 @@
 #include "output.hpp"
 
+#include <string>
 #include <system_error>
 
 #include <fmt/core.h>
@@ -20,6 +21,13 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
     return error ? file : path;
   };
   return whole(a) == whole(b) && !std::filesystem::is_other(a, missing);
+}
+
+void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (!sameFile(a, b)) return;
+  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
+                                              " are the same file. Each file that is read or "
+                                              "written needs a name of its own.");
 }
 
 }  // namespace
@@ -54,6 +62,7 @@ void printError(const Error& error) {
 }
 
 std::string counted(std::uint64_t count, std::string_view noun) {
+  if (noun == "vertex" && count != 1) return fmt::format("{} vertices", count);
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
@@ -97,11 +106,15 @@ std::string refutationAsText(const Certificate& certificate) {
       bad.position[1], bad.position[2]);
 }
 
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b) {
-  if (!sameFile(a, b)) return;
-  throw Error(ErrorCode::InvalidArgument, a.string() + " and " + b.string() +
-                                              " are the same file. Each file that is read or "
-                                              "written needs a name of its own.");
+void requireAllDifferent(std::vector<std::filesystem::path> files,
+                         std::initializer_list<std::string> outputs) {
+  for (const std::string& output : outputs) {
+    if (output.empty()) continue;
+    for (const std::filesystem::path& file : files) {
+      if (!file.empty()) requireDifferent(file, output);
+    }
+    files.emplace_back(output);
+  }
 }
 
 void requireWritable(const std::filesystem::path& file) {
@@ -120,6 +133,17 @@ void Report::write(const std::string& text) {
   } else {
     file_->commit(text);
   }
+}
+
+void requirePassed(const VerifyReport& report, std::string_view problem, std::string_view advice) {
+  if (report.passed()) return;
+  std::string items;
+  for (const VerifyItem& item : report.items) {
+    if (item.passed) continue;
+    items += fmt::format("{} {}: expected {}, found {}", items.empty() ? "" : ";", item.name,
+                         item.expected, item.found);
+  }
+  throw Error(ErrorCode::VerificationFailed, fmt::format("{}:{}. {}", problem, items, advice));
 }
 
 }  // namespace hexhex::command

@@ -4,18 +4,22 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include <hexhex/error.hpp>
+#include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
+#include <hexhex/verify.hpp>
 
 namespace hexhex::command {
 
@@ -40,7 +44,7 @@ void printLine(std::string_view label, std::string_view value);
 /// "hexhex: warning: <sentence>" on the standard error output.
 void printWarning(std::string_view sentence);
 
-/// "1 cell", "12 cells".
+/// "1 cell", "12 cells", "12 vertices".
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view noun);
 
 /// "12.3 MB"
@@ -62,8 +66,10 @@ void printQuality(const Certificate& certificate);
 /// Which cells are not positive, and where: a sentence.
 [[nodiscard]] std::string refutationAsText(const Certificate& certificate);
 
-/// Throws InvalidArgument if two names mean one file, or would once both are written.
-void requireDifferent(const std::filesystem::path& a, const std::filesystem::path& b);
+/// Throws InvalidArgument if an output and one more file, of those that are read or written, have
+/// names that mean one file, or would once both are written. Names may be empty.
+void requireAllDifferent(std::vector<std::filesystem::path> files,
+                         std::initializer_list<std::string> outputs);
 
 /// Throws FileWrite if the file is a folder or a link to nowhere, or no file can be created in its
 /// folder: to fail before long work.
@@ -84,5 +90,16 @@ class Report {
   bool isOnOutput_;
   std::unique_ptr<TextFile> file_;
 };
+
+/// Throws VerificationFailed, naming what does not agree, unless all checks passed.
+/// @param problem  begins the sentence: what happened
+/// @param advice   ends it: what to do
+void requirePassed(const VerifyReport& report, std::string_view problem, std::string_view advice);
+
+/// The map that an extraction took: the caller's, or what a repair made of it.
+[[nodiscard]] inline TetMapView extractedMap(const TetMapView& map,
+                                             const ExtractStatistics& statistics) {
+  return statistics.repairedMap ? TetMapView(*statistics.repairedMap) : map;
+}
 
 }  // namespace hexhex::command

@@ -64,6 +64,14 @@ std::string extensionsThat(bool FileFormat::*can) {
 
 std::string mapDescription() { return "The map, " + extensionsThat(&FileFormat::readsMaps); }
 
+void addKeepWalls(CLI::App& parser, MapSource& source) {
+  parser.add_flag("--keep-walls", source.keepWalls,
+                  "Walls of a motorcycle complex that a .hexex file lists\n"
+                  "become features with the tag 2: faces between blocks");
+}
+
+namespace {
+
 void addMapOptions(CLI::App& parser, MapSource& source) {
   CLI::Option* const tets = parser
                                 .add_option("--tets", source.tets,
@@ -100,14 +108,6 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
                   "12 numbers per cell, or 3 per point")
       ->option_text("NAME [igm]");
 }
-
-void addKeepWalls(CLI::App& parser, MapSource& source) {
-  parser.add_flag("--keep-walls", source.keepWalls,
-                  "Walls of a motorcycle complex that a .hexex file lists\n"
-                  "become features with the tag 2: faces between blocks");
-}
-
-namespace {
 
 void requireMesh(const std::filesystem::path& file, const WriteOptions& options) {
   requireHexMeshFormat(file, options);
@@ -169,6 +169,22 @@ TetMap readMap(const MapSource& source, Context& context) {
   }
   if (source.isPair()) return readMapPair(source.tets, source.polycube, context);
   return hexhex::readMap(source.file, source.options(), context);
+}
+
+namespace {
+
+void addOutput(CLI::App& parser, std::string& file, const std::string& description) {
+  parser.add_option("-o,--output", file, description)->required()->option_text("FILE REQUIRED");
+}
+
+}  // namespace
+
+void addMapOutput(CLI::App& parser, std::string& file) {
+  addOutput(parser, file, "The map to write, " + extensionsThat(&FileFormat::writesMaps));
+}
+
+void addMeshOutput(CLI::App& parser, std::string& file) {
+  addOutput(parser, file, "The mesh to write; `hexhex formats` lists the formats");
 }
 
 WriteOptions OutputChoice::options() const {

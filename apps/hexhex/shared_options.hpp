@@ -45,9 +45,8 @@ void addKeepWalls(CLI::App& parser, MapSource& source);
 /// For arguments that name a map to read.
 [[nodiscard]] std::string mapDescription();
 
-/// Adds --tets, --polycube, --flags, --surface, --flags-array and --map-array.
-void addMapOptions(CLI::App& parser, MapSource& source);
-/// Adds an argument and the same options; one of both has to be given.
+/// Adds an argument, and --tets, --polycube, --flags, --surface, --flags-array and --map-array; a
+/// map has to be given in one of these ways.
 void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument = "MAP",
                   const std::string& description = mapDescription());
 /// For subcommands with another argument behind MAP: where two meshes are given instead, the first
@@ -59,6 +58,10 @@ void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& 
 
 /// @throws Error  as readMap(), readMapPair(), readFlags() and mapFromFlags()
 [[nodiscard]] TetMap readMap(const MapSource& source, Context& context);
+
+/// Adds -o for the map or the mesh that a subcommand makes.
+void addMapOutput(CLI::App& parser, std::string& file);
+void addMeshOutput(CLI::App& parser, std::string& file);
 
 /// How a subcommand writes its result.
 struct OutputChoice {

@@ -14,13 +14,12 @@
 #include <hexhex/io.hpp>
 #include <hexhex/view.hpp>
 
-#include "exit_codes.hpp"
+#include "command.hpp"
 #include "long_run.hpp"
+#include "map_text.hpp"
 #include "output.hpp"
-#include "repair_text.hpp"
 #include "serve_page.hpp"
 #include "shared_options.hpp"
-#include "verification.hpp"
 
 namespace hexhex::command {
 namespace {
@@ -129,8 +128,7 @@ void printWarnings(const Subject& subject) {
 int writeOwnPage(const ViewArguments& arguments, LongRun& longRun) {
   Context& context = longRun.context();
   const std::filesystem::path page = pageOf(arguments);
-  requireDifferent(arguments.mesh, page);
-  if (!arguments.map.empty()) requireDifferent(arguments.map, page);
+  requireAllDifferent({arguments.mesh, arguments.map}, {page.string()});
   requireWritable(page);
   const Subject subject = readSubject(arguments, context);
   std::visit(

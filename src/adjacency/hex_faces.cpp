@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cassert>
 
 #include <adjacency/cell_faces.hpp>
 #include <adjacency/hex_topology.hpp>
@@ -174,6 +175,7 @@ std::vector<std::uint64_t> collectFromFaces(std::size_t vertexCount, std::span<c
 
 std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const Hex> cells,
                                       Stage& stage) {
+  assert(cells.size() < kNone / 6);
   HexMates result;
   Array<Index>& mates = result.mates;
   mates.resize(6 * cells.size());

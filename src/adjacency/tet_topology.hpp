@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -76,6 +77,7 @@ struct TetTopology {
   }
   /// Needs addStars().
   [[nodiscard]] std::span<const CornerIndex> star(Index vertex) const noexcept {
+    assert(!stars.empty());
     return stars(vertex);
   }
 };
@@ -211,7 +213,9 @@ class EdgeTurn {
         tet_(tet),
         edge_(edge),
         out_(halfFaceOf(tet, face)),
-        ahead_(topology.tets[tet][static_cast<std::size_t>(otherFaceAtEdge(edge, face))]) {}
+        ahead_(topology.tets[tet][static_cast<std::size_t>(otherFaceAtEdge(edge, face))]) {
+    assert(lattice::dimension(edge) == 1 && !lattice::contains(edge, face));
+  }
 
   [[nodiscard]] Index tet() const noexcept { return tet_; }
   /// The edge, as corners of the tet.
@@ -224,6 +228,7 @@ class EdgeTurn {
   /// Enters the next tet, of which there must be one.
   void step() noexcept {
     const HalfFace in = next();
+    assert(in != kNone);
     tet_ = tetOf(in);
     // The third corner of the face behind is the one opposite the face ahead.
     const int opposite = topology_.localCorner(tet_, ahead_);

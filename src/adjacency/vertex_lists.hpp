@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <span>
 
@@ -28,12 +29,14 @@ class VertexLists {
       : ends_(vertexCount + 1) {
     parallelFor(stage, ends_.size(), kGrain, [this](std::size_t v) { ends_[v] = 0; });
     const auto next = [this](Index vertex) {
+      assert(vertex + 1 < ends_.size());
       return std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
     };
     forEach([&next](Index vertex, const T& /*value*/) { next(vertex); });
     values_.resize(exclusiveScan(std::span(ends_)));
     // Where a list begins moves on to its end while it is filled.
     forEach([&](Index vertex, const T& value) { values_[next(vertex)] = value; });
+    assert(ends_.back() == values_.size() && beginOf(vertexCount) == values_.size());
     // Threads come in any order: once sorted, lists are the same for any number of them.
     parallelFor(stage, vertexCount, kGrain, [this](std::size_t v) {
       const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(beginOf(v));
@@ -46,6 +49,7 @@ class VertexLists {
   [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
   [[nodiscard]] std::span<const T> operator()(std::size_t vertex) const noexcept {
+    assert(vertex + 1 < ends_.size());
     const Offset begin = beginOf(vertex);
     return std::span(values_).subspan(begin, ends_[vertex] - begin);
   }

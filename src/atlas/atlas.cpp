@@ -1,5 +1,6 @@
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <limits>
 #include <string>
 #include <utility>
@@ -72,14 +73,15 @@ class Atlas {
       Stage stage(context_, "grid");
       vertices_.fill(arrays, stage);
     }
+    std::uint64_t overlappingTets = 0;
     {
       Stage stage(context_, "overlaps");
-      if (switches_.resolveOverlaps) statistics.overlappingTets = vertices_.resolveOverlaps(stage);
+      if (switches_.resolveOverlaps) overlappingTets = vertices_.resolveOverlaps(stage);
     }
+    statistics.overlappingTets = overlappingTets;
     Stage stage(context_, "cuts");
     if (switches_.markCuts) {
-      const bool identitiesGlue = statistics.overlappingTets == 0;
-      Cuts cuts = markCutCells(map_, charts_, identitiesGlue, vertices_.grid(), stage);
+      Cuts cuts = markCutCells(map_, charts_, overlappingTets == 0, vertices_.grid(), stage);
       statistics.cutFaces = cuts.faces;
       transitions_ = std::move(cuts.transitions);
     }
@@ -129,6 +131,7 @@ void forEachPiece(const Array<std::uint64_t>& begin, const Visit& visit) {
   for (std::size_t first = 0, end = 0; first < tets; first = end) {
     end = first + 1;
     while (end < tets && begin[end + 1] - begin[first] <= kPiece) ++end;
+    assert(begin[first] <= begin[end]);
     const auto count = static_cast<std::size_t>(begin[end] - begin[first]);
     if (count > 0) visit(Piece{first, end, begin[first], count});
   }

@@ -1,6 +1,7 @@
 // The atlas: tets glued to charts.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Charts {
   [[nodiscard]] bool gaugesAgree(const adjacency::TetTopology& topology,
                                  const igm::Transitions& transitions,
                                  adjacency::HalfFace halfFace) const noexcept {
+    assert(topology.mate[halfFace] != kNone);
     const Index here = adjacency::tetOf(halfFace);
     const Index there = adjacency::tetOf(topology.mate[halfFace]);
     if (!transitions.isNonTrivial(halfFace)) {

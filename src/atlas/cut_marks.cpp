@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <optional>
 #include <vector>
 
@@ -101,6 +102,7 @@ CutTransitionId CutTransitions::across(const igm::PreparedMap& map, const Charts
   const auto [inverse, isOther] = ids_.try_emplace(keyOf(to, from, back), id + 1);
   all_.push_back({from, to, forth, inverse->second});
   if (isOther) all_.push_back({to, from, back, id});
+  assert(all_[id].inverse == id || all_[all_[id].inverse].inverse == id);
   return id;
 }
 

@@ -10,7 +10,6 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
-#include <atlas/cut_cells.hpp>
 #include <atlas/grid_region.hpp>
 #include <igm/prepare.hpp>
 

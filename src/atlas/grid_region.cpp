@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include <atlas/grid_region.hpp>
@@ -19,6 +21,9 @@ std::span<const LinePoints> BoxedLines::of(const lattice::SweptLine& line) {
     rows_ = select(atLevel_, axes[1], line.row, atRow_);
     join(axes[2]);
   }
+  assert(std::ranges::all_of(boxes_, [](const lattice::GridBox& box) {
+    return std::ranges::all_of(box.range, [](auto range) { return range.first <= range.last; });
+  }));
   const std::int64_t last = std::int64_t{line.first} + line.count - 1;
   for (const lattice::GridRange& range : ranges_) {
     const std::int64_t first = std::max(line.first, range.first);

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <cassert>
 
 #include <atlas/overlaps.hpp>
 #include <base/parallel.hpp>
@@ -46,6 +47,7 @@ class TetMover {
     std::vector<Index> before;
     for (std::size_t i = 0; i < contested_.size(); ++i) {
       const Index tet = contested_[i]->tet;
+      assert(pending_[tet] == kNone && charts_.chart[tet] != Charts::kNoChart);
       pending_[tet] = static_cast<Index>(i);
       before.push_back(charts_.chart[tet]);
       charts_.chart[tet] = Charts::kNoChart;
@@ -81,6 +83,7 @@ class TetMover {
   /// Claims all points of a tet in a chart if none of them belongs to another vertex, be it one of
   /// the tet's own.
   bool tryClaim(const TetClaims& tet, Index chart) {
+    assert(charts_.chart[tet.tet] == Charts::kNoChart);
     const auto brickAt = [&](const lattice::ChartPoint& c) {
       return grid_.find(brickKey(chart, c));
     };

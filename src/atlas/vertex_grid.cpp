@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 
 #include <atlas/overlaps.hpp>
 #include <atlas/vertex_grid.hpp>
@@ -91,6 +92,8 @@ void VertexGrid<Id>::sweep(sweep::CellCenters& cells, Stage& stage, sweep::Sweep
 /// Lists the bricks of a region. Only these are made, so that claims beyond the boxes are left out.
 template <class Id>
 void VertexGrid<Id>::collectRegion(Stage& stage) {
+  assert(std::is_sorted(region_->tets.begin(), region_->tets.end()));
+  assert(region_->begin.size() == region_->tets.size() + 1);
   const std::size_t tets = tetCount();
   keys_.resize(blockCount(tets, sweep::kSweepBlock));
   parallelBlocks(stage, tets, sweep::kSweepBlock,

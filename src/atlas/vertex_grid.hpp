@@ -1,6 +1,7 @@
 // All hex vertices in the charts of the atlas.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -82,6 +83,7 @@ class VertexGrid {
   void dropLines() noexcept { stored_.reset(); }
   /// Takes away what there is of vertices besides the grid, if lines were kept.
   [[nodiscard]] sweep::SweptVertices takeVertices() noexcept {
+    assert(stored_);
     return {std::move(*stored_), std::move(numbers_)};
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -19,6 +20,7 @@ class DisjointSets {
   }
   /// The smallest element of the set of `element`. Thread-safe.
   [[nodiscard]] Index find(Index element) {
+    assert(element < parents_.size());
     Index parent = load(element);
     while (parent != element) {
       // Halve the path: the grandparent is in the same set, so skipping to it is always right, even

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <cassert>
 #include <cstdint>
 #include <new>
 
@@ -66,6 +67,7 @@ bool isPooled(std::size_t bytes) { return kPooled && bytes >= kMedium && bytes <
 #if defined(__linux__)
 
 char* mapHugePages(std::size_t bytes) noexcept {
+  assert(bytes % kHugePage == 0);
   // Twice as much has an aligned part of the size; the rest is returned.
   void* const mapped = ::mmap(nullptr, 2 * bytes, PROT_READ | PROT_WRITE,
                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -38,6 +39,7 @@ class PagePool {
   /// @param bytes  at least 1
   /// @return nullptr if there is none to be had: for larger arrays than slabs, too
   [[nodiscard]] void* allocate(std::size_t bytes) {
+    assert(bytes > 0);
     if (bytes > kSlab) return nullptr;
     const std::size_t pages = pagesOf(bytes);
     const std::scoped_lock lock(mutex_);
@@ -96,7 +98,10 @@ class PagePool {
     }
     void giveBack(const void* what, std::size_t pages) noexcept {
       const auto offset = static_cast<std::size_t>(static_cast<const char*>(what) - memory.get());
-      std::fill_n(inUse.begin() + offset / kPage, pages, false);
+      auto* const first = inUse.begin() + offset / kPage;
+      assert(offset % kPage == 0 && pages <= used);
+      assert(std::all_of(first, first + pages, [](bool each) { return each; }));
+      std::fill_n(first, pages, false);
       used -= pages;
     }
   };

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -128,6 +129,7 @@ void withThreadsHere(int threads, const F& f) {
 /// @throws Error TooLarge for a total that T does not hold
 template <class T>
 T exclusiveScan(std::span<T> counts) {
+  assert(!counts.empty());
   std::uint64_t sum = 0;
   for (T& entry : counts) {
     const T count = entry;

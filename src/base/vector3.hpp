@@ -8,7 +8,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <base/pair.hpp>
+#include <base/lanes.hpp>
 
 namespace hexhex {
 

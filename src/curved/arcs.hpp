@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -53,6 +54,8 @@ class ArcPieces {
   /// @param to  has room
   /// @param firstArc, firstPoint  the numbers that the first ones have there
   void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
+    // Each arc has a segment more than inner points.
+    assert(segments_.size() == points_.size() + arcs_.size());
     for (std::size_t i = 0; i < arcs_.size(); ++i) {
       to.ends[firstArc + i] = arcs_[i].ends;
       to.pointBegin[firstArc + i] = firstPoint + arcs_[i].firstPoint;

@@ -13,7 +13,6 @@
 
 #include <hexhex/types.hpp>
 
-#include <curved/frame.hpp>
 #include <curved/simplex_star.hpp>
 #include <igm/prepare.hpp>
 #include <lattice/tet_geometry.hpp>

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <string>
 
 #include <curved/element_numbers.hpp>
@@ -37,6 +38,7 @@ ElementNumbers::ElementNumbers(const igm::PreparedMap& map, ElementKind kind, St
 
 /// Appends the lines with elements that a tet owns, and counts both.
 void ElementNumbers::add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer) {
+  assert(block == tet / sweep::kSweepBlock);
   begin_[tet] = 0;
   Array<Line>& lines = blocks_[block];
   sweep::CenterOwner owner(topology_, tet);
@@ -65,6 +67,7 @@ void ElementNumbers::finish(Stage& stage) {
       line.number = number;
       number += line.ownedCount;
     }
+    assert(number == begin_[std::min((block + 1) * sweep::kSweepBlock, begin_.size() - 1)]);
   });
 }
 

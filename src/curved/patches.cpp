@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ void join(const PatchPieces& pieces, const PiecePlaces& to, std::uint64_t firstI
     patches.polygonTet[to.polygon + i] = pieces.carriers[i].tet;
     patches.polygonCorners[to.polygon + i] = pieces.carriers[i].corners;
   }
+  assert(corner == to.corner + pieces.corners.size());
+  assert(pieces.parameters.size() == pieces.corners.size());
+  assert(pieces.generators.size() == pieces.points.size());
   const auto shift = static_cast<Index>(to.point);
   for (std::size_t i = 0; i < pieces.corners.size(); ++i) {
     const Index number = pieces.corners[i];

@@ -1,7 +1,9 @@
 // Points by weights of the corners of a tet: exact comparison of their coordinates.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include <hexhex/types.hpp>
@@ -35,6 +37,7 @@ struct SimplexPoint {
   /// given values of opposite signs there.
   [[nodiscard]] static constexpr SimplexPoint between(std::size_t i, std::size_t j,
                                                       std::int64_t atI, std::int64_t atJ) noexcept {
+    assert(std::min(atI, atJ) <= 0 && std::max(atI, atJ) >= 0 && atI != atJ);
     SimplexPoint point;
     point.weights[i] =
         atJ < 0 ? -static_cast<lattice::Int128>(atJ) : static_cast<lattice::Int128>(atJ);
@@ -69,6 +72,7 @@ struct SimplexPoint {
     std::array<double, 4> shares{};
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) sum += shares[i] = lattice::toDouble(weights[i]);
+    assert(sum > 0);
     for (double& share : shares) share /= sum;
     return shares;
   }

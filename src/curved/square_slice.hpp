@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 
 #include <curved/plane_section.hpp>
@@ -52,7 +53,10 @@ class Slice {
     size_ = 0;
     borders = midpoints = possibleMidpoints = borderSides = squareCorners = 0;
   }
-  void add(const SliceCorner& corner) noexcept { corners_[size_++] = corner; }
+  void add(const SliceCorner& corner) noexcept {
+    assert(size_ < corners_.size());
+    corners_[size_++] = corner;
+  }
 
   /// Which sides of the square the section goes beyond (bit i), or touches from inside (bit 4 + i).
   BorderFlags borders = 0;

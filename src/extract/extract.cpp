@@ -14,7 +14,7 @@
 #include <extract/features.hpp>
 #include <extract/steps.hpp>
 #include <igm/measures.hpp>
-#include <propeller/pipeline.hpp>
+#include <propeller/propeller.hpp>
 #include <repair/repair_map.hpp>
 
 namespace hexhex::extraction {

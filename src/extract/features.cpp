@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,7 @@ constexpr std::array<std::uint8_t, 8> kCornerAt = {0, 1, 3, 2, 4, 5, 7, 6};
 
 constexpr std::size_t cornerAt(const lattice::GridPoint& offset) noexcept {
   const std::int32_t code = offset[0] + 2 * offset[1] + 4 * offset[2];
+  assert(code >= 0 && code < 8);
   return kCornerAt[static_cast<std::size_t>(code)];
 }
 

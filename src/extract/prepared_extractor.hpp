@@ -2,6 +2,8 @@
 // scale of the last call.
 #pragma once
 
+#include <cassert>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,8 +25,10 @@ class Extractor::Prepared {
       prepare.tolerance = options.tolerance;
       prepare.repair = options.repair;
       prepare.round = options.round;
-      map_ = extraction::prepareValid(map, options.maxScale, prepare, context, filled).prepared;
-      if (filled.repairedMap) given_ = *filled.repairedMap;
+      auto valid = extraction::prepareValid(map, options.maxScale, prepare, context, filled);
+      map_ = std::move(valid.prepared);
+      repaired_ = std::move(valid.repaired);
+      if (repaired_) given_ = *repaired_;
       volume_ = igm::parametricVolume(map_.exact);
     });
   }
@@ -85,6 +89,7 @@ class Extractor::Prepared {
     if (scale == scale_) return;
     Stage stage(context, "scaling");
     keepUnscaled();
+    assert(scale >= 1 && unscaledCorners_.size() == map_.exact.corners.size());
     scale_ = 0;  // neither, until all is done
     map_.exact.transitions.table = unscaledTransitions_;
     constexpr std::size_t kGrain = 4096;
@@ -95,9 +100,10 @@ class Extractor::Prepared {
     scale_ = scale;
   }
 
-  TetMapView given_;  ///< or what a repair made of it
+  std::shared_ptr<const TetMap> repaired_;  ///< null if the caller's map was valid
+  TetMapView given_;                        ///< or what a repair made of it
   int maxScale_;
-  ExtractStatistics known_;  ///< owns the repaired map
+  ExtractStatistics known_;
   std::uint64_t volume_ = 0;
   igm::PreparedMap map_;
   int scale_ = 1;  ///< of map_

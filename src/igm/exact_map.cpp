@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <base/pair.hpp>
+#include <base/lanes.hpp>
 #include <base/vector3.hpp>
 #include <igm/exact_map.hpp>
 #include <igm/map_conditions.hpp>

@@ -7,7 +7,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <base/pair.hpp>
+#include <base/lanes.hpp>
 #include <lattice/rotation.hpp>
 #include <lattice/tet_geometry.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <base/vector3.hpp>
 #include <improve/crease_chains.hpp>
-#include <improve/triangle_edges.hpp>
+#include <improve/reference_surface.hpp>
 
 namespace hexhex::improvement {
 

@@ -1,20 +1,37 @@
-// Cells of order 2 or 3, whose nodes move one by one as vertices of straight cells do: moving a
-// node changes the Jacobian matrix at any place by a matrix of rank one, too.
+// Cells as lists of points: of straight cells corners, of others all nodes.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
+#include <adjacency/hex_topology.hpp>
+
 #include <hexhex/curved.hpp>
+#include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
 #include <curved/lagrange_quality.hpp>
-#include <improve/cell_points.hpp>
 #include <improve/vertex_energy.hpp>
 #include <mesh/cell_validity.hpp>
 
 namespace hexhex::improvement {
+
+struct CellPoints {
+  std::span<const Index> all;  ///< those of cell 0, of cell 1, and so on
+  std::size_t perCell = 8;
+  const adjacency::VertexCells& around;  ///< the cells at each point
+  std::size_t pointCount = 0;
+
+  [[nodiscard]] std::size_t cellCount() const noexcept { return all.size() / perCell; }
+  [[nodiscard]] std::span<const Index> of(std::size_t cell) const noexcept {
+    return all.subspan(perCell * cell, perCell);
+  }
+};
+
+// Cells of order 2 or 3, whose nodes move one by one as vertices of straight cells do: moving a
+// node changes the Jacobian matrix at any place by a matrix of rank one, too.
 
 /// What a cell, or the worst of some, is like.
 struct CellState {

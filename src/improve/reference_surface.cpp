@@ -7,7 +7,6 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/reference_surface.hpp>
-#include <improve/triangle_edges.hpp>
 
 namespace hexhex::improvement {
 

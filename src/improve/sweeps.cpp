@@ -1,14 +1,89 @@
 #include <algorithm>
+#include <cassert>
+#include <limits>
+#include <utility>
 
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
-#include <improve/cell_states.hpp>
-#include <improve/creases.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
 
 namespace hexhex::improvement {
+
+Colours::Colours(const CellPoints& mesh) : colourOf_(mesh.pointCount) {
+  // Each vertex gets the first colour that none before it has around.
+  std::vector<Index> takenBy;  // per colour: the last vertex with a neighbour of it
+  for (Index v = 0; v < mesh.pointCount; ++v) {
+    for (const Index cell : mesh.around(v)) {
+      for (const Index other : mesh.of(cell)) {
+        if (other < v) takenBy[colourOf_[other]] = v;
+      }
+    }
+    const auto colour = static_cast<std::size_t>(
+        std::find_if(takenBy.begin(), takenBy.end(), [v](Index by) { return by != v; }) -
+        takenBy.begin());
+    if (colour == takenBy.size()) takenBy.push_back(kNone);
+    colourOf_[v] = static_cast<std::uint16_t>(colour);
+  }
+  count_ = takenBy.size();
+  assert(count_ <= std::numeric_limits<std::uint16_t>::max());
+  assert(separates(mesh));
+}
+
+/// Whether the points of each cell differ in colour.
+bool Colours::separates(const CellPoints& mesh) const {
+  std::vector<std::size_t> seenIn(count_, mesh.cellCount());
+  for (std::size_t cell = 0; cell < mesh.cellCount(); ++cell) {
+    for (const Index point : mesh.of(cell)) {
+      if (std::exchange(seenIn[colourOf_[point]], cell) == cell) return false;
+    }
+  }
+  return true;
+}
+
+Colours::Groups Colours::groupsOf(std::span<const Index> vertices) const {
+  Groups groups;
+  groups.ends.resize(count_);
+  for (const Index v : vertices) ++groups.ends[colourOf_[v]];
+  std::vector<std::size_t> next(count_);
+  for (std::size_t c = 1; c < count_; ++c) {
+    next[c] = groups.ends[c - 1];
+    groups.ends[c] += groups.ends[c - 1];
+  }
+  groups.vertices.resize(vertices.size());
+  for (const Index v : vertices) groups.vertices[next[colourOf_[v]]++] = v;
+  return groups;
+}
+
+LooseVertices::LooseVertices(VertexPlaces& places, std::span<const Index> vertices,
+                             const Array<Vec3>& points)
+    : places_(places) {
+  for (const Index v : vertices) {
+    const Held held{v, places.freedom[v], places.simplex[v], points[v]};
+    if (!places.surface.isCrease(held.freedom, held.simplex)) continue;
+    assert(places.isLoose[v] == 0);
+    held_.push_back(held);
+    places.simplex[v] = places.surface.triangleAt(held.freedom, held.simplex, held.point);
+    places.freedom[v] = Freedom::OnPatch;
+    places.isLoose[v] = 1;
+  }
+}
+
+std::vector<Index> LooseVertices::holdUnmoved(const Array<Vec3>& points) {
+  std::vector<Index> moved;
+  for (const Held& held : held_) {
+    const Index v = held.vertex;
+    if (points[v] != held.point) {
+      moved.push_back(v);
+      continue;
+    }
+    places_.freedom[v] = held.freedom;
+    places_.simplex[v] = held.simplex;
+    places_.isLoose[v] = 0;
+  }
+  return moved;
+}
 
 namespace {
 

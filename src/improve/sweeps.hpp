@@ -1,10 +1,14 @@
-// From vertex to vertex, many at a time: cells become positive, then the worst ones better, then
-// all.
+// Groups of vertices that move at the same time: no two of a group share a cell, so that the result
+// does not depend on threads.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -12,14 +16,97 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <improve/cell_points.hpp>
-#include <improve/colours.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
+#include <mesh/cell_measures.hpp>
 
 namespace hexhex::improvement {
+
+class Colours {
+ public:
+  explicit Colours(const CellPoints& mesh);
+
+  /// Vertices by their colour, otherwise in the order of the list: each group ends where the next
+  /// begins.
+  struct Groups {
+    std::vector<Index> vertices;
+    std::vector<std::size_t> ends;
+  };
+  [[nodiscard]] Groups groupsOf(std::span<const Index> vertices) const;
+
+ private:
+  [[nodiscard]] bool separates(const CellPoints& mesh) const;
+
+  std::vector<std::uint16_t> colourOf_;  ///< per vertex
+  std::size_t count_ = 0;
+};
+
+// Creases that keep cells from being positive: vertices may leave them as a last resort.
+//
+// The boundary of a mesh with bad cells is jagged where these are, and its sharp edges there are no
+// features of the object.
+
+class LooseVertices {
+ public:
+  /// Lets go those of a list that lie on patches, on creases, or where these meet; from now on,
+  /// they move on all patches that only creases divide.
+  /// @param places  outlives this
+  LooseVertices(VertexPlaces& places, std::span<const Index> vertices, const Array<Vec3>& points);
+
+  [[nodiscard]] bool empty() const noexcept { return held_.empty(); }
+
+  /// Holds those again that are where they were.
+  /// @return the others
+  std::vector<Index> holdUnmoved(const Array<Vec3>& points);
+
+ private:
+  struct Held {
+    Index vertex;
+    Freedom freedom;
+    Index simplex;
+    Vec3 point;
+  };
+  VertexPlaces& places_;
+  std::vector<Held> held_;
+};
+
+// Scaled Jacobians and certificates of some cells, straight or curved.
+
+/// Calls use(cell, CellState) for the cells of a list.
+/// @param curved  in place of the cells of the mesh, or null
+template <class Use>
+void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
+               CurvedCells::Scratch& scratch, const Use& use) {
+  if (curved != nullptr) {
+    for (const Index cell : list) use(cell, curved->stateOf(mesh.points, cell, scratch));
+    return;
+  }
+  static const mesh::MeasureCells measure = mesh::measuresOfCells().back();
+  mesh::CellMeasures measures;
+  std::array<Hex, mesh::CellMeasures::kMost> cells;
+  for (std::size_t begin = 0; begin < list.size(); begin += mesh::CellMeasures::kMost) {
+    const std::size_t n = std::min(mesh::CellMeasures::kMost, list.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) cells[i] = mesh.cells[list[begin + i]];
+    measure(mesh.points.data(), std::span(cells).first(n), measures);
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool certified = measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
+      use(list[begin + i], CellState{measures.scaled[i], certified});
+    }
+  }
+}
+
+/// What is kept of the state of a cell: its scaled Jacobian, or less than any if it is not
+/// certified.
+[[nodiscard]] inline double certifiedQuality(const CellState& state) noexcept {
+  constexpr double kNotCertified = -2;
+  return state.certified ? state.scaled : kNotCertified;
+}
+[[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
+
+// From vertex to vertex, many at a time: cells become positive, then the worst ones better, then
+// all.
 
 class Sweeps {
  public:

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <base/pair.hpp>
+#include <base/lanes.hpp>
 #include <lattice/swept_line.hpp>
 
 namespace hexhex::lattice {

@@ -2,7 +2,7 @@
 #include <bit>
 #include <cmath>
 
-#include <base/pair.hpp>
+#include <base/lanes.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
 namespace hexhex::lattice {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <base/pair.hpp>
+#include <base/lanes.hpp>
 #include <lattice/triangle_cells.hpp>
 
 namespace hexhex::lattice {

@@ -15,8 +15,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <mesh/big_integer.hpp>
-#include <mesh/twofold.hpp>
+#include <mesh/exact_numbers.hpp>
 
 namespace hexhex::mesh {
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -78,6 +79,7 @@ struct JacobianQuotient {
   /// Bounds a quotient that was made or halved.
   /// @param rounding  of coefficients of the two squares, relative to the largest of each
   void close(double rounding) {
+    assert(rounding >= 0 && rounding < 1 && error >= 0);
     const double least = leastOf(determinant) - error;
     const double lengthsError = rounding * largestOf(lengths);
     if (!(least > 0)) {

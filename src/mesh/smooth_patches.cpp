@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <compare>
 #include <numbers>
@@ -74,6 +75,7 @@ SmoothPatches numbered(DisjointSets& sets, std::size_t quads) {
   patches.patchOf.resize(quads);
   for (std::size_t q = 0; q < quads; ++q) {
     const Index first = sets.find(static_cast<Index>(q));
+    assert(first <= q);  // so that it has its number
     patches.patchOf[q] = first == q ? patches.count++ : patches.patchOf[first];
   }
   return patches;

@@ -4,6 +4,7 @@
 // along the curve that visits one half before the other. Unlike along Hilbert's curve, cuts follow
 // the shape of the object.
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 #include <parts/partition.hpp>
@@ -74,6 +75,7 @@ void cut(std::span<PartitionElement> elements, std::span<std::uint32_t> partOf,
   const auto cells =
       static_cast<std::uint64_t>(lattice::UInt128{sumOfCells(elements)} * half / parts);
   const std::size_t front = bringToFront(elements, longestAxis(elements), cells);
+  assert(front <= elements.size());
   cut(elements.first(front), partOf.first(front), firstPart, half);
   cut(elements.subspan(front), partOf.subspan(front), firstPart + half, parts - half);
 }
@@ -81,6 +83,7 @@ void cut(std::span<PartitionElement> elements, std::span<std::uint32_t> partOf,
 }  // namespace
 
 std::vector<std::uint32_t> bisect(std::vector<PartitionElement>& elements, std::uint32_t parts) {
+  assert(parts > 0);
   std::vector<std::uint32_t> partOf(elements.size());
   cut(elements, partOf, 0, parts);
   return partOf;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include <parts/graph_cut.hpp>
+#include <parts/partition.hpp>
 #if __has_include(<dlfcn.h>)
 #define HEXHEX_LOADS_LIBRARIES 1
 #include <dlfcn.h>

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <vector>
 
 #include <adjacency/cell_faces.hpp>
@@ -143,6 +144,7 @@ std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> arou
 }  // namespace
 
 void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
+  assert(std::ranges::is_sorted(around, {}, &BorderCell::number));
   const std::vector<bool> isShared = shareVertices(part, around);
   std::vector<SharedSide> sides;
   for (std::size_t c = 0; c < part.ownCells; ++c) {

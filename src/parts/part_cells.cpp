@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <cassert>
+#include <optional>
+#include <utility>
 
 #include <parts/part_cells.hpp>
 
 #include <base/workspaces.hpp>
+#include <sweep/tet_positions.hpp>
 
 namespace hexhex::parts {
 
@@ -14,26 +18,36 @@ constexpr std::size_t kFewTets = 8;
 }  // namespace
 
 template <class Id>
-PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts& counts,
-                       const Partition& partition, atlas::Charts& charts,
-                       std::span<const Index> chartOf, const atlas::GridRegion& region,
-                       Stage& stage)
+PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts counts,
+                       const Partition& partition, atlas::Charts charts)
     : map_(map),
-      counts_(counts),
+      counts_(std::move(counts)),
       partition_(partition),
-      charts_(charts),
-      region_(region),
-      stage_(stage) {
-  for (const Index tet : region.tets) charts_.chart[tet] = chartOf[tet];
-  vertices_.emplace(map, charts_, counts.vertices, region, stage);
-  vertices_->fill({}, stage);
-  vertices_->resolveOverlaps(stage);
-  transitions_ = atlas::markCutCells(map, charts_, region, vertices_->grid(), stage).transitions;
+      charts_(std::move(charts)),
+      chartCount_(charts_.count),
+      chartOf_(std::move(charts_.chart)) {
+  charts_.chart.assign(chartOf_.size(), atlas::Charts::kNoChart);
 }
 
 template <class Id>
-PartGrid<Id>::~PartGrid() {
+void PartGrid<Id>::enter(atlas::GridRegion region, Stage& stage) {
+  clear();
+  assert(std::ranges::all_of(charts_.chart,
+                             [](Index chart) { return chart == atlas::Charts::kNoChart; }));
+  region_ = std::move(region);
+  for (const Index tet : region_.tets) charts_.chart[tet] = chartOf_[tet];
+  vertices_.emplace(map_, charts_, counts_.vertices, region_, stage);
+  vertices_->fill({}, stage);
+  vertices_->resolveOverlaps(stage);
+  transitions_ = atlas::markCutCells(map_, charts_, region_, vertices_->grid(), stage).transitions;
+}
+
+template <class Id>
+void PartGrid<Id>::clear() noexcept {
+  vertices_.reset();
   for (const Index tet : region_.tets) charts_.chart[tet] = atlas::Charts::kNoChart;
+  charts_.count = chartCount_;
+  region_ = {};
 }
 
 template <class Id>
@@ -46,7 +60,7 @@ std::vector<lattice::SweptLine> PartGrid<Id>::centersOf(Index tet) const {
 }
 
 template <class Id>
-GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
+GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part, Stage& stage) const {
   const std::span<const Index> tets = partition_.tetsOf(part);
   std::vector<std::uint64_t> begin(tets.size() + 1, 0);
   for (std::size_t i = 0; i < tets.size(); ++i) {
@@ -59,7 +73,7 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
   cells.numbers.resize(count);
   cells.corners.resize(count);
   parallelForWith(
-      stage_, tets.size(), kFewTets,
+      stage, tets.size(), kFewTets,
       [&] { return atlas::CellEmitter<Id>(map_, *vertices_, transitions_, true); },
       [&](std::size_t i, atlas::CellEmitter<Id>& emitter) {
         std::uint64_t at = begin[i];
@@ -72,6 +86,7 @@ GlobalCells<Id> PartGrid<Id>::ownCells(std::uint32_t part) const {
                        cells.numbers[at++] = counts_.cells[tet] + number + k;
                      }
                    });
+        assert(at == begin[i + 1]);
       });
   return cells;
 }
@@ -114,12 +129,12 @@ void PartGrid<Id>::addNearby(std::size_t i, Surroundings& around,
 }
 
 template <class Id>
-std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
-                                                      const VertexSet* touched) const {
+std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part, const VertexSet* touched,
+                                                      Stage& stage) const {
   using Nearby = NearbyCell<Id>;
   std::vector<std::vector<Nearby>> blocks(blockCount(region_.tets.size(), kFewTets));
   parallelBlocksWith(
-      stage_, region_.tets.size(), kFewTets,
+      stage, region_.tets.size(), kFewTets,
       [&] {
         Surroundings around{
             part, atlas::CellEmitter<Id>(map_, *vertices_, transitions_, true), {}, {}};
@@ -137,5 +152,92 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part,
 
 template class PartGrid<std::uint32_t>;
 template class PartGrid<std::uint64_t>;
+
+namespace {
+
+/// The wanted vertices of one tet.
+struct OwnersVertices {
+  Index tet;
+  std::size_t begin;  ///< in the numbers
+  std::size_t end;
+};
+
+std::vector<OwnersVertices> groupByOwner(const sweep::ElementCounts& counts,
+                                         std::span<const std::uint64_t> numbers) {
+  const Array<std::uint64_t>& begin = counts.vertices.begin;
+  std::vector<OwnersVertices> groups;
+  for (std::size_t i = 0; i < numbers.size();) {
+    const auto behind = std::upper_bound(begin.begin(), begin.end(), numbers[i]);
+    std::size_t end = i;
+    while (end < numbers.size() && numbers[end] < *behind) ++end;
+    groups.push_back({static_cast<Index>(behind - begin.begin() - 1), i, end});
+    i = end;
+  }
+  return groups;
+}
+
+class Describer {
+ public:
+  Describer(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
+            std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh)
+      : map_(map), counts_(counts), numbers_(numbers), first_(first), mesh_(mesh) {}
+
+  void describe(const OwnersVertices& wanted) {
+    lines_.clear();
+    lattice::TetRasterizer(map_.exact.corners[wanted.tet], map_.exact.unit)
+        .append(lattice::kVertexGrid, lines_);
+    const lattice::SweepAxes axes = lines_.front().axes;
+    const sweep::TetPositions positions(map_, wanted.tet, axes);
+    sweep::TetNumbering(map_, counts_.vertices, wanted.tet, axes)
+        .run(lines_, [&](const sweep::VertexRun& run) {
+          if (run.owned) describe(run, wanted, positions);
+        });
+  }
+
+ private:
+  void describe(const sweep::VertexRun& run, const OwnersVertices& wanted,
+                const sweep::TetPositions& positions) {
+    const auto last = numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.end);
+    // Interior vertices are numbered in the order of the sweep, so that the next is soon found.
+    auto next = std::lower_bound(numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.begin), last,
+                                 run.first);
+    for (; next != last && *next < run.first + run.count; ++next) {
+      const auto i = static_cast<std::uint32_t>(*next - run.first);
+      const std::size_t at = first_ + static_cast<std::size_t>(next - numbers_.begin());
+      const lattice::SweptLine& line = *run.line;
+      if (run.simplex == lattice::kWholeTet) {
+        positions.alongLine(line.level, line.row,
+                            line.first + static_cast<std::int32_t>(run.offset + i), 1,
+                            &mesh_.points[at]);
+      } else {
+        mesh_.points[at] = positions.at(run.simplex, line.point(run.offset + i));
+      }
+      mesh_.generatorTet[at] = wanted.tet;
+      mesh_.generatorCorners[at] = map_.input.callersCorners(run.simplex);
+    }
+  }
+
+  const igm::PreparedMap& map_;
+  const sweep::ElementCounts& counts_;
+  std::span<const std::uint64_t> numbers_;
+  std::size_t first_;
+  HexMesh& mesh_;
+  std::vector<lattice::SweptLine> lines_;
+};
+
+}  // namespace
+
+void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
+                      std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
+                      Stage& stage) {
+  assert(std::is_sorted(numbers.begin(), numbers.end()));
+  assert(first + numbers.size() <= mesh.points.size());
+  const std::vector<OwnersVertices> groups = groupByOwner(counts, numbers);
+  constexpr std::size_t kFewGroups = 8;
+  parallelForWith(
+      stage, groups.size(), kFewGroups,
+      [&] { return Describer(map, counts, numbers, first, mesh); },
+      [&](std::size_t i, Describer& describer) { describer.describe(groups[i]); });
+}
 
 }  // namespace hexhex::parts

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <parts/partition.hpp>
@@ -15,6 +16,7 @@
 #include <atlas/charts.hpp>
 #include <atlas/cut_marks.hpp>
 #include <atlas/grid_region.hpp>
+#include <sweep/tet_counts.hpp>
 
 namespace hexhex::parts {
 
@@ -60,23 +62,31 @@ void forEachRun(const igm::PreparedMap& map, const Partition& partition, std::ui
   }
 }
 
-/// The vertices in the region of a part, in charts.
+/// The vertices in the region of one part, then of another, in charts.
 template <class Id>
 class PartGrid {
  public:
-  /// @param charts  of the whole map, but no tet is in one; likewise afterwards
-  PartGrid(const igm::PreparedMap& map, sweep::ElementCounts& counts, const Partition& partition,
-           atlas::Charts& charts, std::span<const Index> chartOf, const atlas::GridRegion& region,
-           Stage& stage);
-  ~PartGrid();
+  /// @param map     with the partition, outlives this
+  /// @param charts  of the whole map
+  PartGrid(const igm::PreparedMap& map, sweep::ElementCounts counts, const Partition& partition,
+           atlas::Charts charts);
   PartGrid(const PartGrid&) = delete;
   PartGrid& operator=(const PartGrid&) = delete;
 
-  [[nodiscard]] GlobalCells<Id> ownCells(std::uint32_t part) const;
+  [[nodiscard]] const sweep::ElementCounts& counts() const noexcept { return counts_; }
+
+  /// Makes the grid of a region, in place of what was before.
+  void enter(atlas::GridRegion region, Stage& stage);
+  /// Frees the grid.
+  void clear() noexcept;
+
+  // Of the region:
+  [[nodiscard]] GlobalCells<Id> ownCells(std::uint32_t part, Stage& stage) const;
   /// The cells of other parts in the boxes of the region, ascending.
   /// @param touched  if not null, only those with one of these vertices
   [[nodiscard]] std::vector<NearbyCell<Id>> nearbyCells(std::uint32_t part,
-                                                        const VertexSet* touched) const;
+                                                        const VertexSet* touched,
+                                                        Stage& stage) const;
 
  private:
   struct Surroundings;
@@ -86,16 +96,26 @@ class PartGrid {
   void addNearby(std::size_t i, Surroundings& around, std::vector<NearbyCell<Id>>& list) const;
 
   const igm::PreparedMap& map_;
-  const sweep::ElementCounts& counts_;
+  sweep::ElementCounts counts_;
   const Partition& partition_;
-  atlas::Charts& charts_;
-  const atlas::GridRegion& region_;
-  Stage& stage_;
+  atlas::Charts charts_;  ///< only tets of the region are in one
+  Index chartCount_;      ///< of the whole map
+  Array<Index> chartOf_;  ///< per tet, whether in the region or not
+  atlas::GridRegion region_;
   std::optional<atlas::VertexGrid<Id>> vertices_;
   atlas::CutTransitions transitions_;
 };
 
 extern template class PartGrid<std::uint32_t>;
 extern template class PartGrid<std::uint64_t>;
+
+// Where vertices lie in space that are known by global numbers alone.
+
+/// Describes vertices in some places of mesh.points, mesh.generatorTet and mesh.generatorCorners.
+/// @param numbers  of the vertices, ascending
+/// @param first    the place of the first one
+void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
+                      std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
+                      Stage& stage);
 
 }  // namespace hexhex::parts

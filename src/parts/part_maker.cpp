@@ -1,11 +1,11 @@
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <string>
 
 #include <parts/part_borders.hpp>
 #include <parts/part_cells.hpp>
 #include <parts/part_maker.hpp>
-#include <parts/part_positions.hpp>
 #include <parts/part_region.hpp>
 #include <parts/vertex_set.hpp>
 
@@ -96,14 +96,11 @@ class Maker final : public PartMaker {
         Partition partition, atlas::Charts charts, Context& context)
       : map_(map),
         options_(options),
-        counts_(std::move(counts)),
         partition_(std::move(partition)),
-        charts_(std::move(charts)),
-        chartOf_(std::move(charts_.chart)),
+        grid_(map.map, std::move(counts), partition_, std::move(charts)),
+        counts_(grid_.counts()),
         regions_(map.map, partition_, counts_.cells.back()),
-        context_(context) {
-    charts_.chart.assign(chartOf_.size(), atlas::Charts::kNoChart);
-  }
+        context_(context) {}
 
   PartsInfo info() const override {
     const TetMapView& source = map_.source;
@@ -133,13 +130,13 @@ class Maker final : public PartMaker {
     {
       // One more, which knows the owners of the vertices of the last.
       const std::uint32_t around = options_.ghostLayers + 1;
-      const atlas::GridRegion region = regions_.find(number, around);
-      const PartGrid<Id> grid(map_.map, counts_, partition_, charts_, chartOf_, region, stage);
-      own = grid.ownCells(number);
+      grid_.enter(regions_.find(number, around), stage);
+      own = grid_.ownCells(number, stage);
       vertices = VertexSet(std::span<const std::array<Id, 8>>(own.corners), stage);
-      GhostLayers<Id> ghosts(grid.nearbyCells(number, around == 1 ? &vertices : nullptr), vertices,
-                             stage);
+      GhostLayers<Id> ghosts(grid_.nearbyCells(number, around == 1 ? &vertices : nullptr, stage),
+                             vertices, stage);
       for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
+      grid_.clear();  // what follows needs the memory
     }
     Assembly assembly{part, layers, vertices, stage};
     takeOwn(assembly, std::move(own));
@@ -172,6 +169,7 @@ class Maker final : public PartMaker {
     Stage& stage = assembly.stage;
     requireNarrow(own.numbers.size(), "cells");
     requireNarrow(vertices.size(), "vertices");
+    assert(std::is_sorted(own.numbers.begin(), own.numbers.end()));
     part.globalPoints = vertices.list();
     part.ownPoints = vertices.size();
     part.ownCells = own.numbers.size();
@@ -252,6 +250,7 @@ class Maker final : public PartMaker {
     for (const std::array<Id, 8>& cell : corners) {
       Hex& hex = part.mesh.cells.emplace_back();
       for (std::size_t k = 0; k < 8; ++k) hex[k] = localOf(cell[k]);
+      assert(std::find(hex.begin(), hex.end(), kNone) == hex.end());
     }
     part.pointOwners.resize(count, part.parts);
     for (const auto& layer : layers) {
@@ -271,7 +270,6 @@ class Maker final : public PartMaker {
 
   void addTags(const Assembly& assembly) const {
     const auto& [part, layers, vertices, stage] = assembly;
-    const std::span<const Index> tets = partition_.tetsOf(part.part);
     if (!map_.source.features.empty()) {
       extraction::carryFeatures(map_.source, map_.map, cellsOf(part), part.mesh, stage);
     }
@@ -321,10 +319,9 @@ class Maker final : public PartMaker {
 
   PartsOfMap map_;
   PartOptions options_;
-  sweep::ElementCounts counts_;
   Partition partition_;
-  atlas::Charts charts_;
-  Array<Index> chartOf_;  ///< per tet
+  PartGrid<Id> grid_;
+  const sweep::ElementCounts& counts_;  ///< the grid's
   RegionFinder regions_;
   Context& context_;
 };

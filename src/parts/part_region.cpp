@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 #include <parts/part_region.hpp>
@@ -136,6 +137,7 @@ RegionFinder::RegionFinder(const igm::PreparedMap& map, const Partition& partiti
 atlas::GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
   const std::span<const Index> tets = partition_.tetsOf(part);
   const auto reach = static_cast<std::int32_t>(layers);
+  assert(entries_.empty() && queue_.empty());
   enterWhole(tets);
   for (const Index tet : tets) {
     if (const TetBlocks* const blocks = partition_.blocksOf(tet)) {
@@ -229,6 +231,7 @@ void RegionFinder::cross(Index tet, const lattice::GridBox& box) {
 /// Carries a box that may meet an inner face to the tet behind.
 void RegionFinder::through(adjacency::HalfFace halfFace, const lattice::GridBox& box) {
   const adjacency::HalfFace mate = map_.topology.mate[halfFace];
+  assert(mate != kNone);
   entryOf(adjacency::tetOf(halfFace)).faces |= bitOf(halfFace);
   entryOf(adjacency::tetOf(mate)).faces |= bitOf(mate);
   reach(adjacency::tetOf(mate), carried(map_.exact.transitions.across(halfFace), box));

@@ -1,7 +1,7 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
-#include <parts/graph_cut.hpp>
 #include <parts/partition.hpp>
 
 #include <hexhex/team.hpp>
@@ -69,6 +69,7 @@ void countCells(const igm::PreparedMap& map, const TetBlocks& blocks,
     while (count > 0) {
       const lattice::GridPoint z = line.point(first);
       const std::uint32_t run = std::min(count, blocks.cellsAhead(z, line.axes));
+      assert(blocks.blockOf(z) < blocks.count());
       counts[blocks.blockOf(z)] += run;
       first += run;
       count -= run;
@@ -148,8 +149,10 @@ void assign(const std::vector<PartitionElement>& elements, const std::vector<std
   };
   std::vector<Entry> entries;
   entries.reserve(elements.size());
+  assert(partOf.size() == elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const PartitionElement& element = elements[i];
+    assert(partOf[i] < partition.parts);
     if (element.blocks == kNone) {
       partition.ofTet[element.tet] = partOf[i];
     } else {
@@ -165,6 +168,7 @@ void assign(const std::vector<PartitionElement>& elements, const std::vector<std
     partition.tets.push_back(entry.tet);
   }
   for (std::size_t p = 0; p < partition.parts; ++p) partition.begin[p + 1] += partition.begin[p];
+  assert(partition.begin.back() == partition.tets.size());
 }
 
 }  // namespace

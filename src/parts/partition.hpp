@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,6 +42,7 @@ struct TetBlocks {
   [[nodiscard]] std::uint32_t cellsAhead(const lattice::GridPoint& z,
                                          lattice::SweepAxes axes) const noexcept {
     const std::size_t along = axes()[2];
+    assert(z[along] >= low[along]);
     return static_cast<std::uint32_t>(side - (z[along] - low[along]) % side);
   }
   /// The smallest corner of the first cell of a block.
@@ -70,6 +72,7 @@ class Partition {
 
   /// The part of a cell, by its owner and smallest corner.
   [[nodiscard]] std::uint32_t partOf(Index tet, const lattice::GridPoint& z) const noexcept {
+    assert(tet < ofTet.size());
     const std::uint32_t part = ofTet[tet];
     if (part < kSplit) return part;
     const TetBlocks& split = blocks[part - kSplit];
@@ -130,5 +133,16 @@ struct PartitionInput {
 /// @return  the part of each, in that order
 [[nodiscard]] std::vector<std::uint32_t> bisect(std::vector<PartitionElement>& elements,
                                                 std::uint32_t parts);
+
+/// By METIS or Scotch, which are loaded when they are asked for: cuts the graph of elements,
+/// weighted by cells, whose edges are weighted by the faces of cells between them, about.
+/// @return  per element: its part
+/// @throws Error InvalidArgument if the library is not there, is built for other integers, or
+/// fails;
+///         TooLarge for a graph beyond its integers
+[[nodiscard]] std::vector<std::uint32_t> cutGraph(const igm::PreparedMap& map,
+                                                  const Partition& partition,
+                                                  const std::vector<PartitionElement>& elements,
+                                                  PartitionMethod method);
 
 }  // namespace hexhex::parts

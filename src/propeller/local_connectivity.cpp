@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <span>
 
 #include <propeller/local_connectivity.hpp>
@@ -175,6 +176,7 @@ LocalConnectivity extractLocalConnectivity(const igm::PreparedMap& map,
   for (Index& configuration : local.configurationOf) {
     if (configuration == kNone) configuration = next++;
   }
+  assert(next == local.configurations.size());
   return local;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <optional>
 
@@ -34,6 +35,8 @@ class CenterOwner {
     if (line.count == 1) return {0, left ? 1U : 0U};
     if (line.count > 2 && !owns(line.inner())) return {0, 0};
     if (line.count == 2 && !left) return {1, right ? 1U : 0U};
+    // Otherwise owned centres were not consecutive.
+    assert(!left || line.count == 2 || owns(line.inner()));
     const std::uint32_t first = left ? 0 : 1;
     return {first, line.count - first - (right ? 0U : 1U)};
   }

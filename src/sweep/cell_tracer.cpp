@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -52,6 +53,7 @@ void CellTracer::fail(Index tet, const char* what) {
 
 void CellTracer::enter(Index tet, const lattice::GridPoint& z,
                        lattice::CornerMask generator) noexcept {
+  assert(generator != lattice::kNoSimplex);
   tet_ = tet;
   z_ = z;
   generator_ = generator;
@@ -218,6 +220,7 @@ bool CellTracer::endsExactlyBefore(const Segment& segment, int face) const noexc
 void CellTracer::cross(Segment& segment, int face) const {
   const adjacency::HalfFace halfFace = adjacency::halfFaceOf(segment.tet, face);
   const adjacency::HalfFace mate = topology_.mate[halfFace];
+  assert(mate != kNone);
   const Index before = segment.tet;
   segment.tet = adjacency::tetOf(mate);
   segment.entered = adjacency::localOf(mate);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -39,12 +40,14 @@ class BlockLists {
 
   /// Begins the next tet. Its items are to be appended to what this returns.
   [[nodiscard]] std::vector<Item>& next() noexcept {
+    assert(tets_ < kSweepBlock);
     if (!keep_) items_.clear();
     begins_[tets_++] = static_cast<Index>(items_.size());
     return items_;
   }
   /// Those of the last tet.
   [[nodiscard]] std::span<const Item> last() const noexcept {
+    assert(tets_ > 0);
     return std::span(items_).subspan(begins_[tets_ - 1]);
   }
   [[nodiscard]] std::span<const Item> all() const noexcept { return items_; }
@@ -68,6 +71,8 @@ class TetLists {
       : itemBegin_(tets + blockCount(tets, kSweepBlock)), blocks_(blockCount(tets, kSweepBlock)) {}
 
   void store(std::size_t block, const BlockLists<Item>& items) {
+    // Full, or the last one.
+    assert(items.begins().size() == kSweepBlock || block + 1 == blocks_.size());
     blocks_[block].assign(items.all().begin(), items.all().end());
     const auto place = itemBegin_.begin() + static_cast<std::ptrdiff_t>(block * (kSweepBlock + 1));
     *std::copy(items.begins().begin(), items.begins().end(), place) =

@@ -1,3 +1,6 @@
+#include <cassert>
+#include <numeric>
+
 #include <base/workspaces.hpp>
 #include <sweep/vertex_numbers.hpp>
 
@@ -12,6 +15,7 @@ constexpr std::array<lattice::CornerMask, 14> kBoundarySimplices = {1, 2,  4,  8
 }  // namespace
 
 std::uint64_t VertexNumbers::firstOf(Index owner, lattice::CornerMask simplex) const {
+  assert(owner + std::size_t{1} < begin.size());
   std::uint64_t first = begin[owner];
   for (Index g = generatorBegin[owner]; g < generatorBegin[owner + 1]; ++g) {
     if (generators[g].simplex == simplex) return first;
@@ -94,6 +98,9 @@ void VertexCounter::finish() {
     }
   }
   blocks_ = {};
+  assert(place == numbers_.generators.end());
+  assert(std::accumulate(numbers_.vertexCounts.begin(), numbers_.vertexCounts.end(),
+                         std::uint64_t{0}) == numbers_.count());
 }
 
 SweptVertices sweepVertices(const igm::PreparedMap& map, Stage& stage, SweepObserver* observer,

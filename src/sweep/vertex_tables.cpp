@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <string>
 
 #include <sweep/tet_positions.hpp>
@@ -60,6 +61,7 @@ void VertexTables::numberLines(Index tet, std::span<const lattice::SweptLine> sw
 void VertexTables::Line::enter(const VertexRun& run) {
   const auto first = static_cast<Index>(run.first);
   const std::uint32_t last = swept.count - 1;
+  assert(run.count > 0 && run.offset + run.count <= swept.count);
   if (run.offset == 0) left = first;
   if (run.offset + run.count == swept.count) right = first + run.count - 1;
   if (run.offset <= 1 && run.offset + run.count > 1 && last > 1) {
@@ -129,6 +131,8 @@ void VertexTables::fillTable(Index tet, const Box& box) {
   for (const Line& line : linesOf(tet)) {
     const auto level = static_cast<std::uint64_t>(line.swept.level - box.first[0]);
     const auto row = static_cast<std::uint64_t>(line.swept.row - box.first[1]);
+    assert(level < box.size[0] && row < box.size[1]);
+    assert(table[level * box.size[1] + row] == kNone);  // a line for each row
     table[level * box.size[1] + row] = number++;
   }
 }
@@ -145,6 +149,7 @@ unsigned VertexTables::occupiedSimplices(Index tet) const noexcept {
 /// The i-th vertex of a line, at grid point z.
 VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const lattice::GridPoint& z,
                                           std::uint32_t i) const {
+  assert(i < line.swept.count);
   const lattice::CornerMask simplex = line.swept.simplex(i);
   const bool isLast = i + 1 == line.swept.count;
   Index vertex = i == 0 ? line.left : (isLast ? line.right : line.inner);
@@ -155,12 +160,15 @@ VertexTables::Found VertexTables::foundOn(Index tet, const Line& line, const lat
     return {vertex, simplex};
   }
   // The tet on the other side of a face owns it.
+  assert(lattice::dimension(simplex) == 2);
   const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, lattice::oppositeCorner(simplex));
   const Index owner = adjacency::tetOf(map_.topology.mate[halfFace]);
+  assert(owner < tet);
   return {find(owner, map_.exact.transitions.across(halfFace)(z)).vertex, simplex};
 }
 
 void VertexTables::describe(const VertexDescriptions& to, Stage& stage) const {
+  assert(to.points.size() == count() && to.tets.size() == count() && to.corners.size() == count());
   parallelBlocks(
       stage, map_.topology.tetCount(), kSweepBlock,
       [&](std::size_t begin, std::size_t end, std::size_t) {

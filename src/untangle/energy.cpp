@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -56,6 +57,7 @@ struct Density {
 
 double regularized(double epsilon, double det) noexcept {
   const double root = std::hypot(epsilon, det);
+  assert(epsilon > 0 || det > 0);
   return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
 }
 
@@ -144,6 +146,8 @@ Height Energy::at(const Vector& x, double epsilon) const {
 }
 
 Height Energy::at(const Vector& x, double epsilon, Vector& gradient) {
+  assert(static_cast<std::size_t>(x.size()) == unknownCount());
+  assert(forces_.size() == problem_.elements.size());
   const Height height = collect([&](std::size_t index, const Element& element, Height& part) {
     const Eigen::Matrix3d j = jacobian(problem_, element, x.data());
     const Density density(j, j.determinant(), epsilon);

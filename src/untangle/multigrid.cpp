@@ -1,3 +1,4 @@
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -127,6 +128,7 @@ void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward)
         rest -= it.value() * x[it.row()];
       }
     }
+    assert(diagonal > 0);
     x[i] = rest / diagonal;
   }
 }
@@ -134,6 +136,7 @@ void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward)
 }  // namespace
 
 Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Context& context) {
+  assert(matrix.rows() == matrix.cols());
   double share = kStrong;
   while (matrix.rows() > (levels_.empty() ? mostFactored : kCoarsest)) {
     context.throwIfCancelled();
@@ -154,6 +157,7 @@ Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Conte
 }
 
 Vector Multigrid::cycle(std::size_t level, const Vector& v) const {
+  assert(level == levels_.size() || levels_[level].matrix.rows() == v.size());
   if (level == levels_.size()) return factor_.solve(v);
   const auto& [matrix, prolongation] = levels_[level];
   Vector x = Vector::Zero(v.size());

@@ -5,7 +5,11 @@
 #include <string>
 #include <utility>
 
+#include <hexhex/check.hpp>
+#include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
+
+#include <base/stage.hpp>
 
 namespace hexhex::verification {
 
@@ -40,5 +44,14 @@ class Comparisons {
 [[nodiscard]] inline std::string cellName(std::size_t cell) {
   return "cell " + std::to_string(cell);
 }
+
+// Does a mesh have as many faces, edges and components as its map demands? A second opinion beside
+// the proof, which looks at the mesh alone: faces and edges are what has the same vertices.
+
+/// Compares a mesh, with corners in range, with what is expected of it. Says nothing where a map is
+/// so coarse that different edges or faces have the same vertices: where cells meet themselves, or
+/// another one twice.
+void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
+                 Comparisons& comparisons);
 
 }  // namespace hexhex::verification

@@ -1,6 +1,12 @@
+#include <algorithm>
+#include <cassert>
+#include <string>
+
 #include <verify/cell_prover.hpp>
+#include <verify/comparisons.hpp>
 #include <verify/proof.hpp>
 
+#include <hexhex/error.hpp>
 #include <hexhex/stream.hpp>
 
 #include <base/workspaces.hpp>
@@ -73,6 +79,130 @@ bool isProven(const igm::PreparedMap& map, const Expectation& expected, const He
   proof.compare(0, mesh.points, stage);
   proof.compare(0, std::span<const Hex>(mesh.cells), stage);
   return proof.passed();
+}
+
+namespace {
+
+/// Calls visit(begin, end) for stretches of ascending numbers: own ones, then layers of ghosts.
+template <class Visit>
+void forEachStretch(std::span<const std::uint64_t> numbers, const Visit& visit) {
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= numbers.size(); ++i) {
+    if (i < numbers.size() && numbers[i - 1] < numbers[i]) continue;
+    visit(begin, i);
+    begin = i;
+  }
+}
+
+/// Lists the tets that own things with numbers.
+/// @param begin  per tet (+1): the first that it owns
+void addOwners(const Array<std::uint64_t>& begin, std::span<const std::uint64_t> numbers,
+               std::vector<Index>& tets, Faults& wrong) {
+  std::uint64_t first = 1;  // of the last tet
+  std::uint64_t end = 0;
+  for (const std::uint64_t number : numbers) {
+    if (first <= number && number < end) continue;
+    if (number >= begin.back()) {
+      wrong.add(number);
+      continue;
+    }
+    const auto owner = std::upper_bound(begin.begin(), begin.end(), number) - 1;
+    tets.push_back(static_cast<Index>(owner - begin.begin()));
+    first = *owner;
+    end = *(owner + 1);
+  }
+}
+
+/// @throws Error VerificationFailed if anything is wrong
+void requireNone(const Faults& wrong, std::uint32_t part, const char* what) {
+  if (wrong.count() == 0) return;
+  throw Error(ErrorCode::VerificationFailed,
+              "Part " + std::to_string(part) +
+                  " does not agree with the map: " + std::to_string(wrong.count()) + ' ' + what +
+                  ", the first with number " + std::to_string(wrong.first()) +
+                  ". This is a bug; please report it with the map.");
+}
+
+}  // namespace
+
+PartProof::PartProof(const igm::PreparedMap& map, const Expectation& expected,
+                     const sweep::ElementCounts& counts)
+    : map_(map), places_(map, counts.vertices), centers_(map.topology.tetCount(), false) {
+  centers_.begin = counts.cells;
+  if (places_.count() == expectedElements(expected).vertices &&
+      centers_.count() == expected.cells) {
+    return;
+  }
+  throw Error(ErrorCode::VerificationFailed,
+              "There are " + std::to_string(places_.count()) + " vertices and " +
+                  std::to_string(centers_.count()) + " cells, not " +
+                  std::to_string(expectedElements(expected).vertices) + " and " +
+                  std::to_string(expected.cells) +
+                  " as the map demands. This is a bug; please report it with the map.");
+}
+
+void PartProof::compare(const MeshPart& part, Stage& stage) {
+  Faults hints;
+  Faults points;
+  Faults cells;
+  assert(part.mesh.points.size() == part.globalPoints.size());
+  assert(part.mesh.cells.size() == part.globalCells.size());
+  const std::vector<Index> tets = tetsOf(part, points, cells);
+  requireNone(points, part.part, "vertices that there are not");
+  requireNone(cells, part.part, "cells that there are not");
+  places_.proveOnly(tets, stage, hints);
+  requireNone(hints, part.part, "tets with other vertices");
+  comparePoints(part, stage, points);
+  requireNone(points, part.part, "vertices in other places");
+  compareCells(part, stage, hints, cells);
+  requireNone(hints, part.part, "tets with other cells");
+  requireNone(cells, part.part, "cells with other corners");
+}
+
+/// Those that own vertices or cells.
+std::vector<Index> PartProof::tetsOf(const MeshPart& part, Faults& wrongPoints,
+                                     Faults& wrongCells) const {
+  std::vector<Index> tets;
+  addOwners(places_.begin(), part.globalPoints, tets, wrongPoints);
+  addOwners(centers_.begin, part.globalCells, tets, wrongCells);
+  std::sort(tets.begin(), tets.end());
+  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  return tets;
+}
+
+void PartProof::comparePoints(const MeshPart& part, Stage& stage, Faults& wrong) const {
+  const std::span<const std::uint64_t> numbers(part.globalPoints);
+  const std::span<const Vec3> points(part.mesh.points);
+  forEachStretch(numbers, [&](std::size_t begin, std::size_t end) {
+    places_.compare(numbers.subspan(begin, end - begin), points.subspan(begin, end - begin), stage,
+                    wrong);
+  });
+}
+
+void PartProof::compareCells(const MeshPart& part, Stage& stage, Faults& hints,
+                             Faults& wrong) const {
+  Array<Hex64> cells(part.mesh.cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      const Index vertex = part.mesh.cells[c][k];
+      const bool isThere = vertex < part.globalPoints.size();
+      cells[c][k] = isThere ? part.globalPoints[vertex] : places_.count();  // no vertex
+    }
+  }
+  const std::span<const std::uint64_t> numbers(part.globalCells);
+  const std::span<const Hex64> all(cells);
+  forEachStretch(numbers, [&](std::size_t begin, std::size_t end) {
+    const NumberedCells<Hex64> stretch{numbers.subspan(begin, end - begin),
+                                       all.subspan(begin, end - begin)};
+    std::vector<Index> tets;
+    addOwners(centers_.begin, stretch.numbers, tets, wrong);
+    parallelForWith(
+        stage, tets.size(), 1,
+        [&] { return CellProver<Hex64>(map_, centers_, places_, hints, wrong); },
+        [&](std::size_t i, CellProver<Hex64>& prover) {
+          prover.prove(tets[i], stretch.from(centers_.begin[tets[i]]));
+        });
+  });
 }
 
 }  // namespace hexhex::verification

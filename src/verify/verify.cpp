@@ -7,8 +7,8 @@
 #include <string>
 
 #include <adjacency/corner_range.hpp>
+#include <verify/comparisons.hpp>
 #include <verify/match.hpp>
-#include <verify/mesh_sums.hpp>
 #include <verify/proof.hpp>
 
 #include <hexhex/error.hpp>

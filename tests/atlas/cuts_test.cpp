@@ -8,9 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <atlas/bricks.hpp>
+#include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
-#include <atlas/cut_cells.hpp>
 #include <atlas/cut_marks.hpp>
 
 #include "extract/support.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atlas/corner_resolver.hpp>
+#include <atlas/cell_emitter.hpp>
 #include <sweep/cell_tracer.hpp>
 
 #include "extract/support.hpp"

@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <igm/measures.hpp>
-#include <propeller/global_connectivity.hpp>
-#include <propeller/hex_cells.hpp>
-#include <propeller/pipeline.hpp>
+#include <propeller/propeller.hpp>
 
 #include "extract/support.hpp"
 

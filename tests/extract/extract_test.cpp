@@ -9,7 +9,7 @@
 #include <hexhex/quality.hpp>
 
 #include <base/vector3.hpp>
-#include <propeller/pipeline.hpp>
+#include <propeller/propeller.hpp>
 
 #include "extract/support.hpp"
 #include "support/error_of.hpp"

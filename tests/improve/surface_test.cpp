@@ -7,7 +7,7 @@
 
 #include <base/vector3.hpp>
 #include <improve/reference_surface.hpp>
-#include <improve/triangle_tree.hpp>
+#include <improve/surface_distance.hpp>
 #include <improve/vertex_places.hpp>
 
 #include "mesh/grid_meshes.hpp"

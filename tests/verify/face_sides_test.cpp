@@ -1,6 +1,6 @@
 // Planes in floating point against the exact predicate.
 #include <gtest/gtest.h>
-#include <verify/face_sides.hpp>
+#include <verify/lattice_places.hpp>
 
 #include <mesh/grid_meshes.hpp>
 

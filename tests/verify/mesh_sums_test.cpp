@@ -5,7 +5,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <verify/mesh_sums.hpp>
+#include <verify/comparisons.hpp>
 
 #include <hexhex/error.hpp>
 

@@ -1,6 +1,5 @@
 // The proof of parts passes those of random maps, and nothing else.
 #include <gtest/gtest.h>
-#include <verify/part_proof.hpp>
 #include <verify/proof.hpp>
 
 #include <base/parallel.hpp>

@@ -1,7 +1,8 @@
-// Integers of any size, for signs that nothing smaller decides. Simple rather than fast.
+// Exact numbers beyond doubles, for signs and conversions that these cannot decide.
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,45 @@
 #include <vector>
 
 namespace hexhex::mesh {
+
+/// high is the double nearest to the number. Sums of products of numbers around 1 are right to
+/// within 2^-98 of the sum of magnitudes per product.
+struct Twofold {
+  double high = 0;
+  double low = 0;
+};
+
+/// a + b, exactly (Knuth).
+[[nodiscard]] inline Twofold exactSum(double a, double b) noexcept {
+  const double sum = a + b;
+  const double part = sum - a;
+  return {sum, (a - (sum - part)) + (b - part)};
+}
+
+/// a b, exactly (Dekker), unless halves leave the range of doubles.
+[[nodiscard]] inline Twofold exactProduct(double a, double b) noexcept {
+  constexpr double kSplitter = 0x1p27 + 1;
+  const double aTop = kSplitter * a - (kSplitter * a - a);
+  const double bTop = kSplitter * b - (kSplitter * b - b);
+  const double aRest = a - aTop;
+  const double bRest = b - bTop;
+  const double product = a * b;
+  return {product, ((aTop * bTop - product) + aTop * bRest + aRest * bTop) + aRest * bRest};
+}
+
+/// Of doubles.
+[[nodiscard]] inline Twofold operator-(const Twofold& a, const Twofold& b) noexcept {
+  return exactSum(a.high, -b.high);
+}
+
+inline void addProduct(Twofold& sum, const Twofold& a, const Twofold& b) noexcept {
+  const Twofold product = exactProduct(a.high, b.high);
+  const Twofold high = exactSum(sum.high, product.high);
+  const double low = sum.low + (high.low + (product.low + (a.high * b.low + a.low * b.high)));
+  sum = exactSum(high.high, low);
+}
+
+// Integers of any size, for signs that nothing smaller decides. Simple rather than fast.
 
 /// Two's complement in 32-bit digits, least significant first; 0 has none.
 class BigInteger {
@@ -23,7 +63,10 @@ class BigInteger {
     const double fraction = std::frexp(value, &exponent);  // value = fraction 2^exponent
     auto mantissa = static_cast<std::int64_t>(std::ldexp(fraction, kBits));
     int rest = exponent - kBits + shift;
-    for (; rest < 0; ++rest) mantissa /= 2;  // exact: these bits are 0
+    for (; rest < 0; ++rest) {
+      assert(mantissa % 2 == 0);
+      mantissa /= 2;
+    }
     const auto bits = static_cast<std::uint64_t>(mantissa);
     digits_ = {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32U)};
     trim();
@@ -40,6 +83,7 @@ class BigInteger {
   }
 
   [[nodiscard]] BigInteger shifted(int bits) const {
+    assert(bits >= 0);
     if (digits_.empty()) return *this;
     BigInteger result;
     const auto whole = static_cast<std::size_t>(bits / 32);

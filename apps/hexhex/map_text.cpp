@@ -1,9 +1,11 @@
-#include "check_text.hpp"
+#include "map_text.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include <fmt/core.h>
 
+#include "json.hpp"
 #include "output.hpp"
 
 namespace hexhex::command {
@@ -69,6 +71,52 @@ void printExpectation(const Expectation& expected) {
   printLine("Euler characteristic", std::to_string(expected.eulerCharacteristic));
   printLine("components", std::to_string(expected.components));
   printLine("boundary components", std::to_string(expected.boundaryComponents));
+}
+
+std::string repairNotice(const RepairReport& report) {
+  std::string text = fmt::format(
+      "The map had {} in {}. It was repaired: parameters of {} were moved, by up to {:.3g}",
+      counted(report.badTets, "flipped or flat tet"), counted(report.regions.size(), "place"),
+      counted(report.movedVertices, "vertex"), report.largestMove);
+  if (report.roundedVertices > 0) {
+    text += fmt::format(", {} of them off integers before", report.roundedVertices);
+  }
+  if (report.splitEdges > 0) {
+    text += fmt::format(
+        "; {} of the tet mesh split, which added {}",
+        report.splitEdges == 1 ? "1 edge was" : fmt::format("{} edges were", report.splitEdges),
+        counted(report.addedTets, "tet"));
+  }
+  return text + ".";
+}
+
+void printRegions(const RepairReport& report) {
+  for (const RepairedRegion& region : report.regions) {
+    printLine(
+        toString(region.place),
+        fmt::format("{} near ({:.4g}, {:.4g}, {:.4g}): {} of a patch of {} moved by up to "
+                    "{:.3g}",
+                    counted(region.badTets, "bad tet"), region.position[0], region.position[1],
+                    region.position[2], counted(region.movedVertices, "vertex"),
+                    counted(region.tets, "tet"), region.largestMove));
+  }
+}
+
+Json repairAsJson(const RepairReport& report) {
+  if (!report.changed) return nullptr;
+  Json regions = Json::array();
+  for (const RepairedRegion& region : report.regions) {
+    regions.push_back({{"place", toString(region.place)},
+                       {"position", region.position},
+                       {"bad_tets", region.badTets},
+                       {"tets", region.tets},
+                       {"moved_vertices", region.movedVertices},
+                       {"largest_move", region.largestMove}});
+  }
+  return {{"bad_tets", report.badTets},         {"moved_vertices", report.movedVertices},
+          {"largest_move", report.largestMove}, {"rounded_vertices", report.roundedVertices},
+          {"split_edges", report.splitEdges},   {"added_tets", report.addedTets},
+          {"seconds", report.seconds},          {"regions", std::move(regions)}};
 }
 
 }  // namespace hexhex::command

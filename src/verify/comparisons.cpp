@@ -3,7 +3,7 @@
 #include <string>
 
 #include <adjacency/hex_topology.hpp>
-#include <verify/mesh_sums.hpp>
+#include <verify/comparisons.hpp>
 #include <verify/proof.hpp>
 
 namespace hexhex::verification {

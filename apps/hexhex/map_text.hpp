@@ -1,11 +1,23 @@
-// What a repair did, for people and for reports.
+// What people are told of maps: a CheckReport, an Expectation, a RepairReport.
 #pragma once
+
+#include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <hexhex/check.hpp>
 #include <hexhex/repair.hpp>
 
 namespace hexhex::command {
+
+/// Prints what the map consists of.
+void printMap(const CheckReport& report);
+
+/// Prints what is wrong with it, and where most.
+void printDefects(const CheckReport& report);
+
+/// Prints the numbers that a mesh can be compared with.
+void printExpectation(const Expectation& expected);
 
 /// "The map had 21 flipped or flat tets in 3 places. It was repaired: ..."
 [[nodiscard]] std::string repairNotice(const RepairReport& report);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include <verify/half_diagonals.hpp>
+#include <verify/cell_prover.hpp>
 
 namespace hexhex::verification {
 

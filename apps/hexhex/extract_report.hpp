@@ -1,4 +1,5 @@
-// The machine-readable report of an extraction. docs/report.md explains every key.
+// What `hexhex extract` says of a mesh, for people and for machines. docs/report.md explains every
+// key of the JSON.
 #pragma once
 
 #include <array>
@@ -8,11 +9,14 @@
 #include <string>
 #include <vector>
 
+#include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
+#include <hexhex/partial.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/survey.hpp>
+#include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
 #include "extract_parts.hpp"
@@ -59,12 +63,23 @@ struct ExtractionRecord {
   std::optional<PartsRecord> meshParts;      ///< of a mesh that was written in parts
 };
 
-[[nodiscard]] const char* engineName(Engine engine) noexcept;
-
 /// The report as JSON text, ending with a line break.
 [[nodiscard]] std::string reportAsJson(const ExtractionRecord& record);
 
-/// The largest amount of memory that this process has used so far, in bytes.
-[[nodiscard]] std::uint64_t peakMemory();
+/// What is unusual, on the standard error output.
+void printWarnings(const ExtractionRecord& record, const TetMap& map);
+
+/// A line for each thing that is worth knowing.
+void printSummary(const ExtractionRecord& record);
+
+/// What a partial extraction left out: counts, and the places of the largest holes, on the standard
+/// output.
+void printPartial(const PartialMesh& partial);
+
+/// The report of a partial extraction, with all holes, as JSON text that ends with a line break;
+/// docs/report.md explains the keys.
+/// @param problem  why there is no whole mesh
+[[nodiscard]] std::string partialReportAsJson(const PartialMesh& partial, const Error& problem,
+                                              int scale);
 
 }  // namespace hexhex::command
