@@ -90,7 +90,7 @@ void requireSingularities(const IrregularEdges& expected, const TetMap& map, Con
     throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
   }
   adjacency::addStars(topology, stage);
-  const EdgeFans edges(topology);
+  const adjacency::EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = map.parameters;
   if (irregularEdges(edges, topology.tets, parameters) != expected) {
     throw Error(ErrorCode::Internal,

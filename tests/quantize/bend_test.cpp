@@ -133,7 +133,7 @@ TEST(Bend, FindsEdgesThatAreWoundTwice) {
   topology.pointCount = map.points.size();
   ASSERT_TRUE(adjacency::matchFaces(topology, stage));
   adjacency::addStars(topology, stage);
-  const IrregularEdges irregular = irregularEdges(EdgeFans(topology), topology.tets,
+  const IrregularEdges irregular = irregularEdges(adjacency::EdgeFans(topology), topology.tets,
                                                   std::span<const TetParameters>(map.parameters));
   EXPECT_EQ(irregular.begin()->second, 8);
   EXPECT_TRUE(tetsAtOtherTurns(topology, irregular, map.parameters, stage).empty());

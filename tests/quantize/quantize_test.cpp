@@ -256,7 +256,7 @@ TEST(Quantize, TagsAndSingularEdgesGoToBothHalvesOfASplitEdge) {
     BentMap bent = splitAt(map, edge);
     const SeamlessMap seamless = makeSeamless(map, {1e-5, 1e-5}, context);
     const IrregularEdges irregular =
-        irregularEdges(EdgeFans(seamless.topology), seamless.topology.tets,
+        irregularEdges(adjacency::EdgeFans(seamless.topology), seamless.topology.tets,
                        std::span<const lattice::LatticeTet>(seamless.corners));
     const QuantizedMap result = finishQuantization(irregular, map, bent, {}, context);
     const Expectation after = check(result.map).expected;

@@ -155,7 +155,7 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
       }
     }
   }
-  for (const adjacency::EdgeCorner& at : map.featureEdges) {
+  for (const adjacency::TetEdge& at : map.featureEdges) {
     const Tet& tet = problem.tets[at.tet];
     problem.keptEdges.insert(pairOf(tet[at.corner0], tet[at.corner1]));
   }

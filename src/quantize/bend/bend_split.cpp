@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 
+#include <adjacency/edge_fan.hpp>
 #include <quantize/bend/bend_split.hpp>
 #include <quantize/bend/edge_turns.hpp>
 
@@ -11,55 +12,45 @@ namespace hexhex::quantization {
 namespace {
 
 /// How many coordinates of an edge's inner points are fixed, by what is around the edge.
-class EdgeReader {
- public:
-  EdgeReader(const BendProblem& problem, const adjacency::TetTopology& topology)
-      : problem_(problem), topology_(topology) {}
-
-  int fixedCount(Index tet, lattice::CornerMask edge) {
-    axes_ = 0;
-    const int first = std::countr_zero(unsigned{edge} ^ lattice::kWholeTet);
-    if (!turn(tet, edge, first)) turn(tet, edge, adjacency::otherFaceAtEdge(edge, first));
-    return std::popcount(axes_);
-  }
-
- private:
-  /// @return whether the turn came back to where it began
-  bool turn(Index tet, lattice::CornerMask edge, int face) {
-    lattice::Transition chart;
-    adjacency::EdgeTurn turn(topology_, tet, edge, face);
-    while (turn.next() != kNone) {
-      chart = problem_.transitions[turn.out()] * chart;
-      turn.step();
-      if (turn.tet() != tet) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        const lattice::Direction d = lattice::direction(axis, 1);
-        if (chart(d) != d) axes_ |= 1U << axis;
-      }
-      return true;
+int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topology, Index tet,
+               lattice::CornerMask edge) {
+  lattice::AxisSet axes = 0;  // in the chart of the tet
+  const auto addPlanes = [&](Index t, lattice::CornerMask ends, const lattice::Transition& chart) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace h = adjacency::halfFaceOf(t, face);
+      const BoundaryPlane& plane = problem.planes[h];
+      if (lattice::contains(ends, face) || !topology.isBoundary(h) || plane.axis < 0) continue;
+      axes |= lattice::imageOf(1U << plane.axis, chart.rotation.inverse());
     }
-    const BoundaryPlane& plane = problem_.planes[turn.out()];
-    if (plane.axis >= 0) axes_ |= lattice::imageOf(1U << plane.axis, chart.rotation.inverse());
-    return false;
+  };
+  addPlanes(tet, edge, {});
+  const auto loop = adjacency::visitAroundEdge(
+      topology, tet, edge, lattice::Transition{},
+      [&](const lattice::Transition& chart, adjacency::HalfFace out) {
+        return problem.transitions[out] * chart;
+      },
+      [&](const auto& turn, const lattice::Transition& chart) {
+        addPlanes(turn.tet(), turn.edge(), chart);
+        return true;
+      });
+  for (int axis = 0; axis < 3; ++axis) {
+    const lattice::Direction d = lattice::direction(axis, 1);
+    if (loop && (*loop)(d) != d) axes |= 1U << axis;
   }
-
-  const BendProblem& problem_;
-  const adjacency::TetTopology& topology_;
-  lattice::AxisSet axes_ = 0;  ///< in the chart of the tet
-};
+  return std::popcount(axes);
+}
 
 /// Edges whose middles are freer than both of their ends.
 std::vector<SplitEdge> freeingEdges(const BendProblem& problem,
                                     const adjacency::TetTopology& topology,
                                     const VertexUnknowns& unknowns, std::span<const Index> tets) {
-  EdgeReader reader(problem, topology);
   std::vector<SplitEdge> edges;
   for (const Index t : tets) {
     forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, lattice::CornerMask corners) {
       const int ends =
           std::min(std::popcount(unknowns.fixed[edge[0]]), std::popcount(unknowns.fixed[edge[1]]));
       if (problem.keptEdges.contains(edge)) return;
-      if (ends > 0 && reader.fixedCount(t, corners) < ends) edges.push_back(edge);
+      if (ends > 0 && fixedCount(problem, topology, t, corners) < ends) edges.push_back(edge);
     });
   }
   sortOut(edges);

@@ -13,7 +13,8 @@ namespace hexhex::quantization {
 
 /// @tparam Corners  as in quartersAround()
 template <class Corners>
-[[nodiscard]] IrregularEdges irregularEdges(const EdgeFans& edges, std::span<const Tet> tets,
+[[nodiscard]] IrregularEdges irregularEdges(const adjacency::EdgeFans& edges,
+                                            std::span<const Tet> tets,
                                             std::span<const Corners> map) {
   const std::vector<int> quarters = quartersAround(edges, map);
   IrregularEdges irregular;

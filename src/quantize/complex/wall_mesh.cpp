@@ -59,36 +59,22 @@ void WallMesh::keepEdge(Index v, Index w) {
   isHeld[v] = isHeld[w] = true;
 }
 
-void WallTurn::step() noexcept {
-  const adjacency::HalfFace in = mesh_.mate[out()];
-  const Tet& from = mesh_.tets[edge_.tet];
-  const Index last = from[ahead()];
-  const Index tet = adjacency::tetOf(in);
-  edge_ = {tet, mesh_.cornerOf(tet, from[edge_.corner0]), mesh_.cornerOf(tet, from[edge_.corner1])};
-  face_ = mesh_.cornerOf(tet, last);
-}
-
-std::vector<WallMesh::Around> WallMesh::tetsAround(const TetEdge& edge,
+std::vector<WallMesh::Around> WallMesh::tetsAround(const adjacency::TetEdge& at,
                                                    const lattice::LatticePoint& u) const {
-  std::vector<Around> ring = {{edge, u}};
-  const auto walk = [&](int face) {
-    WallTurn turn(*this, edge, face);
-    lattice::LatticePoint here = u;
-    while (!turn.isAtBoundary()) {
-      here = change[turn.out()](here);
-      turn.step();
-      if (turn.edge().tet == edge.tet) return true;
-      ring.push_back({turn.edge(), here});
-    }
-    return false;
-  };
-  int face = 0;
-  while (lattice::contains(edge.mask(), face)) ++face;
-  if (!walk(face)) walk(adjacency::otherFaceAtEdge(edge.mask(), face));
+  const Index v = tets[at.tet][at.corner0];
+  const Index w = tets[at.tet][at.corner1];
+  std::vector<Around> ring = {{at, u}};
+  adjacency::visitAroundEdge(
+      *this, at.tet, at.mask(), u,
+      [&](const lattice::LatticePoint& here, adjacency::HalfFace out) { return change[out](here); },
+      [&](const auto& turn, const lattice::LatticePoint& here) {
+        ring.push_back({edge(turn.tet(), v, w), here});
+        return true;
+      });
   return ring;
 }
 
-Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value) {
+Index WallMesh::split(const adjacency::TetEdge& edge, std::size_t axis, std::int64_t value) {
   const auto ring = tetsAround(
       edge, pointBetween(at(edge.tet, edge.corner0), at(edge.tet, edge.corner1), axis, value));
   const auto middle = static_cast<Index>(vertexCount());
@@ -245,7 +231,7 @@ WallMesh::Found WallMesh::find(Index v, Index w, Index tet) const {
     const auto has = [&](Index vertex) {
       return std::find(tets[t].begin(), tets[t].end(), vertex) != tets[t].end();
     };
-    if (has(v) && has(w)) return {TetEdge{t, cornerOf(t, v), cornerOf(t, w)}, kNone};
+    if (has(v) && has(w)) return {edge(t, v, w), kNone};
     for (Index p = firstPart_[t]; p != kNone; p = parts_[p].next) {
       const Part& part = parts_[p];
       if ((part.kept == v && part.given == w) || (part.kept == w && part.given == v)) {

@@ -7,23 +7,12 @@
 #include <set>
 #include <vector>
 
+#include <adjacency/edge_fan.hpp>
 #include <quantize/seamless/seamless_map.hpp>
 
 #include <hexhex/error.hpp>
 
 namespace hexhex::quantization {
-
-/// An edge of the mesh as seen from a tet: two of its corners.
-struct TetEdge {
-  Index tet;
-  std::uint8_t corner0;
-  std::uint8_t corner1;
-
-  [[nodiscard]] lattice::CornerMask mask() const noexcept {
-    return static_cast<lattice::CornerMask>(lattice::cornerBit(corner0) |
-                                            lattice::cornerBit(corner1));
-  }
-};
 
 /// The vertices of an edge, in ascending order.
 using VertexPair = std::array<Index, 2>;
@@ -58,6 +47,11 @@ class WallMesh {
     return static_cast<std::uint8_t>(adjacency::localCorner(tets[tet], vertex));
   }
 
+  /// An edge by its vertices, of a tet that contains it.
+  [[nodiscard]] adjacency::TetEdge edge(Index tet, Index v, Index w) const noexcept {
+    return {tet, cornerOf(tet, v), cornerOf(tet, w)};
+  }
+
   /// Marks a triangle, on both sides.
   void markWall(adjacency::HalfFace h) {
     isWall[h] = true;
@@ -71,7 +65,7 @@ class WallMesh {
   /// lies between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
   /// @throws TooThinForWalls if rounding leaves nothing of a part
-  Index split(const TetEdge& edge, std::size_t axis, std::int64_t value);
+  Index split(const adjacency::TetEdge& edge, std::size_t axis, std::int64_t value);
 
   /// Moves a vertex along an axis of its tet's chart, into a plane close by, so that no flat tets
   /// arise where a wall passes it.
@@ -82,7 +76,7 @@ class WallMesh {
   /// The edge between two vertices, in a part of a tet of which it was once an edge; or the vertex
   /// that has split it.
   struct Found {
-    std::optional<TetEdge> edge;
+    std::optional<adjacency::TetEdge> edge;
     Index middle = kNone;
   };
   [[nodiscard]] Found find(Index v, Index w, Index tet) const;
@@ -120,10 +114,10 @@ class WallMesh {
   };
   /// A tet at an edge, and a point of the edge in its chart.
   struct Around {
-    TetEdge edge;
+    adjacency::TetEdge edge;
     lattice::LatticePoint point;
   };
-  [[nodiscard]] std::vector<Around> tetsAround(const TetEdge& edge,
+  [[nodiscard]] std::vector<Around> tetsAround(const adjacency::TetEdge& edge,
                                                const lattice::LatticePoint& u) const;
   /// A tet at a vertex that is moved, and by what in its chart.
   struct MovedCorner {
@@ -141,32 +135,6 @@ class WallMesh {
   std::vector<Index> moved_;  ///< per tet: its place in a list, while one is made; else kNone
   std::vector<Part> parts_;
   std::vector<Index> firstPart_;  ///< per tet
-};
-
-/// Walks around an edge of a WallMesh through its tets.
-class WallTurn {
- public:
-  /// @param face  at the edge, through which it leaves the tet first
-  WallTurn(const WallMesh& mesh, const TetEdge& edge, int face) noexcept
-      : mesh_(mesh), edge_(edge), face_(face) {}
-
-  [[nodiscard]] const TetEdge& edge() const noexcept { return edge_; }
-  /// The half-face that it leaves the tet through.
-  [[nodiscard]] adjacency::HalfFace out() const noexcept {
-    return adjacency::halfFaceOf(edge_.tet, face_);
-  }
-  [[nodiscard]] bool isAtBoundary() const noexcept { return mesh_.isBoundary(out()); }
-  /// The corner that is on that face, beside the edge.
-  [[nodiscard]] std::size_t ahead() const noexcept {
-    return static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge_.mask(), face_));
-  }
-  /// Enters the next tet.
-  void step() noexcept;
-
- private:
-  const WallMesh& mesh_;
-  TetEdge edge_;
-  int face_;
 };
 
 }  // namespace hexhex::quantization

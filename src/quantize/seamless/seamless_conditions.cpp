@@ -133,23 +133,22 @@ std::vector<Crossing> crossingsAt(Index vertex, const adjacency::TetTopology& to
 
 }  // namespace
 
-SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology, const EdgeFans& edges,
-                               const CutGraph& graph, const Alignment& alignment)
+SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology,
+                               const adjacency::EdgeFans& edges, const CutGraph& graph,
+                               const Alignment& alignment)
     : topology_(topology), graph_(graph) {
   numberCutPieces(edges);
   numberPlanes(alignment);
 }
 
-void SharedUnknowns::numberCutPieces(const EdgeFans& edges) {
+void SharedUnknowns::numberCutPieces(const adjacency::EdgeFans& edges) {
   // Across an edge with two triangles of the cut, translations are the same, unless it is singular.
   DisjointSets sets(topology_.mate.size());
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     std::vector<std::pair<adjacency::HalfFace, lattice::CornerMask>> cuts;
     for (const adjacency::EdgeCorner& at : edges(edge)) {
-      const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
-                                                         lattice::cornerBit(at.corner1));
       forEachFaceAt(at, [&](adjacency::HalfFace h) {
-        if (graph_.isCut[h]) cuts.emplace_back(h, ends);
+        if (graph_.isCut[h]) cuts.emplace_back(h, at.mask());
       });
     }
     if (cuts.size() != 4 || edges.isBoundary(edge)) continue;
