@@ -1,6 +1,7 @@
 // The tets around an edge: the one walk from tet to tet, and a table of all edges.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -83,8 +84,8 @@ class EdgeTurn {
 /// @param carry  carry(value, half-face): the value beyond
 /// @return what the value is after a whole turn; nothing without one
 template <class Mesh, class T, class Carry, class Visit>
-std::optional<T> visitAroundEdge(const Mesh& mesh, Index tet, lattice::CornerMask edge,
-                                 const T& start, const Carry& carry, const Visit& visit) {
+std::optional<T> visitAroundEdge(const Mesh& mesh, Index tet, lattice::CornerMask edge, T start,
+                                 const Carry& carry, const Visit& visit) {
   const int first = otherFaceAtEdge(edge, -1);
   for (const int face : {first, otherFaceAtEdge(edge, first)}) {
     EdgeTurn turn(mesh, tet, edge, face);
@@ -97,6 +98,20 @@ std::optional<T> visitAroundEdge(const Mesh& mesh, Index tet, lattice::CornerMas
     }
   }
   return std::nullopt;
+}
+
+/// All tets at an edge, ascending.
+template <class Mesh>
+std::vector<Index> tetsAround(const Mesh& mesh, Index tet, lattice::CornerMask edge) {
+  std::vector<Index> tets = {tet};
+  visitAroundEdge(
+      mesh, tet, edge, 0, [](int nothing, HalfFace /*out*/) { return nothing; },
+      [&tets](const auto& turn, int /*nothing*/) {
+        tets.push_back(turn.tet());
+        return true;
+      });
+  std::sort(tets.begin(), tets.end());
+  return tets;
 }
 
 /// The edges of a tet mesh, each with the tets around it in ascending order.

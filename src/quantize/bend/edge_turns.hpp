@@ -28,7 +28,7 @@ template <class Corners>
 
 /// Both halves of an edge turn as it did.
 /// @param middle  a new vertex
-void splitIrregular(const SplitEdge& edge, Index middle, IrregularEdges& irregular);
+void splitIrregular(const tetmap::VertexPair& edge, Index middle, IrregularEdges& irregular);
 
 /// Tets at edges around which a map turns otherwise than expected, ascending. Its boundary
 /// triangles lie along planes of the grid, so that it turns by multiples of a right angle. Needs
