@@ -4,6 +4,7 @@
 #include <adjacency/edge_fan.hpp>
 #include <quantize/bend/bend_split.hpp>
 #include <quantize/bend/edge_turns.hpp>
+#include <tetmap/freedom.hpp>
 #include <tetmap/mutable_tets.hpp>
 
 #include <base/vector3.hpp>
@@ -15,13 +16,13 @@ namespace {
 /// How many coordinates of an edge's inner points are fixed, by what is around the edge.
 int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topology, Index tet,
                lattice::CornerMask edge) {
-  lattice::AxisSet axes = 0;  // in the chart of the tet
+  tetmap::FixedAxes fixed;  // in the chart of the tet
   const auto addPlanes = [&](Index t, lattice::CornerMask ends, const lattice::Transition& chart) {
     for (int face = 0; face < 4; ++face) {
       const adjacency::HalfFace h = adjacency::halfFaceOf(t, face);
       const BoundaryPlane& plane = problem.planes[h];
       if (lattice::contains(ends, face) || !topology.isBoundary(h) || plane.axis < 0) continue;
-      axes |= lattice::imageOf(1U << plane.axis, chart.rotation.inverse());
+      fixed.addPlane(plane.axis, chart.rotation);
     }
   };
   addPlanes(tet, edge, {});
@@ -34,11 +35,8 @@ int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topolog
         addPlanes(turn.tet(), turn.edge(), chart);
         return true;
       });
-  for (int axis = 0; axis < 3; ++axis) {
-    const lattice::Direction d = lattice::direction(axis, 1);
-    if (loop && (*loop)(d) != d) axes |= 1U << axis;
-  }
-  return std::popcount(axes);
+  if (loop) fixed.addTurn(loop->rotation);
+  return std::popcount(fixed.axes());
 }
 
 /// Edges whose middles are freer than both of their ends.
