@@ -1,6 +1,6 @@
 #include <atomic>
 
-#include <adjacency/tet_topology.hpp>
+#include <adjacency/edge_fan.hpp>
 
 namespace hexhex::adjacency {
 
@@ -58,15 +58,10 @@ namespace {
 template <class Visit>
 void visitOthersAround(const TetTopology& topology, Index tet, lattice::CornerMask edge,
                        const Visit& visit) {
-  const int first = otherFaceAtEdge(edge, -1);
-  // In one direction, and from a boundary in the other, too.
-  for (const int face : {first, otherFaceAtEdge(edge, first)}) {
-    EdgeTurn turn(topology, tet, edge, face);
-    while (turn.next() != kNone) {
-      turn.step();
-      if (turn.tet() == tet || !visit(turn.tet())) return;
-    }
-  }
+  struct Nothing {};
+  visitAroundEdge(
+      topology, tet, edge, Nothing{}, [](Nothing nothing, HalfFace /*out*/) { return nothing; },
+      [&visit](const auto& turn, Nothing /*nothing*/) { return visit(turn.tet()); });
 }
 
 }  // namespace

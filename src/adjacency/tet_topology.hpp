@@ -41,6 +41,17 @@ using HalfFace = std::uint32_t;
   return low | (high << 1);
 }
 
+/// An edge as a tet at it has it: its corners at the edge's ends.
+struct TetEdge {
+  Index tet;
+  std::uint8_t corner0;
+  std::uint8_t corner1;
+
+  [[nodiscard]] constexpr lattice::CornerMask mask() const noexcept {
+    return static_cast<lattice::CornerMask>(1U << corner0 | 1U << corner1);
+  }
+};
+
 struct TetTopology {
   std::span<const Tet> tets;  ///< the caller's array
   std::size_t pointCount = 0;
@@ -62,6 +73,11 @@ struct TetTopology {
   /// Position of a vertex in a tet that contains it.
   [[nodiscard]] int localCorner(Index tet, Index vertex) const noexcept {
     return static_cast<int>(adjacency::localCorner(tets[tet], vertex));
+  }
+  /// An edge by its vertices, of a tet that contains it.
+  [[nodiscard]] TetEdge edge(Index tet, Index v, Index w) const noexcept {
+    return {tet, static_cast<std::uint8_t>(localCorner(tet, v)),
+            static_cast<std::uint8_t>(localCorner(tet, w))};
   }
   /// The same simplex (given by corners of tet `from`) as corners of tet `to`, which contains it.
   [[nodiscard]] lattice::CornerMask translated(lattice::CornerMask mask, Index from,
@@ -158,12 +174,9 @@ void addStars(TetTopology& topology, Stage& stage);
 /// Needs addStars().
 [[nodiscard]] std::uint64_t countEdges(const TetTopology& topology, Stage& stage);
 
-/// One tet at an edge: its corners at the edge's ends.
-struct EdgeCorner {
+/// One tet at an edge whose smaller vertex comes first.
+struct EdgeCorner : TetEdge {
   Index other;  ///< the edge's larger vertex
-  Index tet;
-  std::uint8_t corner0;  ///< at the smaller vertex
-  std::uint8_t corner1;  ///< at the larger vertex
 };
 
 /// Calls visit(w, span of EdgeCorner) for each edge (v, w), v < w, in ascending order of w, with
@@ -177,7 +190,7 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
     const Tet& tet = topology.tets[corner / 4];
     for (std::uint8_t i = 0; i < 4; ++i) {
       if (tet[i] > v) {
-        scratch.push_back({tet[i], corner / 4, static_cast<std::uint8_t>(corner % 4), i});
+        scratch.push_back({{corner / 4, static_cast<std::uint8_t>(corner % 4), i}, tet[i]});
       }
     }
   }
@@ -193,58 +206,6 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
 /// The boundary faces among the two faces of each tet at an edge: 0 inside, 2 on the boundary.
 [[nodiscard]] std::size_t boundaryFacesAt(const TetTopology& topology,
                                           std::span<const EdgeCorner> fan);
-
-/// The half-face of a tet through which a walk around the edge (two corners) leaves that came in
-/// through half-face `entered`: the other face at the edge.
-[[nodiscard]] constexpr int otherFaceAtEdge(lattice::CornerMask edge, int entered) noexcept {
-  for (int face = 0; face < 4; ++face) {
-    if (!lattice::contains(edge, face) && face != entered) return face;
-  }
-  return entered;
-}
-
-/// From tet to tet around an edge.
-class EdgeTurn {
- public:
-  /// @param edge  two corners of the tet
-  /// @param face  at the edge, through which it goes first
-  EdgeTurn(const TetTopology& topology, Index tet, lattice::CornerMask edge, int face) noexcept
-      : topology_(topology),
-        tet_(tet),
-        edge_(edge),
-        out_(halfFaceOf(tet, face)),
-        ahead_(topology.tets[tet][static_cast<std::size_t>(otherFaceAtEdge(edge, face))]) {
-    assert(lattice::dimension(edge) == 1 && !lattice::contains(edge, face));
-  }
-
-  [[nodiscard]] Index tet() const noexcept { return tet_; }
-  /// The edge, as corners of the tet.
-  [[nodiscard]] lattice::CornerMask edge() const noexcept { return edge_; }
-  /// The half-face that it leaves the tet through.
-  [[nodiscard]] HalfFace out() const noexcept { return out_; }
-  /// The same in the next tet, or kNone.
-  [[nodiscard]] HalfFace next() const noexcept { return topology_.mate[out_]; }
-
-  /// Enters the next tet, of which there must be one.
-  void step() noexcept {
-    const HalfFace in = next();
-    assert(in != kNone);
-    tet_ = tetOf(in);
-    // The third corner of the face behind is the one opposite the face ahead.
-    const int opposite = topology_.localCorner(tet_, ahead_);
-    edge_ = static_cast<lattice::CornerMask>(lattice::kWholeTet ^ lattice::cornerBit(opposite) ^
-                                             lattice::cornerBit(localOf(in)));
-    ahead_ = topology_.tets[tet_][static_cast<std::size_t>(localOf(in))];
-    out_ = halfFaceOf(tet_, opposite);
-  }
-
- private:
-  const TetTopology& topology_;
-  Index tet_;
-  lattice::CornerMask edge_;
-  HalfFace out_;
-  Index ahead_;  ///< third corner of the face that it leaves through
-};
 
 /// The smallest tet that contains a simplex of a tet: the simplex's owner (ParentTet of the paper).
 [[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet,

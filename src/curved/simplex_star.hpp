@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <adjacency/edge_fan.hpp>
 #include <adjacency/key_table.hpp>
-#include <adjacency/tet_topology.hpp>
 
 #include <igm/exact_map.hpp>
 #include <igm/transitions.hpp>
@@ -155,32 +155,20 @@ class SimplexStar {
   }
 
  private:
-  /// One step in one direction, one in the other, until they meet.
   template <class Visit>
   bool visitAroundEdge(const SimplexInTet& start, const Visit& visit) const {
-    struct Side {
-      adjacency::EdgeTurn turn;
-      Frame frame;
-      bool goesOn = true;
-    };
-    const int first = adjacency::otherFaceAtEdge(start.simplex, -1);
-    const int second = adjacency::otherFaceAtEdge(start.simplex, first);
-    std::array<Side, 2> sides = {
-        Side{adjacency::EdgeTurn(topology_, start.tet, start.simplex, first), start.frame},
-        Side{adjacency::EdgeTurn(topology_, start.tet, start.simplex, second), start.frame}};
-    while (sides[0].goesOn || sides[1].goesOn) {
-      for (std::size_t i = 0; i < 2; ++i) {
-        Side& side = sides[i];
-        const adjacency::HalfFace next = side.turn.next();
-        side.goesOn = side.goesOn && next != kNone && adjacency::tetOf(next) != start.tet &&
-                      adjacency::tetOf(next) != sides[1 - i].turn.tet();
-        if (!side.goesOn) continue;
-        side.frame.cross(map_.transitions, side.turn.out());
-        side.turn.step();
-        if (visit(SimplexInTet{side.turn.tet(), side.turn.edge(), side.frame})) return true;
-      }
-    }
-    return false;
+    bool isStopped = false;
+    adjacency::visitAroundEdge(
+        topology_, start.tet, start.simplex, start.frame,
+        [this](Frame frame, adjacency::HalfFace out) {
+          frame.cross(map_.transitions, out);
+          return frame;
+        },
+        [&](const auto& turn, const Frame& frame) {
+          isStopped = visit(SimplexInTet{turn.tet(), turn.edge(), frame});
+          return !isStopped;
+        });
+    return isStopped;
   }
 
   template <class Visit>

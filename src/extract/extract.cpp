@@ -38,20 +38,6 @@ bool isToBeRepaired(const igm::DefectCollector& defects, const ExtractOptions& o
          found(ErrorCode::TransitionResidual) || found(ErrorCode::HalfIntegerFixedPoint);
 }
 
-TetMap ownedCopy(const TetMapView& map) {
-  TetMap copy;
-  copy.points.assign(map.points.begin(), map.points.end());
-  copy.tets.assign(map.tets.begin(), map.tets.end());
-  copy.parameters.assign(map.parameters.begin(), map.parameters.end());
-  copy.edgeValences.assign(map.edgeValences.begin(), map.edgeValences.end());
-  copy.rotations.assign(map.rotations.begin(), map.rotations.end());
-  copy.features.vertices.assign(map.features.vertices.begin(), map.features.vertices.end());
-  copy.features.edges.assign(map.features.edges.begin(), map.features.edges.end());
-  copy.features.faces.assign(map.features.faces.begin(), map.features.faces.end());
-  copy.regions.assign(map.regions.begin(), map.regions.end());
-  return copy;
-}
-
 /// Prepares the map, or what a repair makes of it.
 /// @param report  of the repair, if there was one
 ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOptions& options,
@@ -64,8 +50,8 @@ ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOption
     if (!isToBeRepaired(defects, options)) defects.throwIfAny();
   }
   const RepairOptions repair{options.tolerance, maxScale, options.round, true};
-  auto repaired = std::make_shared<const TetMap>(
-      repairs::repairInArena(ownedCopy(map), repair, context, report));
+  auto repaired =
+      std::make_shared<const TetMap>(repairs::repairInArena(map, repair, context, report));
   igm::DefectCollector defects;
   igm::PreparedMap prepared =
       igm::prepareMap(*repaired, options.tolerance, maxScale, context, defects,

@@ -153,17 +153,15 @@ class StarSanitizer {
  private:
   /// All constraints of the star, in the chart of its first member, the representative.
   [[nodiscard]] lattice::AxisSet fixedAxes(Index v, Star star, lattice::AxisSet planes) const {
-    if (singularities_.isNode(v)) return lattice::kAllAxes;
-    lattice::AxisSet fixed = planes;
+    tetmap::FixedAxes fixed(planes);
     for (const Index e : singularities_.at(v)) {
       const SingularEdge& edge = singularities_.edges[e];
-      const lattice::AxisSet across = lattice::kAllAxes & ~(1U << edgeAxis(in_.parameters, edge));
       const auto member =
           std::find_if(star.begin(), star.end(),
                        [&edge](const VertexStar::Member& m) { return m.tet() == edge.tet; });
-      fixed |= lattice::imageOf(across, member->rotation.inverse());
+      fixed.addSingularEdge(static_cast<int>(edgeAxis(in_.parameters, edge)), member->rotation);
     }
-    return fixed;
+    return fixed.axes();
   }
 
   /// Carries the value of the first member to all others, along the walk, as in

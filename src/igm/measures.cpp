@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include <adjacency/tet_topology.hpp>
+#include <adjacency/edge_fan.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <igm/measures.hpp>
@@ -54,7 +54,7 @@ adjacency::HalfFace acrossBoundaryEdge(const adjacency::TetTopology& topology,
                                        adjacency::HalfFace halfFace, lattice::CornerMask edge) {
   adjacency::EdgeTurn turn(topology, adjacency::tetOf(halfFace), edge,
                            adjacency::otherFaceAtEdge(edge, adjacency::localOf(halfFace)));
-  while (turn.next() != kNone) turn.step();
+  turn.goToBoundary();
   return turn.out();
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
+#include <tetmap/freedom.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -42,9 +43,8 @@ struct Singularities {
     return begin[vertex + 1] - begin[vertex];
   }
 
-  /// A singular vertex is incident to other than zero or two singular edges. (Section 3.2)
   [[nodiscard]] bool isNode(Index vertex) const noexcept {
-    return degree(vertex) != 0 && degree(vertex) != 2;
+    return tetmap::FixedAxes::isNode(degree(vertex));
   }
 };
 

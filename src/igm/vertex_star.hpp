@@ -10,6 +10,7 @@
 
 #include <base/low_level.hpp>
 #include <igm/half_face_crossing.hpp>
+#include <lattice/transition.hpp>
 
 namespace hexhex::igm {
 
@@ -113,5 +114,21 @@ class VertexStar {
   bool fits_ = true;
   std::vector<Member> members_ = std::vector<Member>(64);
 };
+
+/// From the chart of a star's first member into those of all members, along the walk.
+/// @param across  of a half-face: the transition into the neighbour's chart
+template <class Across>
+std::vector<lattice::Transition> unfoldStar(std::span<const VertexStar::Member> star,
+                                            const Across& across) {
+  std::vector<lattice::Transition> charts(star.size());
+  std::size_t reached = 1;
+  for (std::size_t i = 0; i < star.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (star[i].neighbour[k] != reached) continue;
+      charts[reached++] = across(star[i].halfFace(k)) * charts[i];
+    }
+  }
+  return charts;
+}
 
 }  // namespace hexhex::igm

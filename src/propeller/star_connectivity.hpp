@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include <adjacency/tet_topology.hpp>
+#include <adjacency/edge_fan.hpp>
 
 #include <propeller/local_connectivity.hpp>
 
@@ -86,25 +86,24 @@ void forEachTetAround(const adjacency::TetTopology& topology, const igm::Transit
                       Index tet, lattice::CornerMask simplex, const Visit& visit) {
   visit(tet, simplex, lattice::Rotation{});
   if (simplex == lattice::kWholeTet) return;
-  const int first = adjacency::otherFaceAtEdge(simplex, -1);
   if (lattice::dimension(simplex) == 2) {
-    const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, first);
+    const adjacency::HalfFace halfFace =
+        adjacency::halfFaceOf(tet, lattice::oppositeCorner(simplex));
     const adjacency::HalfFace mate = topology.mate[halfFace];
     if (mate == kNone) return;
     visit(adjacency::tetOf(mate), adjacency::acrossFace(topology, halfFace, simplex),
           transitions.across(halfFace).rotation);
     return;
   }
-  for (const int face : {first, adjacency::otherFaceAtEdge(simplex, first)}) {
-    adjacency::EdgeTurn turn(topology, tet, simplex, face);
-    lattice::Rotation rotation;
-    while (turn.next() != kNone) {
-      rotation = transitions.across(turn.out()).rotation * rotation;
-      turn.step();
-      if (turn.tet() == tet) return;  // once around
-      visit(turn.tet(), turn.edge(), rotation);
-    }
-  }
+  adjacency::visitAroundEdge(
+      topology, tet, simplex, lattice::Rotation{},
+      [&](lattice::Rotation rotation, adjacency::HalfFace out) {
+        return transitions.across(out).rotation * rotation;
+      },
+      [&](const auto& turn, lattice::Rotation rotation) {
+        visit(turn.tet(), turn.edge(), rotation);
+        return true;
+      });
 }
 
 }  // namespace hexhex::propeller

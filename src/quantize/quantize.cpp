@@ -245,8 +245,9 @@ class Quantizer {
         map_(std::move(map)),
         seamless_(seamlessMap(map_, options, apart, context)) {
     std::vector<TetParameters>().swap(map_.parameters);  // which are large
-    irregularEdges_ = irregularEdges(EdgeFans(seamless_.topology), seamless_.topology.tets,
-                                     std::span<const lattice::LatticeTet>(seamless_.corners));
+    irregularEdges_ =
+        irregularEdges(adjacency::EdgeFans(seamless_.topology), seamless_.topology.tets,
+                       std::span<const lattice::LatticeTet>(seamless_.corners));
     report_.cellsWanted = cellsWanted(map_, seamless_, options);
     report_.displacement = seamless_.maxDisplacement;
     report_.integersBy = solver_.name;

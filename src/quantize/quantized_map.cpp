@@ -5,6 +5,7 @@
 
 #include <quantize/bend/edge_turns.hpp>
 #include <quantize/quantized_map.hpp>
+#include <tetmap/split_map.hpp>
 
 #include <hexhex/check.hpp>
 
@@ -52,34 +53,6 @@ MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Te
   return distortion;
 }
 
-/// Features of the tet mesh after its edges were split.
-Features splitFeatures(const FeaturesView& given, std::size_t pointCount,
-                       const std::vector<SplitEdge>& splits) {
-  Features features{{given.vertices.begin(), given.vertices.end()},
-                    {given.edges.begin(), given.edges.end()},
-                    {given.faces.begin(), given.faces.end()}};
-  for (std::size_t s = 0; s < splits.size(); ++s) {
-    const auto middle = static_cast<Index>(pointCount + s);
-    const auto has = [](const auto& feature, Index v) {
-      return std::find(feature.vertices.begin(), feature.vertices.end(), v) !=
-             feature.vertices.end();
-    };
-    const auto split = [&](auto& list) {
-      const std::size_t count = list.size();
-      for (std::size_t i = 0; i < count; ++i) {
-        if (!has(list[i], splits[s][0]) || !has(list[i], splits[s][1])) continue;
-        auto other = list[i];
-        std::replace(other.vertices.begin(), other.vertices.end(), splits[s][0], middle);
-        std::replace(list[i].vertices.begin(), list[i].vertices.end(), splits[s][1], middle);
-        list.push_back(other);
-      }
-    };
-    split(features.edges);
-    split(features.faces);
-  }
-  return features;
-}
-
 /// Singular curves must be what they were.
 void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {
   Stage stage(context, "singular curves");
@@ -90,7 +63,7 @@ void requireSingularities(const IrregularEdges& expected, const TetMap& map, Con
     throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
   }
   adjacency::addStars(topology, stage);
-  const EdgeFans edges(topology);
+  const adjacency::EdgeFans edges(topology);
   const std::span<const TetParameters> parameters = map.parameters;
   if (irregularEdges(edges, topology.tets, parameters) != expected) {
     throw Error(ErrorCode::Internal,
@@ -107,11 +80,15 @@ QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given
   result.report.distortionAfter = distortionOf(bent.points, bent.tets, bent.parameters);
   result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
   std::vector<TetParameters>().swap(bent.reference);
-  for (std::size_t s = 0; s < bent.splitEdges.size(); ++s) {
-    splitIrregular(bent.splitEdges[s], static_cast<Index>(given.points.size() + s), singular);
-  }
   TetMap& map = result.map;
-  map.features = splitFeatures(given.features, given.points.size(), bent.splitEdges);
+  map.features = {{given.features.vertices.begin(), given.features.vertices.end()},
+                  {given.features.edges.begin(), given.features.edges.end()},
+                  {given.features.faces.begin(), given.features.faces.end()}};
+  for (std::size_t s = 0; s < bent.splitEdges.size(); ++s) {
+    const auto middle = static_cast<Index>(given.points.size() + s);
+    splitIrregular(bent.splitEdges[s], middle, singular);
+    tetmap::splitFeatures(bent.splitEdges[s], middle, map.features);
+  }
   if (!given.regions.empty()) {
     for (const Index parent : bent.parentTet) map.regions.push_back(given.regions[parent]);
   }

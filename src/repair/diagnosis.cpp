@@ -172,7 +172,7 @@ void diagnose(const igm::PreparedMap& map, const igm::LocalParameters& parameter
   Examiner examiner(map, parameters, bad, tolerance, limit);
   examiner.examineVertices(stage, diagnosis);
   examiner.examineFaces(stage, diagnosis);
-  sortUnique(diagnosis.roundable);
+  tetmap::sortUnique(diagnosis.roundable);
 }
 
 void refuseInvertedParts(const adjacency::TetTopology& topology,

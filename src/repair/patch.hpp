@@ -1,22 +1,15 @@
 // The tets around a defect whose parameters a repair may change.
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
 #include <adjacency/tet_topology.hpp>
+#include <tetmap/cut.hpp>
 
 #include <igm/vertex_star.hpp>
 
 namespace hexhex::repairs {
-
-/// Sorts a list and drops what is in it repeatedly.
-template <class T>
-void sortUnique(std::vector<T>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 struct Patch {
   std::vector<Index> startTets;  ///< the bad tets, ascending

@@ -3,6 +3,8 @@
 #include <numbers>
 #include <utility>
 
+#include <adjacency/edge_fan.hpp>
+
 #include <base/vector3.hpp>
 #include <repair/patch_charts.hpp>
 #include <repair/valid_tets.hpp>
@@ -68,7 +70,7 @@ void PatchCharts::collectFaces(const Patch& patch) {
       }
     }
   }
-  sortUnique(halfFaces);
+  tetmap::sortUnique(halfFaces);
   faces_.reserve(halfFaces.size());
   for (const adjacency::HalfFace halfFace : halfFaces) {
     faces_.push_back({halfFace, topology_.isBoundary(halfFace), {}, {}, 0, {}});
@@ -178,26 +180,15 @@ void PatchCharts::collectEdges(const Patch& patch) {
 }
 
 void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
-  const auto corners = [&](Index tet) {
-    return std::array{topology_.localCorner(tet, edge.vertex0),
-                      topology_.localCorner(tet, edge.vertex1)};
-  };
-  const auto [from, to] = corners(edge.tet);
-  const auto mask =
-      static_cast<lattice::CornerMask>(lattice::cornerBit(from) | lattice::cornerBit(to));
-  // Back to the boundary, if there is one.
-  adjacency::EdgeTurn back(topology_, edge.tet, mask, adjacency::otherFaceAtEdge(mask, -1));
-  while (back.next() != kNone) {
-    back.step();
-    if (back.tet() == edge.tet) break;
-  }
-  if (back.next() == kNone) {
-    edge.boundary = true;
+  const lattice::CornerMask ends = topology_.edge(edge.tet, edge.vertex0, edge.vertex1).mask();
+  adjacency::EdgeTurn back(topology_, edge.tet, ends, adjacency::otherFaceAtEdge(ends, -1));
+  edge.boundary = back.goToBoundary();
+  if (edge.boundary) {
     edge.tet = back.tet();
     fan.firstBoundary = static_cast<std::uint32_t>(faceIndex(back.out()));
   }
-  const auto [first, second] = corners(edge.tet);
-  fan.vector = minus(parameters_(edge.tet, second), parameters_(edge.tet, first));
+  fan.vector = minus(parameters_(edge.tet, topology_.localCorner(edge.tet, edge.vertex1)),
+                     parameters_(edge.tet, topology_.localCorner(edge.tet, edge.vertex0)));
   edge.sound = true;
   adjacency::EdgeTurn turn(topology_, edge.tet, back.edge(),
                            adjacency::otherFaceAtEdge(back.edge(), adjacency::localOf(back.out())));
@@ -267,7 +258,7 @@ bool PatchCharts::improve(std::span<const std::uint32_t> faces) {
   for (const std::uint32_t f : faces) {
     around.insert(around.end(), faces_[f].edges.begin(), faces_[f].edges.end());
   }
-  sortUnique(around);
+  tetmap::sortUnique(around);
   const auto localCost = [&] {
     double sum = 0;
     for (const std::uint32_t e : around) sum += edgeCost(e);

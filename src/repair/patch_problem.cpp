@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tetmap/freedom.hpp>
+
 #include <base/vector3.hpp>
 #include <repair/patch_problem.hpp>
 #include <repair/valid_tets.hpp>
@@ -8,27 +10,6 @@
 namespace hexhex::repairs {
 
 namespace {
-
-/// Transitions from the chart of the first corner to all others, along the walk through the star.
-void unfold(const std::vector<igm::VertexStar::Member>& star, const PatchCharts& charts,
-            PatchVertex& vertex) {
-  vertex.corners.resize(star.size());
-  vertex.corners[0] = {star[0].corner, {}};
-  std::size_t reached = 1;
-  for (std::size_t i = 0; i < star.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index neighbour = star[i].neighbour[k];
-      if (neighbour == kNone) {
-        vertex.boundary = true;
-        continue;
-      }
-      if (neighbour != reached) continue;
-      ++reached;
-      vertex.corners[neighbour] = {
-          star[neighbour].corner, charts.across(star[i].halfFace(k)) * vertex.corners[i].fromFirst};
-    }
-  }
-}
 
 /// The edges at a vertex, among all edges of the patch.
 template <class Visit>
@@ -42,14 +23,18 @@ void forEachEdgeAt(const Patch& patch, const PatchCharts& charts, const Visit& v
   }
 }
 
-lattice::AxisSet boundaryAxes(const std::vector<igm::VertexStar::Member>& star,
-                              const PatchCharts& charts, const PatchVertex& vertex) {
-  lattice::AxisSet fixed = 0;
+/// Carries the first chart to all corners, and fixes what the boundary fixes.
+tetmap::FixedAxes unfold(const std::vector<igm::VertexStar::Member>& star,
+                         const PatchCharts& charts, PatchVertex& vertex) {
+  const std::vector<lattice::Transition> fromFirst = igm::unfoldStar(
+      star, [&charts](adjacency::HalfFace halfFace) { return charts.across(halfFace); });
+  tetmap::FixedAxes fixed;
   for (std::size_t i = 0; i < star.size(); ++i) {
+    vertex.corners.push_back({star[i].corner, fromFirst[i]});
     for (std::size_t k = 0; k < 3; ++k) {
       if (star[i].neighbour[k] != kNone) continue;
-      fixed |= lattice::imageOf(1U << charts.boundaryAxis(star[i].halfFace(k)),
-                                vertex.corners[i].fromFirst.rotation.inverse());
+      vertex.boundary = true;
+      fixed.addPlane(charts.boundaryAxis(star[i].halfFace(k)), fromFirst[i].rotation);
     }
   }
   return fixed;
@@ -99,28 +84,24 @@ Edges regularTet(double sixfoldVolume) {
 std::vector<PatchVertex> findFreedom(const igm::LocalParameters& parameters, const Patch& patch,
                                      const PatchCharts& charts) {
   std::vector<PatchVertex> vertices(patch.vertices.size());
-  std::vector<int> degrees(vertices.size(), 0);
+  std::vector<tetmap::FixedAxes> fixed;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     PatchVertex& vertex = vertices[i];
     vertex.vertex = patch.vertices[i];
-    unfold(patch.stars[i], charts, vertex);
-    vertex.fixed = boundaryAxes(patch.stars[i], charts, vertex);
+    fixed.push_back(unfold(patch.stars[i], charts, vertex));
   }
   forEachEdgeAt(patch, charts, [&](std::size_t i, const PatchEdge& edge) {
     if (!edge.singular) return;
     PatchVertex& vertex = vertices[i];
     vertex.singular = true;
-    ++degrees[i];
     const auto copy = std::find_if(
         vertex.corners.begin(), vertex.corners.end(),
         [&](const PatchVertex::Copy& c) { return adjacency::tetOf(c.corner) == edge.tet; });
-    vertex.fixed |= lattice::imageOf(lattice::kAllAxes & ~(1U << edge.axis),
-                                     copy->fromFirst.rotation.inverse());
+    fixed[i].addSingularEdge(edge.axis, copy->fromFirst.rotation);
   });
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     PatchVertex& vertex = vertices[i];
-    // A singular vertex has other than zero or two singular edges. (Section 3.2)
-    if (degrees[i] != 0 && degrees[i] != 2) vertex.fixed = lattice::kAllAxes;
+    vertex.fixed = fixed[i].axes();
     const adjacency::CornerIndex first = vertex.corners.front().corner;
     vertex.parameter = parameters(adjacency::tetOf(first), adjacency::localOf(first));
     for (std::size_t k = 0; k < 3; ++k) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <tetmap/split_map.hpp>
 #include <untangle/untangle.hpp>
 
 #include <hexhex/repair.hpp>
@@ -17,7 +18,6 @@
 #include <igm/measures.hpp>
 #include <igm/prepare.hpp>
 #include <repair/diagnosis.hpp>
-#include <repair/map_changes.hpp>
 #include <repair/patch.hpp>
 #include <repair/patch_charts.hpp>
 #include <repair/patch_problem.hpp>
@@ -60,13 +60,29 @@ constexpr bool kHasSolver = false;
 void movePatch(untangle::Problem& /*problem*/, Stage& /*stage*/) {}
 #endif
 
+TetMap ownedCopy(const TetMapView& map) {
+  TetMap copy;
+  copy.points.assign(map.points.begin(), map.points.end());
+  copy.tets.assign(map.tets.begin(), map.tets.end());
+  copy.parameters.assign(map.parameters.begin(), map.parameters.end());
+  copy.edgeValences.assign(map.edgeValences.begin(), map.edgeValences.end());
+  copy.rotations.assign(map.rotations.begin(), map.rotations.end());
+  copy.features.vertices.assign(map.features.vertices.begin(), map.features.vertices.end());
+  copy.features.edges.assign(map.features.edges.begin(), map.features.edges.end());
+  copy.features.faces.assign(map.features.faces.begin(), map.features.faces.end());
+  copy.regions.assign(map.regions.begin(), map.regions.end());
+  return copy;
+}
+
 /// What must be as before: singular edges around the patches.
 using EdgeKey = std::pair<Index, Index>;
 
 class Repairer {
  public:
-  Repairer(TetMap map, const RepairOptions& options, Context& context, RepairReport& report)
-      : map_(std::move(map)),
+  Repairer(const TetMapView& given, const RepairOptions& options, Context& context,
+           RepairReport& report)
+      : given_(given),
+        map_(ownedCopy(given)),
         options_(options),
         context_(context),
         report_(report),
@@ -77,7 +93,6 @@ class Repairer {
     if (now_->defects.empty()) return std::move(map_);
     refuseBrokenTopology();
     if (!canRepair()) throwWithoutSolver(now_->defects);
-    original_ = MapBackup(map_);
     std::vector<Index> bad = findStartTets();
     report_.badTets = bad.size();
     prepareExpectation(bad);
@@ -110,7 +125,7 @@ class Repairer {
   }
 
   std::vector<Index> startOver() {
-    original_.restore(map_);
+    map_ = ownedCopy(given_);
     locked_.clear();
     candidates_.clear();
     moved_.clear();
@@ -177,7 +192,7 @@ class Repairer {
     candidates_.clear();
     std::vector<Index> startTets = bad;
     startTets.insert(startTets.end(), toRound.begin(), toRound.end());
-    sortUnique(startTets);
+    tetmap::sortUnique(startTets);
     const igm::LocalParameters u = parameters();
     for (const std::vector<Index>& region :
          separateRegions(now_->prepared.topology, startTets, rings)) {
@@ -240,7 +255,7 @@ class Repairer {
   }
 
   void addEdgesOf(Index t, lattice::CornerMask corners, const PatchCharts& charts, bool boundary,
-                  std::vector<std::array<Index, 2>>& list) const {
+                  std::vector<tetmap::EdgeInTet>& list) const {
     const Tet& tet = now_->prepared.topology.tets[t];
     for (int a = 0; a < 4; ++a) {
       for (int b = a + 1; b < 4; ++b) {
@@ -248,7 +263,7 @@ class Repairer {
         const PatchEdge* const edge =
             find(charts, tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]);
         if (edge == nullptr || edge->singular || edge->boundary != boundary) continue;
-        list.push_back({edge->vertex0, edge->vertex1});
+        list.push_back({{edge->vertex0, edge->vertex1}, t});
       }
     }
   }
@@ -260,10 +275,10 @@ class Repairer {
   }
 
   bool refine(const std::vector<Index>& bad) {
-    std::vector<std::array<Index, 2>> edges = locked_.empty() ? candidates_ : locked_;
+    const std::vector<tetmap::EdgeInTet>& edges = locked_.empty() ? candidates_ : locked_;
     if (edges.empty() || bad.empty()) return false;
     const std::size_t tets = map_.tets.size();
-    const std::size_t count = splitEdges(map_, now_->prepared.topology, edges, original_);
+    const std::size_t count = tetmap::splitEdges(map_, now_->prepared.topology, edges);
     report_.splitEdges += count;
     report_.addedTets += map_.tets.size() - tets;
     return count > 0;
@@ -284,7 +299,6 @@ class Repairer {
       if (!problem.mayMove(i) && vertices[i].off <= options_.tolerance) continue;
       const Vec3 first = problem.parameterOf(i, quantum);
       for (const PatchVertex::Copy& copy : vertices[i].corners) {
-        original_.keep(map_, adjacency::tetOf(copy.corner));
         changes.push_back(changeOf(input, u, copy.corner, copy.fromFirst(first, 1.0)));
       }
       moved_.try_emplace(vertices[i].vertex, region);
@@ -348,6 +362,15 @@ class Repairer {
     return hasExpectedValences();
   }
 
+  [[nodiscard]] bool isEdge(const EdgeKey& key, igm::VertexStar& star) const {
+    const adjacency::TetTopology& topology = now_->prepared.topology;
+    star.collect(topology, key.first);
+    return std::any_of(star.members().begin(), star.members().end(), [&](const auto& member) {
+      const Tet& tet = topology.tets[member.tet()];
+      return std::find(tet.begin(), tet.end(), key.second) != tet.end();
+    });
+  }
+
   [[nodiscard]] bool hasExpectedValences() {
     std::map<EdgeKey, int> found;
     for (const igm::SingularEdge& edge : now_->prepared.singularities.edges) {
@@ -356,7 +379,7 @@ class Repairer {
     igm::VertexStar star;
     for (const auto& [key, valence] : valences_) {
       // Was it split?
-      if (tetsAtEdge(now_->prepared.topology, {key.first, key.second}, star).empty()) continue;
+      if (!isEdge(key, star)) continue;
       const auto entry = found.find(key);
       // Without an entry, the edge is regular. Zero stands for singular, but unknown how.
       const bool same = entry == found.end() ? valence == 2 || valence == 4
@@ -373,17 +396,17 @@ class Repairer {
     const igm::OrientedMap& input = now_->prepared.input;
     igm::VertexStar star;
     for (const auto& [vertex, region] : moved_) {
-      if (vertex >= original_.pointCount()) continue;
+      if (vertex >= given_.points.size()) continue;
       star.collect(now_->prepared.topology, vertex);
       double move = 0;
       for (const igm::VertexStar::Member& member : star.members()) {
-        const TetParameters* const before = original_.parametersOf(member.tet());
-        if (before == nullptr) continue;
+        if (member.tet() >= given_.tets.size()) continue;
         const auto c =
             static_cast<std::size_t>(input.callersCorner(adjacency::localOf(member.corner)));
-        const TetParameters& after = map_.parameters[member.tet()];
+        const Vec3& before = given_.parameters[member.tet()][c];
+        const Vec3& after = map_.parameters[member.tet()][c];
         for (std::size_t k = 0; k < 3; ++k) {
-          move = std::max(move, std::abs(after[c][k] - (*before)[c][k]));
+          move = std::max(move, std::abs(after[k] - before[k]));
         }
       }
       if (move == 0) continue;
@@ -415,8 +438,8 @@ class Repairer {
                     : defects.front().worst.front().place);
   }
 
+  const TetMapView& given_;
   TetMap map_;
-  MapBackup original_;
   const RepairOptions& options_;
   Context& context_;
   RepairReport& report_;
@@ -425,9 +448,9 @@ class Repairer {
   double volume_ = 0;      ///< of the defective map
   std::string complaint_;  ///< why the last valid map was not accepted
   std::map<EdgeKey, int> valences_;
-  std::map<Index, std::size_t> moved_;            ///< vertices, and the region of the report
-  std::vector<std::array<Index, 2>> locked_;      ///< edges whose splitting unlocks tets
-  std::vector<std::array<Index, 2>> candidates_;  ///< edges to split when all else failed
+  std::map<Index, std::size_t> moved_;         ///< vertices, and the region of the report
+  std::vector<tetmap::EdgeInTet> locked_;      ///< edges whose splitting unlocks tets
+  std::vector<tetmap::EdgeInTet> candidates_;  ///< edges to split when all else failed
 };
 
 }  // namespace
@@ -442,7 +465,7 @@ bool canRepair() noexcept { return repairs::kHasSolver; }
 
 namespace hexhex::repairs {
 
-TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
+TetMap repairInArena(const TetMapView& map, const RepairOptions& options, Context& context,
                      RepairReport& report) {
   constexpr std::array<WorkStep, 5> kSteps = {
       {{"prepare", 1}, {"defects", 0.1}, {"diagnosis", 0.5}, {"repair", 10}, {"prepare", 1}}};
@@ -454,7 +477,7 @@ TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
     report.seconds = seconds.count();
   };
   try {
-    TetMap repaired = Repairer(std::move(map), options, context, report).run();
+    TetMap repaired = Repairer(map, options, context, report).run();
     stop();
     steps.finish();
     return repaired;

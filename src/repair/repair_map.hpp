@@ -6,7 +6,7 @@
 namespace hexhex::repairs {
 
 /// As repair(), inside of withThreads().
-[[nodiscard]] TetMap repairInArena(TetMap map, const RepairOptions& options, Context& context,
-                                   RepairReport& report);
+[[nodiscard]] TetMap repairInArena(const TetMapView& map, const RepairOptions& options,
+                                   Context& context, RepairReport& report);
 
 }  // namespace hexhex::repairs

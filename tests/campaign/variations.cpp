@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include <tetmap/split_map.hpp>
+
 #include <base/vector3.hpp>
-#include <repair/map_changes.hpp>
 
 #include "extract/support.hpp"
 #include "igm/map_samples.hpp"
@@ -34,15 +35,16 @@ void swapCorners(TetMap& map, std::size_t tet, std::size_t a, std::size_t b) {
 /// Puts vertices in the middle of some edges, as a repair does.
 void splitSomeEdges(TetMap& map, Random& random) {
   const Topology topology(map);
-  std::vector<std::array<Index, 2>> edges;
+  std::vector<tetmap::EdgeInTet> edges;
   const std::size_t wanted = 1 + random.below(1 + map.tets.size() / 20);
   for (std::size_t i = 0; i < wanted; ++i) {
-    const Tet& tet = map.tets[random.below(map.tets.size())];
+    const std::size_t t = random.below(map.tets.size());
+    const Tet& tet = map.tets[t];
     const std::size_t a = random.below(4);
-    edges.push_back({tet[a], tet[(a + 1 + random.below(3)) % 4]});
+    edges.push_back(
+        {tetmap::pairOf(tet[a], tet[(a + 1 + random.below(3)) % 4]), static_cast<Index>(t)});
   }
-  repairs::MapBackup backup(map);
-  repairs::splitEdges(map, topology.topology, edges, backup);
+  tetmap::splitEdges(map, topology.topology, edges);
 }
 
 /// Cuts some tets into four around a vertex inside.

@@ -72,7 +72,7 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
   topology.pointCount = problem.points.size();
   if (!adjacency::matchFaces(topology, stage)) throw std::runtime_error("no manifold");
   adjacency::addStars(topology, stage);
-  problem.irregularEdges = irregularEdges(EdgeFans(topology), topology.tets,
+  problem.irregularEdges = irregularEdges(adjacency::EdgeFans(topology), topology.tets,
                                           std::span<const TetParameters>(reference.parameters));
   for (adjacency::HalfFace h = 0; h < problem.transitions.size(); ++h) {
     if (topology.isBoundary(h)) {

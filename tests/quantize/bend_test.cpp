@@ -133,7 +133,7 @@ TEST(Bend, FindsEdgesThatAreWoundTwice) {
   topology.pointCount = map.points.size();
   ASSERT_TRUE(adjacency::matchFaces(topology, stage));
   adjacency::addStars(topology, stage);
-  const IrregularEdges irregular = irregularEdges(EdgeFans(topology), topology.tets,
+  const IrregularEdges irregular = irregularEdges(adjacency::EdgeFans(topology), topology.tets,
                                                   std::span<const TetParameters>(map.parameters));
   EXPECT_EQ(irregular.begin()->second, 8);
   EXPECT_TRUE(tetsAtOtherTurns(topology, irregular, map.parameters, stage).empty());
@@ -148,21 +148,25 @@ TEST(Bend, FindsEdgesThatAreWoundTwice) {
 }
 
 /// Every seventh tet's first edge, more or less.
-std::vector<SplitEdge> someEdges(const TetMap& map) {
-  std::vector<SplitEdge> edges;
-  for (std::size_t t = 0; t < map.tets.size(); t += 7) {
-    const auto [v, w] = std::minmax(map.tets[t][t % 4], map.tets[t][(t + 1) % 4]);
-    edges.push_back({v, w});
+std::vector<tetmap::EdgeInTet> someEdges(const TetMap& map) {
+  std::vector<tetmap::EdgeInTet> edges;
+  for (Index t = 0; t < map.tets.size(); t += 7) {
+    edges.push_back({tetmap::pairOf(map.tets[t][t % 4], map.tets[t][(t + 1) % 4]), t});
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  tetmap::sortUnique(edges);
   return edges;
 }
 
 void expectSameMapAfterSplits(const TetMap& map) {
   BendState state{problemFrom(map, map), map.parameters, std::vector<Index>(map.tets.size()), {}};
-  const std::vector<SplitEdge> edges = someEdges(map);
-  ASSERT_TRUE(splitEdges(state, edges, 100 * map.tets.size()));
+  const std::vector<tetmap::EdgeInTet> edges = someEdges(map);
+  Context context;
+  Stage stage(context, "topology");
+  adjacency::TetTopology topology;
+  topology.tets = map.tets;
+  topology.pointCount = map.points.size();
+  ASSERT_TRUE(adjacency::matchFaces(topology, stage));
+  ASSERT_TRUE(splitEdges(state, topology, edges, 100 * map.tets.size()));
   EXPECT_EQ(state.problem.points.size(), map.points.size() + edges.size());
   EXPECT_GT(state.problem.tets.size(), map.tets.size() + edges.size());
   const TetMap split{state.problem.points, state.problem.tets, state.bent};

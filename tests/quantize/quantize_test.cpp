@@ -53,7 +53,7 @@ TetMap withMovedCharts(TetMap map, std::uint64_t seed) {
 }
 
 /// The map with all tets at an edge cut in two at its middle.
-BentMap splitAt(const TetMap& map, const SplitEdge& edge) {
+BentMap splitAt(const TetMap& map, const tetmap::VertexPair& edge) {
   BentMap bent;
   bent.points.assign(map.points.begin(), map.points.end());
   bent.splitEdges = {edge};
@@ -89,7 +89,7 @@ BentMap splitAt(const TetMap& map, const SplitEdge& edge) {
   return bent;
 }
 
-SplitEdge firstSingularEdge(const TetMap& map, Context& context) {
+tetmap::VertexPair firstSingularEdge(const TetMap& map, Context& context) {
   for (const auto& edge : findMapStructure(map, 0.01, context).singularEdges) {
     if (!edge.boundary) return {edge.vertex0, edge.vertex1};
   }
@@ -251,12 +251,12 @@ TEST(Quantize, TagsAndSingularEdgesGoToBothHalvesOfASplitEdge) {
   Context context;
   const CheckReport before = check(map);
   ASSERT_FALSE(before.expected.innerSingularEdges.empty());
-  for (const SplitEdge edge :
+  for (const tetmap::VertexPair edge :
        {map.features.edges.front().vertices, firstSingularEdge(map, context)}) {
     BentMap bent = splitAt(map, edge);
     const SeamlessMap seamless = makeSeamless(map, {1e-5, 1e-5}, context);
     const IrregularEdges irregular =
-        irregularEdges(EdgeFans(seamless.topology), seamless.topology.tets,
+        irregularEdges(adjacency::EdgeFans(seamless.topology), seamless.topology.tets,
                        std::span<const lattice::LatticeTet>(seamless.corners));
     const QuantizedMap result = finishQuantization(irregular, map, bent, {}, context);
     const Expectation after = check(result.map).expected;

@@ -10,7 +10,6 @@
 
 #include "extract/support.hpp"
 #include "igm/prepare.hpp"
-#include "repair/map_changes.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
 #include "support/joined_maps.hpp"
@@ -122,40 +121,6 @@ TEST_F(HostileMaps, AreRepairedForLargeScales) {
   scaled.scale = 5;
   const HexMesh mesh = verifiedExtraction(repair(damaged, options, context), scaled);
   EXPECT_TRUE(sameConnectivity(mesh, extract(sphere(3), scaled)));
-}
-
-TEST(MapBackup, RestoresEveryArray) {
-  SampleOptions options;
-  options.refine = 2;
-  options.features = true;
-  TetMap map = generateSample(SampleKind::Box, options).map;
-  map.regions.assign(map.tets.size(), 3);
-  map.rotations.assign(map.tets.size(), {-1, -1, -1, -1});
-  map.edgeValences = {{map.tets[0][0], map.tets[0][1], 1}};
-  const TetMap before = map;
-  Context context;
-  igm::DefectCollector defects;
-  const igm::PreparedMap prepared = igm::prepareMap(before, 1e-2, 1, context, defects);
-  MapBackup backup(map);
-  const std::vector<std::array<Index, 2>> edges = {{map.tets[0][0], map.tets[0][1]},
-                                                   {map.tets[60][1], map.tets[60][2]}};
-  EXPECT_EQ(splitEdges(map, prepared.topology, edges, backup), 2U);
-  backup.keep(map, 5);
-  map.parameters[5][2] = {7, 8, 9};
-  EXPECT_GT(map.tets.size(), before.tets.size());
-  EXPECT_GT(map.edgeValences.size(), before.edgeValences.size());
-  ASSERT_NE(backup.parametersOf(5), nullptr);
-  EXPECT_EQ(*backup.parametersOf(5), before.parameters[5]);
-  backup.restore(map);
-  EXPECT_EQ(map.points, before.points);
-  EXPECT_EQ(map.tets, before.tets);
-  EXPECT_EQ(map.parameters, before.parameters);
-  EXPECT_EQ(map.regions, before.regions);
-  EXPECT_EQ(map.rotations, before.rotations);
-  EXPECT_EQ(map.features.edges.size(), before.features.edges.size());
-  EXPECT_EQ(map.features.faces.size(), before.features.faces.size());
-  ASSERT_EQ(map.edgeValences.size(), 1U);
-  EXPECT_EQ(map.edgeValences[0].vertex1, before.edgeValences[0].vertex1);
 }
 
 }  // namespace

@@ -204,7 +204,7 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
     if (map.flippedTets.empty() || !(isLocal || isFresh)) continue;
     const auto edges =
         edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);
-    if (!splitEdges(state, edges, mostTets)) break;
+    if (!splitEdges(state, round.topology(), edges, mostTets)) break;
   }
   map.points = std::move(state.problem.points);
   map.tets = std::move(state.problem.tets);

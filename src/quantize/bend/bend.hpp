@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include <quantize/bend/edge_splitter.hpp>
+#include <tetmap/cut.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -64,7 +64,7 @@ struct BentMap {
   std::vector<TetParameters> parameters;
   std::vector<TetParameters> reference;  ///< of tets as they are now
   std::vector<Index> parentTet;          ///< per tet: that of the problem which it is part of
-  std::vector<SplitEdge>
+  std::vector<tetmap::VertexPair>
       splitEdges;  ///< in order: that of vertex points.size() of the problem first
 
   /// Vertices whose planes and transitions contradict each other, or do not fix integers.

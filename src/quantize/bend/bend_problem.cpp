@@ -145,9 +145,9 @@ BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex
       }
     }
   }
-  for (const adjacency::EdgeCorner& at : map.featureEdges) {
+  for (const adjacency::TetEdge& at : map.featureEdges) {
     const Tet& tet = problem.tets[at.tet];
-    problem.keptEdges.insert(pairOf(tet[at.corner0], tet[at.corner1]));
+    problem.keptEdges.insert(tetmap::pairOf(tet[at.corner0], tet[at.corner1]));
   }
   problem.transitions.resize(4 * problem.tets.size());
   problem.planes.resize(4 * problem.tets.size());

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <bit>
 
+#include <adjacency/edge_fan.hpp>
 #include <quantize/bend/bend_split.hpp>
 #include <quantize/bend/edge_turns.hpp>
+#include <tetmap/freedom.hpp>
+#include <tetmap/mutable_tets.hpp>
 
 #include <base/vector3.hpp>
 
@@ -11,83 +14,62 @@ namespace hexhex::quantization {
 namespace {
 
 /// How many coordinates of an edge's inner points are fixed, by what is around the edge.
-class EdgeReader {
- public:
-  EdgeReader(const BendProblem& problem, const adjacency::TetTopology& topology)
-      : problem_(problem), topology_(topology) {}
-
-  int fixedCount(Index tet, lattice::CornerMask edge) {
-    axes_ = 0;
-    const int first = std::countr_zero(unsigned{edge} ^ lattice::kWholeTet);
-    if (!turn(tet, edge, first)) turn(tet, edge, adjacency::otherFaceAtEdge(edge, first));
-    return std::popcount(axes_);
-  }
-
- private:
-  /// @return whether the turn came back to where it began
-  bool turn(Index tet, lattice::CornerMask edge, int face) {
-    lattice::Transition chart;
-    adjacency::EdgeTurn turn(topology_, tet, edge, face);
-    while (turn.next() != kNone) {
-      chart = problem_.transitions[turn.out()] * chart;
-      turn.step();
-      if (turn.tet() != tet) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        const lattice::Direction d = lattice::direction(axis, 1);
-        if (chart(d) != d) axes_ |= 1U << axis;
-      }
-      return true;
+int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topology, Index tet,
+               lattice::CornerMask edge) {
+  tetmap::FixedAxes fixed;  // in the chart of the tet
+  const auto addPlanes = [&](Index t, lattice::CornerMask ends, const lattice::Transition& chart) {
+    for (int face = 0; face < 4; ++face) {
+      const adjacency::HalfFace h = adjacency::halfFaceOf(t, face);
+      const BoundaryPlane& plane = problem.planes[h];
+      if (lattice::contains(ends, face) || !topology.isBoundary(h) || plane.axis < 0) continue;
+      fixed.addPlane(plane.axis, chart.rotation);
     }
-    const BoundaryPlane& plane = problem_.planes[turn.out()];
-    if (plane.axis >= 0) axes_ |= lattice::imageOf(1U << plane.axis, chart.rotation.inverse());
-    return false;
-  }
-
-  const BendProblem& problem_;
-  const adjacency::TetTopology& topology_;
-  lattice::AxisSet axes_ = 0;  ///< in the chart of the tet
-};
+  };
+  addPlanes(tet, edge, {});
+  const auto loop = adjacency::visitAroundEdge(
+      topology, tet, edge, lattice::Transition{},
+      [&](const lattice::Transition& chart, adjacency::HalfFace out) {
+        return problem.transitions[out] * chart;
+      },
+      [&](const auto& turn, const lattice::Transition& chart) {
+        addPlanes(turn.tet(), turn.edge(), chart);
+        return true;
+      });
+  if (loop) fixed.addTurn(loop->rotation);
+  return std::popcount(fixed.axes());
+}
 
 /// Edges whose middles are freer than both of their ends.
-std::vector<SplitEdge> freeingEdges(const BendProblem& problem,
-                                    const adjacency::TetTopology& topology,
-                                    const VertexUnknowns& unknowns, std::span<const Index> tets) {
-  EdgeReader reader(problem, topology);
-  std::vector<SplitEdge> edges;
+std::vector<tetmap::EdgeInTet> freeingEdges(const BendProblem& problem,
+                                            const adjacency::TetTopology& topology,
+                                            const VertexUnknowns& unknowns,
+                                            std::span<const Index> tets) {
+  std::vector<tetmap::EdgeInTet> edges;
   for (const Index t : tets) {
-    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, lattice::CornerMask corners) {
-      const int ends =
-          std::min(std::popcount(unknowns.fixed[edge[0]]), std::popcount(unknowns.fixed[edge[1]]));
-      if (problem.keptEdges.contains(edge)) return;
-      if (ends > 0 && reader.fixedCount(t, corners) < ends) edges.push_back(edge);
-    });
+    tetmap::forEachEdgeOf(problem.tets[t],
+                          [&](const tetmap::VertexPair& edge, lattice::CornerMask corners) {
+                            const int ends = std::min(std::popcount(unknowns.fixed[edge[0]]),
+                                                      std::popcount(unknowns.fixed[edge[1]]));
+                            if (problem.keptEdges.contains(edge)) return;
+                            if (ends > 0 && fixedCount(problem, topology, t, corners) < ends)
+                              edges.push_back({edge, t});
+                          });
   }
-  sortOut(edges);
+  tetmap::sortUnique(edges);
   return edges;
 }
 
-/// What a tet that was cut and its second half, the last one, have of it.
-void carryCut(BendState& state, Index t, std::size_t a, std::size_t b) {
+/// What both parts of a tet have of it. Between them there is one chart.
+void carryCut(BendState& state, const tetmap::Cut& cut) {
   BendProblem& problem = state.problem;
-  for (std::vector<TetParameters>* corners : {&problem.reference, &state.bent}) {
-    const Vec3 between = middle((*corners)[t][a], (*corners)[t][b]);
-    corners->push_back((*corners)[t]);
-    (*corners)[t][b] = between;
-    corners->back()[a] = between;
-  }
-  state.parentTet.push_back(state.parentTet[t]);
-  // Both halves keep what is across their faces; between them there is one chart.
-  const std::size_t second = problem.tets.size() - 1;
-  for (std::size_t face = 0; face < 4; ++face) {
-    problem.transitions.push_back(problem.transitions[4 * t + face]);
-    problem.planes.push_back(problem.planes[4 * t + face]);
-  }
-  for (const std::size_t inner : {4 * std::size_t{t} + a, 4 * second + b}) {
-    problem.transitions[inner] = {};
-    problem.planes[inner] = {};
-  }
-  if (auto fixed = problem.fixedCorners.extract(static_cast<adjacency::CornerIndex>(4 * t + b))) {
-    fixed.key() = static_cast<adjacency::CornerIndex>(4 * second + b);
+  tetmap::carryCorners(cut, problem.reference);
+  tetmap::carryCorners(cut, state.bent);
+  tetmap::carryTet(cut, state.parentTet);
+  tetmap::carryFaces(cut, {}, problem.transitions);
+  tetmap::carryFaces(cut, {}, problem.planes);
+  const auto b = static_cast<adjacency::CornerIndex>(cut.b);
+  if (auto fixed = problem.fixedCorners.extract(4 * cut.first + b)) {
+    fixed.key() = 4 * cut.second + b;
     problem.fixedCorners.insert(std::move(fixed));
   }
 }
@@ -103,36 +85,43 @@ std::vector<Index> withNeighbours(const adjacency::TetTopology& topology,
         around.push_back(adjacency::tetOf(corner));
     }
   }
-  sortOut(around);
+  tetmap::sortUnique(around);
   return around;
 }
 
-std::vector<SplitEdge> edgesToSplit(const BendProblem& problem,
-                                    const adjacency::TetTopology& topology,
-                                    const VertexUnknowns& unknowns, std::span<const Index> tets) {
-  std::vector<SplitEdge> edges = freeingEdges(problem, topology, unknowns, tets);
+std::vector<tetmap::EdgeInTet> edgesToSplit(const BendProblem& problem,
+                                            const adjacency::TetTopology& topology,
+                                            const VertexUnknowns& unknowns,
+                                            std::span<const Index> tets) {
+  std::vector<tetmap::EdgeInTet> edges = freeingEdges(problem, topology, unknowns, tets);
   if (!edges.empty()) return edges;
   edges = freeingEdges(problem, topology, unknowns, withNeighbours(topology, tets));
   if (!edges.empty()) return edges;
   for (const Index t : tets) {
-    forEachEdgeOf(problem.tets[t], [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
-      if (!problem.keptEdges.contains(edge)) edges.push_back(edge);
-    });
+    tetmap::forEachEdgeOf(problem.tets[t],
+                          [&](const tetmap::VertexPair& edge, lattice::CornerMask /*corners*/) {
+                            if (!problem.keptEdges.contains(edge)) edges.push_back({edge, t});
+                          });
   }
-  sortOut(edges);
+  tetmap::sortUnique(edges);
   return edges;
 }
 
-bool splitEdges(BendState& state, std::span<const SplitEdge> edges, std::size_t mostTets) {
+bool splitEdges(BendState& state, const adjacency::TetTopology& topology,
+                std::span<const tetmap::EdgeInTet> edges, std::size_t mostTets) {
   BendProblem& problem = state.problem;
-  EdgeSplitter splitter(problem.points, problem.tets);
-  for (const SplitEdge& edge : edges) {
-    if (problem.tets.size() > mostTets) return false;
-    const Index vertex = splitter.split(
-        edge, [&](Index t, std::size_t a, std::size_t b) { carryCut(state, t, a, b); });
-    splitIrregular(edge, vertex, problem.irregularEdges);
-    state.splitEdges.push_back(edge);
+  tetmap::MutableTets mesh(std::move(problem.tets), topology.mate, problem.points.size());
+  for (const tetmap::EdgeInTet& edge : edges) {
+    if (mesh.tetCount() > mostTets) break;
+    const auto [v, w] = edge.vertices;
+    const std::vector<tetmap::Cut> cuts = mesh.splitEdge(edge);
+    problem.points.push_back(tetmap::middleOf(problem.points[v], problem.points[w]));
+    for (const tetmap::Cut& cut : cuts) carryCut(state, cut);
+    splitIrregular(edge.vertices, static_cast<Index>(mesh.vertexCount() - 1),
+                   problem.irregularEdges);
+    state.splitEdges.push_back(edge.vertices);
   }
+  problem.tets = std::move(mesh.tets);
   return problem.tets.size() <= mostTets;
 }
 

@@ -26,7 +26,7 @@ int expectedQuarters(const adjacency::TetTopology& topology, const IrregularEdge
 
 }  // namespace
 
-void splitIrregular(const SplitEdge& edge, Index middle, IrregularEdges& irregular) {
+void splitIrregular(const tetmap::VertexPair& edge, Index middle, IrregularEdges& irregular) {
   const auto found = irregular.find({std::min(edge[0], edge[1]), std::max(edge[0], edge[1])});
   if (found == irregular.end()) return;
   for (const Index end : edge) irregular[{end, middle}] = found->second;

@@ -13,7 +13,8 @@ namespace hexhex::quantization {
 
 /// @tparam Corners  as in quartersAround()
 template <class Corners>
-[[nodiscard]] IrregularEdges irregularEdges(const EdgeFans& edges, std::span<const Tet> tets,
+[[nodiscard]] IrregularEdges irregularEdges(const adjacency::EdgeFans& edges,
+                                            std::span<const Tet> tets,
                                             std::span<const Corners> map) {
   const std::vector<int> quarters = quartersAround(edges, map);
   IrregularEdges irregular;
@@ -27,7 +28,7 @@ template <class Corners>
 
 /// Both halves of an edge turn as it did.
 /// @param middle  a new vertex
-void splitIrregular(const SplitEdge& edge, Index middle, IrregularEdges& irregular);
+void splitIrregular(const tetmap::VertexPair& edge, Index middle, IrregularEdges& irregular);
 
 /// Tets at edges around which a map turns otherwise than expected, ascending. Its boundary
 /// triangles lie along planes of the grid, so that it turns by multiples of a right angle. Needs

@@ -225,7 +225,7 @@ void requireRectangles(const MotorcycleComplex& complex) {
 
 MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced, Context& context) {
   Stage stage(context, "motorcycle complex");
-  MotorcycleComplex complex{.mesh = traceWalls(map, EdgeFans(map.topology))};
+  MotorcycleComplex complex{.mesh = traceWalls(map, adjacency::EdgeFans(map.topology))};
   for (Index ring = findBlocks(complex); ring != kNone; ring = findBlocks(complex)) {
     context.throwIfCancelled();
     RingCutter(complex, ring).run();

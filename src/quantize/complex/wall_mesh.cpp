@@ -31,9 +31,9 @@ lattice::LatticePoint pointBetween(const lattice::LatticePoint& a, const lattice
 }  // namespace
 
 WallMesh::WallMesh(const SeamlessMap& map)
-    : tets(map.topology.tets.begin(), map.topology.tets.end()),
+    : MutableTets({map.topology.tets.begin(), map.topology.tets.end()}, map.topology.mate,
+                  map.topology.pointCount),
       corners(map.corners),
-      mate(map.topology.mate.begin(), map.topology.mate.end()),
       change(map.changes),
       isWall(mate.size()),
       isFeature(mate.size()),
@@ -41,8 +41,7 @@ WallMesh::WallMesh(const SeamlessMap& map)
       original(tets.size()),
       originalFace(mate.size()),
       originalVertices_(static_cast<Index>(map.topology.pointCount)),
-      moved_(tets.size(), kNone),
-      firstPart_(tets.size(), kNone) {
+      moved_(tets.size(), kNone) {
   for (Index t = 0; t < tets.size(); ++t) original[t] = t;
   for (adjacency::HalfFace h = 0; h < mate.size(); ++h) {
     originalFace[h] = static_cast<std::uint8_t>(h % 4);
@@ -55,83 +54,45 @@ WallMesh::WallMesh(const SeamlessMap& map)
 }
 
 void WallMesh::keepEdge(Index v, Index w) {
-  featureEdges.insert(pairOf(v, w));
+  featureEdges.insert(tetmap::pairOf(v, w));
   isHeld[v] = isHeld[w] = true;
 }
 
-void WallTurn::step() noexcept {
-  const adjacency::HalfFace in = mesh_.mate[out()];
-  const Tet& from = mesh_.tets[edge_.tet];
-  const Index last = from[ahead()];
-  const Index tet = adjacency::tetOf(in);
-  edge_ = {tet, mesh_.cornerOf(tet, from[edge_.corner0]), mesh_.cornerOf(tet, from[edge_.corner1])};
-  face_ = mesh_.cornerOf(tet, last);
-}
-
-std::vector<WallMesh::Around> WallMesh::tetsAround(const TetEdge& edge,
-                                                   const lattice::LatticePoint& u) const {
-  std::vector<Around> ring = {{edge, u}};
-  const auto walk = [&](int face) {
-    WallTurn turn(*this, edge, face);
-    lattice::LatticePoint here = u;
-    while (!turn.isAtBoundary()) {
-      here = change[turn.out()](here);
-      turn.step();
-      if (turn.edge().tet == edge.tet) return true;
-      ring.push_back({turn.edge(), here});
-    }
-    return false;
-  };
-  int face = 0;
-  while (lattice::contains(edge.mask(), face)) ++face;
-  if (!walk(face)) walk(adjacency::otherFaceAtEdge(edge.mask(), face));
-  return ring;
-}
-
-Index WallMesh::split(const TetEdge& edge, std::size_t axis, std::int64_t value) {
-  const auto ring = tetsAround(
-      edge, pointBetween(at(edge.tet, edge.corner0), at(edge.tet, edge.corner1), axis, value));
-  const auto middle = static_cast<Index>(vertexCount());
-  const Index v = tets[edge.tet][edge.corner0];
-  const Index w = tets[edge.tet][edge.corner1];
-  const bool isOnFeature = featureEdges.erase(pairOf(v, w)) != 0;
+Index WallMesh::split(const adjacency::TetEdge& at, std::size_t axis, std::int64_t value) {
+  const Index v = tets[at.tet][at.corner0];
+  const Index w = tets[at.tet][at.corner1];
+  std::vector<adjacency::TetEdge> around = {at};
+  std::vector<lattice::LatticePoint> middles = {
+      pointBetween(corners[at.tet][at.corner0], corners[at.tet][at.corner1], axis, value)};
+  adjacency::visitAroundEdge(
+      *this, at.tet, at.mask(), middles[0],
+      [&](const lattice::LatticePoint& u, adjacency::HalfFace out) { return change[out](u); },
+      [&](const auto& turn, const lattice::LatticePoint& u) {
+        around.push_back(edge(turn.tet(), v, w));
+        middles.push_back(u);
+        return true;
+      });
+  const std::vector<tetmap::Cut> cuts = splitEdge(around);
+  const auto middle = static_cast<Index>(vertexCount() - 1);
+  const bool isOnFeature = featureEdges.erase(tetmap::pairOf(v, w)) != 0;
   isHeld.push_back(isOnFeature);
-  if (isOnFeature) featureEdges.insert({pairOf(v, middle), pairOf(w, middle)});
-  const auto firstNew = static_cast<Index>(tetCount());
-  for (const Around& each : ring) appendCopy(each.edge.tet);
-  const auto secondOf = [&](Index tet) {
-    std::size_t i = 0;
-    while (ring[i].edge.tet != tet) ++i;
-    return firstNew + static_cast<Index>(i);
-  };
-  for (const auto& [at, u] : ring) {
-    const Index first = at.tet;
-    const Index second = secondOf(first);
-    parts_.push_back(
-        {second, firstPart_[first], tets[first][at.corner0], tets[first][at.corner1], middle});
-    firstPart_[first] = static_cast<Index>(parts_.size() - 1);
-    for (int face = 0; face < 4; ++face) {
-      const adjacency::HalfFace h = adjacency::halfFaceOf(second, face);
-      if (mate[h] == kNone || face == at.corner1) continue;
-      // The face beyond the new vertex is the second part's alone; those at the edge are split.
-      if (face == at.corner0) {
-        mate[mate[h]] = h;
-      } else {
-        mate[h] =
-            adjacency::halfFaceOf(secondOf(adjacency::tetOf(mate[h])), adjacency::localOf(mate[h]));
-      }
-    }
-  }
-  for (const auto& [at, u] : ring) {
-    const Index second = secondOf(at.tet);
-    tets[at.tet][at.corner1] = tets[second][at.corner0] = middle;
-    corners[at.tet][at.corner1] = corners[second][at.corner0] = u;
-    joinInside(adjacency::halfFaceOf(at.tet, at.corner0),
-               adjacency::halfFaceOf(second, at.corner1));
-    requirePositive(at.tet);
-    requirePositive(second);
-  }
+  if (isOnFeature) featureEdges.insert({tetmap::pairOf(v, middle), tetmap::pairOf(w, middle)});
+  for (std::size_t i = 0; i < cuts.size(); ++i) carryCut(cuts[i], middles[i]);
   return middle;
+}
+
+void WallMesh::carryCut(const tetmap::Cut& cut, const lattice::LatticePoint& middle) {
+  tetmap::carryCorners(cut, middle, corners);
+  tetmap::carryTet(cut, original);
+  moved_.push_back(kNone);
+  for (adjacency::HalfFace h = 4 * cut.first; h < 4 * cut.first + 4; ++h) change.appendCopyOf(h);
+  change.set(4 * cut.first + static_cast<Index>(cut.a), {});
+  change.set(4 * cut.second + static_cast<Index>(cut.b), {});
+  tetmap::carryFaces(cut, false, isWall);
+  tetmap::carryFaces(cut, false, isFeature);
+  tetmap::carryFaces(cut, kInside, originalFace);
+  requirePositive(cut.first);
+  requirePositive(cut.second);
 }
 
 void WallMesh::requirePositive(Index tet) const {
@@ -148,7 +109,8 @@ bool WallMesh::leavesKeptEdge(const MovedCorner& moved) const {
   const Tet& tet = tets[moved.tet];
   if (!isHeld[tet[moved.corner]]) return false;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (i == moved.corner || !featureEdges.contains(pairOf(tet[i], tet[moved.corner]))) continue;
+    if (i == moved.corner || !featureEdges.contains(tetmap::pairOf(tet[i], tet[moved.corner])))
+      continue;
     for (std::size_t k = 0; k < 3; ++k) {
       // Along an axis, an edge has one coordinate that differs.
       const bool isAlong = at(moved.tet, i)[k] != at(moved.tet, moved.corner)[k];
@@ -207,55 +169,6 @@ bool WallMesh::moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::i
     if (isPossible) corners[each.tet][each.corner] = at(each.tet, each.corner) + each.by;
   }
   return isPossible;
-}
-
-void WallMesh::appendCopy(Index tet) {
-  const Tet copy = tets[tet];
-  const lattice::LatticeTet corner = corners[tet];
-  tets.push_back(copy);
-  corners.push_back(corner);
-  original.push_back(Index{original[tet]});
-  firstPart_.push_back(kNone);
-  moved_.push_back(kNone);
-  for (adjacency::HalfFace h = 4 * tet; h < 4 * tet + 4; ++h) {
-    mate.push_back(adjacency::HalfFace{mate[h]});
-    change.appendCopyOf(h);
-    isWall.push_back(bool{isWall[h]});
-    isFeature.push_back(bool{isFeature[h]});
-    originalFace.push_back(std::uint8_t{originalFace[h]});
-  }
-}
-
-void WallMesh::joinInside(adjacency::HalfFace a, adjacency::HalfFace b) {
-  mate[a] = b;
-  mate[b] = a;
-  for (const adjacency::HalfFace h : {a, b}) {
-    change.set(h, {});
-    isWall[h] = isFeature[h] = false;
-    originalFace[h] = kInside;
-  }
-}
-
-WallMesh::Found WallMesh::find(Index v, Index w, Index tet) const {
-  // The tet itself is the first of its parts; those split off, and their parts, in a tree.
-  std::vector<Index> toLookAt = {tet};
-  while (!toLookAt.empty()) {
-    const Index t = toLookAt.back();
-    toLookAt.pop_back();
-    const auto has = [&](Index vertex) {
-      return std::find(tets[t].begin(), tets[t].end(), vertex) != tets[t].end();
-    };
-    if (has(v) && has(w)) return {TetEdge{t, cornerOf(t, v), cornerOf(t, w)}, kNone};
-    for (Index p = firstPart_[t]; p != kNone; p = parts_[p].next) {
-      const Part& part = parts_[p];
-      if ((part.kept == v && part.given == w) || (part.kept == w && part.given == v)) {
-        return {std::nullopt, part.middle};
-      }
-      toLookAt.push_back(part.tet);
-    }
-  }
-  throw Error(ErrorCode::Internal, "An edge of a wall has vanished. This is a bug.",
-              {PlaceKind::Edge, v, w});
 }
 
 }  // namespace hexhex::quantization

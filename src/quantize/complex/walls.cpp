@@ -46,10 +46,11 @@ AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall) {
 namespace {
 
 /// Turns around an edge until it meets a plane through the edge, on whose `side` it begins.
-PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn turn) {
+PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
+                    adjacency::EdgeTurn<WallMesh> turn) {
   PlaneMeeting meeting;
   while (true) {
-    const Index tet = turn.edge().tet;
+    const Index tet = turn.tet();
     const int sideAhead = side * plane.sideOf(mesh.at(tet, turn.ahead()));
     if (sideAhead < 0) {
       meeting.kind = PlaneMeeting::Kind::Inside;
@@ -64,7 +65,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn tu
       meeting.face = turn.out();
       return meeting;
     }
-    if (turn.isAtBoundary()) return meeting;
+    if (turn.next() == kNone) return meeting;
     meeting.wallBefore = meeting.wallBefore || mesh.isWall[turn.out()];
     const lattice::LatticeMotion& change = mesh.change[turn.out()];
     const lattice::Direction to =
@@ -78,17 +79,18 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side, WallTurn tu
 /// Half a turn from a wall, around one of its edges.
 PlaneMeeting meetOpposite(const WallMesh& mesh, adjacency::HalfFace wall, Index v, Index w) {
   const Index tet = adjacency::tetOf(wall);
-  const TetEdge edge{tet, mesh.cornerOf(tet, v), mesh.cornerOf(tet, w)};
+  const adjacency::TetEdge edge = mesh.edge(tet, v, w);
   const AxisPlane plane = planeOf(mesh, wall);
   const int side = plane.sideOf(mesh.at(tet, static_cast<std::size_t>(adjacency::localOf(wall))));
   return turnTo(
       mesh, plane, side,
-      WallTurn(mesh, edge, adjacency::otherFaceAtEdge(edge.mask(), adjacency::localOf(wall))));
+      adjacency::EdgeTurn(mesh, tet, edge.mask(),
+                          adjacency::otherFaceAtEdge(edge.mask(), adjacency::localOf(wall))));
 }
 
 }  // namespace
 
-int WallTracer::moveEnd(const TetEdge& edge, const AxisPlane& plane) {
+int WallTracer::moveEnd(const adjacency::TetEdge& edge, const AxisPlane& plane) {
   const std::int64_t begin = mesh_.at(edge.tet, edge.corner0)[plane.axis];
   const std::int64_t end = mesh_.at(edge.tet, edge.corner1)[plane.axis];
   const double share = static_cast<double>(plane.value - begin) / static_cast<double>(end - begin);
@@ -100,47 +102,31 @@ int WallTracer::moveEnd(const TetEdge& edge, const AxisPlane& plane) {
   return mesh_.moveInto(edge.tet, moved, plane.axis, plane.value) ? corner : -1;
 }
 
-namespace {
-
-/// Calls visit(tet, plane in its chart) for the other tets around an edge: both ways round, if the
-/// boundary is between.
-template <class Visit>
-void forEachOtherTetAt(const WallMesh& mesh, const TetEdge& edge, const AxisPlane& plane,
-                       const Visit& visit) {
-  bool isClosed = false;
-  for (int face = 0; face < 4 && !isClosed; ++face) {
-    if (lattice::contains(edge.mask(), face)) continue;
-    WallTurn turn(mesh, edge, face);
-    AxisPlane here = plane;
-    while (!isClosed && !turn.isAtBoundary()) {
-      here = here.beyond(mesh.change[turn.out()]);
-      turn.step();
-      isClosed = turn.edge().tet == edge.tet;
-      if (!isClosed) visit(turn.edge().tet, here);
-    }
-  }
-}
-
-}  // namespace
-
-void WallTracer::split(const TetEdge& edge, const AxisPlane& plane) {
+void WallTracer::split(const adjacency::TetEdge& edge, const AxisPlane& plane) {
   struct Crossed {
     std::array<Index, 2> vertices;
     Index tet;
     AxisPlane plane;
   };
   std::vector<Crossed> others;
-  const auto collect = [&](Index tet, const AxisPlane& here) {
+  const auto collect = [&](const auto& turn, const AxisPlane& here) {
+    const Index tet = turn.tet();
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) {
         if (here.sideOf(mesh_.at(tet, a)) >= 0 || here.sideOf(mesh_.at(tet, b)) <= 0) continue;
         others.push_back({{mesh_.tets[tet][a], mesh_.tets[tet][b]}, tet, here});
       }
     }
+    return true;
   };
   const Tet& tet = mesh_.tets[edge.tet];
   if (mesh_.isNew(tet[edge.corner0]) || mesh_.isNew(tet[edge.corner1])) {
-    forEachOtherTetAt(mesh_, edge, plane, collect);
+    adjacency::visitAroundEdge(
+        mesh_, edge.tet, edge.mask(), plane,
+        [&](const AxisPlane& here, adjacency::HalfFace out) {
+          return here.beyond(mesh_.change[out]);
+        },
+        collect);
   }
   mesh_.split(edge, plane.axis, plane.value);
   for (const Crossed& other : others) {
@@ -201,7 +187,7 @@ void WallTracer::push(const std::array<Index, 2>& edge, const std::array<double,
   fronts_.push({distance, order_++, edge, distances, tet});
 }
 
-void WallTracer::startAt(const TetEdge& edge, int face) {
+void WallTracer::startAt(const adjacency::TetEdge& edge, int face) {
   const std::array<Index, 2> ends = {mesh_.tets[edge.tet][edge.corner0],
                                      mesh_.tets[edge.tet][edge.corner1]};
   const lattice::LatticePoint origin = mesh_.at(edge.tet, edge.corner0);
@@ -222,7 +208,8 @@ void WallTracer::startAt(const TetEdge& edge, int face) {
     const bool sameSigns = (behind[a] > 0) == (behind[b] > 0);
     const std::size_t zero = (turn > 0) == sameSigns ? a : b;
     wall = wallAt(turnTo(mesh_, {zero, origin[zero]}, behind[zero] > 0 ? 1 : -1,
-                         WallTurn(mesh_, edge, adjacency::otherFaceAtEdge(edge.mask(), face))));
+                         adjacency::EdgeTurn(mesh_, edge.tet, edge.mask(),
+                                             adjacency::otherFaceAtEdge(edge.mask(), face))));
   } else {
     mesh_.markWall(wall);
   }
@@ -241,7 +228,7 @@ void WallTracer::startAt(const TetEdge& edge, int face) {
     const adjacency::HalfFace from = isStart && mesh_.isBoundary(wall) ? wall : mesh_.mate[wall];
     isStart = false;
     const Index tet = adjacency::tetOf(from);
-    const TetEdge here{tet, mesh_.cornerOf(tet, ends[0]), mesh_.cornerOf(tet, ends[1])};
+    const adjacency::TetEdge here = mesh_.edge(tet, ends[0], ends[1]);
     const lattice::LatticePoint out =
         mesh_.at(tet, mesh_.cornerOf(tet, thirdOf(from))) - mesh_.at(tet, here.corner0);
     const lattice::LatticePoint line = mesh_.at(tet, here.corner1) - mesh_.at(tet, here.corner0);
@@ -250,7 +237,8 @@ void WallTracer::startAt(const TetEdge& edge, int face) {
     const auto next = static_cast<std::size_t>(otherAxis(lineAxis, planeOf(mesh_, from).axis));
     const PlaneMeeting meeting = turnTo(
         mesh_, {next, mesh_.at(tet, here.corner0)[next]}, out[next] > 0 ? 1 : -1,
-        WallTurn(mesh_, here, adjacency::otherFaceAtEdge(here.mask(), adjacency::localOf(from))));
+        adjacency::EdgeTurn(mesh_, tet, here.mask(),
+                            adjacency::otherFaceAtEdge(here.mask(), adjacency::localOf(from))));
     if (meeting.kind == PlaneMeeting::Kind::Boundary) return;
     wall = wallAt(meeting);
     if (mesh_.isBoundary(wall) || thirdOf(wall) == first) return;
@@ -293,16 +281,14 @@ bool WallTracer::startIn(Index tet, const AxisPlane& plane) {
   return isStarted;
 }
 
-adjacency::HalfFace WallTracer::someWall(const TetEdge& edge) const {
+adjacency::HalfFace WallTracer::someWall(const adjacency::TetEdge& edge) const {
   for (int face = 0; face < 4; ++face) {
     if (lattice::contains(edge.mask(), face)) continue;
-    WallTurn turn(mesh_, edge, face);
-    while (true) {
+    adjacency::EdgeTurn turn(mesh_, edge.tet, edge.mask(), face);
+    do {
       if (mesh_.isWall[turn.out()]) return turn.out();
-      if (turn.isAtBoundary()) break;
-      turn.step();
-      if (turn.edge().tet == edge.tet) break;
-    }
+      turn.step();  // the boundary is a wall
+    } while (turn.tet() != edge.tet);
   }
   return kNone;
 }
@@ -348,20 +334,14 @@ adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall,
 
 void WallTracer::startAlong(Index v, Index w, Index tet) {
   // Walls of other edges may have split it.
-  mesh_.forEachPart(v, w, tet, [this](TetEdge edge) {
-    int face = 0;
-    while (lattice::contains(edge.mask(), face)) ++face;
-    WallTurn turn(mesh_, edge, face);
-    const TetEdge first = edge;
-    do {
-      if (turn.isAtBoundary()) {
-        // Anew from the boundary, inwards.
-        startAt(turn.edge(), adjacency::localOf(turn.out()));
-        return;
-      }
-      turn.step();
-    } while (turn.edge().tet != first.tet);
-    startAt(edge, face);
+  mesh_.forEachPart(v, w, tet, [this](adjacency::TetEdge edge) {
+    const std::array<Index, 2> ends = {mesh_.tets[edge.tet][edge.corner0],
+                                       mesh_.tets[edge.tet][edge.corner1]};
+    adjacency::EdgeTurn turn(mesh_, edge.tet, edge.mask(),
+                             adjacency::otherFaceAtEdge(edge.mask(), -1));
+    // From the boundary, inwards.
+    turn.goToBoundary();
+    startAt(mesh_.edge(turn.tet(), ends[0], ends[1]), adjacency::localOf(turn.out()));
   });
 }
 
@@ -375,19 +355,19 @@ void WallTracer::startAt(adjacency::HalfFace feature) {
   }
 }
 
-WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges) {
+WallMesh traceWalls(const SeamlessMap& map, const adjacency::EdgeFans& edges) {
   WallMesh mesh(map);
   WallTracer tracer(mesh);
   const std::vector<int> quarters = quartersAround(edges, std::span(map.corners));
-  std::vector<adjacency::EdgeCorner> features;
-  for (const adjacency::EdgeCorner& at : map.featureEdges) {
+  std::vector<adjacency::TetEdge> features;
+  for (const adjacency::TetEdge& at : map.featureEdges) {
     const Index edge = edges.edgeOf(at);
     const bool isSingular = quarters[edge] != regularQuarters(edges, edge);
     if (isSingular && !isSingularByTurnsAlone(edges, edge, quarters[edge])) continue;
     if (!isSingular) features.push_back(at);
     mesh.keepEdge(mesh.tets[at.tet][at.corner0], mesh.tets[at.tet][at.corner1]);
   }
-  const auto start = [&](const adjacency::EdgeCorner& at) {
+  const auto start = [&](const adjacency::TetEdge& at) {
     const Tet& tet = map.topology.tets[at.tet];
     tracer.startAlong(tet[at.corner0], tet[at.corner1], at.tet);
   };
@@ -395,7 +375,7 @@ WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges) {
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     if (quarters[edge] != regularQuarters(edges, edge)) start(edges(edge).front());
   }
-  for (const adjacency::EdgeCorner& at : features) start(at);
+  for (const adjacency::TetEdge& at : features) start(at);
   std::fill(mesh.isHeld.begin(), mesh.isHeld.end(), false);
   tracer.grow();
   return mesh;

@@ -27,7 +27,7 @@ struct AxisPlane {
 struct PlaneMeeting {
   enum class Kind : std::uint8_t { Boundary, Face, Inside } kind = Kind::Boundary;
   adjacency::HalfFace face = kNone;  ///< that lies in the plane
-  TetEdge crossed{};                 ///< that the plane crosses inside of its tet
+  adjacency::TetEdge crossed{};      ///< that the plane crosses inside of its tet
   AxisPlane plane{};                 ///< in the chart of that tet
   bool wallBefore = false;           ///< whether a wall was passed on the way
 };
@@ -64,20 +64,20 @@ class WallTracer {
     }
   };
   /// @param face  of the edge's tet, at the edge: on the boundary if the edge is
-  void startAt(const TetEdge& edge, int face);
+  void startAt(const adjacency::TetEdge& edge, int face);
   void grow(const Front& front);
   /// Moves an end of an edge into a plane that crosses the edge close by.
   /// @return its corner, or -1 if neither end is close, or may move
-  int moveEnd(const TetEdge& edge, const AxisPlane& plane);
+  int moveEnd(const adjacency::TetEdge& edge, const AxisPlane& plane);
   /// Splits an edge where a plane crosses it. If it ends at a vertex of another wall, so are all
   /// edges of tets around it that the plane crosses: two walls that cross one edge would otherwise
   /// split what the other has made, by turns and without end, beside that edge.
-  void split(const TetEdge& edge, const AxisPlane& plane);
+  void split(const adjacency::TetEdge& edge, const AxisPlane& plane);
   adjacency::HalfFace wallAt(const PlaneMeeting& meeting);
   void push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
             const std::array<double, 2>& distances);
   void push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances, Index tet);
-  [[nodiscard]] adjacency::HalfFace someWall(const TetEdge& edge) const;
+  [[nodiscard]] adjacency::HalfFace someWall(const adjacency::TetEdge& edge) const;
 
   WallMesh& mesh_;
   std::priority_queue<Front> fronts_;
@@ -93,6 +93,6 @@ class WallTracer {
                                                Index v, Index w);
 
 /// A mesh whose walls are the motorcycle complex of a map.
-[[nodiscard]] WallMesh traceWalls(const SeamlessMap& map, const EdgeFans& edges);
+[[nodiscard]] WallMesh traceWalls(const SeamlessMap& map, const adjacency::EdgeFans& edges);
 
 }  // namespace hexhex::quantization

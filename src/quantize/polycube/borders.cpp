@@ -3,8 +3,8 @@
 #include <map>
 #include <utility>
 
-#include <quantize/bend/edge_splitter.hpp>
 #include <quantize/polycube/borders.hpp>
+#include <tetmap/cut.hpp>
 
 #include <base/disjoint_sets.hpp>
 
@@ -12,11 +12,11 @@ namespace hexhex::quantization {
 
 namespace {
 
-VertexPair verticesOf(const BoundarySides& sides, BoundarySide side) {
-  return pairOf(sides.tail(side), sides.head(side));
+tetmap::VertexPair verticesOf(const BoundarySides& sides, BoundarySide side) {
+  return tetmap::pairOf(sides.tail(side), sides.head(side));
 }
 
-Place placeOf(const VertexPair& edge) { return {PlaceKind::Edge, edge[0], edge[1]}; }
+Place placeOf(const tetmap::VertexPair& edge) { return {PlaceKind::Edge, edge[0], edge[1]}; }
 
 [[noreturn]] void refusePlanes(const std::string& sentence, const Place& place) {
   throw Error(ErrorCode::FlippedTet,
@@ -155,7 +155,7 @@ std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) 
   }
   std::vector<Gap> list;
   for (auto& [planes, gap] : gaps) {
-    sortOut(gap.corners);
+    tetmap::sortUnique(gap.corners);
     list.push_back(std::move(gap));
   }
   std::stable_sort(list.begin(), list.end(),

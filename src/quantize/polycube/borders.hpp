@@ -21,7 +21,7 @@ namespace hexhex::quantization {
 
 /// An edge of the mesh between two labels.
 struct PolycubeEdge {
-  VertexPair vertices;  ///< ascending
+  tetmap::VertexPair vertices;  ///< ascending
   std::array<lattice::Direction, 2>
       labels;                ///< to the left of it, as seen from outside, and to the right
   lattice::Direction along;  ///< from the first vertex to the second

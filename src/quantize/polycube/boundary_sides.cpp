@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <adjacency/edge_fan.hpp>
 #include <quantize/polycube/boundary_sides.hpp>
 
 namespace hexhex::quantization {
@@ -11,12 +12,11 @@ BoundarySides::BoundarySides(const adjacency::TetTopology& topology) : topology_
   twins_.resize(3 * faces_.size());
   for (BoundarySide side = 0; side < twins_.size(); ++side) {
     const adjacency::HalfFace h = face(side);
-    const auto ends = static_cast<lattice::CornerMask>(
-        lattice::cornerBit(topology.localCorner(adjacency::tetOf(h), head(side))) |
-        lattice::cornerBit(topology.localCorner(adjacency::tetOf(h), tail(side))));
+    const lattice::CornerMask ends =
+        topology.edge(adjacency::tetOf(h), head(side), tail(side)).mask();
     adjacency::EdgeTurn turn(topology, adjacency::tetOf(h), ends,
                              adjacency::otherFaceAtEdge(ends, adjacency::localOf(h)));
-    while (turn.next() != kNone) turn.step();
+    turn.goToBoundary();
     const auto found = std::lower_bound(faces_.begin(), faces_.end(), turn.out());
     BoundarySide there = 3 * static_cast<BoundarySide>(found - faces_.begin());
     while (head(there) != tail(side)) ++there;

@@ -89,7 +89,7 @@ std::vector<Index> verticesAt(const BentTets& bent) {
     const std::vector<Index> more = bent.problem.verticesOf(element);
     vertices.insert(vertices.end(), more.begin(), more.end());
   }
-  sortOut(vertices);
+  tetmap::sortUnique(vertices);
   return vertices;
 }
 

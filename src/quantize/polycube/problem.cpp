@@ -124,7 +124,7 @@ void PolycubeProblem::fixPlanes() {
 std::vector<Index> PolycubeProblem::verticesOf(std::size_t element) const {
   const std::size_t tets = mesh_.topology.tetCount();
   if (element >= tets + triangles_.size()) {
-    const VertexPair& ends = edges_[element - tets - triangles_.size()].vertices;
+    const tetmap::VertexPair& ends = edges_[element - tets - triangles_.size()].vertices;
     return {ends.begin(), ends.end()};
   }
   const Tet& tet = mesh_.topology.tets[tetAt(element)];

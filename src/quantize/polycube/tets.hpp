@@ -1,14 +1,14 @@
 // The tets of a polycube, split where labels leave them no room.
 #pragma once
 
-#include <quantize/bend/edge_splitter.hpp>
 #include <quantize/polycube/labels.hpp>
 
 namespace hexhex::quantization {
 
 struct PolycubeTets {
   TetMesh mesh;
-  std::vector<FaceFlags> flags;  ///< per tet
+  std::vector<adjacency::HalfFace> mate;  ///< per half-face
+  std::vector<FaceFlags> flags;           ///< per tet
   std::vector<Index> parentTet;  ///< per tet: that of the labelled mesh which it is part of
 };
 

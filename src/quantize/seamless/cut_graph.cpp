@@ -14,17 +14,6 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Numbers the six edges of a tet by the set of their corners.
-constexpr std::array<std::uint8_t, 16> kEdgeOfCorners = {0, 0, 0, 0, 0, 1, 2, 0,
-                                                         0, 3, 4, 0, 5, 0, 0, 0};
-
-std::size_t numberOf(lattice::CornerMask ends) { return kEdgeOfCorners[ends]; }
-
-lattice::CornerMask endsOf(const adjacency::EdgeCorner& at) {
-  return static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
-                                          lattice::cornerBit(at.corner1));
-}
-
 /// How charts are moved on their way from tet to tet.
 using Motion = lattice::GridMotion<double>;
 
@@ -97,7 +86,8 @@ std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
 }
 
 /// Takes triangles out of the cut that are its last ones at an edge around which nothing rotates.
-void mendCut(const adjacency::TetTopology& topology, const EdgeFans& edges, CutGraph& graph) {
+void mendCut(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
+             CutGraph& graph) {
   std::vector<Index> cutFaces(edges.size());  // half-faces, that is, two for each triangle
   std::vector<Index> ends;
   const auto lookAt = [&](Index edge) {
@@ -113,9 +103,8 @@ void mendCut(const adjacency::TetTopology& topology, const EdgeFans& edges, CutG
     graph.isCut[halfFace] = graph.isCut[topology.mate[halfFace]] = false;
     for (int i = 0; i < 4; ++i) {
       if (i == adjacency::localOf(halfFace)) continue;
-      const auto ends4 =
-          static_cast<lattice::CornerMask>(lattice::kWholeTet ^ lattice::cornerBit(i) ^
-                                           lattice::cornerBit(adjacency::localOf(halfFace)));
+      const auto ends4 = static_cast<lattice::CornerMask>(
+          lattice::faceMask(adjacency::localOf(halfFace)) ^ lattice::cornerBit(i));
       const Index edge = edges.edgeOf(adjacency::tetOf(halfFace), ends4);
       cutFaces[edge] -= 2;
       lookAt(edge);
@@ -205,31 +194,7 @@ double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b) {
   return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
 }
 
-EdgeFans::EdgeFans(const adjacency::TetTopology& topology)
-    : topology_(topology), edges_(topology.tetCount()) {
-  // As many edges as Euler's formula has, where no component is a closed space.
-  const auto boundary =
-      static_cast<std::size_t>(std::count(topology.mate.begin(), topology.mate.end(), kNone));
-  begin_.reserve(topology.pointCount + topology.tetCount() + boundary / 2 + 1);
-  corners_.reserve(6 * topology.tetCount());
-  std::vector<adjacency::EdgeCorner> scratch;
-  for (Index v = 0; v < topology.pointCount; ++v) {
-    adjacency::forEachEdge(topology, v, scratch,
-                           [this](Index /*w*/, std::span<const adjacency::EdgeCorner> fan) {
-                             for (const adjacency::EdgeCorner& at : fan) {
-                               edges_[at.tet][numberOf(endsOf(at))] = static_cast<Index>(size());
-                             }
-                             corners_.insert(corners_.end(), fan.begin(), fan.end());
-                             begin_.push_back(corners_.size());
-                           });
-  }
-}
-
-Index EdgeFans::edgeOf(Index tet, lattice::CornerMask ends) const noexcept {
-  return edges_[tet][numberOf(ends)];
-}
-
-CutGraph cutOpen(const adjacency::TetTopology& topology, const EdgeFans& edges,
+CutGraph cutOpen(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
                  std::span<const TetParameters> parameters) {
   CutGraph graph;
   const std::vector<lattice::Rotation> rotations = fitRotations(topology, parameters);

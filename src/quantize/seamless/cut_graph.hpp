@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <adjacency/tet_topology.hpp>
+#include <adjacency/edge_fan.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -19,37 +19,11 @@ namespace hexhex::quantization {
 /// Of a tet at its edge (a, b).
 [[nodiscard]] double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b);
 
-/// The edges of a tet mesh, each with the tets around it.
-class EdgeFans {
- public:
-  /// @param topology  with stars; must outlive this
-  explicit EdgeFans(const adjacency::TetTopology& topology);
-
-  [[nodiscard]] std::size_t size() const noexcept { return begin_.size() - 1; }
-  [[nodiscard]] std::span<const adjacency::EdgeCorner> operator()(std::size_t edge) const noexcept {
-    return std::span(corners_).subspan(begin_[edge], begin_[edge + 1] - begin_[edge]);
-  }
-  /// The edge of two corners of a tet.
-  [[nodiscard]] Index edgeOf(Index tet, lattice::CornerMask ends) const noexcept;
-  [[nodiscard]] Index edgeOf(const adjacency::EdgeCorner& at) const noexcept {
-    return edgeOf(at.tet, static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
-                                                           lattice::cornerBit(at.corner1)));
-  }
-  [[nodiscard]] bool isBoundary(std::size_t edge) const noexcept {
-    return adjacency::boundaryFacesAt(topology_, (*this)(edge)) != 0;
-  }
-
- private:
-  const adjacency::TetTopology& topology_;
-  std::vector<std::size_t> begin_ = {0};
-  std::vector<adjacency::EdgeCorner> corners_;
-  std::vector<std::array<Index, 6>> edges_;  ///< per tet
-};
-
 /// Quarter turns around each edge: the sum of its tets' angles in the map.
 /// @tparam Corners  four points each, of whatever numbers
 template <class Corners>
-[[nodiscard]] std::vector<int> quartersAround(const EdgeFans& edges, std::span<const Corners> map) {
+[[nodiscard]] std::vector<int> quartersAround(const adjacency::EdgeFans& edges,
+                                              std::span<const Corners> map) {
   std::vector<int> quarters(edges.size());
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     double sum = 0;
@@ -66,13 +40,13 @@ template <class Corners>
 }
 
 /// As many are around an edge that is not singular.
-[[nodiscard]] inline int regularQuarters(const EdgeFans& edges, std::size_t edge) {
+[[nodiscard]] inline int regularQuarters(const adjacency::EdgeFans& edges, std::size_t edge) {
   return edges.isBoundary(edge) ? 2 : 4;
 }
 
 /// Whether an edge is singular, but charts agree around it: an inner one with several full turns,
 /// or one of the boundary, which turns back on itself there. Nothing else makes it follow an axis.
-[[nodiscard]] inline bool isSingularByTurnsAlone(const EdgeFans& edges, std::size_t edge,
+[[nodiscard]] inline bool isSingularByTurnsAlone(const adjacency::EdgeFans& edges, std::size_t edge,
                                                  int quarters) {
   const int regular = regularQuarters(edges, edge);
   return quarters != regular && quarters % regular == 0;
@@ -89,7 +63,8 @@ struct CutGraph {
 
 /// Moves charts along a tree of tets, cuts all other triangles, then mends the cut where it ends:
 /// across the last triangle of the cut at an inner edge charts agree, unless the edge is singular.
-[[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology, const EdgeFans& edges,
+[[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology,
+                               const adjacency::EdgeFans& edges,
                                std::span<const TetParameters> parameters);
 
 /// Calls visit(half-face) for the triangles of the tet at an edge.

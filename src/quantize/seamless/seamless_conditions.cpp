@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <cstdlib>
-#include <numeric>
+#include <iterator>
+#include <utility>
 
 #include <quantize/seamless/seamless_conditions.hpp>
+#include <tetmap/freedom.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <igm/transition_fit.hpp>
@@ -23,89 +24,29 @@ std::array<IntegerForm, 3> rotated(lattice::Rotation rotation,
   return image;
 }
 
-/// coefficients . u + rest = 0 for the parameter u of a vertex.
-struct Row {
-  std::array<std::int64_t, 3> coefficients{};
-  IntegerForm rest;
-
-  void reduceBy(const Row& pivot, std::size_t column) {
-    const std::int64_t common = std::gcd(coefficients[column], pivot.coefficients[column]);
-    const std::int64_t mine = pivot.coefficients[column] / common;
-    const std::int64_t theirs = -coefficients[column] / common;
-    for (std::size_t k = 0; k < 3; ++k) {
-      coefficients[k] = mine * coefficients[k] + theirs * pivot.coefficients[k];
-    }
-    rest.multiply(mine);
-    rest.add(pivot.rest, theirs);
-    std::int64_t divisor = 0;
-    for (const std::int64_t c : coefficients) divisor = std::gcd(divisor, c);
-    divisor = rest.commonDivisor(divisor);
-    if (divisor <= 1) return;
-    for (std::int64_t& c : coefficients) c /= divisor;
-    rest.divide(divisor);
-  }
-};
-
-/// Solves rows for coordinates; what is left over are equations between the unknowns.
-void eliminate(std::vector<Row>& rows, VertexConditions& vertex,
-               std::vector<IntegerForm>& equations) {
-  std::array<std::size_t, 3> pivotOf = {kNone, kNone, kNone};
-  std::size_t done = 0;
-  for (std::size_t column = 0; column < 3; ++column) {
-    std::size_t best = kNone;
-    for (std::size_t r = done; r < rows.size(); ++r) {
-      const std::int64_t size = std::abs(rows[r].coefficients[column]);
-      if (size != 0 && (best == kNone || size < std::abs(rows[best].coefficients[column])))
-        best = r;
-    }
-    if (best == kNone) continue;
-    std::swap(rows[done], rows[best]);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      if (r != done && rows[r].coefficients[column] != 0) rows[r].reduceBy(rows[done], column);
-    }
-    pivotOf[column] = done++;
-  }
-  for (std::size_t column = 0; column < 3; ++column) {
-    if (pivotOf[column] == kNone) continue;
-    const Row& row = rows[pivotOf[column]];
-    vertex.fixed[column] = {row.coefficients[column], row.rest};
-  }
-  for (std::size_t r = done; r < rows.size(); ++r) equations.push_back(std::move(rows[r].rest));
-}
+using Equations = tetmap::PointEquations<IntegerForm>;
 
 /// Two ways to a sector give the same parameter there.
 void addDifference(const VertexConditions::Sector& reached, const VertexConditions::Sector& known,
-                   std::vector<Row>& rows) {
+                   Equations& equations) {
   for (std::size_t k = 0; k < 3; ++k) {
-    Row row;
-    for (int from = 0; from < 3; ++from) {
-      const auto column = static_cast<std::size_t>(from);
-      const lattice::Direction a = reached.rotation(lattice::direction(from, 1));
-      const lattice::Direction b = known.rotation(lattice::direction(from, 1));
-      if (static_cast<std::size_t>(lattice::axisOf(a)) == k)
-        row.coefficients[column] += lattice::signOf(a);
-      if (static_cast<std::size_t>(lattice::axisOf(b)) == k)
-        row.coefficients[column] -= lattice::signOf(b);
-    }
-    row.rest = reached.translation[k];
-    row.rest.add(known.translation[k], -1);
-    rows.push_back(std::move(row));
+    IntegerForm rest = reached.translation[k];
+    rest.add(known.translation[k], -1);
+    equations.addAgreement(reached.rotation, known.rotation, k, std::move(rest));
   }
 }
 
 /// What planes say in a sector.
 void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unknowns,
-               std::vector<Row>& rows) {
+               Equations& equations) {
   for (int from = 0; from < 3; ++from) {
-    const lattice::Direction to = sector.rotation(lattice::direction(from, 1));
-    const auto axis = static_cast<std::size_t>(lattice::axisOf(to));
+    const auto axis =
+        static_cast<std::size_t>(lattice::axisOf(sector.rotation(lattice::direction(from, 1))));
     const Index plane = unknowns.plane(sector.sector, axis);
     if (plane == kNone) continue;
-    Row row;
-    row.coefficients[static_cast<std::size_t>(from)] = lattice::signOf(to);
-    row.rest = sector.translation[axis];
-    row.rest.add({plane, 1}, -1);
-    rows.push_back(std::move(row));
+    IntegerForm rest = sector.translation[axis];
+    rest.add({plane, 1}, -1);
+    equations.addPlane(sector.rotation, axis, std::move(rest));
   }
 }
 
@@ -134,23 +75,22 @@ std::vector<Crossing> crossingsAt(Index vertex, const adjacency::TetTopology& to
 
 }  // namespace
 
-SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology, const EdgeFans& edges,
-                               const CutGraph& graph, const Alignment& alignment)
+SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology,
+                               const adjacency::EdgeFans& edges, const CutGraph& graph,
+                               const Alignment& alignment)
     : topology_(topology), graph_(graph) {
   numberCutPieces(edges);
   numberPlanes(alignment);
 }
 
-void SharedUnknowns::numberCutPieces(const EdgeFans& edges) {
+void SharedUnknowns::numberCutPieces(const adjacency::EdgeFans& edges) {
   // Across an edge with two triangles of the cut, translations are the same, unless it is singular.
   DisjointSets sets(topology_.mate.size());
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     std::vector<std::pair<adjacency::HalfFace, lattice::CornerMask>> cuts;
     for (const adjacency::EdgeCorner& at : edges(edge)) {
-      const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
-                                                         lattice::cornerBit(at.corner1));
       forEachFaceAt(at, [&](adjacency::HalfFace h) {
-        if (graph_.isCut[h]) cuts.emplace_back(h, ends);
+        if (graph_.isCut[h]) cuts.emplace_back(h, at.mask());
       });
     }
     if (cuts.size() != 4 || edges.isBoundary(edge)) continue;
@@ -265,7 +205,7 @@ VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topolo
                               const CutGraph& graph, const SharedUnknowns& unknowns,
                               std::vector<IntegerForm>& equations) {
   VertexConditions conditions;
-  std::vector<Row> rows;
+  Equations ofPoint;
   // All sectors from the first one, across the cut; each further way between them is a condition.
   const std::vector<Crossing> crossings = crossingsAt(vertex, topology, graph);
   conditions.sectors.push_back({graph.sectors[topology.star(vertex)[0]], {}, {}});
@@ -288,13 +228,18 @@ VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topolo
         conditions.sectors.push_back(std::move(reached));
         continue;
       }
-      addDifference(reached, *known, rows);
+      addDifference(reached, *known, ofPoint);
     }
   }
   for (const VertexConditions::Sector& sector : conditions.sectors) {
-    addPlanes(sector, unknowns, rows);
+    addPlanes(sector, unknowns, ofPoint);
   }
-  eliminate(rows, conditions, equations);
+  Equations::Solution solution = std::move(ofPoint).solve();
+  for (std::size_t k = 0; k < 3; ++k) {
+    auto& [coefficients, rest] = solution.coordinates[k];
+    conditions.fixed[k] = {coefficients[k], std::move(rest)};
+  }
+  std::move(solution.left.begin(), solution.left.end(), std::back_inserter(equations));
   return conditions;
 }
 

@@ -15,7 +15,7 @@ struct Alignment {
   std::vector<std::uint8_t> axes;  ///< per half-face: the axis perpendicular to it, or kFree
   /// An edge along an axis of its tet's common chart.
   struct Edge {
-    adjacency::EdgeCorner at;
+    adjacency::TetEdge at;
     std::uint8_t axis;
   };
   std::vector<Edge> edges;
@@ -26,7 +26,7 @@ inline constexpr std::uint8_t kFree = 3;
 /// one for each plane in which a piece of the boundary, or an aligned feature, lies.
 class SharedUnknowns {
  public:
-  SharedUnknowns(const adjacency::TetTopology& topology, const EdgeFans& edges,
+  SharedUnknowns(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
                  const CutGraph& graph, const Alignment& alignment);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -44,7 +44,7 @@ class SharedUnknowns {
   [[nodiscard]] std::vector<double> measured() const;
 
  private:
-  void numberCutPieces(const EdgeFans& edges);
+  void numberCutPieces(const adjacency::EdgeFans& edges);
   void numberPlanes(const Alignment& alignment);
 
   const adjacency::TetTopology& topology_;

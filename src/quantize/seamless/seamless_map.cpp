@@ -55,13 +55,13 @@ bool areLevel(const TetParameters& u, std::size_t a, std::size_t b, std::size_t 
 }
 
 /// The tets of a feature edge, or of a feature triangle (as half-faces).
-std::optional<adjacency::EdgeCorner> findEdge(const adjacency::TetTopology& topology, Index v,
-                                              Index w) {
+std::optional<adjacency::TetEdge> findEdge(const adjacency::TetTopology& topology, Index v,
+                                           Index w) {
   for (const adjacency::CornerIndex corner : topology.star(v)) {
     const Tet& tet = topology.tets[corner / 4];
     for (std::uint8_t i = 0; i < 4; ++i) {
       if (tet[i] == w)
-        return adjacency::EdgeCorner{w, corner / 4, static_cast<std::uint8_t>(corner % 4), i};
+        return adjacency::TetEdge{corner / 4, static_cast<std::uint8_t>(corner % 4), i};
     }
   }
   return std::nullopt;
@@ -106,7 +106,7 @@ std::vector<adjacency::HalfFace> innerFaces(const SeamlessMap& map, std::int32_t
 /// The boundary, singular edges that charts do not tell of, and those features that are aligned
 /// within the tolerance: the others are not in the way of a seamless map, and will not be lines or
 /// planes of the mesh.
-Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
+Alignment findAlignment(SeamlessMap& map, const adjacency::EdgeFans& edges, const CutGraph& graph,
                         const SeamlessOptions& options) {
   const adjacency::TetTopology& topology = map.topology;
   const double tolerance = options.featureTolerance * map.size;
@@ -127,11 +127,11 @@ Alignment findAlignment(SeamlessMap& map, const EdgeFans& edges, const CutGraph&
     alignment.axes[h] = axis;
     map.featureFaces.push_back(h);
   }
-  const auto addEdge = [&](const adjacency::EdgeCorner& at, std::uint8_t along) {
+  const auto addEdge = [&](const adjacency::TetEdge& at, std::uint8_t along) {
     alignment.edges.push_back({at, along});
     map.featureEdges.push_back(at);
   };
-  const auto axisAlong = [&graph](const adjacency::EdgeCorner& at) {
+  const auto axisAlong = [&graph](const adjacency::TetEdge& at) {
     const TetParameters& u = graph.parameters[at.tet];
     return static_cast<std::uint8_t>(dominantAxis(minus(u[at.corner1], u[at.corner0])));
   };
@@ -305,18 +305,16 @@ void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double to
 /// Whether charts turn about an axis around an inner edge, and the edge is parallel to it; or
 /// agree.
 bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& graph,
-                       const adjacency::EdgeCorner& at, double tolerance) {
-  const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(at.corner0) |
-                                                     lattice::cornerBit(at.corner1));
-  adjacency::EdgeTurn turn(topology, at.tet, ends, adjacency::otherFaceAtEdge(ends, -1));
-  lattice::Rotation around;
-  do {
-    around = graph.rotations[turn.out()] * around;
-    turn.step();
-  } while (turn.tet() != at.tet);
-  if (around.isIdentity()) return true;
-  if (around.axis() < 0) return false;
-  const auto axis = static_cast<std::size_t>(around.axis());
+                       const adjacency::TetEdge& at, double tolerance) {
+  const std::optional<lattice::Rotation> around = adjacency::visitAroundEdge(
+      topology, at.tet, at.mask(), lattice::Rotation{},
+      [&](lattice::Rotation rotation, adjacency::HalfFace out) {
+        return graph.rotations[out] * rotation;
+      },
+      [](const auto& /*turn*/, lattice::Rotation /*rotation*/) { return true; });
+  if (!around || around->isIdentity()) return true;
+  if (around->axis() < 0) return false;
+  const auto axis = static_cast<std::size_t>(around->axis());
   // Each end moves by the tolerance at most.
   const TetParameters& u = graph.parameters[at.tet];
   return areLevel(u, at.corner0, at.corner1, (axis + 1) % 3, 2 * tolerance) &&
@@ -324,8 +322,8 @@ bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& g
 }
 
 /// Around any other edge, no hexahedra fit; and all that charts demand of a vertex are coordinates.
-void requireAxesOfCurves(const SeamlessMap& map, const EdgeFans& edges, const CutGraph& graph,
-                         double tolerance) {
+void requireAxesOfCurves(const SeamlessMap& map, const adjacency::EdgeFans& edges,
+                         const CutGraph& graph, double tolerance) {
   const adjacency::TetTopology& topology = map.topology;
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     const adjacency::EdgeCorner& at = edges(edge).front();
@@ -494,7 +492,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   igm::collectTopologyDefects(result.topology, stage, defects);
   defects.throwIfAny();
   const adjacency::TetTopology& topology = result.topology;
-  const EdgeFans edges(topology);
+  const adjacency::EdgeFans edges(topology);
   const CutGraph graph = cutOpen(topology, edges, result.input.view.parameters);
   result.size = largestCoordinate(graph);
   requireSize(result.size);

@@ -25,7 +25,7 @@ struct SeamlessMap {
   FaceMotions changes;                       ///< from here to the neighbour's chart
   /// Features that are aligned with axes, and to stay so, and what else charts do not tell of:
   /// edges, inner faces.
-  std::vector<adjacency::EdgeCorner> featureEdges;
+  std::vector<adjacency::TetEdge> featureEdges;
   std::vector<adjacency::HalfFace> featureFaces;
   double unit = 1;
   double size = 0;                    ///< extent from a corner, along the axis where it is longest

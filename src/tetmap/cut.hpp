@@ -1,0 +1,115 @@
+// A tet that is cut in two at the middle of an edge, and what becomes of all that is known of it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include <adjacency/tet_topology.hpp>
+
+#include <hexhex/types.hpp>
+
+namespace hexhex::tetmap {
+
+/// The vertices of an edge, in ascending order.
+using VertexPair = std::array<Index, 2>;
+[[nodiscard]] constexpr VertexPair pairOf(Index a, Index b) noexcept {
+  return a < b ? VertexPair{a, b} : VertexPair{b, a};
+}
+
+/// An edge that is to be split, and a tet that has it.
+struct EdgeInTet {
+  VertexPair vertices;
+  Index tet;
+
+  friend bool operator<(const EdgeInTet& a, const EdgeInTet& b) noexcept {
+    return a.vertices < b.vertices;
+  }
+  /// The same edge, whatever tets.
+  friend bool operator==(const EdgeInTet& a, const EdgeInTet& b) noexcept {
+    return a.vertices == b.vertices;
+  }
+};
+
+/// An edge by its vertices, of a tet that contains it.
+[[nodiscard]] inline adjacency::TetEdge edgeOf(const std::vector<Tet>& tets, Index tet,
+                                               const VertexPair& edge) noexcept {
+  return {tet, static_cast<std::uint8_t>(adjacency::localCorner(tets[tet], edge[0])),
+          static_cast<std::uint8_t>(adjacency::localCorner(tets[tet], edge[1]))};
+}
+
+/// The first part keeps the tet's number and all corners but b; the second part, which is appended,
+/// all but a. These are the new vertex.
+struct Cut {
+  Index first;
+  Index second;
+  std::size_t a;
+  std::size_t b;
+};
+
+inline Cut cutTet(std::vector<Tet>& tets, const adjacency::TetEdge& edge, Index middle) {
+  const Cut cut{edge.tet, static_cast<Index>(tets.size()), edge.corner0, edge.corner1};
+  tets.push_back(Tet{tets[cut.first]});
+  tets[cut.first][cut.b] = tets[cut.second][cut.a] = middle;
+  return cut;
+}
+
+[[nodiscard]] inline Vec3 middleOf(const Vec3& a, const Vec3& b) noexcept {
+  return {0.5 * a[0] + 0.5 * b[0], 0.5 * a[1] + 0.5 * b[1], 0.5 * a[2] + 0.5 * b[2]};
+}
+
+/// A value per tet: both parts have it. Empty lists stay so, here and below.
+template <class T>
+void carryTet(const Cut& cut, std::vector<T>& ofTets) {
+  if (!ofTets.empty()) ofTets.push_back(T{ofTets[cut.first]});
+}
+
+/// A value per corner.
+/// @param middle  at the new vertex
+template <class T>
+void carryCorners(const Cut& cut, const T& middle, std::vector<std::array<T, 4>>& ofTets) {
+  carryTet(cut, ofTets);
+  ofTets[cut.first][cut.b] = ofTets[cut.second][cut.a] = middle;
+}
+/// Points, which lie in the middle at the new vertex.
+inline void carryCorners(const Cut& cut, std::vector<TetParameters>& ofTets) {
+  if (ofTets.empty()) return;
+  const TetParameters& whole = ofTets[cut.first];
+  carryCorners(cut, middleOf(whole[cut.a], whole[cut.b]), ofTets);
+}
+
+/// A value per half-face.
+/// @param inside  between the two parts, on both sides
+template <class T>
+void carryFaces(const Cut& cut, const T& inside, std::vector<T>& ofHalfFaces) {
+  for (std::size_t face = 0; face < 4; ++face) {
+    ofHalfFaces.push_back(T{ofHalfFaces[4 * std::size_t{cut.first} + face]});
+  }
+  ofHalfFaces[4 * std::size_t{cut.first} + cut.a] = inside;
+  ofHalfFaces[4 * std::size_t{cut.second} + cut.b] = inside;
+}
+template <class T>
+void carryFaces(const Cut& cut, const T& inside, std::vector<std::array<T, 4>>& ofTets) {
+  if (ofTets.empty()) return;
+  carryTet(cut, ofTets);
+  ofTets[cut.first][cut.a] = ofTets[cut.second][cut.b] = inside;
+}
+
+/// Calls visit(vertices, corners) for the six edges of a tet.
+template <class Visit>
+void forEachEdgeOf(const Tet& tet, const Visit& visit) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      visit(pairOf(tet[i], tet[j]), static_cast<lattice::CornerMask>((1U << i) | (1U << j)));
+    }
+  }
+}
+
+/// Sorts a list, and leaves each entry once.
+template <class T>
+void sortUnique(std::vector<T>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace hexhex::tetmap
