@@ -397,7 +397,9 @@ class Quantizer {
           ErrorCode::FlippedTet,
           message + "none were found for the " + std::to_string(report_.arcs) +
               " arcs of its motorcycle complex" + advice +
-              (report_.integersBy == "rounding" ? " Or install CBC (coinor-libcbc3)." : ""));
+              (report_.integersBy == "rounding" ? " Or let HiGHS find them (pip install highsbox, "
+                                                  "and HEXHEX_HIGHS names its libhighs.so)."
+                                                : ""));
     }
     if (flippedTet_ == kNone) {
       throw Error(ErrorCode::HalfIntegerFixedPoint,
