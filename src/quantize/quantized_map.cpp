@@ -100,15 +100,16 @@ void requireSingularities(const IrregularEdges& expected, const TetMap& map, Con
 
 }  // namespace
 
-QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given, BentMap bent,
-                                const QuantizeReport& report, Context& context) {
+QuantizedMap finishQuantization(FoundMap found, const TetMapView& given, Context& context) {
+  BentMap& bent = found.bent;
   QuantizedMap result;
-  result.report = report;
+  result.report = found.report;
   result.report.distortionAfter = distortionOf(bent.points, bent.tets, bent.parameters);
   result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
   std::vector<TetParameters>().swap(bent.reference);
   for (std::size_t s = 0; s < bent.splitEdges.size(); ++s) {
-    splitIrregular(bent.splitEdges[s], static_cast<Index>(given.points.size() + s), singular);
+    splitIrregular(bent.splitEdges[s], static_cast<Index>(given.points.size() + s),
+                   found.irregularEdges);
   }
   TetMap& map = result.map;
   map.features = splitFeatures(given.features, given.points.size(), bent.splitEdges);
@@ -124,7 +125,7 @@ QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given
                                          std::string(name(checked.defects.front().code)) +
                                          "). This is a bug.");
   }
-  requireSingularities(singular, map, context);
+  requireSingularities(found.irregularEdges, map, context);
   return result;
 }
 

@@ -206,6 +206,11 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
         edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);
     if (!splitEdges(state, edges, mostTets)) break;
   }
+  if (map.contradictions.empty() && !map.flippedTets.empty()) {
+    // As they are now, and none held because it is far from flipped ones.
+    const Round last(state, stage);
+    map.tightness = findTightness(last.unknowns(), last.topology(), map.flippedTets);
+  }
   map.points = std::move(state.problem.points);
   map.tets = std::move(state.problem.tets);
   map.reference = std::move(state.problem.reference);

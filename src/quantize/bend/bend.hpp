@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <quantize/bend/edge_splitter.hpp>
+#include <quantize/bend/tightness.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -73,6 +74,7 @@ struct BentMap {
   /// to; empty after success.
   std::vector<Index> flippedTets;
   bool isWound = false;  ///< the latter
+  Tightness tightness;   ///< of flipped tets
 
   double energy = 0;  ///< mean of the foldover-free energy, by volume; 5 where nothing is distorted
   int iterations = 0;  ///< steps of the solver in all
