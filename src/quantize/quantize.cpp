@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <quantize/canonical_order.hpp>
@@ -57,11 +58,19 @@ bool areInRange(const TetMapView& map) {
 }
 
 /// Takes more and more planes as one until walls leave room between them.
-QuantizedMap quantizeSorted(const TetMap& map, const QuantizeOptions& options, Context& context) {
+/// @param[out] order  whose number each tet of the result has
+QuantizedMap quantizeSorted(const TetMapView& given, const QuantizeOptions& options,
+                            std::vector<Index>& order, Context& context) {
   std::optional<Error> tooThin;
   for (const double apart : kApart) {
+    TetMap map = inCanonicalOrder(given, order);
     try {
-      return finishQuantization(findBentMap(map, options, apart, context), map, context);
+      SeamlessMap seamless = makeSeamless(
+          map, {options.tolerance, options.tolerance, options.wallTag, apart}, context);
+      requirePositiveTets(seamless);
+      std::vector<TetParameters>().swap(map.parameters);  // which are large
+      return finishQuantization(findBentMap(std::move(seamless), map, options, context), map,
+                                context);
     } catch (const TooThinForWalls& error) {
       if (!tooThin) tooThin = error;
     } catch (const Error& error) {
@@ -124,9 +133,8 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
       static_cast<void>(quantization::makeSeamless(map, {}, context));
     }
     std::vector<Index> order;
-    const TetMap sorted = quantization::inCanonicalOrder(map, order);
     try {
-      result = quantization::quantizeSorted(sorted, options, context);
+      result = quantization::quantizeSorted(map, options, order, context);
     } catch (const Error& error) {
       throw quantization::inCallersTerms(error, map, order);
     }

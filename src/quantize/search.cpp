@@ -104,21 +104,13 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
   return std::max(cells, 1.0);
 }
 
-SeamlessMap seamlessMap(const TetMapView& map, const QuantizeOptions& options, double apart,
-                        Context& context) {
-  SeamlessMap seamless =
-      makeSeamless(map, {options.tolerance, options.tolerance, options.wallTag, apart}, context);
-  requirePositiveTets(seamless);
-  return seamless;
-}
-
 class Search {
  public:
-  Search(const TetMapView& map, const QuantizeOptions& options, double apart, Context& context)
-      : options_(options), context_(context), seamless_(seamlessMap(map, options, apart, context)) {
+  Search(SeamlessMap seamless, double cellsWanted, const QuantizeOptions& options, Context& context)
+      : options_(options), context_(context), seamless_(std::move(seamless)) {
     irregularEdges_ = irregularEdges(EdgeFans(seamless_.topology), seamless_.topology.tets,
                                      std::span<const lattice::LatticeTet>(seamless_.corners));
-    report_.cellsWanted = cellsWanted(map, seamless_, options);
+    report_.cellsWanted = cellsWanted;
     report_.displacement = seamless_.maxDisplacement;
     report_.integersBy = solver_.name;
   }
@@ -258,9 +250,10 @@ class Search {
 
 }  // namespace
 
-FoundMap findBentMap(const TetMapView& map, const QuantizeOptions& options, double apart,
+FoundMap findBentMap(SeamlessMap seamless, const TetMapView& map, const QuantizeOptions& options,
                      Context& context) {
-  return Search(map, options, apart, context).run();
+  const double cells = cellsWanted(map, seamless, options);
+  return Search(std::move(seamless), cells, options, context).run();
 }
 
 }  // namespace hexhex::quantization

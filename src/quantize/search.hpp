@@ -2,6 +2,7 @@
 #pragma once
 
 #include <quantize/bend/bend.hpp>
+#include <quantize/seamless/seamless_map.hpp>
 
 #include <hexhex/context.hpp>
 #include <hexhex/quantize.hpp>
@@ -15,11 +16,10 @@ struct FoundMap {
   QuantizeReport report;          ///< but for the shapes of tets
 };
 
-/// Makes the map seamless, cuts it into blocks, and tries integers for these until it can be bent
-/// onto some.
-/// @param apart  as in SeamlessOptions
+/// Cuts a map into blocks, and tries integers for these until it can be bent onto some.
+/// @param map  that was made seamless; its parameters are not used
 /// @throws Error that says what keeps tets flipped, and a number of cells that works
-[[nodiscard]] FoundMap findBentMap(const TetMapView& map, const QuantizeOptions& options,
-                                   double apart, Context& context);
+[[nodiscard]] FoundMap findBentMap(SeamlessMap seamless, const TetMapView& map,
+                                   const QuantizeOptions& options, Context& context);
 
 }  // namespace hexhex::quantization

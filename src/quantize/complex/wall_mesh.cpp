@@ -54,6 +54,15 @@ WallMesh::WallMesh(const SeamlessMap& map)
   }
 }
 
+void WallMesh::shrink() {
+  const auto toSize = [](auto&... lists) { (lists.shrink_to_fit(), ...); };
+  parts_.clear();
+  firstPart_.clear();
+  moved_.clear();
+  toSize(parts_, firstPart_, moved_, tets, corners, mate, original, originalFace);
+  change.shrink();
+}
+
 void WallMesh::keepEdge(Index v, Index w) {
   featureEdges.insert(pairOf(v, w));
   isHeld[v] = isHeld[w] = true;

@@ -58,6 +58,9 @@ class WallMesh {
     return static_cast<std::uint8_t>(adjacency::localCorner(tets[tet], vertex));
   }
 
+  /// Leaves what is asked of a mesh that will not be split again, without room to grow.
+  void shrink();
+
   /// Marks a triangle, on both sides.
   void markWall(adjacency::HalfFace h) {
     isWall[h] = true;
