@@ -58,7 +58,7 @@ constexpr double kHopelessShare = 0.1;
 constexpr std::uint64_t kFewAttempts = 3;
 /// Steps of the solver in all, after which no further candidate is tried: some seconds for 10,000
 /// tets.
-constexpr int kMostSteps = 1500;
+constexpr int kMostSteps = 400;
 constexpr double kDenser = 1.5;
 constexpr int kMostDensities = 10;
 
