@@ -56,9 +56,11 @@ constexpr double kSplitGrowth = 1.25;
 constexpr double kMostMended = 0.01;
 constexpr double kHopelessShare = 0.1;
 constexpr std::uint64_t kFewAttempts = 3;
-/// Steps of the solver in all, after which no further candidate is tried: some seconds for 10,000
-/// tets.
-constexpr int kMostSteps = 400;
+/// Steps of the solver in all, times tets, after which no further attempt begins: some seconds.
+/// Larger maps get so many steps, too, and take longer. To begin takes as long as some steps.
+constexpr double kMostWork = 4e6;
+constexpr double kMostSteps = 400;
+constexpr double kStepsOfBeginning = 30;
 constexpr double kDenser = 1.5;
 constexpr int kMostDensities = 10;
 
@@ -127,15 +129,15 @@ class Search {
       }
       return {std::move(*bent), std::move(irregularEdges_), report_};
     }
-    fail("Nor were any up to " +
-         std::to_string(std::llround(report_.cellsWanted * candidates.back().density)) +
+    fail("Nor were any up to " + std::to_string(std::llround(mostCells_)) +
          " cells found that it can be bent onto: make arcs of the map's blocks less different in "
          "length");
   }
 
  private:
   [[nodiscard]] bool isWorthIt(const Candidate& candidate) const {
-    if (steps_ > kMostSteps) return false;
+    const auto tets = static_cast<double>(seamless_.corners.size());
+    if (steps_ > std::max(kMostSteps, kMostWork / tets)) return false;
     const bool isHopeless = report_.attempts >= kFewAttempts && leastFlipped_ > kHopelessShare;
     if (candidate.kind == Candidate::Denser) return candidate.reduced || !isHopeless;
     if (candidate.kind == Candidate::WithSplit && leastFlipped_ > kMostMended) return false;
@@ -153,6 +155,7 @@ class Search {
 
   std::optional<BentMap> attempt(const Candidate& candidate, std::size_t most) {
     const BlockStructure& structure = blocks(candidate.reduced);
+    mostCells_ = std::max(mostCells_, report_.cellsWanted * candidate.density);
     const std::optional<Choice> choice =
         structure.choose(report_.cellsWanted * candidate.density, solver_, context_);
     const bool mayGrow = candidate.kind == Candidate::WithSplit;
@@ -172,7 +175,7 @@ class Search {
                         (mayGrow ? ", with split tets (" : " (") + candidate.why + ')',
                     0);
     BentMap bent = bend(std::move(problem), {.maxGrowth = mayGrow ? kSplitGrowth : 1}, stage);
-    steps_ += bent.iterations;
+    steps_ += bent.iterations + kStepsOfBeginning;
     if (!bent.isValid()) {
       remember(bent, candidate, *choice, complex);
       return std::nullopt;
@@ -240,7 +243,8 @@ class Search {
   /// Whether tets may be split, blocks are reduced, and the integers: those of the next density are
   /// often the same.
   std::set<std::tuple<bool, bool, std::vector<std::int64_t>>> tried_;
-  int steps_ = 0;
+  double steps_ = 0;         ///< of the solver
+  double mostCells_ = 0;     ///< that were tried
   double leastFlipped_ = 1;  ///< the least share of tets that an attempt has left so
   Index flippedTet_ = kNone;
   /// Of the same attempt, in words: the last before larger numbers of cells, if any.
