@@ -68,7 +68,7 @@ constexpr int kSimplexInterrupt = 1;
 constexpr int kMipInterrupt = 6;
 
 void* open(const std::string& file) {
-  void* const loaded = dlopen(file.c_str(), RTLD_LAZY);
+  void* const loaded = dlopen(file.c_str(), RTLD_NOW);
   const std::string problem = loaded == nullptr ? dlerror() : "";
   // Without it, integers are others: that must not depend on what happens to fail.
   const bool isChosen = std::getenv("HEXHEX_HIGHS") != nullptr;
