@@ -57,7 +57,7 @@ install_python_programs() {
   if [[ -n "${HEXHEX_PYTHON:-}" ]]; then return 0; fi
   local python=$PWD/build/python wanted=tests/io/requirements.txt
   if ! cmp -s "$wanted" "$python/installed.txt"; then
-    say "Installing meshio, gmsh, h5py, vtk, mfem and HiGHS from PyPI ..."
+    say "Installing meshio, gmsh, h5py, vtk and mfem from PyPI ..."
     if ! { rm -rf "$python" && python3 -m venv "$python" &&
            "$python/bin/pip" install --quiet --disable-pip-version-check -r "$wanted" &&
            cp "$wanted" "$python/installed.txt"; } >"$logs/python.log" 2>&1; then
@@ -68,8 +68,23 @@ install_python_programs() {
   export HEXHEX_PYTHON=$python/bin/python
 }
 
-# Libraries of optional parts: .vtkhdf, .cgns, repair. Without them these are left out.
-optional_packages=(libhdf5-dev libeigen3-dev coinor-libcbc-dev)
+# HiGHS, which finds integers when maps are quantized, in build/highs: builds remember where it is.
+install_highs() {
+  local folder=$PWD/build/highs version=1.15.1
+  if [[ ! -f $folder/$version ]]; then
+    say "Installing HiGHS from PyPI ..."
+    if ! { rm -rf "$folder" && python3 -m venv "$folder" &&
+           "$folder/bin/pip" install --quiet --disable-pip-version-check "highsbox==$version" &&
+           touch "$folder/$version"; } >"$logs/highs.log" 2>&1; then
+      say "It could not be installed, and integers are found by rounding; see $logs/highs.log."
+      return 0
+    fi
+  fi
+  highs_library=$("$folder/bin/python" -c 'import highsbox; print(highsbox.highs_dist_dir())')/lib/libhighs.so
+}
+
+# Optional parts: .vtkhdf, .cgns, repair, HiGHS. Without them these are left out.
+optional_packages=(libhdf5-dev libeigen3-dev python3-venv)
 # ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)
@@ -132,7 +147,9 @@ run_logged() {
 configure() {
   local unity=()
   if [[ ! -f build/$1/CMakeCache.txt ]]; then unity=(-DCMAKE_UNITY_BUILD=ON); fi
-  run_logged "$1-configure" cmake --preset "$1" "${unity[@]}" "${@:2}"
+  local highs=()
+  if [[ -n "${highs_library:-}" ]]; then highs=("-DHIGHS_LIBRARY=$highs_library"); fi
+  run_logged "$1-configure" cmake --preset "$1" "${unity[@]}" "${highs[@]}" "${@:2}"
 }
 
 # configure_release PART [cmake argument...]: the release build, at least with PART (COMMAND or

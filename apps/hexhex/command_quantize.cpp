@@ -33,7 +33,7 @@ void printQuantized(const QuantizeReport& report) {
   const bool isRounded = report.integersBy == "rounding";
   printLine("integers",
             "by " + report.integersBy +
-                (isRounded ? "; the library CBC (coinor-libcbc3) finds better ones" : ""));
+                (isRounded ? "; the library HiGHS finds better ones (docs/quantize.md, 'HiGHS')" : ""));
   printLine("moved to be seamless", fmt::format("at most {:.3g}", report.displacement));
   printLine("scaled Jacobian",
             fmt::format("{:.3f} (worst) and {:.3f} (median) of the map; {:.3f} and {:.3f} before",

@@ -44,7 +44,7 @@ struct QuantizeReport {
   std::uint64_t arcs = 0;
   std::uint64_t shortestArc = 0;  ///< in hexahedra
   std::uint64_t longestArc = 0;
-  std::string integersBy;        ///< "CBC" or "HiGHS", or "rounding" where both are missing
+  std::string integersBy;        ///< "HiGHS", or "rounding" where it is missing
   std::uint64_t attempts = 0;    ///< numbers of cells that were tried
   std::uint64_t splitEdges = 0;  ///< each adds a vertex to the tet mesh
   std::uint64_t addedTets = 0;   ///< by that

@@ -73,10 +73,10 @@ void requireSingularities(const IrregularEdges& expected, const TetMap& map, Con
 
 }  // namespace
 
-QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given, BentMap bent,
-                                const QuantizeReport& report, Context& context) {
+QuantizedMap finishQuantization(FoundMap found, const TetMapView& given, Context& context) {
+  BentMap& bent = found.bent;
   QuantizedMap result;
-  result.report = report;
+  result.report = found.report;
   result.report.distortionAfter = distortionOf(bent.points, bent.tets, bent.parameters);
   result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
   std::vector<TetParameters>().swap(bent.reference);
@@ -86,7 +86,7 @@ QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given
                   {given.features.faces.begin(), given.features.faces.end()}};
   for (std::size_t s = 0; s < bent.splitEdges.size(); ++s) {
     const auto middle = static_cast<Index>(given.points.size() + s);
-    splitIrregular(bent.splitEdges[s], middle, singular);
+    splitIrregular(bent.splitEdges[s], middle, found.irregularEdges);
     tetmap::splitFeatures(bent.splitEdges[s], middle, map.features);
   }
   if (!given.regions.empty()) {
@@ -101,7 +101,7 @@ QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given
                                          std::string(name(checked.defects.front().code)) +
                                          "). This is a bug.");
   }
-  requireSingularities(singular, map, context);
+  requireSingularities(found.irregularEdges, map, context);
   return result;
 }
 

@@ -2,18 +2,15 @@
 // checked.
 #pragma once
 
-#include <quantize/bend/bend.hpp>
+#include <quantize/search.hpp>
 
 #include <hexhex/quantize.hpp>
 
 namespace hexhex::quantization {
 
-/// @param singular  edges of the map before it was bent
 /// @param given  whose features and regions come along
-/// @param report  as far as it is known
 /// @throws Error Internal if the map does not pass the exact check, or has other singular edges
-[[nodiscard]] QuantizedMap finishQuantization(IrregularEdges singular, const TetMapView& given,
-                                              BentMap bent, const QuantizeReport& report,
+[[nodiscard]] QuantizedMap finishQuantization(FoundMap found, const TetMapView& given,
                                               Context& context);
 
 }  // namespace hexhex::quantization

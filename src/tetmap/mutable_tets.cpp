@@ -14,6 +14,13 @@ MutableTets::MutableTets(std::vector<Tet> tets_, std::span<const adjacency::Half
       vertexCount_(vertexCount),
       firstPart_(tets.size(), kNone) {}
 
+void MutableTets::shrink() {
+  tets.shrink_to_fit();
+  mate.shrink_to_fit();
+  parts_ = {};
+  firstPart_ = {};
+}
+
 MutableTets::Found MutableTets::find(Index v, Index w, Index tet) const {
   // The tet itself is the first of its parts; those split off, and their parts, in a tree.
   std::vector<Index> toLookAt = {tet};

@@ -62,6 +62,9 @@ class MutableTets {
   ///         is the new vertex; the first keeps the tet's number
   std::array<Index, 4> splitTet(Index tet);
 
+  /// Leaves what is asked of a mesh that will not be split again, without room to grow.
+  void shrink();
+
   std::vector<Tet> tets;
   std::vector<adjacency::HalfFace> mate;
 

@@ -1,8 +1,11 @@
 // Bent maps: integer-grid maps with the integers that they were to have.
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -119,6 +122,48 @@ TEST(Bend, ReportsWhatStaysFlipped) {
   EXPECT_EQ(result.points.size(), map.points.size() + result.splitEdges.size());
   EXPECT_EQ(result.parentTet.size(), result.tets.size());
   EXPECT_LE(result.tets.size(), 2.1 * static_cast<double>(map.tets.size()));
+}
+
+/// One tet whose corners are bound to planes: axis and coordinate, for each corner.
+Tightness tightnessOf(const std::array<std::vector<BoundaryPlane>, 4>& corners) {
+  BendProblem problem;
+  problem.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  problem.tets = {{0, 1, 2, 3}};
+  problem.reference = {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  problem.transitions.resize(4);
+  problem.planes.resize(4);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    if (!corners[i].empty()) problem.fixedCorners[i] = corners[i];
+  }
+  const BentMap map = bent(problem, 1, {.maxGrowth = 1});
+  EXPECT_TRUE(map.contradictions.empty());
+  EXPECT_EQ(map.flippedTets, std::vector<Index>{0});
+  EXPECT_EQ(map.tightness.tet, 0U);
+  return map.tightness;
+}
+
+TEST(Bend, SaysWhatKeepsTetsFlat) {
+  const BoundaryPlane x0{0, 0};
+  const BoundaryPlane x1{0, 1};
+  const BoundaryPlane y0{1, 0};
+  const BoundaryPlane y1{1, 1};
+  const BoundaryPlane z0{2, 0};
+  const BoundaryPlane z1{2, 1};
+  const Tightness plane = tightnessOf({{{z0}, {z0}, {z0}, {z0, x0}}});
+  EXPECT_EQ(plane.inPlane, 1U);
+  EXPECT_NE(plane.describe().find("1 tet is kept flat by a plane"), std::string::npos);
+  const Tightness line = tightnessOf({{{y0, z0}, {y0, z0}, {y0, z0, x0}, {z1}}});
+  EXPECT_EQ(line.onCurve, 1U);
+  EXPECT_EQ(tightnessOf({{{y0, z0}, {y0, z0}, {y1, z1}, {y1, z1}}}).onCurve, 1U);
+  const Tightness point = tightnessOf({{{x0, y0, z0}, {x0, y0, z0}, {y1}, {z1}}});
+  EXPECT_EQ(point.atPoint, 1U);
+  EXPECT_NE(point.describe().find("two vertices at one place"), std::string::npos);
+  // A mirrored tet is not flat.
+  const Tightness mirrored =
+      tightnessOf({{{x0, y0, z0}, {x0, y1, z0}, {x1, y0, z0}, {x0, y0, z1}}});
+  EXPECT_EQ(mirrored.others, 1U);
+  EXPECT_EQ(mirrored.corners[3], 4U);
+  EXPECT_EQ(mirrored.inPlane + mirrored.onCurve + mirrored.atPoint, 0U);
 }
 
 TEST(Bend, FindsEdgesThatAreWoundTwice) {

@@ -258,7 +258,7 @@ TEST(Quantize, TagsAndSingularEdgesGoToBothHalvesOfASplitEdge) {
     const IrregularEdges irregular =
         irregularEdges(adjacency::EdgeFans(seamless.topology), seamless.topology.tets,
                        std::span<const lattice::LatticeTet>(seamless.corners));
-    const QuantizedMap result = finishQuantization(irregular, map, bent, {}, context);
+    const QuantizedMap result = finishQuantization({bent, irregular, {}}, map, context);
     const Expectation after = check(result.map).expected;
     EXPECT_EQ(after.cells, before.expected.cells);
     EXPECT_EQ(after.innerSingularEdges, before.expected.innerSingularEdges);

@@ -625,7 +625,7 @@ typedef struct hexhex_quantize_report {
   uint64_t arcs;
   uint64_t shortest_arc; /**< in hexahedra */
   uint64_t longest_arc;
-  char integers_by[16]; /**< "CBC" or "HiGHS", or "rounding" where both are missing */
+  char integers_by[16]; /**< "HiGHS", or "rounding" where it is missing */
   uint64_t attempts;    /**< numbers of cells that were tried */
   uint64_t split_edges; /**< each adds a vertex to the tet mesh */
   uint64_t added_tets;

@@ -14,7 +14,9 @@ they work, and Ctrl-C cancels them.
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import pathlib
 import sys
 from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, TypeVar, Union
 
@@ -93,6 +95,19 @@ __all__ = [
 
 if sys.modules.get("pyvista") is not None:
     from . import _accessor  # noqa: F401  where nobody else makes PyVista find it
+
+
+def _find_highs() -> None:
+    """Names the library HiGHS of the package highsbox, if that is there, to the extension."""
+    box = importlib.util.find_spec("highsbox")
+    if "HEXHEX_HIGHS" in os.environ or box is None or box.origin is None:
+        return
+    library = pathlib.Path(box.origin).parent / "highs_dist/lib/libhighs.so"
+    if library.exists():
+        os.environ["HEXHEX_HIGHS"] = str(library)
+
+
+_find_highs()
 
 
 def _map_of(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None,

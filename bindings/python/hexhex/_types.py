@@ -297,7 +297,7 @@ class QuantizeReport:
     arcs: int
     shortest_arc: int  #: in hexahedra
     longest_arc: int
-    integers_by: str  #: "CBC" or "HiGHS", or "rounding" where both are missing
+    integers_by: str  #: "HiGHS", or "rounding" where it is missing
     attempts: int  #: numbers of cells that were tried
     split_edges: int  #: each adds a vertex to the tet mesh
     added_tets: int  #: by that

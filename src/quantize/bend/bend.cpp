@@ -48,6 +48,11 @@ class Round {
   [[nodiscard]] const adjacency::TetTopology& topology() const noexcept { return topology_; }
   [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
 
+  /// As integers alone bind them, wherever vertices may move now.
+  [[nodiscard]] Tightness tightness(std::span<const Index> tets) const {
+    return findTightness(findUnknowns(state_.problem, topology_, stage_), topology_, tets);
+  }
+
   /// From now on, only vertices near these tets move.
   void moveOnlyNear(std::span<const Index> tets) {
     std::vector<bool> isNear(topology_.pointCount, false);
@@ -199,6 +204,7 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
     if (isLocal) round.moveOnlyNear(map.flippedTets);
     isFresh = round.run(isFresh, options.polishing, map);
     if (map.flippedTets.empty() && !isLocal) break;
+    if (!map.flippedTets.empty()) map.tightness = round.tightness(map.flippedTets);
     // What is flipped gets a second try, more exactly and without the rest, before it is split; the
     // whole map is polished in the end.
     if (map.flippedTets.empty() || !(isLocal || isFresh)) continue;

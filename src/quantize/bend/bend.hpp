@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include <quantize/bend/tightness.hpp>
 #include <tetmap/cut.hpp>
 
 #include <hexhex/types.hpp>
@@ -73,6 +74,7 @@ struct BentMap {
   /// to; empty after success.
   std::vector<Index> flippedTets;
   bool isWound = false;  ///< the latter
+  Tightness tightness;   ///< of the flipped tets, if there are any
 
   double energy = 0;  ///< mean of the foldover-free energy, by volume; 5 where nothing is distorted
   int iterations = 0;  ///< steps of the solver in all

@@ -239,6 +239,7 @@ MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced, Context& co
   }
   requireBoxes(complex);
   requireRectangles(complex);
+  complex.mesh.shrink();
   return complex;
 }
 

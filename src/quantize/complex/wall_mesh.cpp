@@ -53,6 +53,16 @@ WallMesh::WallMesh(const SeamlessMap& map)
   }
 }
 
+void WallMesh::shrink() {
+  MutableTets::shrink();
+  moved_.clear();
+  moved_.shrink_to_fit();
+  corners.shrink_to_fit();
+  original.shrink_to_fit();
+  originalFace.shrink_to_fit();
+  change.shrink();
+}
+
 void WallMesh::keepEdge(Index v, Index w) {
   featureEdges.insert(tetmap::pairOf(v, w));
   isHeld[v] = isHeld[w] = true;

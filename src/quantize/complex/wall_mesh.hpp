@@ -34,6 +34,9 @@ class WallMesh : public tetmap::MutableTets {
   [[nodiscard]] const lattice::LatticePoint& at(Index tet, std::size_t corner) const noexcept {
     return corners[tet][corner];
   }
+  /// Leaves what is asked of a mesh that will not be split again, without room to grow.
+  void shrink();
+
   /// Marks a triangle, on both sides.
   void markWall(adjacency::HalfFace h) {
     isWall[h] = true;

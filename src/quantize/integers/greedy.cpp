@@ -93,10 +93,8 @@ std::vector<std::int64_t> solveByRounding(const IntegerProgram& program, const C
 IntegerSolver roundingSolver() { return {"rounding", solveByRounding}; }
 
 IntegerSolver integerSolver() {
-  for (const IntegerSolver& solver : {cbcSolver(), highsSolver()}) {
-    if (solver.name != nullptr) return solver;
-  }
-  return roundingSolver();
+  const IntegerSolver highs = highsSolver();
+  return highs.name != nullptr ? highs : roundingSolver();
 }
 
 }  // namespace hexhex::quantization

@@ -1,84 +1,247 @@
-#include <quantize/integers/integer_program.hpp>
-#if defined(HEXHEX_HIGHS_NAME)
+// HiGHS in this process, through its C interface.
 #include <algorithm>
 #include <cmath>
-#include <dlfcn.h>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <type_traits>
 
-#include <interfaces/highs_c_api.h>
-#include <quantize/integers/loaded_solver.hpp>
+#include <quantize/integers/integer_program.hpp>
+
+#include <hexhex/error.hpp>
+
+#if __has_include(<dlfcn.h>) && !defined(__EMSCRIPTEN__)
+#define HEXHEX_LOADS_HIGHS 1
+#include <dlfcn.h>
 #endif
 
 namespace hexhex::quantization {
 
-#if defined(HEXHEX_HIGHS_NAME)
+#if defined(HEXHEX_LOADS_HIGHS)
 namespace {
 
-void* highsLibrary() {
-  static void* const loaded = loadSolver(HEXHEX_HIGHS_NAME, HEXHEX_HIGHS_FILE);
+/// What it searches ends as near to the minimum as this, relatively ...
+constexpr double kGap = 0.01;
+/// ... or when it has asked so often whether to go on, which is about a second: those of real maps
+/// take some thirty questions. A limit of time would make the outcome depend on the machine.
+constexpr int kMostQuestions = 10000;
+
+/// What of HiGHS 1 is called, as interfaces/highs_c_api.h declares it (HighsInt is int).
+struct Highs {
+  using Model = void*;
+  struct Answer {
+    int isInterrupted;  ///< others follow
+  };
+  using Callback = void (*)(int type, const char* message, const void* about, Answer* answer,
+                            void* user);
+
+  int (*majorVersion)() = nullptr;
+  int (*integerSize)(const void*) = nullptr;
+  Model (*create)() = nullptr;
+  void (*destroy)(Model) = nullptr;
+  int (*setBool)(Model, const char* option, int) = nullptr;
+  int (*setInt)(Model, const char* option, int) = nullptr;
+  int (*setDouble)(Model, const char* option, double) = nullptr;
+  int (*setCallback)(Model, Callback, void* user) = nullptr;
+  int (*startCallback)(Model, int type) = nullptr;
+  int (*passProgram)(Model, int columnCount, int rowCount, int entryCount, int format, int sense,
+                     double offset, const double* cost, const double* least, const double* most,
+                     const double* lower, const double* upper, const int* begin, const int* columns,
+                     const double* factors, const int* kinds) = nullptr;
+  int (*run)(Model) = nullptr;
+  int (*modelStatus)(Model) = nullptr;
+  int (*getInt)(Model, const char* info, int*) = nullptr;
+  int (*getSolution)(Model, double* columns, double* columnDuals, double* rows,
+                     double* rowDuals) = nullptr;
+};
+
+// Their values in that header.
+constexpr int kError = -1;
+constexpr int kContinuous = 0;
+constexpr int kInteger = 1;
+constexpr int kRowwise = 2;
+constexpr int kMinimize = 1;
+constexpr int kFeasible = 2;
+constexpr int kSolveError = 4;
+constexpr int kSimplexInterrupt = 1;
+constexpr int kMipInterrupt = 6;
+
+void* open(const std::string& file) {
+  void* const loaded = dlopen(file.c_str(), RTLD_NOW);
+  const std::string problem = loaded == nullptr ? dlerror() : "";
+  // Without it, integers are others: that must not depend on what happens to fail.
+  const bool isChosen = std::getenv("HEXHEX_HIGHS") != nullptr;
+  if (loaded == nullptr && (isChosen || problem.find("No such file") == std::string::npos)) {
+    throw Error(ErrorCode::FileUnsupported,
+                "HiGHS cannot be loaded from " + file + " (" + problem +
+                    "). Install it anew (pip install highsbox, and HEXHEX_HIGHS names its "
+                    "libhighs.so), or remove it: integers are then found by rounding.");
+  }
   return loaded;
 }
 
-/// What of HiGHS is called. Found before a child process begins, in which the loader could be
-/// locked.
-struct Highs {
-  template <class Function>
-  static Function* find(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(highsLibrary(), name));
+/// @return nullptr if it is not there. Stays loaded
+void* openAny() {
+  // Libraries cannot be loaded without memory, and may crash then: so much it takes.
+  static_cast<void>(Array<char>(std::size_t{1} << 25));
+  if (const char* const chosen = std::getenv("HEXHEX_HIGHS")) return open(chosen);
+  for (const char* const file : {HEXHEX_HIGHS_FILES "libhighs.so.1", "libhighs.so"}) {
+    if (void* const loaded = open(file)) return loaded;
   }
-  decltype(Highs_create)* create = find<decltype(Highs_create)>("Highs_create");
-  decltype(Highs_setBoolOptionValue)* setBool =
-      find<decltype(Highs_setBoolOptionValue)>("Highs_setBoolOptionValue");
-  decltype(Highs_setIntOptionValue)* setInt =
-      find<decltype(Highs_setIntOptionValue)>("Highs_setIntOptionValue");
-  decltype(Highs_setDoubleOptionValue)* setDouble =
-      find<decltype(Highs_setDoubleOptionValue)>("Highs_setDoubleOptionValue");
-  decltype(Highs_passMip)* passProgram = find<decltype(Highs_passMip)>("Highs_passMip");
-  decltype(Highs_run)* run = find<decltype(Highs_run)>("Highs_run");
-  decltype(Highs_getIntInfoValue)* getInt =
-      find<decltype(Highs_getIntInfoValue)>("Highs_getIntInfoValue");
-  decltype(Highs_getSolution)* getSolution = find<decltype(Highs_getSolution)>("Highs_getSolution");
-};
-
-bool solve(const Highs& highs, const MixedIntegerProgram& program,
-           std::span<std::int64_t> integers) {
-  void* const model = highs.create();
-  highs.setBool(model, "output_flag", 0);
-  highs.setInt(model, "threads", 1);
-  highs.setInt(model, "mip_max_nodes", kMostNodes);
-  highs.setDouble(model, "mip_rel_gap", kGap);
-  const std::vector<double> most(program.least.size(), MixedIntegerProgram::kInfinity);
-  std::vector<HighsInt> kinds(program.least.size(), kHighsVarTypeContinuous);
-  std::fill_n(kinds.begin(), integers.size(), kHighsVarTypeInteger);
-  const HighsInt status = highs.passProgram(
-      model, program.columnCount(), program.rowCount(),
-      static_cast<HighsInt>(program.columns.size()), kHighsMatrixFormatRowwise,
-      kHighsObjSenseMinimize, 0, program.cost.data(), program.least.data(), most.data(),
-      program.lower.data(), program.upper.data(), program.begin.data(), program.columns.data(),
-      program.factors.data(), kinds.data());
-  if (status == kHighsStatusError || highs.run(model) == kHighsStatusError) return false;
-  HighsInt found = 0;
-  highs.getInt(model, "primal_solution_status", &found);
-  if (found != kHighsSolutionStatusFeasible) return false;
-  std::vector<double> columns(program.least.size());
-  std::vector<double> rows(program.lower.size());
-  highs.getSolution(model, columns.data(), nullptr, rows.data(), nullptr);
-  std::transform(columns.begin(), columns.begin() + std::ssize(integers), integers.begin(),
-                 [](double value) { return std::llround(value); });
-  return true;
+  return nullptr;
 }
 
+Highs load() {
+  Highs highs;
+  void* const library = openAny();
+  if (library == nullptr) return highs;
+  bool isWhole = true;
+  const auto find = [&](auto& function, const char* name) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+    isWhole = isWhole && function != nullptr;
+  };
+  find(highs.majorVersion, "Highs_versionMajor");
+  find(highs.integerSize, "Highs_getSizeofHighsInt");
+  find(highs.create, "Highs_create");
+  find(highs.destroy, "Highs_destroy");
+  find(highs.setBool, "Highs_setBoolOptionValue");
+  find(highs.setInt, "Highs_setIntOptionValue");
+  find(highs.setDouble, "Highs_setDoubleOptionValue");
+  find(highs.setCallback, "Highs_setCallback");
+  find(highs.startCallback, "Highs_startCallback");
+  find(highs.passProgram, "Highs_passMip");
+  find(highs.run, "Highs_run");
+  find(highs.modelStatus, "Highs_getModelStatus");
+  find(highs.getInt, "Highs_getIntInfoValue");
+  find(highs.getSolution, "Highs_getSolution");
+  if (!isWhole || highs.majorVersion() != 1 || highs.integerSize(nullptr) != sizeof(int)) {
+    throw Error(ErrorCode::FileUnsupported,
+                "The HiGHS that is there is none of version 1.6 or a later 1.x with integers of 32 "
+                "bits. Install another one (pip install highsbox, and HEXHEX_HIGHS names its "
+                "libhighs.so), or remove it: integers are then found by rounding.");
+  }
+  return highs;
+}
+
+/// Loaded when the first program is to be solved.
+const Highs& highsLibrary() {
+  static const Highs loaded = load();
+  return loaded;
+}
+
+/// The program as HiGHS takes it. The first half of the columns are the integers, the other half
+/// their distances from the lengths.
+struct Rows {
+  explicit Rows(const IntegerProgram& program) {
+    const auto n = static_cast<int>(program.lengths.size());
+    for (int a = 0; a < n; ++a) {
+      const double length = program.lengths[static_cast<std::size_t>(a)];
+      for (const double sign : {-1.0, 1.0}) {
+        columns.insert(columns.end(), {a, n + a});
+        factors.insert(factors.end(), {1, sign});
+        add(sign < 0 ? -HUGE_VAL : length, sign < 0 ? length : HUGE_VAL);
+      }
+    }
+    for (const ArcEquation& equation : program.equations) {
+      for (const auto& [arc, factor] : equation) {
+        columns.push_back(static_cast<int>(arc));
+        factors.push_back(factor);
+      }
+      add(0, 0);
+    }
+  }
+
+  std::vector<double> lower;  ///< per row: bounds of the sum
+  std::vector<double> upper;
+  std::vector<int> begin = {0};  ///< per row: where its entries begin
+  std::vector<int> columns;      ///< per entry
+  std::vector<double> factors;
+
+ private:
+  /// Of the entries that are last.
+  void add(double lowest, double highest) {
+    lower.push_back(lowest);
+    upper.push_back(highest);
+    begin.push_back(static_cast<int>(columns.size()));
+  }
+};
+
+/// One program in HiGHS.
+class Solution {
+ public:
+  Solution(const Highs& highs, const Context& context)
+      : highs_(highs), context_(context), model_(highs.create()) {
+    highs.setBool(model_, "output_flag", 0);
+    highs.setInt(model_, "threads", 1);
+    highs.setDouble(model_, "mip_rel_gap", kGap);
+    highs.setCallback(model_, goOnOrNot, this);
+    highs.startCallback(model_, kSimplexInterrupt);
+    highs.startCallback(model_, kMipInterrupt);
+  }
+  Solution(const Solution&) = delete;
+  Solution& operator=(const Solution&) = delete;
+  ~Solution() { highs_.destroy(model_); }
+
+  std::vector<std::int64_t> find(const IntegerProgram& program) {
+    const std::size_t n = program.lengths.size();
+    pass(program);
+    const int status = highs_.run(model_);
+    context_.throwIfCancelled();
+    if (status == kError || highs_.modelStatus(model_) <= kSolveError) throw std::bad_alloc();
+    int found = 0;
+    highs_.getInt(model_, "primal_solution_status", &found);
+    if (found != kFeasible) return {};
+    std::vector<double> columns(2 * n);
+    std::vector<double> rows(rowCount_);
+    highs_.getSolution(model_, columns.data(), nullptr, rows.data(), nullptr);
+    std::vector<std::int64_t> integers(n);
+    std::transform(columns.begin(), columns.begin() + std::ssize(integers), integers.begin(),
+                   [](double value) { return std::llround(value); });
+    return integers;
+  }
+
+ private:
+  void pass(const IntegerProgram& program) {
+    const std::size_t n = program.lengths.size();
+    const Rows rows(program);
+    rowCount_ = rows.lower.size();
+    std::vector<double> cost(n);
+    for (const double length : program.lengths) cost.push_back(1 / std::max(length, 1.0));
+    std::vector<double> least(program.least.begin(), program.least.end());
+    least.resize(2 * n);
+    const std::vector<double> most(2 * n, HUGE_VAL);
+    std::vector<int> kinds(2 * n, kContinuous);
+    std::fill_n(kinds.begin(), n, kInteger);
+    const int status = highs_.passProgram(
+        model_, static_cast<int>(2 * n), static_cast<int>(rowCount_),
+        static_cast<int>(rows.columns.size()), kRowwise, kMinimize, 0, cost.data(), least.data(),
+        most.data(), rows.lower.data(), rows.upper.data(), rows.begin.data(), rows.columns.data(),
+        rows.factors.data(), kinds.data());
+    if (status == kError) throw std::bad_alloc();
+  }
+
+  static void goOnOrNot(int /*type*/, const char* /*message*/, const void* /*about*/,
+                        Highs::Answer* answer, void* user) {
+    auto& self = *static_cast<Solution*>(user);
+    if (++self.questions_ > kMostQuestions || self.context_.cancelled()) answer->isInterrupted = 1;
+  }
+
+  const Highs& highs_;
+  const Context& context_;
+  Highs::Model model_;
+  std::size_t rowCount_ = 0;
+  int questions_ = 0;
+};
+
 std::vector<std::int64_t> solveByHighs(const IntegerProgram& program, const Context& context) {
-  const Highs highs;
-  return solveInChildProcess(
-      program, context, [&](const MixedIntegerProgram& mixed, std::span<std::int64_t> integers) {
-        return solve(highs, mixed, integers);
-      });
+  return Solution(highsLibrary(), context).find(program);
 }
 
 }  // namespace
 
 IntegerSolver highsSolver() {
-  return highsLibrary() != nullptr ? IntegerSolver{"HiGHS", solveByHighs} : IntegerSolver{};
+  return highsLibrary().run != nullptr ? IntegerSolver{"HiGHS", solveByHighs} : IntegerSolver{};
 }
 #else
 IntegerSolver highsSolver() { return {}; }

@@ -22,20 +22,20 @@ struct IntegerProgram {
 };
 
 struct IntegerSolver {
-  const char* name = nullptr;  ///< "CBC", "HiGHS", "rounding"; nullptr: there is none
+  const char* name = nullptr;  ///< "HiGHS", "rounding"; nullptr: there is none
 
-  /// Deterministic. The libraries come to within 1 % of the minimum, unless it takes too long.
+  /// Deterministic, and ends soon after it is cancelled.
   /// @return empty if there is no solution, or none is found
-  /// @throws Error OutOfMemory if it crashes; Cancelled
+  /// @throws std::bad_alloc, Error Cancelled
   std::vector<std::int64_t> (*solve)(const IntegerProgram& program,
                                      const Context& context) = nullptr;
 };
 
-/// CBC (Forrest et al., COIN-OR branch and cut), if it was there when hexhex was built, and can be
-/// loaded.
-[[nodiscard]] IntegerSolver cbcSolver();
-
-/// HiGHS (Huangfu and Hall 2018, "Parallelizing the dual revised simplex method"), likewise.
+/// HiGHS (Huangfu and Hall 2018, "Parallelizing the dual revised simplex method"), if it can be
+/// loaded: from the file that the environment names in HEXHEX_HIGHS, or from where it was installed
+/// with hexhex or when hexhex was built, or from where the system looks. It comes to within 1 % of
+/// the minimum, unless it takes too long.
+/// @throws Error FileUnsupported if it is there, but cannot be loaded
 [[nodiscard]] IntegerSolver highsSolver();
 
 /// Rounds the nearest real solution, and then changes it step by step along integer solutions of
@@ -43,7 +43,7 @@ struct IntegerSolver {
 /// are small.
 [[nodiscard]] IntegerSolver roundingSolver();
 
-/// The first of these that there is.
+/// HiGHS, if it is there.
 [[nodiscard]] IntegerSolver integerSolver();
 
 }  // namespace hexhex::quantization

@@ -28,6 +28,8 @@ class FaceMotions {
     if (isNew) distinct_.push_back(motion);
     places_[h] = found->second;
   }
+  /// Leaves no room to grow.
+  void shrink() { places_.shrink_to_fit(); }
   void appendCopyOf(adjacency::HalfFace h) { places_.push_back(Index{places_[h]}); }
 
  private:

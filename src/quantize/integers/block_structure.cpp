@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <quantize/integers/block_structure.hpp>
+
+namespace hexhex::quantization {
+
+namespace {
+
+/// Arcs are longer than this share of the map's size, and than so many times what has made it
+/// seamless.
+constexpr double kArcNoise = 1e-9;
+constexpr double kArcNoiseShare = 16;
+constexpr double kLengthUnits = 0x1p20;
+/// The search for a scale ends when it is as near to the number of cells wanted as this.
+constexpr double kNearEnough = 1.03;
+constexpr int kScaleSteps = 6;
+
+}  // namespace
+
+BlockStructure::BlockStructure(const SeamlessMap& map, bool reduced, Context& context)
+    : map_(map), complex_(traceComplex(map, reduced, context)) {
+  program_.equations = arcEquations(complex_);
+  // Walls that would be one but for noise may become one.
+  const double noise = std::max(kArcNoise * map.size, kArcNoiseShare * map.maxDisplacement);
+  for (const Arc& arc : complex_.arcs) {
+    program_.least.push_back(static_cast<double>(arc.length) < noise * map.unit ? 0 : 1);
+  }
+}
+
+std::optional<Choice> BlockStructure::choose(double cells, const IntegerSolver& solver,
+                                             Context& context) const {
+  Stage stage(context, "integers");
+  std::optional<Choice> best;
+  const auto distance = [cells](const Choice& choice) {
+    return std::abs(std::log(choice.cells / cells));
+  };
+  IntegerProgram program = program_;
+  double scale = std::cbrt(cells / volumeOf(map_));
+  for (int step = 0; step < kScaleSteps; ++step) {
+    context.throwIfCancelled();
+    program.lengths.clear();
+    for (const Arc& arc : complex_.arcs) {
+      // Without the noise that would decide between integers that are equally good.
+      const double length = static_cast<double>(arc.length) / map_.unit * scale;
+      program.lengths.push_back(std::round(length * kLengthUnits) / kLengthUnits);
+    }
+    Choice choice{scale, solver.solve(program, context), 0};
+    if (choice.integers.empty()) {
+      // Rounding finds some where arcs are longer.
+      scale *= 1.2;
+      continue;
+    }
+    choice.cells = BlockIntegers(complex_, choice.integers).cellCount();
+    scale *= std::cbrt(cells / choice.cells);
+    if (!best || distance(choice) < distance(*best)) best = std::move(choice);
+    if (distance(*best) < std::log(kNearEnough)) break;
+  }
+  return best;
+}
+
+}  // namespace hexhex::quantization

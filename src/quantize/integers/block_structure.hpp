@@ -1,0 +1,40 @@
+// The blocks of a map, and the choice of integers for their arcs.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <quantize/integers/arc_integers.hpp>
+#include <quantize/seamless/seamless_map.hpp>
+
+#include <hexhex/context.hpp>
+
+namespace hexhex::quantization {
+
+/// Integers for all arcs at one scale.
+struct Choice {
+  double scale = 0;  ///< of the seamless map
+  std::vector<std::int64_t> integers;
+  double cells = 0;
+};
+
+/// A motorcycle complex, and what integers its arcs may have. Does not change.
+class BlockStructure {
+ public:
+  /// @param map  must outlive this
+  /// @param reduced  whether walls that nothing needs are taken away
+  BlockStructure(const SeamlessMap& map, bool reduced, Context& context);
+
+  [[nodiscard]] const MotorcycleComplex& complex() const noexcept { return complex_; }
+
+  /// Integers whose number of cells is near to what is wanted, if there are any.
+  [[nodiscard]] std::optional<Choice> choose(double cells, const IntegerSolver& solver,
+                                             Context& context) const;
+
+ private:
+  const SeamlessMap& map_;
+  MotorcycleComplex complex_;
+  IntegerProgram program_;  ///< without lengths
+};
+
+}  // namespace hexhex::quantization

@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <quantize/bend/bend_problem.hpp>
+#include <quantize/bend/edge_turns.hpp>
+#include <quantize/integers/block_structure.hpp>
+#include <quantize/search.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex::quantization {
+
+namespace {
+
+/// More hexahedra have more vertices than indices.
+constexpr double kMostCells = 4e9;
+
+/// Integers to try, and with which blocks.
+struct Candidate {
+  enum Kind : std::uint8_t {
+    AsWanted,   ///< about as many cells as are wanted
+    WithSplit,  ///< the same with tets split where they are flipped: cells are cheaper than tets
+    Denser,     ///< clearly more cells, to name a number that works
+  } kind;
+  double density;  ///< cells, of those wanted
+  bool reduced;    ///< whether walls that nothing needs are taken away
+  const char* why;
+};
+
+/// Around the number of cells that are wanted.
+constexpr std::array<Candidate, 10> kNear = {{
+    {Candidate::AsWanted, 1, true, "as wanted"},
+    {Candidate::AsWanted, 1, false, "with all walls, which hold each block where it is"},
+    {Candidate::AsWanted, 1.1, true, "slightly more cells, where rounding up makes room"},
+    {Candidate::AsWanted, 0.92, true,
+     "slightly fewer cells, where rounding down leaves room to others"},
+    {Candidate::AsWanted, 1.35, true, "a tenth finer"},
+    {Candidate::AsWanted, 1.1, false, "slightly more cells with all walls"},
+    {Candidate::AsWanted, 0.85, true, "a twentieth coarser"},
+    {Candidate::AsWanted, 1.2, false, "a fifth more cells with all walls"},
+    {Candidate::AsWanted, 1.2, true, "a fifth more cells"},
+    {Candidate::AsWanted, 1.6, true, "a sixth finer: as far as may pass for what is wanted"},
+}};
+/// How many times as many tets there may be after splits; more rarely helps.
+constexpr double kSplitGrowth = 1.25;
+/// That mends few of them: hardly any map of which a larger share stays flipped, and if it is as
+/// large after some attempts, other integers near to these do not help, either.
+constexpr double kMostMended = 0.01;
+constexpr double kHopelessShare = 0.1;
+constexpr std::uint64_t kFewAttempts = 3;
+/// Steps of the solver in all, times tets, after which no further attempt begins: some seconds.
+/// Larger maps get so many steps, too, and take longer. To begin takes as long as some steps.
+constexpr double kMostWork = 4e6;
+constexpr double kMostSteps = 400;
+constexpr double kStepsOfBeginning = 30;
+constexpr double kDenser = 1.5;
+constexpr int kMostDensities = 10;
+
+/// All that may be tried, in order.
+std::vector<Candidate> candidatesFor(double cellsWanted) {
+  std::vector<Candidate> all(kNear.begin(), kNear.end());
+  for (Candidate candidate : kNear) {
+    candidate.kind = Candidate::WithSplit;
+    all.push_back(candidate);
+  }
+  double density = kDenser;
+  for (int step = 0; step < kMostDensities; ++step, density *= kDenser) {
+    if (cellsWanted * density > kMostCells) break;
+    for (const bool reduced : {true, false}) {
+      all.push_back({Candidate::Denser, density, reduced, "to find a number that works"});
+    }
+  }
+  return all;
+}
+
+double spaceVolume(const TetMapView& map) {
+  double volume = 0;
+  for (const Tet& tet : map.tets) {
+    const Vec3& origin = map.points[tet[0]];
+    volume += tripleProduct(minus(map.points[tet[1]], origin), minus(map.points[tet[2]], origin),
+                            minus(map.points[tet[3]], origin)) /
+              6;
+  }
+  return std::abs(volume);
+}
+
+double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
+                   const QuantizeOptions& options) {
+  double cells = options.cells;
+  if (options.scale > 0) cells = std::pow(options.scale, 3) * volumeOf(seamless);
+  if (options.edgeLength > 0) cells = spaceVolume(map) / std::pow(options.edgeLength, 3);
+  if (!(cells <= kMostCells)) {
+    throw Error(ErrorCode::TooLarge,
+                "A mesh of more than 4,000,000,000 cells cannot be numbered. "
+                "Ask for fewer cells, or quantize for a part of them and "
+                "extract with a scale.");
+  }
+  return std::max(cells, 1.0);
+}
+
+class Search {
+ public:
+  Search(SeamlessMap seamless, double cellsWanted, const QuantizeOptions& options, Context& context)
+      : options_(options), context_(context), seamless_(std::move(seamless)) {
+    irregularEdges_ =
+        irregularEdges(adjacency::EdgeFans(seamless_.topology), seamless_.topology.tets,
+                       std::span<const lattice::LatticeTet>(seamless_.corners));
+    report_.cellsWanted = cellsWanted;
+    report_.displacement = seamless_.maxDisplacement;
+    report_.integersBy = solver_.name;
+  }
+
+  FoundMap run() {
+    const std::vector<Candidate> candidates = candidatesFor(report_.cellsWanted);
+    for (const Candidate& candidate : candidates) {
+      if (!isWorthIt(candidate)) continue;
+      std::optional<BentMap> bent = attempt(candidate, candidates.size());
+      if (!bent) continue;
+      if (candidate.kind == Candidate::Denser && !options_.densify) {
+        fail(std::to_string(report_.cells) +
+             " cells work: ask for so many, or let it choose (densify)");
+      }
+      return {std::move(*bent), std::move(irregularEdges_), report_};
+    }
+    fail("Nor were any up to " + std::to_string(std::llround(mostCells_)) +
+         " cells found that it can be bent onto: make arcs of the map's blocks less different in "
+         "length");
+  }
+
+ private:
+  [[nodiscard]] bool isWorthIt(const Candidate& candidate) const {
+    const auto tets = static_cast<double>(seamless_.corners.size());
+    if (steps_ > std::max(kMostSteps, kMostWork / tets)) return false;
+    const bool isHopeless = report_.attempts >= kFewAttempts && leastFlipped_ > kHopelessShare;
+    if (candidate.kind == Candidate::Denser) return candidate.reduced || !isHopeless;
+    if (candidate.kind == Candidate::WithSplit && leastFlipped_ > kMostMended) return false;
+    return !isHopeless;
+  }
+
+  /// Traced when they are needed first, and then kept.
+  const BlockStructure& blocks(bool reduced) {
+    std::optional<BlockStructure>& blocks = blocks_[reduced ? 1 : 0];
+    if (!blocks) blocks.emplace(seamless_, reduced, context_);
+    report_.blocks = blocks->complex().blockCount;
+    report_.arcs = blocks->complex().arcs.size();
+    return *blocks;
+  }
+
+  std::optional<BentMap> attempt(const Candidate& candidate, std::size_t most) {
+    const BlockStructure& structure = blocks(candidate.reduced);
+    mostCells_ = std::max(mostCells_, report_.cellsWanted * candidate.density);
+    const std::optional<Choice> choice =
+        structure.choose(report_.cellsWanted * candidate.density, solver_, context_);
+    const bool mayGrow = candidate.kind == Candidate::WithSplit;
+    if (!choice || tried_.contains({mayGrow, candidate.reduced, choice->integers})) {
+      return std::nullopt;
+    }
+    tried_.insert({mayGrow, candidate.reduced, choice->integers});
+    ++report_.attempts;
+    const MotorcycleComplex& complex = structure.complex();
+    BendProblem problem =
+        bendProblem(seamless_, complex, BlockIntegers(complex, choice->integers), choice->scale);
+    problem.irregularEdges = irregularEdges_;
+    Stage stage(context_, "bending");
+    context_.report("bending " + std::to_string(report_.attempts) + " of at most " +
+                        std::to_string(most) + ": " + std::to_string(std::llround(choice->cells)) +
+                        " cells in " + std::to_string(report_.blocks) + " blocks" +
+                        (mayGrow ? ", with split tets (" : " (") + candidate.why + ')',
+                    0);
+    BentMap bent = bend(std::move(problem), {.maxGrowth = mayGrow ? kSplitGrowth : 1}, stage);
+    steps_ += bent.iterations + kStepsOfBeginning;
+    if (!bent.isValid()) {
+      remember(bent, candidate, *choice, complex);
+      return std::nullopt;
+    }
+    report(*choice, bent);
+    return bent;
+  }
+
+  /// What a failure leaves to be said of.
+  void remember(const BentMap& bent, const Candidate& candidate, const Choice& choice,
+                const MotorcycleComplex& complex) {
+    if (bent.flippedTets.empty()) return;
+    leastFlipped_ = std::min(leastFlipped_, static_cast<double>(bent.flippedTets.size()) /
+                                                static_cast<double>(bent.tets.size()));
+    if (candidate.kind == Candidate::Denser && flippedTet_ != kNone) return;
+    flippedTet_ = bent.parentTet[bent.tightness.tet];
+    flippedWhere_ = "block " + std::to_string(complex.blockOf[flippedTet_] + 1) + " of " +
+                    std::to_string(complex.blockCount) + " with " +
+                    std::to_string(std::llround(choice.cells)) + " cells";
+    flippedWhy_ = bent.isWound ? ": the map winds otherwise around edges of tets that are positive"
+                               : bent.tightness.describe();
+  }
+
+  void report(const Choice& choice, const BentMap& bent) {
+    report_.scale = choice.scale;
+    report_.cells = static_cast<std::uint64_t>(std::llround(choice.cells));
+    const auto [least, most] = std::minmax_element(choice.integers.begin(), choice.integers.end());
+    report_.shortestArc = static_cast<std::uint64_t>(*least);
+    report_.longestArc = static_cast<std::uint64_t>(*most);
+    report_.splitEdges = bent.splitEdges.size();
+    report_.addedTets = bent.tets.size() - seamless_.corners.size();
+  }
+
+  /// @param whatWorks  what a search for larger numbers of cells has found
+  [[noreturn]] void fail(const std::string& whatWorks) const {
+    const std::string message = "The map cannot be bent onto integers for about " +
+                                std::to_string(std::llround(report_.cellsWanted)) + " cells: ";
+    const std::string advice = ". " + whatWorks + '.';
+    if (tried_.empty()) {
+      const bool isRounded = report_.integersBy == "rounding";
+      throw Error(ErrorCode::FlippedTet,
+                  message + "none were found for the " + std::to_string(report_.arcs) +
+                      " arcs of its motorcycle complex" + advice +
+                      (isRounded ? " Or let HiGHS find them (pip install highsbox, and "
+                                   "HEXHEX_HIGHS names its libhighs.so)."
+                                 : ""));
+    }
+    if (flippedTet_ == kNone) {
+      throw Error(ErrorCode::HalfIntegerFixedPoint,
+                  message + "they leave no position for a vertex" + advice);
+    }
+    throw Error(ErrorCode::FlippedTet,
+                message + "tets stay flipped in " + flippedWhere_ + ", after " +
+                    std::to_string(report_.attempts) + " attempts" + flippedWhy_ + advice,
+                {PlaceKind::Tet, flippedTet_});
+  }
+
+  const QuantizeOptions& options_;
+  Context& context_;
+  SeamlessMap seamless_;
+  IrregularEdges irregularEdges_;
+  std::array<std::optional<BlockStructure>, 2> blocks_;  ///< with all walls; without needless ones
+  IntegerSolver solver_ = integerSolver();
+  QuantizeReport report_;
+  /// Whether tets may be split, blocks are reduced, and the integers: those of the next density are
+  /// often the same.
+  std::set<std::tuple<bool, bool, std::vector<std::int64_t>>> tried_;
+  double steps_ = 0;         ///< of the solver
+  double mostCells_ = 0;     ///< that were tried
+  double leastFlipped_ = 1;  ///< the least share of tets that an attempt has left so
+  Index flippedTet_ = kNone;
+  /// Of the same attempt, in words: the last before larger numbers of cells, if any.
+  std::string flippedWhere_;
+  std::string flippedWhy_;
+};
+
+}  // namespace
+
+FoundMap findBentMap(SeamlessMap seamless, const TetMapView& map, const QuantizeOptions& options,
+                     Context& context) {
+  const double cells = cellsWanted(map, seamless, options);
+  return Search(std::move(seamless), cells, options, context).run();
+}
+
+}  // namespace hexhex::quantization
