@@ -217,7 +217,7 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
                          FileContent content) {
   const Purpose purpose = purposeOf(content);
   const std::string_view usual = usualName(name);
-  const std::string extension = lowerCaseExtension(file);
+  const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
   const Format* const format = usual.empty()
                                    ? formatWith(extension, &FormatLabel::extension, purpose.fits)
                                    : formatWith(usual, &FormatLabel::name, purpose.fits);
