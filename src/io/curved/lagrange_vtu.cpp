@@ -173,26 +173,30 @@ LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, 
   };
   readVtkCells(source, wanted, makeRoom, &numbers, stage);
   source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
-  reorderNodes(mesh, stage);
   readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
   mesh.regions = readVtkRegions(source, numbers);
   mesh.features = readVtkHexFeatures(source);
-  putCornersFirst(mesh);
+  fromVtkOrder(mesh, stage);
   return mesh;
 }
 
 }  // namespace
 
-bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return inStage(context, "read mesh", [&file](Stage& stage) {
-    const auto source = openVtuFile(file, stage);
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage) {
+  reorderNodes(mesh, stage);
+  putCornersFirst(mesh);
+}
+
+bool holdsLagrangeVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    const auto source = openVtuFile(input, stage);
     return countVtkCells(*source, lagrangeCells(0), 0, source->cells) > 0;
   });
 }
 
-LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return inStage(context, "read mesh", [&file](Stage& stage) {
-    return readLagrange(*openVtuFile(file, stage), file.string(), stage);
+LagrangeMesh readLagrangeVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readLagrange(*openVtuFile(input, stage), input.name(), stage);
   });
 }
 
