@@ -134,7 +134,7 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
   if (format == nullptr) {
     throw Error(ErrorCode::FileUnsupported,
                 file.string() +
-                    ": cells of higher order are read from .vtu, .inp, .exo and .e "
+                    ": cells of higher order are read from .vtu, .vtk, .inp, .exo and .e "
                     "files only.");
   }
   return inSteps(context, "readLagrangeMesh", io::kReadSteps,

@@ -172,40 +172,39 @@ Vec3 middleOf(const Array<Vec3>& points, const Index* nodes) {
   return middle;
 }
 
-void requireIndexable(std::size_t points, const Input& input) {
+void requireIndexable(std::size_t points, const std::string& fileName) {
   if (points <= kNone) return;
-  throw Error(ErrorCode::TooLarge, input.name() + ": the mesh has more nodes than are supported.");
+  throw Error(ErrorCode::TooLarge, fileName + ": the mesh has more nodes than are supported.");
 }
 
-/// Gives cells with 20 nodes, which are rows of 27, the nodes in their faces and inside.
-/// @param cells  which they are
-void addMiddles(LagrangeMesh& mesh, const std::vector<std::size_t>& cells, const Input& input) {
+}  // namespace
+
+void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std::size_t>& cells,
+                const std::string& fileName) {
   std::vector<NodelessFace> faces;
   for (const std::size_t cell : cells) {
-    const Index* const nodes = mesh.nodes.data() + kNodesOfQuadratic * cell;
+    const Index* const row = nodes.data() + kNodesOfQuadratic * cell;
     for (std::size_t face = 0; face < 6; ++face) {
       NodelessFace& added = faces.emplace_back(NodelessFace{{}, cell, face});
-      for (std::size_t k = 0; k < 4; ++k) added.corners[k] = nodes[adjacency::kHexFaces[face][k]];
+      for (std::size_t k = 0; k < 4; ++k) added.corners[k] = row[adjacency::kHexFaces[face][k]];
       std::sort(added.corners.begin(), added.corners.end());
     }
   }
   std::sort(faces.begin(), faces.end());
-  requireIndexable(mesh.points.size() + faces.size() + cells.size(), input);
+  requireIndexable(points.size() + faces.size() + cells.size(), fileName);
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    Index* const nodes = mesh.nodes.data() + kNodesOfQuadratic * faces[i].cell;
+    Index* const row = nodes.data() + kNodesOfQuadratic * faces[i].cell;
     if (i == 0 || faces[i].corners != faces[i - 1].corners) {
-      mesh.points.push_back(middleOf(mesh.points, nodes, faces[i].face));
+      points.push_back(middleOf(points, row, faces[i].face));
     }
-    nodes[20 + faces[i].face] = static_cast<Index>(mesh.points.size() - 1);
+    row[20 + faces[i].face] = static_cast<Index>(points.size() - 1);
   }
   for (const std::size_t cell : cells) {
-    Index* const nodes = mesh.nodes.data() + kNodesOfQuadratic * cell;
-    mesh.points.push_back(middleOf(mesh.points, nodes));
-    nodes[kNodesOfQuadratic - 1] = static_cast<Index>(mesh.points.size() - 1);
+    Index* const row = nodes.data() + kNodesOfQuadratic * cell;
+    points.push_back(middleOf(points, row));
+    row[kNodesOfQuadratic - 1] = static_cast<Index>(points.size() - 1);
   }
 }
-
-}  // namespace
 
 const VolumeCells* volumeCells(std::string_view plural) {
   const auto* const found =
@@ -274,7 +273,7 @@ LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage
                   block.nodesEach, mesh.nodes.end() - kNodesOfQuadratic);
     }
   }
-  addMiddles(mesh, lacking, input);
+  addMiddles(mesh.points, mesh.nodes, lacking, input.name());
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
     return mesh.nodes[kNodesOfQuadratic * cell + k];
   };

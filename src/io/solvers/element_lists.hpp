@@ -66,6 +66,13 @@ struct ElementLists {
 [[nodiscard]] HexMesh hexMeshOf(ElementLists&& lists, const Input& input);
 [[nodiscard]] TetCells tetsOf(ElementLists&& lists, const Input& input);
 
+/// Gives cells of order 2 the nodes in their faces and inside, where the shape functions of the
+/// other 20 place them; cells share those of common faces.
+/// @param nodes  rows of 27 in VTK's order
+/// @param cells  which rows lack the last 7
+void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std::size_t>& cells,
+                const std::string& fileName);
+
 /// Whether there are hexahedra with 20 or 27 nodes.
 [[nodiscard]] bool areCurved(const ElementLists& lists);
 /// These, as cells of order 2; nodes that those with 20 lack are where their 20 nodes place them.

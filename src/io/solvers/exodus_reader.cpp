@@ -131,10 +131,13 @@ class ExodusReader {
     const auto count = static_cast<std::size_t>(values.lengths[0]);
     next += count;
     if (block.type == nullptr) return;
-    block.nodesEach = each;
+    const bool isRead =
+        block.type->plural.starts_with("hexahedra") || block.type->plural.starts_with("tetrahedra");
+    block.nodesEach = isRead ? each : 0;
     block.numbers.resize(count);
     for (std::size_t i = 0; i < count; ++i) block.numbers[i] = next - count + i;
     block.regions.assign(count, region);
+    if (!isRead) return;  // others are only counted
     const std::vector<std::int64_t> nodes = file_.integers(values);
     block.nodes.resize(nodes.size());
     const bool isCurved = each == 20 || each == kExodusPlaces.size();
@@ -155,7 +158,13 @@ class ExodusReader {
       fail(ErrorCode::FileUnsupported, std::string(noun) + " with " + std::to_string(nodes) +
                                            " nodes are not known. Leave their block out.");
     }
-    return nullptr;  // shells, bars and the like
+    if (name.starts_with("bex_hex")) return volumeCells("Bezier hexahedra");
+    constexpr std::array<std::string_view, 9> kFlat = {"shell", "quad", "tri",    "bar",   "beam",
+                                                       "truss", "edge", "sphere", "circle"};
+    const auto begins = [&name](std::string_view word) { return name.starts_with(word); };
+    if (std::any_of(kFlat.begin(), kFlat.end(), begins)) return nullptr;
+    fail(ErrorCode::FileUnsupported, "elements of the type " + quoted(std::string_view(name)) +
+                                         " are not supported. Leave their block out.");
   }
 
   [[nodiscard]] Index nodeOf(std::int64_t number, const std::string& variable) const {
