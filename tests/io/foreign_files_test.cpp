@@ -237,7 +237,7 @@ TEST(ForeignFiles, AbaqusByOtherPrograms) {
   EXPECT_EQ(mesh.points[1], (Vec3{1, 0, 0}));
   EXPECT_EQ(mesh.points[2], (Vec3{1, 1, 0}));
   EXPECT_EQ(mesh.points[6], (Vec3{1, 1, 1}));
-  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 3}));  // left, skin, upper
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 2}));  // left and upper; skin has no cells
   // S1 is nodes 1-2-3-4 of the element, S3 is 1-5-6-2, S6 is 4-8-5-1: any order and beginning.
   std::vector<std::pair<std::set<Index>, std::int32_t>> quads;
   for (const FeatureQuad& quad : mesh.features.quads) {

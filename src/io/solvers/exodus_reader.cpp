@@ -188,12 +188,12 @@ class ExodusReader {
         fail(ErrorCode::FileSyntax,
              "side set " + std::to_string(s + 1) + " has not as many sides as elements.");
       }
+      const std::int32_t tag = groups.tagOf(s);
       for (std::size_t i = 0; i < sides.size(); ++i) {
         const auto* const face = std::find(kExodusSides.begin(), kExodusSides.end(), sides[i]);
         if (face == kExodusSides.end() || elements[i] < 1) continue;  // of no hexahedron
         lists_.sides.push_back({static_cast<std::uint64_t>(elements[i]),
-                                static_cast<std::size_t>(face - kExodusSides.begin()),
-                                groups.tagOf(s)});
+                                static_cast<std::size_t>(face - kExodusSides.begin()), tag});
       }
     }
   }
@@ -215,22 +215,36 @@ class ExodusReader {
   ElementLists lists_;
 };
 
+/// What is no such file at all is refused before it is read as a whole.
+void requireExodus(const Input& input) {
+  if (input.bytes()) return;
+  const InputFile file(input.path());
+  if (!file.isRegular()) return;  // a pipe can be opened but once
+  std::array<char, 8> head{};
+  requireNetcdf({head.data(), file.read(head.data(), head.size())}, input.name());
+}
+
+ElementLists readExodusLists(const Input& input, std::string_view stage, Context& context) {
+  requireExodus(input);
+  return readWith<ExodusReader>(input, stage, context);
+}
+
 }  // namespace
 
 HexMesh readExodus(const Input& input, Context& context) {
-  return hexMeshOf(readWith<ExodusReader>(input, "read mesh", context), input);
+  return hexMeshOf(readExodusLists(input, "read mesh", context), input);
 }
 
 TetCells readExodusTets(const Input& input, Context& context) {
-  return tetsOf(readWith<ExodusReader>(input, "read tets", context), input);
+  return tetsOf(readExodusLists(input, "read tets", context), input);
 }
 
 bool holdsCurvedExodus(const Input& input, Context& context) {
-  return areCurved(readWith<ExodusReader>(input, "read mesh", context));
+  return areCurved(readExodusLists(input, "read mesh", context));
 }
 
 LagrangeMesh readCurvedExodus(const Input& input, Context& context) {
-  ElementLists lists = readWith<ExodusReader>(input, "read mesh", context);
+  ElementLists lists = readExodusLists(input, "read mesh", context);
   return inStage(context, "read mesh",
                  [&](Stage& stage) { return curvedMeshOf(std::move(lists), input, stage); });
 }

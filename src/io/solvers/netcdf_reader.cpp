@@ -18,27 +18,14 @@ class NetcdfHeadReader {
  public:
   NetcdfHeadReader(std::string_view bytes, const std::string& fileName)
       : bytes_(bytes), fileName_(fileName) {
-    if (bytes.starts_with("\x89HDF")) {
-      throw Error(ErrorCode::FileUnsupported,
-                  fileName +
-                      ": the file is over HDF5 (NetCDF 4), of which only the classic "
-                      "layouts are read. Convert it: nccopy -k cdf5 IN OUT");
-    }
-    const bool known = bytes.size() > 4 && bytes.starts_with("CDF") &&
-                       (bytes[3] == 1 || bytes[3] == 2 || bytes[3] == 5);
-    if (!known) {
-      throw Error(ErrorCode::FileSyntax,
-                  fileName +
-                      ": the file does not begin as NetCDF's files do. Is its extension "
-                      "right?");
-    }
+    requireNetcdf(bytes, fileName);
     wideCounts_ = bytes[3] == 5;
     widePlaces_ = bytes[3] != 1;
     place_ = 4;
   }
 
   std::vector<NetcdfValues> read() {
-    records_ = count();
+    static_cast<void>(count());  // of records
     const std::uint64_t dimensions = beginList(10);
     for (std::uint64_t i = 0; i < dimensions; ++i) {
       static_cast<void>(text());
@@ -123,6 +110,9 @@ class NetcdfHeadReader {
     const bool fits =
         variable.begin <= bytes_.size() && variable.count * each <= bytes_.size() - variable.begin;
     if (variable.count > 0 && !fits) fail("the file ends within the values of a variable.");
+    // Or else many variables of the same values would take far more memory than the file.
+    valueBytes_ += variable.count * each;
+    if (valueBytes_ > bytes_.size()) fail("variables have more values than the file has bytes.");
     return variable;
   }
 
@@ -131,11 +121,28 @@ class NetcdfHeadReader {
   std::size_t place_ = 0;
   bool wideCounts_ = false;
   bool widePlaces_ = false;
-  std::uint64_t records_ = 0;
+  std::uint64_t valueBytes_ = 0;  ///< of the variables so far
   std::vector<std::uint64_t> lengths_;
 };
 
 }  // namespace
+
+void requireNetcdf(std::string_view head, const std::string& fileName) {
+  if (head.starts_with("\x89HDF")) {
+    throw Error(ErrorCode::FileUnsupported,
+                fileName +
+                    ": the file is over HDF5 (NetCDF 4), of which only the classic "
+                    "layouts are read. Convert it: nccopy -k cdf5 IN OUT");
+  }
+  const bool known =
+      head.size() > 4 && head.starts_with("CDF") && (head[3] == 1 || head[3] == 2 || head[3] == 5);
+  if (!known) {
+    throw Error(ErrorCode::FileSyntax,
+                fileName +
+                    ": the file does not begin as NetCDF's files do. Is its extension "
+                    "right?");
+  }
+}
 
 NetcdfReader::NetcdfReader(std::string_view bytes, const std::string& fileName)
     : bytes_(bytes), fileName_(fileName), variables_(NetcdfHeadReader(bytes, fileName).read()) {

@@ -10,6 +10,10 @@
 
 namespace hexhex::io {
 
+/// Of a file, or its first bytes, whether it is in one of these layouts.
+/// @throws Error FileSyntax; FileUnsupported for NetCDF's newer files, over HDF5
+void requireNetcdf(std::string_view head, const std::string& fileName);
+
 /// A variable of a file: where its values are, and how many.
 struct NetcdfValues {
   std::string name;
