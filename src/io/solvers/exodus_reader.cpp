@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -221,7 +222,9 @@ void requireExodus(const Input& input) {
   const InputFile file(input.path());
   if (!file.isRegular()) return;  // a pipe can be opened but once
   std::array<char, 8> head{};
-  requireNetcdf({head.data(), file.read(head.data(), head.size())}, input.name());
+  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), head.size()));
+  file.readAt(0, head.data(), size);
+  requireNetcdf({head.data(), size}, input.name());
 }
 
 ElementLists readExodusLists(const Input& input, std::string_view stage, Context& context) {
