@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/structure.hpp>
@@ -66,9 +67,38 @@ std::variant<TetMap, HexMesh> readInput(const ConvertArguments& arguments,
   return readMapOrHexMesh(arguments.input.file, readingOf(arguments, counts), context);
 }
 
+/// Whether the input has cells of higher order. Pipes, which are read but once, are not looked
+/// into.
+bool isCurved(const ConvertArguments& arguments, Context& context) {
+  const MapSource& input = arguments.input;
+  std::error_code unknown;
+  return !input.isPair() && input.options().format.empty() &&
+         std::filesystem::is_regular_file(input.file, unknown) &&
+         holdsLagrangeCells(input.file, context);
+}
+
+std::string convertCurved(const ConvertArguments& arguments, Context& context) {
+  requireFor(arguments, "cells of higher order",
+             [](const std::filesystem::path& file, const WriteOptions& /*options*/) {
+               requireLagrangeFormat(file);
+             });
+  if (arguments.reorient) {
+    throw Error(ErrorCode::InvalidArgument,
+                arguments.input.description() +
+                    " holds cells of higher order, but --reorient turns straight cells.");
+  }
+  WriteOptions writing = arguments.choice.options();
+  writing.patchAngle = arguments.patchAngle;
+  const LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
+  writeLagrangeMesh(mesh, arguments.output, writing, context);
+  return fmt::format("a mesh of {} of order {}, {} nodes", counted(mesh.cellCount(), "cell"),
+                     mesh.order, mesh.points.size());
+}
+
 /// What was converted.
 std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCount>& counts,
                          Context& context) {
+  if (isCurved(arguments, context)) return convertCurved(arguments, context);
   auto content = readInput(arguments, counts, context);
   WriteOptions writing = arguments.choice.options();
   writing.mapArray = arguments.input.mapArray;
@@ -116,10 +146,9 @@ int run(const ConvertArguments& arguments) {
                 "Leave out one of them.");
   }
   requireAnyFormat(arguments);
-  const std::vector<WorkStep> whole = {{"readMapPair", 1},
-                                       {"readMapOrHexMesh", 1},
-                                       {"findCellFaults", 0.3},
-                                       {"writeMap", 1},
+  const std::vector<WorkStep> whole = {{"readMapPair", 1},       {"readMapOrHexMesh", 1},
+                                       {"findCellFaults", 0.3},  {"readLagrangeMesh", 1},
+                                       {"writeLagrangeMesh", 1}, {"writeMap", 1},
                                        {"writeHexMesh", 1}};
   LongRun longRun(arguments.run,
                   arguments.stream ? std::vector<WorkStep>{{"readHexMeshTo", 1}} : whole);

@@ -97,7 +97,8 @@ struct FlagsFile {
                                                                 Context& context);
 
 /// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
-/// VTK, ASCII and binary), `.msh` (Gmsh 4.1 and 2.x, ASCII and binary), `.ovm`, `.ovmb`. Points,
+/// VTK, ASCII and binary), `.msh` (Gmsh 1 to 4.1, ASCII and binary), `.ovm`, `.ovmb`, `.inp`
+/// (Abaqus), `.exo` and `.e` (Exodus II); each of them also compressed, as `.msh.gz`. Points,
 /// lines, triangles and other sections are ignored, quads may be features; generators are restored
 /// from `.vtu`, `.ovm` and `.ovmb`.
 /// @throws Error  as readMap(); FileUnsupported for other volume cells, see ReadOptions::hexesOnly

@@ -143,8 +143,11 @@ void expectMeshInFile(const HexMesh& mesh, const FileFormat& format, Context& co
 }
 
 void sendMeshThroughFile(const HexMesh& mesh, Random& random, const std::filesystem::path& file) {
-  const FileFormat& format =
-      drawFormat([](const FileFormat& f) { return f.readsHexMeshes && f.writesHexMeshes; }, random);
+  const FileFormat& format = drawFormat(
+      [](const FileFormat& f) {  // numbers in .inp files are cut off at 20 characters
+        return f.readsHexMeshes && f.writesHexMeshes && f.name != "inp";
+      },
+      random);
   SCOPED_TRACE("a mesh as " + std::string(format.name));
   const WriteOptions writing = drawWriting(format, random);
   Context context(drawThreads(random));

@@ -11,8 +11,6 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <sanitizer/allocator_interface.h>
 
@@ -21,12 +19,14 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/gmsh/gmsh.hpp>
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
+#include <io/solvers/solvers.hpp>
 #include <io/vtk/vtk.hpp>
 
 #include "mutators.hpp"
@@ -91,6 +91,11 @@ void examine(const TetMap& map) {
   for (const FeatureFace& each : map.features.faces) requireVertices(each.vertices, points);
 }
 
+void examine(const LagrangeMesh& mesh) {
+  requireVertices(mesh.nodes, mesh.points.size());
+  require(mesh.vertexCount <= mesh.points.size(), "there are fewer points than vertices");
+}
+
 template <auto parse>
 void read(std::string_view text) {
   Context context(1);
@@ -115,16 +120,10 @@ TetMap parseVtuMap(std::string_view text, const std::string& fileName, Context& 
   return readVtuMap({text, fileName}, {}, context);
 }
 
-/// Lagrange cells are read from files only, so the bytes become one, in memory.
-void readLagrange(std::string_view text) {
-  static const int file = ::memfd_create("input", 0);
-  require(::ftruncate(file, 0) == 0 &&
-              ::pwrite(file, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()),
-          "it was not written");
-  Context context(1);
-  const LagrangeMesh mesh = readLagrangeVtu("/proc/self/fd/" + std::to_string(file), context);
-  requireVertices(mesh.nodes, mesh.points.size());
-  require(mesh.vertexCount <= mesh.points.size(), "there are fewer points than vertices");
+/// What a compressed file holds, read as the format of most text.
+HexMesh parseGzip(std::string_view text, const std::string& fileName, Context& context) {
+  const Array<char> bytes = inflateGzip(text, fileName);
+  return readGmsh({asText(bytes), fileName}, context);
 }
 
 /// Changes a file such that it keeps its structure.
@@ -156,7 +155,13 @@ constexpr std::array kReaders = {
     Reader{"vtk-tets", read<parse<readVtkLegacyTets>>},
     Reader{"vtu-map", read<parseVtuMap>, fuzz::changeAppended},
     Reader{"vtu-tets", read<parse<readVtuTets>>, fuzz::changeAppended},
-    Reader{"vtu-lagrange", readLagrange, fuzz::changeAppended},
+    Reader{"vtu-lagrange", read<parse<readLagrangeVtu>>, fuzz::changeAppended},
+    Reader{"vtk-curved", read<parse<readCurvedVtkLegacy>>},
+    Reader{"inp", read<parse<readAbaqus>>},
+    Reader{"inp-curved", read<parse<readCurvedAbaqus>>},
+    Reader{"exodus", read<parse<readExodus>>},
+    Reader{"exodus-curved", read<parse<readCurvedExodus>>},
+    Reader{"gzip", read<parseGzip>},
     Reader{"ovm-map", read<parse<readOvmMap>>},
     Reader{"ovm-tets", read<parse<readOvmTets>>},
     Reader{"ovm", read<parse<readOvmHexMesh>>},

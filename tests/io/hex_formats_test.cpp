@@ -124,7 +124,7 @@ TEST(HexFormats, NamesAreCheckedBeforeLongWork) {
 }
 
 TEST(HexFormats, WhatIsOnlyWrittenIsNotRead) {
-  const Failure failure = failureOf([] { static_cast<void>(readHexMesh("a.inp")); });
+  const Failure failure = failureOf([] { static_cast<void>(readHexMesh("a.foam")); });
   EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
   EXPECT_NE(failure.sentence.find("written, but not read"), std::string::npos) << failure.sentence;
 }

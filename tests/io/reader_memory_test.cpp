@@ -94,19 +94,19 @@ struct Reader {
 };
 
 const std::vector<Reader>& readers() {
-  constexpr const char* kMeshes = ".mesh .meshb .vtu .vtk .ovm .ovmb .msh";
+  constexpr const char* kMeshes = ".mesh .meshb .vtu .vtk .ovm .ovmb .msh .inp .exo";
   static const std::vector<Reader> kReaders = {
       {"map", ".hexex .vtu .vtk .ovm .ovmb",
        [](const auto& file, Context& context) { static_cast<void>(readMap(file, context)); }},
       {"mesh", kMeshes,
        [](const auto& file, Context& context) { static_cast<void>(readHexMesh(file, context)); }},
-      {"tets", ".hexex .mesh .meshb .vtu .vtk .ovm .ovmb .msh",
+      {"tets", ".hexex .mesh .meshb .vtu .vtk .ovm .ovmb .msh .inp .exo",
        [](const auto& file, Context& context) {
          static_cast<void>(readTetMesh(file, {}, context));
        }},
       {"survey", kMeshes,
        [](const auto& file, Context& context) { static_cast<void>(surveyFile(file, context)); }},
-      {"lagrange", ".vtu", [](const auto& file, Context& context) {
+      {"lagrange", ".vtu .vtk .inp .exo", [](const auto& file, Context& context) {
          static_cast<void>(readLagrangeMesh(file, context));
        }}};
   return kReaders;

@@ -48,8 +48,10 @@ std::vector<Way> mapWays() {
 }
 
 std::vector<Way> meshWays() {
-  return waysOf(
-      [](const FileFormat& format) { return format.readsHexMeshes && format.writesHexMeshes; });
+  return waysOf([](const FileFormat& format) {
+    // Abaqus reads 20 characters of a number: not all come back to the bit.
+    return format.readsHexMeshes && format.writesHexMeshes && format.name != "inp";
+  });
 }
 
 void expectSameMaps(const TetMap& a, const TetMap& b) {

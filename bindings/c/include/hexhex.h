@@ -1338,11 +1338,11 @@ HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_repair(const hexhex_lagrange_m
                                                          hexhex_repair_report** report,
                                                          hexhex_error* error);
 
-/** Cells of higher order from a .vtu file: see readLagrangeMesh() in <hexhex/curved.hpp>. */
+/** Cells of higher order from a file: see readLagrangeMesh() in <hexhex/curved.hpp>. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_read(const char* file, hexhex_context* context,
                                                    hexhex_lagrange_mesh** mesh,
                                                    hexhex_error* error);
-/** @param[out] holds  1 if the file is a .vtu file with such cells, else 0 */
+/** @param[out] holds  1 if the file has such cells, else 0 */
 HEXHEX_API hexhex_status hexhex_file_holds_lagrange(const char* file, hexhex_context* context,
                                                     int* holds, hexhex_error* error);
 

@@ -42,9 +42,17 @@ const Format& readableFormat(const std::filesystem::path& file, std::string_view
   return format;
 }
 
+void refuseGzip(const std::filesystem::path& file) {
+  if (!isGzip(file)) return;
+  refuse(file,
+         "files compressed with gzip are read, but not written. Write the file without "
+         "\".gz\", and compress it then.");
+}
+
 /// The format of a file that is to be written with these options.
 const Format& writableFormat(const std::filesystem::path& file, const WriteOptions& options,
                              FileContent content) {
+  refuseGzip(file);
   const Format& format = findFormat(file, options.format, content);
   if (content == FileContent::HexMesh && format.meshes.write == nullptr && !format.overHdf5) {
     refuse(file, "files of the format \"" + std::string(format.label.name) +
@@ -124,8 +132,9 @@ namespace hexhex {
 TetMap readMap(const std::filesystem::path& file, const ReadOptions& options, Context& context) {
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::Map);
   if (format.maps.read == nullptr) io::failToRead(file, format);
-  return inSteps(context, "readMap", io::kReadMap,
-                 [&] { return io::readMapOf(file, format, options, context); });
+  return inSteps(context, "readMap", io::kReadMap, [&] {
+    return io::readMapOf(io::openInput(file, context), format, options, context);
+  });
 }
 
 TetMap readMap(const std::filesystem::path& file, Context& context) {
@@ -141,7 +150,7 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
                     Context& context) {
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::Tets);
   return inSteps(context, "readTetMesh", io::kReadTets, [&] {
-    const io::Input input(file);
+    const io::Input input = io::openInput(file, context);
     const io::TetCells tets = format.readTets(input, context);
     io::settleCells(input, io::kCellKind<4>, options, false);
     TetMesh mesh;
@@ -154,8 +163,9 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
 HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                     Context& context) {
   const io::Format& format = io::readableFormat(file, options.format);
-  return inSteps(context, "readHexMesh", io::kReadMesh,
-                 [&] { return io::readMeshOf(file, format, options, context); });
+  return inSteps(context, "readHexMesh", io::kReadMesh, [&] {
+    return io::readMeshOf(io::openInput(file, context), format, options, context);
+  });
 }
 
 HexMesh readHexMesh(const std::filesystem::path& file, Context& context) {
@@ -173,8 +183,8 @@ std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file
   if (format.meshes.read == nullptr && format.maps.read == nullptr) io::failToRead(file, format);
   using Content = std::variant<TetMap, HexMesh>;
   return inSteps(context, "readMapOrHexMesh", io::kReadAny, [&]() -> Content {
-    if (format.meshes.read == nullptr) return io::readMapOf(file, format, options, context);
-    const io::Input input(file);
+    const io::Input input = io::openInput(file, context);
+    if (format.meshes.read == nullptr) return io::readMapOf(input, format, options, context);
     if (format.maps.read == nullptr) return io::readMeshOf(input, format, options, context);
     try {
       return io::readMeshOf(input, format, options, context);
@@ -186,7 +196,7 @@ std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file
           (hasOthers && counts.of(io::kCellKind<4>) == 0)) {
         throw;
       }
-      return io::readMapOf(file, format, options, context);
+      return io::readMapOf(input, format, options, context);
     }
   });
 }
@@ -196,7 +206,7 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const Read
   const io::Format& format = io::readableFormat(file, options.format);
   inSteps(context, "readHexMeshTo", io::kReadMesh, [&] {
     withThreads(context.threads(), [&] {
-      const io::Input input(file);
+      const io::Input input = io::openInput(file, context);
       io::SettledSink settled(sink, input, options);
       if (format.pieces.read != nullptr) return format.pieces.read(settled, input, context);
       io::sendTo(settled, format.meshes.read(input, context));
@@ -247,6 +257,7 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file) {
 
 std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                        const WriteOptions& options, Context& context) {
+  io::refuseGzip(file);
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::HexMesh);
   if (options.compress) io::refuse(file, "a mesh in pieces cannot be written with compression.");
   if (format.pieces.openSink == nullptr) {

@@ -10,6 +10,7 @@
 #include <io/core/input_file.hpp>
 #include <io/core/system_call.hpp>
 #include <io/core/text_scanner.hpp>
+#include <io/core/zlib_blocks.hpp>
 
 namespace hexhex::io {
 namespace {
@@ -118,6 +119,15 @@ Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::
   } while (readOn());
   bytes.resize(size);
   return bytes;
+}
+
+bool isGzip(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".gz"; }
+
+Input openInput(const std::filesystem::path& file, Context& context) {
+  if (!isGzip(file)) return file;
+  Stage stage(context, "unpack");
+  const Array<char> packed = readWholeFile(file, stage);
+  return {file, inflateGzip(asText(packed), file.string())};
 }
 
 }  // namespace hexhex::io

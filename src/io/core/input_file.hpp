@@ -84,8 +84,16 @@ class Input {
   /// @param bytes  outlive this
   /// @param name  for error messages
   Input(std::string_view bytes, std::string name) : name_(std::move(name)), bytes_(bytes) {}
+  /// Of a compressed file.
+  /// @param bytes  what it holds
+  Input(const std::filesystem::path& file, Array<char> bytes)
+      : name_(file.string()),
+        path_(file),
+        unpacked_(std::make_shared<const Array<char>>(std::move(bytes))),
+        bytes_(asText(*unpacked_)) {}
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Empty for bytes in memory.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
   /// What readers of this input count.
@@ -102,9 +110,16 @@ class Input {
  private:
   std::string name_;
   std::filesystem::path path_;
+  std::shared_ptr<const Array<char>> unpacked_;
   std::optional<std::string_view> bytes_;
   std::shared_ptr<CellCounts> counts_ = std::make_shared<CellCounts>();
 };
+
+/// Whether a file's name ends in ".gz".
+[[nodiscard]] bool isGzip(const std::filesystem::path& file);
+/// A file as its readers get it: one whose name ends in ".gz" is unpacked first.
+/// @throws Error FileNotFound, and as inflateGzip()
+[[nodiscard]] Input openInput(const std::filesystem::path& file, Context& context);
 
 /// What work(stage) returns, with the context's threads.
 template <class Work>

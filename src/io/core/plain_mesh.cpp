@@ -65,7 +65,7 @@ void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input
                    Context& context) {
   std::error_code unknown;
   // A pipe can be opened but once.
-  if (std::filesystem::is_regular_file(input.path(), unknown)) {
+  if (!input.bytes() && std::filesystem::is_regular_file(input.path(), unknown)) {
     const InputFile open(input.path());
     Stage stage(context, "read mesh");
     const std::unique_ptr<PlainMesh> mesh = openPlain(format, open, input.name(), context);

@@ -13,6 +13,7 @@
 #include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
+#include <io/curved/lagrange_files.hpp>
 #include <io/gmsh/gmsh.hpp>
 #include <io/hexex/hexex.hpp>
 #include <io/medit/medit.hpp>
@@ -57,6 +58,13 @@ void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
   writeExodus(mesh, file, options, context);
 }
 
+constexpr Format exodusFormat(std::string_view name, std::string_view extension) {
+  return {.label = {name, extension, "Exodus II"},
+          .readTets = readExodusTets,
+          .meshes = {readExodus, writeExodusFile},
+          .curved = {holdsCurvedExodus, readCurvedExodus}};
+}
+
 constexpr std::array kFormatTable = {
     Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
            .maps = {readHexex, writePlain<writeHexex>},
@@ -73,6 +81,7 @@ constexpr std::array kFormatTable = {
            .maps = {readVtuMap, writeVtuMap},
            .readTets = readVtuTets,
            .meshes = {readVtu, writeVtu},
+           .curved = {holdsLagrangeVtu, readLagrangeVtu},
            .pieces = {openVtuSink, readVtuTo},
            .compresses = true},
     Format{.label = {"pvtu", ".pvtu", "VTK XML in pieces (extract --parts)"},
@@ -81,11 +90,13 @@ constexpr std::array kFormatTable = {
            .maps = {readVtkLegacyMap, writeVtkLegacyMap},
            .readTets = readVtkLegacyTets,
            .meshes = {readVtkLegacy, writeVtkLegacy},
+           .curved = {holdsCurvedVtkLegacy, readCurvedVtkLegacy},
            .pieces = {openVtkLegacySink, readVtkLegacyTo}},
     Format{.label = {"vtk-binary", ".vtk", "legacy VTK 2.0, binary"},
            .maps = {readVtkLegacyMap, writeVtkLegacyMapBinary},
            .readTets = readVtkLegacyTets,
            .meshes = {readVtkLegacy, writeVtkLegacyBinary},
+           .curved = {holdsCurvedVtkLegacy, readCurvedVtkLegacy},
            .pieces = {openVtkLegacyBinarySink, readVtkLegacyTo}},
     Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
            .maps = {readPlain<readOvmMap>, writePlain<writeOvmMap>},
@@ -105,7 +116,10 @@ constexpr std::array kFormatTable = {
     Format{.label = {"msh22-ascii", ".msh", "Gmsh 2.2, text"},
            .readTets = readGmshTets,
            .meshes = {readGmsh, writeGmsh22Text}},
-    Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"}, .meshes = {.write = writeAbaqus}},
+    Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"},
+           .readTets = readAbaqusTets,
+           .meshes = {readAbaqus, writeAbaqus},
+           .curved = {holdsCurvedAbaqus, readCurvedAbaqus}},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"}, .meshes = {.write = writeMfem}},
     Format{.label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
            .meshes = {.write = writeOpenFoam}},
@@ -113,8 +127,8 @@ constexpr std::array kFormatTable = {
            .meshes = {.write = kWriteVtkHdf},
            .overHdf5 = true},
     Format{.label = {"cgns", ".cgns", "CGNS"}, .meshes = {.write = kWriteCgns}, .overHdf5 = true},
-    Format{.label = {"exodus", ".exo", "Exodus II"}, .meshes = {.write = writeExodusFile}},
-    Format{.label = {"exodus-e", ".e", "Exodus II"}, .meshes = {.write = writeExodusFile}},
+    exodusFormat("exodus", ".exo"),
+    exodusFormat("exodus-e", ".e"),
 };
 
 /// Other names for formats.
@@ -217,7 +231,7 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
                          FileContent content) {
   const Purpose purpose = purposeOf(content);
   const std::string_view usual = usualName(name);
-  const std::string extension = lowerCaseExtension(file);
+  const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
   const Format* const format = usual.empty()
                                    ? formatWith(extension, &FormatLabel::extension, purpose.fits)
                                    : formatWith(usual, &FormatLabel::name, purpose.fits);

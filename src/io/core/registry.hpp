@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <hexhex/context.hpp>
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
@@ -43,6 +44,11 @@ struct Format {
     void (*write)(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context) = nullptr;
   } meshes = {};
+  /// Cells of higher order, which are looked for first where meshes may have them.
+  struct {
+    bool (*isIn)(const Input& input, Context& context) = nullptr;
+    LagrangeMesh (*read)(const Input& input, Context& context) = nullptr;
+  } curved = {};
   /// Meshes in pieces.
   struct {
     std::unique_ptr<MeshSink> (*openSink)(const std::filesystem::path& file,

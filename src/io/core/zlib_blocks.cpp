@@ -1,6 +1,11 @@
+#include <string>
+
+#include <hexhex/error.hpp>
+
 #include <io/core/zlib_blocks.hpp>
 
 #ifdef HEXHEX_HAS_ZLIB
+#include <algorithm>
 #include <limits>
 #include <new>
 #include <zlib.h>
@@ -20,6 +25,64 @@ bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept {
   return status == Z_OK && size == bytes.size();
 }
 
+namespace {
+
+/// What zlib makes of a gzip file, step by step.
+class GzipStream {
+ public:
+  explicit GzipStream(std::string_view compressed) : rest_(compressed) {
+    constexpr int kGzipOnly = 16;  // added to the size of the window
+    if (::inflateInit2(&stream_, MAX_WBITS + kGzipOnly) != Z_OK) throw std::bad_alloc();
+  }
+  ~GzipStream() { ::inflateEnd(&stream_); }
+  GzipStream(const GzipStream&) = delete;
+  GzipStream& operator=(const GzipStream&) = delete;
+
+  /// Fills what it can of `room`. @return the number of bytes; `good` is false for damage
+  [[nodiscard]] std::size_t read(std::span<char> room, bool& good) {
+    constexpr std::size_t kStep = std::size_t{1} << 30;  // counts have 32 bits
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest_.data()));
+    stream_.avail_in = static_cast<uInt>(std::min(rest_.size(), kStep));
+    stream_.next_out = reinterpret_cast<Bytef*>(room.data());
+    stream_.avail_out = static_cast<uInt>(std::min(room.size(), kStep));
+    const uInt in = stream_.avail_in;
+    const uInt out = stream_.avail_out;
+    const int status = ::inflate(&stream_, Z_NO_FLUSH);
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
+    rest_.remove_prefix(in - stream_.avail_in);
+    ended_ = status == Z_STREAM_END;
+    const std::size_t made = out - stream_.avail_out;
+    good = ended_ || (status == Z_OK && (made > 0 || in > stream_.avail_in));
+    if (ended_ && !rest_.empty()) good = ::inflateReset(&stream_) == Z_OK;
+    return made;
+  }
+  /// Whether the last member is complete.
+  [[nodiscard]] bool isComplete() const noexcept { return ended_ && rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+  z_stream stream_{};
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
+  constexpr std::size_t kFirstRoom = std::size_t{1} << 16;
+  GzipStream stream(compressed);
+  Array<char> bytes;
+  std::size_t size = 0;
+  for (bool good = true; !stream.isComplete();) {
+    if (size == bytes.size()) bytes.resize(std::max(2 * size, kFirstRoom));
+    size += stream.read(std::span(bytes).subspan(size), good);
+    if (good) continue;
+    throw Error(ErrorCode::FileSyntax,
+                name + ": the file is no complete gzip file, or damaged. Try `gzip --test`.");
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
   constexpr int kLevel = 1;  // levels above take three times as long for a tenth less
   const std::size_t before = compressed.size();
@@ -36,14 +99,19 @@ void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
 
 #else
 
-#include <hexhex/error.hpp>
-
 namespace hexhex::io {
 
 bool hasZlib() noexcept { return false; }
 
 bool inflateBlock(std::string_view /*compressed*/, std::span<char> /*bytes*/) noexcept {
   return false;
+}
+
+Array<char> inflateGzip(std::string_view /*compressed*/, const std::string& name) {
+  throw Error(ErrorCode::FileUnsupported,
+              name +
+                  ": this program was built without zlib and cannot read compressed files. "
+                  "Unpack the file first (gunzip).");
 }
 
 void deflateBlock(std::span<const char> /*bytes*/, Array<char>& /*compressed*/) {

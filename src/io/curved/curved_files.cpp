@@ -7,6 +7,8 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
+#include <io/core/input_file.hpp>
+#include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/curved/lagrange_files.hpp>
 #include <io/ovm/ovm.hpp>
@@ -57,6 +59,16 @@ auto find(const Formats& formats, const std::filesystem::path& file, const char*
   throw Error(ErrorCode::FileUnsupported, file.string() + ": the extension \"" + extension +
                                               "\" is no format of " + what + ". Formats: " + known +
                                               ".");
+}
+
+/// The format of a file that may hold cells of higher order; null if there is none.
+const Format* curvedFormat(const std::filesystem::path& file) {
+  try {
+    const Format& format = findFormat(file, {}, FileContent::HexMesh);
+    return format.curved.read == nullptr ? nullptr : &format;
+  } catch (const Error&) {  // no mesh at all
+    return nullptr;
+  }
 }
 
 constexpr const char* kArcs = "arcs";
@@ -113,16 +125,20 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
-  return io::lowerCaseExtension(file) == ".vtu" && io::holdsLagrangeVtu(file, context);
+  const io::Format* const format = io::curvedFormat(file);
+  return format != nullptr && format->curved.isIn(io::openInput(file, context), context);
 }
 
 LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
-  if (io::lowerCaseExtension(file) != ".vtu") {
+  const io::Format* const format = io::curvedFormat(file);
+  if (format == nullptr) {
     throw Error(ErrorCode::FileUnsupported,
-                file.string() + ": cells of higher order are read from .vtu files only.");
+                file.string() +
+                    ": cells of higher order are read from .vtu, .vtk, .inp, .exo and .e "
+                    "files only.");
   }
   return inSteps(context, "readLagrangeMesh", io::kReadSteps,
-                 [&] { return io::readLagrangeVtu(file, context); });
+                 [&] { return format->curved.read(io::openInput(file, context), context); });
 }
 
 void requireArcFormat(const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
-// Lagrange cells in `.vtu` files.
+// Lagrange cells in `.vtu` files, and hexahedra with 20 and 27 nodes in files of VTK.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include <io/curved/lagrange_files.hpp>
 #include <io/curved/lagrange_nodes.hpp>
+#include <io/solvers/element_lists.hpp>
 #include <io/vtk/vtk_data_set.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
@@ -24,6 +26,30 @@ CellKind lagrangeCells(std::size_t nodes) {
           .singular = "Lagrange hexahedron",
           .plural = "Lagrange hexahedra",
           .vtkType = kVtkLagrangeHexahedron};
+}
+
+/// Cells of order 2 that have types of their own; the nodes of the second kind are in the order of
+/// Lagrange cells, and the first kind lacks the last 7.
+constexpr std::array<CellKind, 2> kQuadratic = {{{.corners = 20,
+                                                  .singular = "hexahedron with 20 nodes",
+                                                  .plural = "hexahedra with 20 nodes",
+                                                  .vtkType = 25},
+                                                 {.corners = 27,
+                                                  .singular = "hexahedron with 27 nodes",
+                                                  .plural = "hexahedra with 27 nodes",
+                                                  .vtkType = 29}}};
+
+std::size_t countCells(const VtkSource& source, const CellKind& kind) {
+  return countVtkCells(source, kind, 0, source.cells);
+}
+
+/// The kind of such cells that a file without straight hexahedra has; null if there is none.
+const CellKind* quadraticKind(const VtkSource& source) {
+  if (countCells(source, kCellKind<8>) > 0) return nullptr;
+  for (const CellKind& kind : kQuadratic) {
+    if (countCells(source, kind) > 0) return &kind;
+  }
+  return nullptr;
 }
 
 /// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
@@ -158,41 +184,75 @@ void putCornersFirst(LagrangeMesh& mesh) {
   renumberFeatures(isCorner, newNumber, mesh.features);
 }
 
+/// From rows of 20 nodes to rows of 27.
+void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string& fileName) {
+  const std::size_t perCell = mesh.nodesPerCell();
+  Array<Index> rows(mesh.nodes.size() / nodesEach * perCell);
+  std::vector<std::size_t> cells(rows.size() / perCell);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    cells[c] = c;
+    std::copy_n(mesh.nodes.data() + nodesEach * c, nodesEach, rows.data() + perCell * c);
+  }
+  mesh.nodes = std::move(rows);
+  addMiddles(mesh.points, mesh.nodes, cells, fileName);
+}
+
 LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
   source.requireIndexable();
   LagrangeMesh mesh;
-  mesh.order = findOrder(source);
-  const CellKind wanted = lagrangeCells(mesh.nodesPerCell());
+  const bool isLagrange = countCells(source, lagrangeCells(0)) > 0;
+  const CellKind* const quadratic = isLagrange ? nullptr : quadraticKind(source);
+  mesh.order = quadratic != nullptr ? 2 : findOrder(source);
+  const CellKind wanted = quadratic != nullptr ? *quadratic : lagrangeCells(mesh.nodesPerCell());
   if (source.cells == 0) failWithoutVtkCells(source, wanted);
   mesh.points.resize(source.points);
   readVtkPoints(source, mesh.points, stage);
   Array<std::size_t> numbers;
-  const auto makeRoom = [&mesh](std::size_t cells) {
-    mesh.nodes.resize(cells * mesh.nodesPerCell());
+  const auto makeRoom = [&](std::size_t cells) {
+    mesh.nodes.resize(cells * wanted.corners);
     return mesh.nodes.data();
   };
   readVtkCells(source, wanted, makeRoom, &numbers, stage);
   source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
-  reorderNodes(mesh, stage);
+  if (wanted.corners < mesh.nodesPerCell()) completeCells(mesh, wanted.corners, fileName);
   readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
   mesh.regions = readVtkRegions(source, numbers);
   mesh.features = readVtkHexFeatures(source);
-  putCornersFirst(mesh);
+  fromVtkOrder(mesh, stage);
   return mesh;
 }
 
 }  // namespace
 
-bool holdsLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return inStage(context, "read mesh", [&file](Stage& stage) {
-    const auto source = openVtuFile(file, stage);
-    return countVtkCells(*source, lagrangeCells(0), 0, source->cells) > 0;
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage) {
+  reorderNodes(mesh, stage);
+  putCornersFirst(mesh);
+}
+
+bool holdsLagrangeVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    const auto source = openVtuFile(input, stage);
+    return countCells(*source, lagrangeCells(0)) > 0 || quadraticKind(*source) != nullptr;
   });
 }
 
-LagrangeMesh readLagrangeVtu(const std::filesystem::path& file, Context& context) {
-  return inStage(context, "read mesh", [&file](Stage& stage) {
-    return readLagrange(*openVtuFile(file, stage), file.string(), stage);
+bool holdsCurvedVtkLegacy(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return quadraticKind(*openVtkLegacyFile(input, false, stage)) != nullptr;
+  });
+}
+
+LagrangeMesh readCurvedVtkLegacy(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    const auto source = openVtkLegacyFile(input, true, stage);
+    if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
+    return readLagrange(*source, input.name(), stage);
+  });
+}
+
+LagrangeMesh readLagrangeVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readLagrange(*openVtuFile(input, stage), input.name(), stage);
   });
 }
 

@@ -15,8 +15,8 @@
 
 namespace hexhex::io {
 
-/// Reads nodes and hexahedra (element type 5) of MSH 2.x and 4.1, ASCII and binary. Other elements
-/// and sections are ignored. Vertices are in the order of the file, whatever their tags.
+/// Reads nodes and hexahedra (element type 5) of MSH 1, 2.x, 4.0 and 4.1, ASCII and binary. Other
+/// elements and sections are ignored. Vertices are in the order of the file, whatever their tags.
 /// @throws Error FileNotFound, FileSyntax (with line, or byte of a binary file), FileUnsupported,
 ///         IndexOutOfRange, NotFinite, TooLarge
 [[nodiscard]] HexMesh readGmsh(const Input& input, Context& context);

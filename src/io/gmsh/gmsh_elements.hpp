@@ -1,6 +1,6 @@
 // The section $Elements of `.msh` files: cells of one kind, their regions, and features. Blocks of
-// elements of one type make up the section of version 4.1, and that of version 2 in bytes; as text,
-// each element of version 2 says its type.
+// elements of one type make up the section of version 4, and that of version 2 in bytes; as text,
+// each element of versions 1 and 2 says its type.
 #pragma once
 
 #include <algorithm>
@@ -43,18 +43,44 @@ namespace hexhex::io {
   return type == kGmshQuad ? 2 : 3;
 }
 
+/// What differs between versions: 1 has text only; 4.0 numbers nodes and elements with 4 bytes, 4.1
+/// with 8.
+enum class GmshVersion : std::uint8_t { V1, V2, V40, V41 };
+
+[[nodiscard]] constexpr bool hasEntities(GmshVersion version) noexcept {
+  return version >= GmshVersion::V40;
+}
+
+/// The tag of a node or element. A negative one becomes large.
+template <class Record>
+[[nodiscard]] std::uint64_t readGmshTag(Record& record, GmshVersion version, const char* what) {
+  if (version == GmshVersion::V41) return record.size(what);
+  return static_cast<std::uint64_t>(record.integer(what));
+}
+
+/// Dimension and tag of an entity, at the head of a block.
+template <class Source>
+[[nodiscard]] GmshGroup readGmshEntity(Source& source, GmshVersion version) {
+  const auto tag = [&source] { return source.integer("the tag of an entity"); };
+  GmshGroup entity;
+  if (version == GmshVersion::V40) entity.second = tag();
+  entity.first = source.integer("the dimension of an entity");
+  if (version != GmshVersion::V40) entity.second = tag();
+  return entity;
+}
+
 /// Elements of one type that follow each other.
 struct GmshBlock {
+  GmshVersion version = GmshVersion::V2;
   std::int64_t type = 0;
   std::size_t nodes = 0;  ///< of each element
   std::size_t count = 0;
-  bool version4 = false;
   std::size_t tags = 0;      ///< version 2: of each element, in front of its nodes
-  std::int32_t tag = 0;      ///< version 4.1: of all elements
-  std::size_t position = 0;  ///< version 4.1: in the file
+  std::int32_t tag = 0;      ///< version 4: of all elements
+  std::size_t position = 0;  ///< version 4: in the file
 
   [[nodiscard]] RecordShape shape() const {
-    if (version4) return {.sizes = 1 + nodes};
+    if (version == GmshVersion::V41) return {.sizes = 1 + nodes};
     return {.integers = 1 + tags + nodes};
   }
 };
@@ -68,20 +94,22 @@ class GmshElements {
                CellCounts& counts, Stage& stage)
       : tags_(tags), nodes_(nodes), mesh_(mesh), counts_(counts), stage_(stage) {}
 
-  /// Reads the section of version 4.1 behind its name. Cells are read last, when it is known how
+  /// Reads the section of version 4 behind its name. Cells are read last, when it is known how
   /// many there are.
   /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, TooLarge
   template <class Source>
-  void read41(Source& source) {
+  void read4(Source& source, GmshVersion version) {
     const std::uint64_t blocks = source.size("the number of blocks of elements");
     const std::uint64_t total = source.size("the number of elements");
-    static_cast<void>(source.size("the smallest tag of an element"));
-    static_cast<void>(source.size("the largest tag of an element"));
+    if (version == GmshVersion::V41) {
+      static_cast<void>(source.size("the smallest tag of an element"));
+      static_cast<void>(source.size("the largest tag of an element"));
+    }
     std::vector<GmshBlock> ofCells;
     std::uint64_t done = 0;
     std::uint64_t cells = 0;
     for (std::uint64_t i = 0; i < blocks; ++i) {
-      const GmshBlock block = readHead41(source);
+      const GmshBlock block = readHead4(source, version);
       done += block.count;
       counts_.addGmsh(block.type, block.count);
       if (isCell(block.type)) {
@@ -127,7 +155,8 @@ class GmshElements {
     keep(cells);
   }
 
-  void read22(TextSource& source, std::size_t count) {
+  /// The same of versions 1 and 2 as text.
+  void readText(TextSource& source, GmshVersion version, std::size_t count) {
     LoopProgress progress(stage_, count);
     // Enough for all; lines have different lengths, so that only reading tells how many there are.
     mesh_.cells.resize(count);
@@ -135,13 +164,16 @@ class GmshElements {
     for (std::size_t i = 0; i < count; ++i) {
       if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, count - i));
       static_cast<void>(source.integer("the number of an element"));
-      GmshBlock element{.type = source.integer("the type of an element"), .count = 1};
+      GmshBlock element{
+          .version = version, .type = source.integer("the type of an element"), .count = 1};
       element.nodes = readNodeCount(source, element.type);
       counts_.addGmsh(element.type, 1);
-      const std::int32_t tag = tagOf(element, readPhysical(source));
+      const std::int64_t physical =
+          version == GmshVersion::V1 ? readPhysical1(source, element) : readPhysical(source);
+      const std::int32_t tag = tagOf(element, physical);
       if (isCell(element.type)) {
         setRegions(cells, 1, tag);
-        readCorners(source, false, cells++);
+        readCorners(source, version, cells++);
       } else {
         hasOthers_ = true;
         readOther(source, element, tag);
@@ -162,7 +194,7 @@ class GmshElements {
     return corners == 8 && (type == kGmshPoint || type == kGmshLine || type == kGmshQuad);
   }
   [[nodiscard]] std::int32_t tagOf(const GmshBlock& block, std::int64_t physical) const {
-    if (block.version4) return block.tag;
+    if (hasEntities(block.version)) return block.tag;
     return tags_.ofPhysical({dimensionOfGmshType(block.type), withoutSign(physical)});
   }
 
@@ -177,13 +209,12 @@ class GmshElements {
   }
 
   template <class Source>
-  [[nodiscard]] GmshBlock readHead41(Source& source) const {
-    GmshBlock block{.version4 = true};
-    const std::int64_t dimension = source.integer("the dimension of an entity");
-    const std::int64_t entity = source.integer("the tag of an entity");
+  [[nodiscard]] GmshBlock readHead4(Source& source, GmshVersion version) const {
+    GmshBlock block{.version = version};
+    const GmshGroup entity = readGmshEntity(source, version);
     block.type = source.integer("the type of elements");
     const std::uint64_t count = source.size("the number of elements of a block");
-    block.tag = tags_.ofEntity({dimension, entity});
+    block.tag = tags_.ofEntity(entity);
     block.nodes = readNodeCount(source, block.type);
     requireRoom(source, count, block.shape(), "elements");
     block.count = static_cast<std::size_t>(count);
@@ -220,24 +251,25 @@ class GmshElements {
     return physical;
   }
 
+  /// The same of version 1, where the number of nodes follows.
+  [[nodiscard]] static std::int64_t readPhysical1(TextSource& source, const GmshBlock& element) {
+    const std::int64_t physical = source.integer("the physical region of an element");
+    static_cast<void>(source.integer("the elementary region of an element"));
+    const std::uint64_t nodes = source.size("the number of nodes of an element");
+    if (nodes == element.nodes) return physical;
+    source.fail(ErrorCode::FileSyntax, "an element of type " + std::to_string(element.type) +
+                                           " has " + std::to_string(element.nodes) +
+                                           " nodes, found " + std::to_string(nodes) + ".");
+  }
+
   /// The same in a block; reads all that stands in front of an element's nodes.
   template <class Record>
   [[nodiscard]] static std::int64_t readPhysical(Record& record, const GmshBlock& block) {
-    if (block.version4) {
-      static_cast<void>(record.size("the tag of an element"));
-      return 0;
-    }
-    static_cast<void>(record.integer("the number of an element"));
+    static_cast<void>(readGmshTag(record, block.version, "the tag of an element"));
     if (block.tags == 0) return 0;
     const std::int64_t physical = record.integer("a tag");
     record.skip(block.tags - 1, {.integers = 1});
     return physical;
-  }
-
-  /// The tag of a node. A negative one becomes large.
-  template <class Record>
-  [[nodiscard]] static std::uint64_t readNode(Record& record, bool version4, const char* what) {
-    return version4 ? record.size(what) : static_cast<std::uint64_t>(record.integer(what));
   }
 
   /// Reads cells of a block, from number `first` on.
@@ -247,7 +279,7 @@ class GmshElements {
     source.records(block.count, block.shape(), [&](auto& record, std::size_t i) {
       const std::int64_t physical = readPhysical(record, block);
       if (!physicals.empty()) physicals[i] = physical;
-      readCorners(record, block.version4, first + i);
+      readCorners(record, block.version, first + i);
     });
     if (physicals.empty()) return setRegions(first, block.count, tagOf(block, 0));
     // Cells of a group mostly follow each other.
@@ -260,9 +292,9 @@ class GmshElements {
   }
 
   template <class Record>
-  void readCorners(Record& record, bool version4, std::size_t cell) {
+  void readCorners(Record& record, GmshVersion version, std::size_t cell) {
     for (Index& corner : mesh_.cells[cell]) {
-      const std::uint64_t tag = readNode(record, version4, "a node of a cell");
+      const std::uint64_t tag = readGmshTag(record, version, "a node of a cell");
       corner = nodes_.find(tag);
       if (corner == kNone) failCorner(record, tag, cell);
     }
@@ -296,7 +328,7 @@ class GmshElements {
   template <class Source>
   void readOthers(Source& source, const GmshBlock& block) {
     if (block.count > 0) hasOthers_ = true;
-    if (!isFeature(block.type) || (block.version4 && block.tag == 0)) {
+    if (!isFeature(block.type) || (hasEntities(block.version) && block.tag == 0)) {
       return source.skip(block.count, block.shape());
     }
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -308,7 +340,7 @@ class GmshElements {
   void readOther(Source& source, const GmshBlock& block, std::int32_t tag) {
     std::array<std::uint64_t, 4> nodes{};
     for (std::size_t k = 0; k < block.nodes; ++k) {
-      const std::uint64_t node = readNode(source, block.version4, "a node of an element");
+      const std::uint64_t node = readGmshTag(source, block.version, "a node of an element");
       if (k < nodes.size()) nodes[k] = node;
     }
     if (tag != 0 && isFeature(block.type)) addFeature(source, block.type, nodes, tag);

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include <hexhex/error.hpp>
@@ -26,22 +27,28 @@ namespace {
 /// The frame of a file: its version and encoding, and its sections one after the other.
 class GmshFile {
  public:
-  /// Reads the section $MeshFormat.
+  /// Reads the section $MeshFormat, which version 1 lacks, and what stands before it.
   /// @param text  must outlive this, and so must the others
   /// @throws Error FileSyntax, FileUnsupported
   GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
       : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
+    skipComments();
+    const std::string_view first = scanner_.peekToken();
+    if (first == "$NOD" || first == "$PARA") {
+      index_.emplace(text_, stage_);
+      return;
+    }
     if (scanner_.readToken() != "$MeshFormat") {
-      scanner_.fail(ErrorCode::FileSyntax, "a .msh file begins with \"$MeshFormat\", found " +
-                                               quoted(scanner_.currentToken()) + ".");
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "a .msh file begins with \"$MeshFormat\", or \"$NOD\" in version 1, found " +
+                        quoted(scanner_.currentToken()) + ".");
     }
     readVersion();
     readEncoding();
     endSection("MeshFormat");
   }
 
-  /// Whether the version is 4.1; otherwise it is 2.
-  [[nodiscard]] bool version4() const noexcept { return version4_; }
+  [[nodiscard]] GmshVersion version() const noexcept { return version_; }
 
   /// Goes to the next section and returns its name, without '$'; nothing at the end of the file.
   [[nodiscard]] std::optional<std::string_view> nextSection() {
@@ -56,14 +63,13 @@ class GmshFile {
 
   /// Reads the end of a section.
   void endSection(std::string_view name) {
-    const std::string_view token = scanner_.readToken();
-    if (token.starts_with("$End") && token.substr(4) == name) return;
-    scanner_.failToken("\"$End" + std::string(name) + "\"");
+    const std::string end = endOf(name);
+    if (scanner_.readToken() != end) scanner_.failToken('"' + end + '"');
   }
 
   /// Skips the rest of a section, and returns what that is, with the end.
   std::string_view skipSection(std::string_view name) {
-    const std::string end = "$End" + std::string(name);
+    const std::string end = endOf(name);
     const std::size_t begin = scanner_.position();
     const std::size_t place = text_.find(end, begin);
     if (place == std::string_view::npos) {
@@ -93,10 +99,40 @@ class GmshFile {
   }
 
  private:
+  [[nodiscard]] std::string endOf(std::string_view name) const {
+    return (version_ == GmshVersion::V1 ? "$END" : "$End") + std::string(name);
+  }
+
+  /// Passes over lines of comment and sections $Comments.
+  void skipComments() {
+    for (std::string_view token = scanner_.peekToken(); !token.empty();
+         token = scanner_.peekToken()) {
+      if (token.starts_with("#") || token.starts_with("//")) {
+        static_cast<void>(scanner_.takeLine());
+      } else if (token == "$Comments") {
+        static_cast<void>(scanner_.readToken());
+        version_ = GmshVersion::V2;  // has this way to end sections
+        skipSection("Comments");
+      } else {
+        break;
+      }
+    }
+    version_ = GmshVersion::V1;
+  }
+
   void readVersion() {
+    using Named = std::pair<std::string_view, GmshVersion>;
+    constexpr std::array<Named, 7> kVersions = {{{"4.1", GmshVersion::V41},
+                                                 {"4", GmshVersion::V40},
+                                                 {"4.0", GmshVersion::V40},
+                                                 {"2.2", GmshVersion::V2},
+                                                 {"2.1", GmshVersion::V2},
+                                                 {"2", GmshVersion::V2},
+                                                 {"2.0", GmshVersion::V2}}};
     const std::string_view version = scanner_.readToken();
-    version4_ = version == "4.1";
-    if (version4_ || version == "2.2" || version == "2.1" || version == "2" || version == "2.0") {
+    for (const auto& [name, value] : kVersions) {
+      if (name != version) continue;
+      version_ = value;
       return;
     }
     scanner_.fail(ErrorCode::FileUnsupported,
@@ -135,7 +171,7 @@ class GmshFile {
   Stage& stage_;
   std::optional<TokenIndex> index_;  ///< only of text
   bool binary_ = false;
-  bool version4_ = false;
+  GmshVersion version_ = GmshVersion::V1;
 };
 
 /// Takes the names of groups from the section $PhysicalNames: lines "dimension number name", as
@@ -169,8 +205,9 @@ std::int64_t firstOfGmshList(Source& source, const char* what) {
 
 /// Entities of one dimension: their tags, where they are, their groups and bounding entities.
 template <class Source>
-void readEntitiesOf(Source& source, std::size_t dimension, std::uint64_t count, GmshTags& tags) {
-  const std::size_t reals = dimension == 0 ? 3 : 6;
+void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, std::uint64_t count,
+                    GmshTags& tags) {
+  const std::size_t reals = dimension == 0 && version == GmshVersion::V41 ? 3 : 6;
   requireRoom(source, count, {.integers = 1, .reals = reals}, "entities");
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::int64_t entity = source.integer("the tag of an entity");
@@ -183,13 +220,13 @@ void readEntitiesOf(Source& source, std::size_t dimension, std::uint64_t count, 
   }
 }
 
-/// Reads the groups of entities in the section $Entities of version 4.1.
+/// Reads the groups of entities in the section $Entities of version 4.
 template <class Source>
-void readEntities(Source& source, GmshTags& tags) {
+void readEntities(Source& source, GmshVersion version, GmshTags& tags) {
   std::array<std::uint64_t, 4> counts{};
   for (std::uint64_t& count : counts) count = source.size("the number of entities");
   for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
-    readEntitiesOf(source, dimension, counts[dimension], tags);
+    readEntitiesOf(source, version, dimension, counts[dimension], tags);
   }
 }
 
@@ -197,17 +234,19 @@ void readEntities(Source& source, GmshTags& tags) {
 class GmshNodes {
  public:
   template <class Source>
-  void read41(Source& source) {
+  void read4(Source& source, GmshVersion version) {
     const std::uint64_t blocks = source.size("the number of blocks of nodes");
     const std::uint64_t total = source.size("the number of nodes");
-    static_cast<void>(source.size("the smallest tag of a node"));
-    static_cast<void>(source.size("the largest tag of a node"));
-    requireRoom(source, total, {.sizes = 1, .reals = 3}, "nodes");
+    if (version == GmshVersion::V41) {
+      static_cast<void>(source.size("the smallest tag of a node"));
+      static_cast<void>(source.size("the largest tag of a node"));
+    }
+    requireRoom(source, total, nodeShape(version, 3), "nodes");
     requireIndexable(source, total, "nodes");
     points_.resize(total);
     tags_.resize(total);
     std::size_t done = 0;
-    for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, done);
+    for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, version, done);
     if (done == total) return;
     source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
                                            std::to_string(total) + " nodes of the section.");
@@ -237,13 +276,18 @@ class GmshNodes {
   }
 
  private:
-  /// Nodes of one entity: all tags, then all points.
+  /// A node with its tag.
+  [[nodiscard]] static RecordShape nodeShape(GmshVersion version, std::size_t reals) {
+    if (version == GmshVersion::V41) return {.sizes = 1, .reals = reals};
+    return {.integers = 1, .reals = reals};
+  }
+
+  /// Nodes of one entity: in version 4.1 all tags, then all points.
   /// @param done  nodes before them
   /// @return how many they are
   template <class Source>
-  std::size_t readBlock(Source& source, std::size_t done) {
-    const std::int64_t dimension = source.integer("the dimension of an entity");
-    static_cast<void>(source.integer("the tag of an entity"));
+  std::size_t readBlock(Source& source, GmshVersion version, std::size_t done) {
+    const std::int64_t dimension = readGmshEntity(source, version).first;
     const bool parametric = source.integer("whether nodes have parameters") != 0;
     const std::uint64_t count = source.size("the number of nodes of a block");
     if (dimension < 0 || dimension > 3) {
@@ -254,13 +298,19 @@ class GmshNodes {
       source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
                                              std::to_string(points_.size()) + " of the section.");
     }
-    requireRoom(source, count, {.sizes = 1}, "nodes");
-    source.records(count, {.sizes = 1}, [&](auto& record, std::size_t i) {
-      tags_[done + i] = record.size("the tag of a node");
-    });
+    const bool tagsFirst = version == GmshVersion::V41;
+    const auto readTag = [&](auto& record, std::size_t i) {
+      tags_[done + i] = readGmshTag(record, version, "the tag of a node");
+    };
+    if (tagsFirst) {
+      requireRoom(source, count, {.sizes = 1}, "nodes");
+      source.records(count, {.sizes = 1}, readTag);
+    }
     const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
-    requireRoom(source, count, {.reals = reals}, "nodes");
-    source.records(count, {.reals = reals}, [&](auto& record, std::size_t i) {
+    const RecordShape shape = tagsFirst ? RecordShape{.reals = reals} : nodeShape(version, reals);
+    requireRoom(source, count, shape, "nodes");
+    source.records(count, shape, [&](auto& record, std::size_t i) {
+      if (!tagsFirst) readTag(record, i);
       readPoint(record, done + i);
       for (std::size_t k = 3; k < reals; ++k) {
         static_cast<void>(record.real("a parameter of a node"));
@@ -282,7 +332,7 @@ class GmshNodes {
 template <std::size_t corners>
 class GmshReader {
  public:
-  static constexpr std::string_view kFirst = "$";
+  static constexpr std::string_view kFirst = "$#/";
 
   GmshReader(std::string_view text, const std::string& fileName, Stage& stage,
              const std::shared_ptr<CellCounts>& counts)
@@ -299,12 +349,13 @@ class GmshReader {
 
   void readSection(std::string_view name) {
     if (name == "PhysicalNames") return readNames(file_.skipSection(name), tags_);
-    if (name == "Entities" && file_.version4()) {
-      file_.withSource([this](auto& source) { readEntities(source, tags_); });
-    } else if (name == "Nodes") {
-      readNodes();
-    } else if (name == "Elements") {
-      readElements();
+    const bool version1 = file_.version() == GmshVersion::V1;
+    if (name == "Entities" && hasEntities(file_.version())) {
+      file_.withSource([this](auto& source) { readEntities(source, file_.version(), tags_); });
+    } else if (name == (version1 ? "NOD" : "Nodes")) {
+      readNodes(name);
+    } else if (name == (version1 ? "ELM" : "Elements")) {
+      readElements(name);
     } else {
       file_.skipSection(name);
       return;
@@ -312,12 +363,12 @@ class GmshReader {
     file_.endSection(name);
   }
 
-  void readNodes() {
-    file_.scanner().failIfRepeated(hasNodes_, "$Nodes");
+  void readNodes(std::string_view name) {
+    file_.scanner().failIfRepeated(hasNodes_, "$" + std::string(name));
     hasNodes_ = true;
     GmshNodes nodes;
-    if (file_.version4()) {
-      file_.withSource([&](auto& source) { nodes.read41(source); });
+    if (hasEntities(file_.version())) {
+      file_.withSource([&](auto& source) { nodes.read4(source, file_.version()); });
     } else {
       const std::size_t count = file_.scanner().readCount("nodes", 8);
       file_.withSource([&](auto& source) { nodes.read22(source, count); });
@@ -326,20 +377,26 @@ class GmshReader {
     mesh_.points = std::move(nodes.points());
   }
 
-  void readElements() {
-    file_.scanner().failIfRepeated(hasElements_, "$Elements");
+  void readElements(std::string_view name) {
+    file_.scanner().failIfRepeated(hasElements_, "$" + std::string(name));
     hasElements_ = true;
     if (!hasNodes_) {
       file_.scanner().fail(
           ErrorCode::FileUnsupported,
-          "the section $Elements stands before the section $Nodes; exchange them.");
+          "the section $" + std::string(name) + " stands before the nodes; exchange them.");
     }
     GmshElements<corners> elements(tags_, nodes_, mesh_, counts_, file_.stage());
-    if (file_.version4()) {
-      file_.withSource([&](auto& source) { elements.read41(source); });
+    if (hasEntities(file_.version())) {
+      file_.withSource([&](auto& source) { elements.read4(source, file_.version()); });
     } else {
       const std::size_t count = file_.scanner().readCount("elements", 8);
-      file_.withSource([&](auto& source) { elements.read22(source, count); });
+      file_.withSource([&](auto& source) {
+        if constexpr (std::is_same_v<decltype(source), TextSource&>) {
+          elements.readText(source, file_.version(), count);
+        } else {
+          elements.read22(source, count);
+        }
+      });
     }
     hasOtherElements_ = elements.hasOthers();
   }
@@ -354,8 +411,14 @@ class GmshReader {
       throw Error(ErrorCode::FileUnsupported,
                   fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
                       std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
-                      "), but other elements only" + counts_.instead() + ".");
+                      "), but " + otherElements() + ".");
     }
+  }
+
+  [[nodiscard]] std::string otherElements() const {
+    const std::string volume = counts_.instead();
+    return volume.empty() ? "points, lines, triangles or quads only: a surface, not a volume"
+                          : "other elements only" + volume;
   }
 
   GmshFile file_;

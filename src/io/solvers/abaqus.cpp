@@ -8,6 +8,7 @@
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
+#include <io/solvers/abaqus_format.hpp>
 #include <io/solvers/solvers.hpp>
 
 namespace hexhex::io {
@@ -15,9 +16,6 @@ namespace {
 
 constexpr std::size_t kLongestNumber = 20;
 constexpr std::size_t kNamesPerLine = 16;
-
-/// Abaqus' numbers of the faces of kHexFaces.
-constexpr std::array<char, 6> kFaceNumbers = {'6', '4', '3', '5', '1', '2'};
 
 /// Puts a number of at most 20 characters.
 char* putShort(char* place, double number) {
@@ -113,7 +111,7 @@ class AbaqusWriter {
     const auto face = [&quads, &group](char* place, std::size_t i) {
       const std::uint64_t side = quads.places[group.begin + i];
       place = put(put(place, side / 8 + 1), ", S");
-      return put(put(place, kFaceNumbers[side % 8]), '\n');
+      return put(put(place, kAbaqusFaces[side % 8]), '\n');
     };
     lines_.write(count, kNumberRoom + 5, face, nullptr);
   }

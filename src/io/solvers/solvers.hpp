@@ -1,14 +1,18 @@
-// Formats of programs for simulations. Written only; groups are those of mesh_groups.hpp.
+// Formats of programs for simulations; groups that are written are those of mesh_groups.hpp.
 //
-// All throw Error FileWrite, and InvalidArgument for features that are not in the mesh.
+// All writers throw Error FileWrite, and InvalidArgument for features that are not in the mesh.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
 #include <hexhex/context.hpp>
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
+
+#include <io/core/cell_mesh.hpp>
+#include <io/core/input_file.hpp>
 
 namespace hexhex::io {
 
@@ -22,6 +26,17 @@ namespace hexhex::io {
 /// 13 significant digits.
 void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context);
+
+/// Reads them: nodes; elements C3D8 and their variants, continuum shells, and hexahedra with 20
+/// nodes as curved cells; other volume elements are counted. A region is a set that *ELEMENT or
+/// *SOLID SECTION names; an element surface is tagged quads. The tag is what a name of this library
+/// says, or the number of the set in its order. *INCLUDE is followed.
+/// @throws Error FileNotFound, FileSyntax (with the line), FileUnsupported, IndexOutOfRange,
+///         NotFinite, TooLarge
+[[nodiscard]] HexMesh readAbaqus(const Input& input, Context& context);
+[[nodiscard]] TetCells readAbaqusTets(const Input& input, Context& context);
+[[nodiscard]] bool holdsCurvedAbaqus(const Input& input, Context& context);
+[[nodiscard]] LagrangeMesh readCurvedAbaqus(const Input& input, Context& context);
 
 /// `.cgns`: the CFD General Notation System, in HDF5; only in builds with HDF5
 /// (HEXHEX_HAS_HDF5). Writes one base with one unstructured zone: a section HEXA_8 for each region,
@@ -45,6 +60,16 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context,
                  std::uint64_t mostBytes = 0xffff'fff0);
+
+/// Reads them, in any of NetCDF's classic layouts: blocks are regions, side sets tagged quads, node
+/// sets as hexMeshOf() has them. The tag is what a name of this library says, or the ID. Hexahedra
+/// with 20 and 27 nodes are curved cells; other volume elements are counted.
+/// @throws Error FileNotFound, FileSyntax (with the byte), FileUnsupported, IndexOutOfRange,
+///         NotFinite, TooLarge
+[[nodiscard]] HexMesh readExodus(const Input& input, Context& context);
+[[nodiscard]] TetCells readExodusTets(const Input& input, Context& context);
+[[nodiscard]] bool holdsCurvedExodus(const Input& input, Context& context);
+[[nodiscard]] LagrangeMesh readCurvedExodus(const Input& input, Context& context);
 
 /// MFEM mesh v1.0, only by the name of the format, since MFEM's files have the extension of
 /// MEDIT's. Writes cells (attribute 1), boundary quads and tagged quads inside (attribute: the

@@ -7,6 +7,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/curved/lagrange_files.hpp>
 #include <io/vtk/vtk_reader.hpp>
 
 namespace hexhex::io {
@@ -327,10 +328,15 @@ void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
 }
 
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
+  const std::string instead = source.counts->instead();
+  const bool curved =
+      cells.corners == 8 && (instead.find("hexahedra with 2") != std::string::npos ||
+                             instead.find("hexahedron with 2") != std::string::npos);
+  const std::string_view advice = curved ? kHowCurvedCellsAreRead : std::string_view();
   source.fail(ErrorCode::FileUnsupported,
               "the file holds no " + std::string(cells.plural) + ": none of its " +
                   std::to_string(source.cells) + " cells has the type " +
-                  std::to_string(cells.vtkType) + source.counts->instead() + ".");
+                  std::to_string(cells.vtkType) + instead + "." + std::string(advice));
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {

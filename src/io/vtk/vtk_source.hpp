@@ -40,24 +40,6 @@ template <class T>
 /// What numbers are needed as. Arrays of others, like strings, are never needed.
 enum class VtkNumbers : std::uint8_t { Integers, Reals, Others };
 
-/// A number of 4 or 8 bytes that is stored with the largest byte first. Bytes are swapped by
-/// halves: byte by byte, converting a whole binary `.vtk` file takes a tenth longer.
-template <class T>
-[[nodiscard]] T loadBig(const char* place) {
-  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
-  static_assert(sizeof(T) == sizeof(Bits));
-  Bits bits;
-  std::memcpy(&bits, place, sizeof(bits));
-  if constexpr (std::endian::native == std::endian::little) {
-    constexpr Bits kOddBytes = static_cast<Bits>(0xff00ff00ff00ff00U);
-    constexpr Bits kOddPairs = static_cast<Bits>(0xffff0000ffff0000U);
-    bits = (bits & kOddBytes) >> 8U | (bits << 8U & kOddBytes);
-    bits = (bits & kOddPairs) >> 16U | (bits << 16U & kOddPairs);
-    if constexpr (sizeof(T) == 8) bits = bits >> 32U | bits << 32U;
-  }
-  return std::bit_cast<T>(bits);
-}
-
 /// Where the numbers of an array are, and how they are stored.
 struct VtkColumn {
   VtkScalar scalar = {};

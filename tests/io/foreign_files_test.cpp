@@ -1,0 +1,481 @@
+// Kinds of files that other programs write and this library does not: each made here by the
+// format's documentation; and public files, where there are some.
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/curved.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/survey.hpp>
+
+#include <io/core/zlib_blocks.hpp>
+#include <io/gmsh/gmsh.hpp>
+#include <io/io_test_support.hpp>
+#include <io/solvers/exodus_file.hpp>
+#include <io/solvers/netcdf.hpp>
+#include <io/solvers/solvers.hpp>
+
+namespace hexhex::test::foreign_files {
+
+using namespace io;
+namespace {
+
+constexpr Hex kCell = {0, 1, 2, 3, 4, 5, 6, 7};
+
+HexMesh gmsh(const std::string& text) {
+  Context context;
+  return readGmsh({text, "m.msh"}, context);
+}
+
+/// What versions 1 and 4.0 call a cube of region 5 with a quad of tag 7 on it.
+void expectTaggedCube(const HexMesh& mesh) {
+  EXPECT_EQ(mesh.cells, Array<Hex>{kCell});
+  ASSERT_EQ(mesh.points.size(), 8U);
+  EXPECT_EQ(mesh.points[6], (Vec3{1, 1, 1}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{5}));
+  ASSERT_EQ(mesh.features.quads.size(), 1U);
+  EXPECT_EQ(mesh.features.quads[0].vertices, (Quad{0, 1, 2, 3}));
+  EXPECT_EQ(mesh.features.quads[0].tag, 7);
+}
+
+const std::string kNodes =
+    "8\n11 0 0 0\n12 1 0 0\n13 1 1 0\n14 0 1 0\n15 0 0 1\n16 1 0 1\n17 1 1 1\n18 0 1 1\n";
+
+TEST(ForeignFiles, GmshOfVersion1) {
+  const std::string nodes = "$NOD\n" + kNodes + "$ENDNOD\n";
+  const std::string elements =
+      "$ELM\n2\n1 3 7 1 4 11 12 13 14\n9 5 5 2 8 11 12 13 14 15 16 17 18\n$ENDELM\n";
+  expectTaggedCube(gmsh(nodes + elements));
+  expectTaggedCube(gmsh("# by hand\n$Comments\nfrom $NOD on\n$EndComments\n" + nodes + elements));
+  const Failure wrong = failureOf(
+      [&] { static_cast<void>(gmsh(nodes + replaced(elements, "9 5 5 2 8", "9 5 5 2 7"))); });
+  EXPECT_EQ(wrong.code, ErrorCode::FileSyntax);
+  EXPECT_NE(wrong.sentence.find("line 15: an element of type 5 has 8 nodes, found 7"),
+            std::string::npos)
+      << wrong.sentence;
+}
+
+TEST(ForeignFiles, GmshWithComments) {
+  const std::string comment = "$Comments\n$Nodes are below, by XYZ\n$EndComments\n";
+  expectTaggedCube(gmsh(comment + "$MeshFormat\n2.0 0 8\n$EndMeshFormat\n" + comment + "$Nodes\n" +
+                        kNodes + "$EndNodes\n" + comment +
+                        "$Elements\n2\n1 3 2 7 1 11 12 13 14\n9 5 2 5 2 11 12 13 14 15 16 17 "
+                        "18\n$EndElements\n"));
+}
+
+const std::string kText40 =
+    "$MeshFormat\n4 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 3 \"surface_7\"\n"
+    "$EndPhysicalNames\n$Entities\n1 0 1 1\n1 0 0 0 0 0 0 0\n6 0 0 0 1 1 0 1 3 1 -4\n"
+    "1000 0 0 0 1 1 1 1 5 2 6 8\n$EndEntities\n$Nodes\n2 8\n"
+    "6 2 1 4\n11 0 0 0 .1 .2\n12 1 0 0 .1 .2\n13 1 1 0 .1 .2\n14 0 1 0 .1 .2\n"
+    "1000 3 0 4\n15 0 0 1\n16 1 0 1\n17 1 1 1\n18 0 1 1\n$EndNodes\n"
+    "$Elements\n2 2\n6 2 3 1\n1 11 12 13 14\n1000 3 5 1\n2 11 12 13 14 15 16 17 18\n$EndElements\n";
+
+/// Numbers as bytes, one after the other.
+class Bytes {
+ public:
+  Bytes& sizes(std::initializer_list<std::uint64_t> values) { return add(values); }
+  Bytes& integers(std::initializer_list<std::int32_t> values) { return add(values); }
+  Bytes& reals(std::initializer_list<double> values) { return add(values); }
+  Bytes& text(const std::string& words) {
+    bytes += words;
+    return *this;
+  }
+  std::string bytes;
+
+ private:
+  template <class T>
+  Bytes& add(std::initializer_list<T> values) {
+    for (const T value : values) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
+    return *this;
+  }
+};
+
+TEST(ForeignFiles, GmshOfVersion40) {
+  expectTaggedCube(gmsh(kText40));
+  Bytes file;
+  file.text("$MeshFormat\n4 1 8\n").integers({1}).text("\n$EndMeshFormat\n$PhysicalNames\n1\n");
+  file.text("2 3 \"surface_7\"\n$EndPhysicalNames\n$Entities\n").sizes({1, 0, 1, 1});
+  file.integers({1}).reals({0, 0, 0, 0, 0, 0}).sizes({0});
+  file.integers({6}).reals({0, 0, 0, 1, 1, 0}).sizes({1}).integers({3}).sizes({1}).integers({-4});
+  file.integers({1000}).reals({0, 0, 0, 1, 1, 1}).sizes({1}).integers({5});
+  file.sizes({2}).integers({6, 8}).text("\n$EndEntities\n$Nodes\n").sizes({2, 8});
+  file.integers({6, 2, 1}).sizes({4});
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (std::int32_t i = 0; i < 8; ++i) {
+    if (i == 4) file.integers({1000, 3, 0}).sizes({4});
+    const Vec3& point = points[static_cast<std::size_t>(i)];
+    file.integers({11 + i}).reals({point[0], point[1], point[2]});
+    if (i < 4) file.reals({.1, .2});
+  }
+  file.text("\n$EndNodes\n$Elements\n").sizes({2, 2}).integers({6, 2, 3}).sizes({1});
+  file.integers({1, 11, 12, 13, 14, 1000, 3, 5}).sizes({1});
+  file.integers({2, 11, 12, 13, 14, 15, 16, 17, 18}).text("\n$EndElements\n");
+  if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
+}
+
+/// A text in gzip's form without compression: one stored block.
+std::string gzipOf(const std::string& text) {
+  std::uint32_t sum = 0xffffffffU;
+  for (const char c : text) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1U) ^ ((sum & 1U) * 0xedb88320U);
+  }
+  const auto little = [](std::uint32_t value, int bytes) {
+    std::string result;
+    for (int i = 0; i < bytes; ++i, value >>= 8U) result += static_cast<char>(value & 0xffU);
+    return result;
+  };
+  const auto size = static_cast<std::uint32_t>(text.size());
+  return std::string("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10) + '\1' + little(size, 2) +
+         little(~size & 0xffffU, 2) + text + little(~sum, 4) + little(size, 4);
+}
+
+TEST(ForeignFiles, CompressedFilesOfAnyFormat) {
+  if (!hasZlib()) GTEST_SKIP() << "built without zlib";
+  const TemporaryFolder folder;
+  const HexMesh mesh = gridMesh(3, 2, 2);
+  Context context;
+  for (const char* const name : {"m.mesh", "m.vtk", "m.msh", "m.vtu", "m.ovm", "m.meshb"}) {
+    SCOPED_TRACE(name);
+    writeHexMesh(mesh, folder / name);
+    const auto file = folder / (std::string(name) + ".gz");
+    const std::string plain = contentOf(folder / name);
+    // Two members, as `cat a.gz b.gz` makes them.
+    writeText(file, gzipOf(plain.substr(0, 100)) + gzipOf(plain.substr(100)));
+    const HexMesh read = readHexMesh(file);
+    EXPECT_EQ(read.cells, mesh.cells);
+    expectSameBits(read.points, mesh.points);
+    EXPECT_EQ(surveyFile(file, context).cells, mesh.cells.size());
+
+    const std::string packed = gzipOf(plain);
+    std::string other = packed;
+    other[packed.size() - 6] = static_cast<char>(other[packed.size() - 6] ^ 1);  // of the checksum
+    for (const std::string& wrong :
+         {packed.substr(0, packed.size() / 2), other, packed + "x", std::string(), plain}) {
+      writeText(file, wrong);
+      EXPECT_EQ(failureOf([&] { static_cast<void>(readHexMesh(file)); }).code,
+                ErrorCode::FileSyntax);
+    }
+  }
+  const Failure failure = failureOf([&] { writeHexMesh(mesh, folder / "n.mesh.gz"); });
+  EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
+  EXPECT_NE(failure.sentence.find("read, but not written"), std::string::npos);
+}
+
+constexpr std::array<Vec3, 8> kCorners = {
+    {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}}};
+constexpr std::array<Vec3, 4> kBottom = {{{1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}}};
+constexpr std::array<Vec3, 4> kTop = {{{1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}}};
+constexpr std::array<Vec3, 4> kUpright = {{{0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}}};
+
+/// Where the nodes of a cube with sides of length 2 are, in an order of its edges.
+std::vector<Vec3> cubeOf20(std::initializer_list<std::array<Vec3, 4>> edges) {
+  std::vector<Vec3> nodes(kCorners.begin(), kCorners.end());
+  for (const std::array<Vec3, 4>& four : edges) nodes.insert(nodes.end(), four.begin(), four.end());
+  return nodes;
+}
+
+/// That each node of a mesh of one such cube is where its number says.
+void expectCube(const LagrangeMesh& mesh) {
+  ASSERT_EQ(mesh.order, 2);
+  ASSERT_EQ(mesh.cellCount(), 1U);
+  EXPECT_EQ(mesh.points.size(), 27U);
+  EXPECT_EQ(mesh.vertexCount, 8U);
+  for (std::size_t i = 0; i < 27; ++i) {
+    const Vec3 expected = {static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
+                           static_cast<double>(i / 9)};
+    EXPECT_EQ(mesh.points[mesh.nodes[i]], expected) << i;
+  }
+}
+
+std::string listed(const std::vector<Vec3>& points, bool numbered) {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [x, y, z] = points[i];
+    if (numbered) text << 10 * (i + 1) << ", " << x << ", " << y << ", " << z << '\n';
+    if (!numbered) text << x << ' ' << y << ' ' << z << '\n';
+  }
+  return text.str();
+}
+
+HexMesh abaqus(const std::string& text) {
+  Context context;
+  return readAbaqus({text, "m.inp"}, context);
+}
+
+const std::string kInpNodes =
+    "** a comment\n*Heading\n two words\n*NODE, NSET=All\n5, 0., 0., 0.\n4, 1.0D+00\n3, 1, 1.,\n"
+    "2,0,1\n1,0,0,1\n9, 1,0,1\n8,1,1,1.E0\n7,0,1,1\n** stacked\n*node\n11,0,0,2\n12,1,0,2\n"
+    "13,1,1,2\n14,0,1,2\n20,9,9,9\n";
+const std::string kInpCells =
+    "*ELEMENT,\nTYPE = C3D8R, ELSET=\"Left\"\n3, 5,4,3,2,\n1,9,8,7\n"
+    "*Element, type=S4, elset=skin\n90, 5,4,3,2\n*Element, type=c3d8i\n4, 1,9,8,7,11,12,13,14\n";
+
+TEST(ForeignFiles, AbaqusByOtherPrograms) {
+  const HexMesh mesh =
+      abaqus(kInpNodes + kInpCells +
+             "*elset, elset=upper, generate\n4, 4\n*elset, elset=both\n LEFT, upper\n"
+             "*Solid Section, elset=upper, material=steel\n1.,\n"
+             "*surface, name=low, type=element\nleft, S1\n*surface, name=around\nboth, s3\n3, S6\n"
+             "*surface, type=node, name=n\nALL, 1.\n*nset, nset=here\n14\n*Step\n*Static\n1, 2\n"
+             "*Node Output\nU\n*Element Output\nS\n");
+  EXPECT_EQ(mesh.cells, (Array<Hex>{{0, 1, 2, 3, 4, 5, 6, 7}, {4, 5, 6, 7, 8, 9, 10, 11}}));
+  ASSERT_EQ(mesh.points.size(), 13U);
+  EXPECT_EQ(mesh.points[1], (Vec3{1, 0, 0}));
+  EXPECT_EQ(mesh.points[2], (Vec3{1, 1, 0}));
+  EXPECT_EQ(mesh.points[6], (Vec3{1, 1, 1}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 2}));  // left and upper; skin has no cells
+  // S1 is nodes 1-2-3-4 of the element, S3 is 1-5-6-2, S6 is 4-8-5-1: any order and beginning.
+  std::vector<std::pair<std::set<Index>, std::int32_t>> quads;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    quads.push_back({{quad.vertices.begin(), quad.vertices.end()}, quad.tag});
+  }
+  EXPECT_EQ(quads,
+            (std::vector<std::pair<std::set<Index>, std::int32_t>>{
+                {{0, 1, 2, 3}, 1}, {{0, 1, 4, 5}, 2}, {{4, 5, 8, 9}, 2}, {{0, 3, 4, 7}, 2}}));
+  ASSERT_EQ(mesh.features.vertices.size(), 1U);  // the set of all nodes tags none
+  EXPECT_EQ(mesh.features.vertices[0].vertex, 11U);
+}
+
+TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
+  const auto expectFailure = [](const std::string& text, ErrorCode code, const std::string& part) {
+    const Failure failure = failureOf([&] { static_cast<void>(abaqus(text)); });
+    EXPECT_EQ(failure.code, code) << failure.sentence;
+    EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
+  };
+  const std::string good = kInpNodes + kInpCells;
+  expectFailure("1, 2\n" + good, ErrorCode::FileSyntax, "m.inp, line 1: a file of Abaqus begins");
+  expectFailure(replaced(good, "3, 1, 1.", "3, 1, x"), ErrorCode::FileSyntax,
+                "line 7: expected a coordinate of a node, found \"x\"");
+  expectFailure(replaced(good, "12,1,0,2", "12,inf,0,2"), ErrorCode::NotFinite, "line 16");
+  expectFailure(replaced(good, "12,1,0,2", "13,1,0,2"), ErrorCode::FileSyntax,
+                "two nodes have the number 13");
+  expectFailure(replaced(good, "11,12,13,14", "11,12,13,15"), ErrorCode::IndexOutOfRange,
+                "element 4 names node 15");
+  expectFailure(replaced(good, ",13,14\n", "\n"), ErrorCode::FileSyntax, "nodes of element 4");
+  expectFailure(good + "*ngen\n1, 2, 1\n", ErrorCode::FileUnsupported, "line 28: the keyword");
+  expectFailure(good + "*include, input=a.inp\n", ErrorCode::FileUnsupported, "cannot include");
+  expectFailure(good + "*nset,nset=a,generate\n1,900000000000\n", ErrorCode::TooLarge, "line 29");
+  expectFailure(good + "*elset,elset=a\nnone\n", ErrorCode::FileSyntax, "\"none\", which is no");
+  expectFailure(replaced(replaced(good, "c3d8i", "c3d6"), "C3D8R", "C3D6"),
+                ErrorCode::FileUnsupported, "it holds 2 prisms");
+}
+
+TEST(ForeignFiles, AbaqusIncludes) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "parts");
+  writeText(folder / "parts/Nodes.inp", kInpNodes);
+  writeText(folder / "a.inp", "*Include, input=parts/Nodes.inp\n" + kInpCells);
+  EXPECT_EQ(readHexMesh(folder / "a.inp").cells.size(), 2U);
+  writeText(folder / "b.inp", kInpNodes + "*INCLUDE, INPUT=b.inp\n");
+  writeText(folder / "c.inp", "*INCLUDE, INPUT=parts/nodes.txt\n");
+  const auto sentence = [&](const char* name) {
+    return failureOf([&] { static_cast<void>(readHexMesh(folder / name)); }).sentence;
+  };
+  EXPECT_NE(sentence("b.inp").find("without end"), std::string::npos) << sentence("b.inp");
+  EXPECT_NE(sentence("c.inp").find("line 1: there is no file"), std::string::npos);
+}
+
+/// Tags of all kinds, and regions.
+HexMesh taggedGrid() {
+  HexMesh mesh = gridMesh(3, 2, 2);
+  mesh.features.vertices = {{0, 4}, {3, 9}};
+  mesh.features.edges = {{{0, 1}, 5}, {{1, 2}, 5}, {{0, 4}, 6}};
+  for (Index x = 0; x < 3; ++x) mesh.features.quads.push_back({{x, x + 4, x + 5, x + 1}, 3});
+  mesh.regions.assign(mesh.cells.size(), 2);
+  mesh.regions.back() = 7;
+  return mesh;
+}
+
+TEST(ForeignFiles, SolversFilesComeBackWithTagsAndRegions) {
+  const TemporaryFolder folder;
+  const HexMesh mesh = taggedGrid();
+  for (const char* const name : {"a.inp", "a.exo", "a.e"}) {
+    SCOPED_TRACE(name);
+    writeHexMesh(mesh, folder / name);
+    const HexMesh read = readHexMesh(folder / name);
+    expectSameBits(read.points, mesh.points);
+    EXPECT_EQ(read.cells, mesh.cells);
+    EXPECT_EQ(read.regions, mesh.regions);
+    ASSERT_EQ(read.features.vertices.size(), 2U);
+    EXPECT_EQ(read.features.vertices[1].vertex, 3U);
+    EXPECT_EQ(read.features.vertices[1].tag, 9);
+    std::vector<std::pair<std::array<Index, 2>, std::int32_t>> edges;
+    for (const FeatureEdge& edge : read.features.edges) edges.push_back({edge.vertices, edge.tag});
+    EXPECT_EQ(edges, (std::vector<std::pair<std::array<Index, 2>, std::int32_t>>{
+                         {{0, 1}, 5}, {{1, 2}, 5}, {{0, 4}, 6}}));
+    ASSERT_EQ(read.features.quads.size(), 3U);
+    for (const FeatureQuad& quad : read.features.quads) EXPECT_EQ(quad.tag, 3);
+  }
+}
+
+TEST(ForeignFiles, CubesOf20NodesOfAbaqusAndVtk) {
+  const TemporaryFolder folder;
+  Context context;
+  const std::vector<Vec3> nodes = cubeOf20({kBottom, kTop, kUpright});
+  writeText(folder / "a.inp", "*NODE\n" + listed(nodes, true) +
+                                  "*ELEMENT, TYPE=C3D20R\n1, 10, 20, 30, 40, 50, 60, 70, 80, 90,"
+                                  "\n100, 110, 120, 130, 140, 150, 160, 170, 180, 190, 200\n");
+  writeText(folder / "a.vtk",
+            "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 20 double\n" +
+                listed(nodes, false) +
+                "CELLS 1 21\n20 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19\n"
+                "CELL_TYPES 1\n25\n");
+  for (const char* const name : {"a.inp", "a.vtk"}) {
+    SCOPED_TRACE(name);
+    ASSERT_TRUE(holdsLagrangeCells(folder / name, context));
+    expectCube(readLagrangeMesh(folder / name, context));
+    const Failure failure = failureOf([&] { static_cast<void>(readHexMesh(folder / name)); });
+    EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
+    EXPECT_NE(failure.sentence.find("it holds 1 hexahedron with 20 nodes. Cells of order 2"),
+              std::string::npos)
+        << failure.sentence;
+    writeLagrangeMesh(readLagrangeMesh(folder / name, context), folder / "b.vtu", {}, context);
+    expectCube(readLagrangeMesh(folder / "b.vtu", context));
+  }
+}
+
+TEST(ForeignFiles, CubeOf27NodesOfVtk) {
+  const TemporaryFolder folder;
+  Context context;
+  std::vector<Vec3> nodes = cubeOf20({kBottom, kTop, kUpright});
+  for (const Vec3& node : {Vec3{0, 1, 1}, Vec3{2, 1, 1}, Vec3{1, 0, 1}, Vec3{1, 2, 1},
+                           Vec3{1, 1, 0}, Vec3{1, 1, 2}, Vec3{1, 1, 1}}) {
+    nodes.push_back(node);
+  }
+  std::string cell = "27";
+  for (int i = 0; i < 27; ++i) cell += ' ' + std::to_string(i);
+  writeText(folder / "a.vtk",
+            "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 27 double\n" +
+                listed(nodes, false) + "CELLS 1 28\n" + cell + "\nCELL_TYPES 1\n29\n");
+  expectCube(readLagrangeMesh(folder / "a.vtk", context));
+}
+
+/// An Exodus file of one cell, by NetCDF's writer.
+void writeExodusCube(const std::vector<Vec3>& nodes, const std::string& type, bool together,
+                     const std::filesystem::path& path) {
+  NetcdfFile file;
+  file.dimensions = {{"num_nodes", nodes.size()}, {"num_el_blk", 1}, {"one", 1}, {"num_dim", 3}};
+  const auto reals = [&nodes](std::size_t first, std::size_t axes) {
+    return [&nodes, first, axes](LineWriter& values) {
+      const auto put = [&](char* place, std::size_t i) {
+        return putBigBytes(place, nodes[i % nodes.size()][first + i / nodes.size()]);
+      };
+      values.write(axes * nodes.size(), sizeof(double), put, nullptr);
+    };
+  };
+  const auto integers = [](std::size_t count, std::int32_t first) {
+    return [count, first](LineWriter& values) {
+      const auto put = [&](char* place, std::size_t i) {
+        return putBigBytes(place, first + static_cast<std::int32_t>(i));
+      };
+      values.write(count, sizeof(std::int32_t), put, nullptr);
+    };
+  };
+  if (together) file.variables.push_back({"coord", NetcdfType::Double, {3, 0}, {}, reals(0, 3)});
+  for (std::size_t axis = 0; axis < (together ? 0U : 3U); ++axis) {
+    file.variables.push_back(
+        {std::string("coord") + "xyz" [axis], NetcdfType::Double, { 0 }, {}, reals(axis, 1)});
+  }
+  file.variables.push_back({"eb_prop1", NetcdfType::Int, {1}, {}, integers(1, 44)});
+  file.variables.push_back(
+      {"connect1", NetcdfType::Int, {2, 0}, {{"elem_type", type}}, integers(nodes.size(), 1)});
+  OutputFile output(path);
+  file.write(output, 1, kMostExodusBytes);
+  output.commit();
+}
+
+TEST(ForeignFiles, CubesOfExodus) {
+  const TemporaryFolder folder;
+  Context context;
+  std::vector<Vec3> nodes = cubeOf20({kBottom, kUpright, kTop});
+  writeExodusCube(nodes, "HEX", false, folder / "a.e");
+  ASSERT_TRUE(holdsLagrangeCells(folder / "a.e", context));
+  expectCube(readLagrangeMesh(folder / "a.e", context));
+  for (const Vec3& node : {Vec3{1, 1, 1}, Vec3{1, 1, 0}, Vec3{1, 1, 2}, Vec3{0, 1, 1},
+                           Vec3{2, 1, 1}, Vec3{1, 0, 1}, Vec3{1, 2, 1}}) {
+    nodes.push_back(node);
+  }
+  writeExodusCube(nodes, "HEX27", true, folder / "b.e");
+  expectCube(readLagrangeMesh(folder / "b.e", context));
+  EXPECT_EQ(readLagrangeMesh(folder / "b.e", context).regions, (Array<std::int32_t>{44}));
+  nodes.resize(8);
+  writeExodusCube(nodes, "hex8", true, folder / "c.e");
+  EXPECT_EQ(readHexMesh(folder / "c.e").cells, Array<Hex>{kCell});
+  const auto sentence = [&](const char* type) {
+    writeExodusCube(nodes, type, false, folder / "d.e");
+    return failureOf([&] { static_cast<void>(readHexMesh(folder / "d.e")); }).sentence;
+  };
+  EXPECT_NE(sentence("SHELL8").find("holds no hexahedra with 8 nodes."), std::string::npos);
+  EXPECT_NE(sentence("BEX_HEX").find("it holds 1 Bezier hexahedron."), std::string::npos);
+  EXPECT_NE(sentence("LATTICE").find("\"lattice\" are not supported"), std::string::npos);
+}
+
+TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {
+  const TemporaryFolder folder;
+  writeHexMesh(taggedGrid(), folder / "a.e");
+  const std::string good = contentOf(folder / "a.e");
+  Context context;
+  Random random(7);
+  std::size_t refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string bytes = good;
+    if (i % 2 == 0) bytes.resize(random.below(good.size()));
+    if (i % 2 == 1) bytes[random.below(good.size())] = static_cast<char>(random.below(256));
+    try {
+      static_cast<void>(readExodus({bytes, "a.e"}, context));
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GE(refused, 200U);
+  const Failure hdf = failureOf([&] {
+    static_cast<void>(readExodus({"\x89HDF\r\n\x1a\n........", "a.e"}, context));
+  });
+  EXPECT_NE(hdf.sentence.find("nccopy"), std::string::npos) << hdf.sentence;
+}
+
+TEST(ForeignFiles, PublicOnes) {
+  const char* const chosen = std::getenv("HEXHEX_TEST_DATA");
+  const std::filesystem::path folder =
+      std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "files";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there is no " << folder;
+  Context context;
+  const std::vector<std::pair<const char*, std::size_t>> straight = {
+      {"automesh_cube_1_10.exo", 365},
+      {"automesh_letter_f_3d.inp", 39},
+      {"dealii_grid_in_msh_01.3d_neg.v4.msh", 1},
+      {"dealii_grids_abaqus_3d_3d_CC_cubit_new.inp", 16},
+      {"dealii_grids_grid_in_msh_01.3da.v41.msh", 200},
+      {"libmesh_read_exodus_HEX8.e", 8},
+      {"libmesh_tensile_sample_test1.inp.gz", 728}};
+  for (const auto& [name, cells] : straight) {
+    if (std::string(name).ends_with(".gz") && !hasZlib()) continue;
+    EXPECT_EQ(readHexMesh(folder / name).cells.size(), cells) << name;
+  }
+  for (const auto& [name, cells] :
+       {std::pair("libmesh_read_exodus_HEX20.e", 8), std::pair("libmesh_read_exodus_HEX27.e", 8),
+        std::pair("mfem_fichera-q2.vtk", 7)}) {
+    ASSERT_TRUE(holdsLagrangeCells(folder / name, context)) << name;
+    const LagrangeMesh mesh = readLagrangeMesh(folder / name, context);
+    EXPECT_EQ(mesh.cellCount(), static_cast<std::size_t>(cells)) << name;
+    // Nodes in the wrong order would turn some part of a cell over.
+    EXPECT_TRUE(certify(mesh, context).allPositive()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace hexhex::test::foreign_files
