@@ -49,7 +49,8 @@ struct Cut {
 
 inline Cut cutTet(std::vector<Tet>& tets, const adjacency::TetEdge& edge, Index middle) {
   const Cut cut{edge.tet, static_cast<Index>(tets.size()), edge.corner0, edge.corner1};
-  tets.push_back(Tet{tets[cut.first]});
+  const Tet whole = tets[cut.first];
+  tets.push_back(whole);
   tets[cut.first][cut.b] = tets[cut.second][cut.a] = middle;
   return cut;
 }
@@ -61,7 +62,9 @@ inline Cut cutTet(std::vector<Tet>& tets, const adjacency::TetEdge& edge, Index 
 /// A value per tet: both parts have it. Empty lists stay so, here and below.
 template <class T>
 void carryTet(const Cut& cut, std::vector<T>& ofTets) {
-  if (!ofTets.empty()) ofTets.push_back(T{ofTets[cut.first]});
+  if (ofTets.empty()) return;
+  const T value = ofTets[cut.first];
+  ofTets.push_back(value);
 }
 
 /// A value per corner.
@@ -83,7 +86,8 @@ inline void carryCorners(const Cut& cut, std::vector<TetParameters>& ofTets) {
 template <class T>
 void carryFaces(const Cut& cut, const T& inside, std::vector<T>& ofHalfFaces) {
   for (std::size_t face = 0; face < 4; ++face) {
-    ofHalfFaces.push_back(T{ofHalfFaces[4 * std::size_t{cut.first} + face]});
+    const T value = ofHalfFaces[4 * std::size_t{cut.first} + face];
+    ofHalfFaces.push_back(value);
   }
   ofHalfFaces[4 * std::size_t{cut.first} + cut.a] = inside;
   ofHalfFaces[4 * std::size_t{cut.second} + cut.b] = inside;

@@ -50,7 +50,7 @@ class WallMesh : public tetmap::MutableTets {
   /// lies between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
   /// @throws TooThinForWalls if rounding leaves nothing of a part
-  Index split(const adjacency::TetEdge& edge, std::size_t axis, std::int64_t value);
+  Index split(const adjacency::TetEdge& at, std::size_t axis, std::int64_t value);
 
   /// Moves a vertex along an axis of its tet's chart, into a plane close by, so that no flat tets
   /// arise where a wall passes it.
