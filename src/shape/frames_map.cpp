@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,15 +27,29 @@ using adjacency::HalfFace;
 /// Searches for rotations, each with random numbers of its own.
 constexpr std::uint64_t kSearches = 4;
 /// Times at which tets are refined around flips, and the solver begins anew.
-constexpr int kMostRefinements = 3;
+constexpr int kMostRefinements = 1;
 /// Weight of the pull towards frames: so that no part collapses, and then less.
 constexpr double kPull = 0.5;
 constexpr double kLastPull = 0.1;
 
+/// One way to a map.
+struct Attempt {
+  bool isRefined = false;  ///< the tets, before there is a field
+  std::uint64_t seed = 0;  ///< of random numbers
+};
+
+/// Fields of the same tets differ in what random numbers make of their curves. Finer tets leave
+/// room for more of these.
+constexpr std::array<Attempt, 3> kAttempts = {{{false, 0}, {true, 0}, {false, 1000}}};
+/// More tets than this are not refined.
+constexpr std::size_t kMostRefined = 8000;
+
+/// A map that may come out, by one attempt.
 class FramesMapper {
  public:
-  FramesMapper(const TetMesh& tets, double featureAngle, Stage& stage)
-      : stage_(stage), given_(read(tets, stage)), tets_(copied(), featureAngle, stage) {}
+  FramesMapper(const quantization::LabelledMesh& given, double featureAngle, const Attempt& attempt,
+               Stage& stage)
+      : stage_(stage), given_(given), attempt_(attempt), tets_(copied(), featureAngle, stage) {}
 
   TetMap run() {
     makeField();
@@ -51,15 +66,6 @@ class FramesMapper {
   }
 
  private:
-  static quantization::LabelledMesh read(const TetMesh& tets, Stage& stage) {
-    quantization::LabelledMesh mesh = quantization::readUnlabelled(tets, stage);
-    // Walks around edges come back only on manifolds.
-    igm::DefectCollector defects;
-    igm::collectTopologyDefects(mesh.topology, stage, defects);
-    defects.throwIfAny();
-    return mesh;
-  }
-
   [[nodiscard]] TetMesh copied() const {
     const TetMapView& view = given_.input.view;
     return {{view.points.begin(), view.points.end()}, {view.tets.begin(), view.tets.end()}};
@@ -67,6 +73,7 @@ class FramesMapper {
 
   /// The field, its rotations, and a decision on whether there is a map.
   void makeField() {
+    if (attempt_.isRefined) tets_.refine(stage_);
     tets_.makeRoom(stage_);
     tets_.frames = frameField(tets_, stage_);
     matchFrames(tets_, stage_);
@@ -75,8 +82,9 @@ class FramesMapper {
     std::vector<FieldDefect> fewest = defectsOf(tets_, walks);
     std::vector<lattice::Rotation> best = nearest;
     for (std::uint64_t seed = 0; seed < kSearches && !(seed > 0 && fewest.empty()); ++seed) {
-      tets_.rotations = nearest;
-      rematchFrames(tets_, walks, seed, stage_);
+      // From the best that there is, or all over again, in turns.
+      tets_.rotations = seed % 2 == 0 ? nearest : best;
+      rematchFrames(tets_, walks, attempt_.seed + seed, stage_);
       std::vector<FieldDefect> defects = defectsOf(tets_, walks);
       if (seed > 0 && defects.size() >= fewest.size()) continue;
       fewest = std::move(defects);
@@ -187,12 +195,14 @@ class FramesMapper {
     };
     throw Error(
         ErrorCode::TransitionResidual,
-        "No hexahedral mesh follows the frame field of this object: it turns about a diagonal at " +
+        "No hexahedral mesh follows the frame field of this object: " +
             std::to_string(count(FieldDefect::Kind::Compound)) +
-            " edges, singular curves end or change their valence at " +
-            std::to_string(count(FieldDefect::Kind::Zipper)) + " vertices, and " +
+            " edges turn about a diagonal, at " + std::to_string(count(FieldDefect::Kind::Zipper)) +
+            " vertices curves of valence 3 become those of valence 5 or end, " +
             std::to_string(count(FieldDefect::Kind::Boundary)) +
-            " edges of the boundary turn as no hexahedra do. Refine the tets there, or make a "
+            " edges of the boundary turn as no hexahedra do, and " +
+            std::to_string(count(FieldDefect::Kind::Flat) + count(FieldDefect::Kind::HalfTurn)) +
+            " times two singular curves run into one. Refine the tets there, or make a "
             "polycube of the object.",
         placeOf(defects.front().edge));
   }
@@ -207,14 +217,36 @@ class FramesMapper {
   }
 
   Stage& stage_;
-  quantization::LabelledMesh given_;
+  const quantization::LabelledMesh& given_;
+  Attempt attempt_;
   FrameTets tets_;
 };
+
+quantization::LabelledMesh read(const TetMesh& tets, Stage& stage) {
+  quantization::LabelledMesh mesh = quantization::readUnlabelled(tets, stage);
+  // Walks around edges come back only on manifolds.
+  igm::DefectCollector defects;
+  igm::collectTopologyDefects(mesh.topology, stage, defects);
+  defects.throwIfAny();
+  return mesh;
+}
 
 }  // namespace
 
 TetMap mapFromFrames(const TetMesh& tets, double featureAngleInDegrees, Stage& stage) {
-  return FramesMapper(tets, featureAngleInDegrees, stage).run();
+  const quantization::LabelledMesh given = read(tets, stage);
+  std::optional<Error> first;
+  for (const Attempt& attempt : kAttempts) {
+    if (attempt.isRefined && tets.tets.size() > kMostRefined) continue;
+    try {
+      return FramesMapper(given, featureAngleInDegrees, attempt, stage).run();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::TransitionResidual && error.code() != ErrorCode::FlippedTet)
+        throw;
+      if (!first) first = error;
+    }
+  }
+  throw Error(*first);
 }
 
 }  // namespace hexhex::shape

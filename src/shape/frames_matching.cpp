@@ -140,15 +140,20 @@ int boundaryValence(const FrameTets& tets, const EdgeWalks& walks, std::size_t e
 std::vector<FieldDefect> defectsOf(const FrameTets& tets, const EdgeWalks& walks) {
   std::vector<FieldDefect> defects;
   std::vector<Ends> ends(tets.mesh().points.size());
+  std::vector<bool> isSingular(walks.size());
   for (std::size_t edge = 0; edge < walks.size(); ++edge) {
     if (walks.isBoundary(edge)) {
-      if (boundaryValence(tets, walks, edge) == 0) {
+      const int valence = boundaryValence(tets, walks, edge);
+      isSingular[edge] = valence != 2;
+      if (valence == 0) {
         defects.push_back({FieldDefect::Kind::Boundary, walks[edge]});
       }
       continue;
     }
     const Kind kind = turningAt(tets, walks, edge).kind;
     if (kind == Kind::Regular) continue;
+    isSingular[edge] = true;
+    if (kind == Kind::HalfTurn) defects.push_back({FieldDefect::Kind::HalfTurn, walks[edge]});
     if (kind == Kind::Compound) defects.push_back({FieldDefect::Kind::Compound, walks[edge]});
     for (const Index v : walks[edge]) {
       if (kind == Kind::Three) {
@@ -159,6 +164,12 @@ std::vector<FieldDefect> defectsOf(const FrameTets& tets, const EdgeWalks& walks
         ++ends[v].others;
       }
     }
+  }
+  for (HalfFace h = 0; h < tets.topology().mate.size(); ++h) {
+    if (!tets.topology().isBoundary(h) && tets.topology().mate[h] < h) continue;
+    const std::array<Index, 3> edges = walks.edgesOf(h);
+    if (std::all_of(edges.begin(), edges.end(), [&](Index edge) { return isSingular[edge]; }))
+      defects.push_back({FieldDefect::Kind::Flat, walks[edges[0]]});
   }
   const std::vector<bool> isOuter = tets.boundaryVertices();
   for (Index v = 0; v < ends.size(); ++v) {

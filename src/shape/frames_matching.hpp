@@ -54,9 +54,11 @@ struct FieldDefect {
     Compound,  ///< an edge around which charts turn about a diagonal
     Zipper,    ///< a vertex where a curve of valence 3 becomes one of valence 5, or ends
     Boundary,  ///< an edge at which the boundary turns as no hexahedra do
+    Flat,      ///< a triangle with three singular edges: no map has all of them along axes
+    HalfTurn,  ///< an edge where two curves of one valence have become one, mostly of no use
   };
   Kind kind = Kind::Compound;
-  SplitEdge edge{};  ///< of a zipper: its vertex twice
+  SplitEdge edge{};  ///< of a zipper: its vertex twice; of a triangle: one of its edges
 
   [[nodiscard]] bool operator==(const FieldDefect&) const = default;
 };

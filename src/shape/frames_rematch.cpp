@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <shape/frames_rematch.hpp>
@@ -20,16 +22,20 @@ constexpr int kWarmSweeps = 40;
 constexpr int kColdSweeps = 40;
 /// Costs in lengths of edges, or of the edge itself.
 constexpr double kPerRadian = 0.4;  // across a triangle
-constexpr double kHalfTurn = 6;
+constexpr double kHalfTurn = 8;
 constexpr double kCompound = 10;
 constexpr double kSkew = 2;     // of a proper edge that follows another axis than its own
 constexpr double kAlong = 0.6;  // cosines below are skew
 constexpr double kZipper = 4;
-constexpr double kNode = 0.3;          // each curve but two
+constexpr double kFlat = 2;    // a triangle whose edges are all singular, counted for each of them
+constexpr double kNode = 0.3;  // each curve but two
 constexpr double kBoundaryNode = 2.5;  // each curve but one
+/// Of boundary edges: where they have no valence, or one that is farther than this from their angle
+/// in quarter turns.
+constexpr double kNoValence = 10;
+constexpr double kOtherValence = 3;
+constexpr double kNearValence = 0.75;
 constexpr double kWarmth = 0.3;
-/// Rotations that turn by more radians across a triangle are not tried.
-constexpr double kMostTurn = 2.2;
 /// Costs of an edge, in its lengths, from where it is worth a search.
 constexpr double kBad = 2.5;
 
@@ -46,6 +52,15 @@ struct Curves {
   }
 };
 
+/// Of a boundary edge in space.
+double innerAngle(const FrameTets& tets, const EdgeWalks& walks, std::size_t edge) {
+  const Eigen::Vector3d first = tets.normal(walks.start(edge)).normalized();
+  const Eigen::Vector3d last = tets.normal(walks.outs(edge).back()).normalized();
+  const Eigen::Vector3d along =
+      (tets.point(walks[edge][1]) - tets.point(walks[edge][0])).normalized();
+  return std::numbers::pi + std::atan2(first.cross(last).dot(along), first.dot(last));
+}
+
 class Rematcher {
  public:
   Rematcher(FrameTets& tets, const EdgeWalks& walks, std::uint64_t seed, Stage& stage)
@@ -60,6 +75,10 @@ class Rematcher {
     for (std::size_t edge = 0; edge < walks.size(); ++edge) {
       edges_[edge].length = (tets.point(walks[edge][0]) - tets.point(walks[edge][1])).norm();
       sum += edges_[edge].length;
+      if (walks.isBoundary(edge)) {
+        edges_[edge].quarters =
+            std::max(1.0, innerAngle(tets, walks, edge) / (std::numbers::pi / 2));
+      }
       update(edge);
     }
     unit_ = sum / static_cast<double>(walks.size());
@@ -85,14 +104,21 @@ class Rematcher {
  private:
   struct Edge {
     double length = 0;
+    double quarters = 2;  ///< of a feature: its angle inside, in quarter turns, at least one
     double cost = 0;
+    bool isSingular = false;
     Kind kind = Kind::Regular;
   };
 
   /// Of an edge, after a rotation of a triangle at it has changed.
   void update(std::size_t edge) {
-    if (walks_.isBoundary(edge)) return;
     Edge& at = edges_[edge];
+    if (walks_.isBoundary(edge)) {
+      const int valence = boundaryValence(tets_, walks_, edge);
+      at.cost = at.length * boundaryCost(valence, at.quarters);
+      at.isSingular = valence != 2;
+      return;
+    }
     const EdgeTurning turning = turningAt(tets_, walks_, edge);
     if (turning.kind != at.kind) {
       for (const Index v : walks_[edge]) {
@@ -101,7 +127,14 @@ class Rematcher {
       }
     }
     at.kind = turning.kind;
+    at.isSingular = at.kind != Kind::Regular;
     at.cost = at.length * costOf(turning);
+  }
+
+  /// By how far the hexahedra at a boundary edge are from its angle in space.
+  static double boundaryCost(int valence, double quarters) {
+    if (valence == 0) return kNoValence;
+    return std::abs(valence - quarters) < kNearValence ? 0 : kOtherValence;
   }
 
   static double costOf(const EdgeTurning& turning) {
@@ -128,9 +161,22 @@ class Rematcher {
     return kPerRadian * unit_ * std::acos(std::clamp((like - 1) / 2, -1.0, 1.0));
   }
 
+  /// Triangles at a singular edge whose other edges are singular, too.
+  [[nodiscard]] int flatFacesAt(Index edge) const {
+    if (!edges_[edge].isSingular) return 0;
+    int count = 0;
+    for (const HalfFace h : walks_.outs(edge)) count += isFlat(h) ? 1 : 0;
+    return count;
+  }
+  [[nodiscard]] bool isFlat(HalfFace h) const {
+    const std::array<Index, 3> edges = walks_.edgesOf(h);
+    return std::all_of(edges.begin(), edges.end(),
+                       [&](Index edge) { return edges_[edge].isSingular; });
+  }
+
   [[nodiscard]] double costAround(HalfFace h, const std::array<Index, 3>& edges) const {
     double cost = faceCost(h);
-    for (const Index edge : edges) cost += edges_[edge].cost;
+    for (const Index edge : edges) cost += edges_[edge].cost + kFlat * unit_ * flatFacesAt(edge);
     for (const int k : lattice::kFaceCorners[h % 4]) {
       cost += vertexCost(tets_.mesh().tets[adjacency::tetOf(h)][static_cast<std::size_t>(k)]);
     }
@@ -153,10 +199,11 @@ class Rematcher {
     double least = costAround(h, edges) - 1e-12 * unit_;
     for (int r = 0; r < lattice::Rotation::kCount; ++r) {
       if (lattice::Rotation(r) == old) continue;
-      tets_.rotations[h] = lattice::Rotation(r);
-      if (faceCost(h) > kPerRadian * unit_ * kMostTurn) continue;
-      set(h, lattice::Rotation(r), edges);
       const double noise = warmth > 0 ? -warmth * std::log(1 - draw()) : 0;
+      // No other cost is negative.
+      tets_.rotations[h] = lattice::Rotation(r);
+      if (faceCost(h) - noise >= least) continue;
+      set(h, lattice::Rotation(r), edges);
       const double cost = costAround(h, edges) - noise;
       if (cost >= least) continue;
       least = cost;
@@ -168,12 +215,18 @@ class Rematcher {
 
   double draw() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
-  /// Triangles inside, with no edge on the boundary, of which two vertices are next to a defect.
+  /// Triangles inside of which two vertices are next to a defect.
   [[nodiscard]] std::vector<HalfFace> facesNearDefects() const {
     std::vector<bool> isBad(curves_.size());
     for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
       if (edges_[edge].cost <= kBad * edges_[edge].length) continue;
       for (const Index v : walks_[edge]) isBad[v] = true;
+    }
+    for (HalfFace h = 0; h < tets_.topology().mate.size(); ++h) {
+      if (!isFlat(h)) continue;
+      for (const Index edge : walks_.edgesOf(h)) {
+        for (const Index v : walks_[edge]) isBad[v] = true;
+      }
     }
     for (Index v = 0; v < isBad.size(); ++v) {
       if (vertexCost(v) >= 0.9 * std::min(kZipper, kBoundaryNode) * unit_) isBad[v] = true;
@@ -191,12 +244,7 @@ class Rematcher {
       for (const int k : lattice::kFaceCorners[h % 4]) {
         near += isNear[topology.tets[adjacency::tetOf(h)][static_cast<std::size_t>(k)]] ? 1 : 0;
       }
-      if (near < 2) continue;
-      const std::array<Index, 3> edges = walks_.edgesOf(h);
-      if (std::none_of(edges.begin(), edges.end(),
-                       [&](Index edge) { return walks_.isBoundary(edge); })) {
-        faces.push_back(h);
-      }
+      if (near >= 2) faces.push_back(h);
     }
     return faces;
   }

@@ -57,7 +57,9 @@ class SeamlessSpace {
     shared_ = system.combinations();
     numbers_.assign(unknowns_.size(), -1);
     for (const Index free : system.freeVariables()) numbers_[free] = count_++;
-    for (const VertexConditions& vertex : conditions) addVertex(vertex);
+    for (const VertexConditions& vertex : conditions) {
+      if (!vertex.sectors.empty()) addVertex(vertex);
+    }
   }
 
   void giveTo(untangle::Problem& problem) const {

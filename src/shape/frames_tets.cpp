@@ -146,6 +146,16 @@ std::vector<SplitEdge> FrameTets::tightEdges() const {
   return tight;
 }
 
+void FrameTets::refine(Stage& stage) {
+  std::vector<SplitEdge> edges;
+  for (const Tet& tet : mesh_.tets) {
+    forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+      if ((point(edge[1]) - point(edge[0])).norm() > edgeLength_) edges.push_back(edge);
+    });
+  }
+  split(std::move(edges), stage);
+}
+
 void FrameTets::makeRoom(Stage& stage) {
   // Middles of edges are inside, or on the boundary but not on features, or, of triangles between
   // three features, on one of these: so there are fewer and fewer.

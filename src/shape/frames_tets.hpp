@@ -54,6 +54,8 @@ class FrameTets {
   /// Splits tets until each has one constraint at most: a triangle of the boundary, or a feature,
   /// and that besides.
   void makeRoom(Stage& stage);
+  /// Splits all edges that are longer than they are on the average.
+  void refine(Stage& stage);
   /// Splits edges, the longest first. Parts of a tet inherit its frame.
   void split(std::vector<SplitEdge> edges, Stage& stage);
 
