@@ -60,6 +60,28 @@ struct Ends {
   int others = 0;
 };
 
+/// Triangles whose edges are all singular.
+void addFlat(const FrameTets& tets, const EdgeWalks& walks, const std::vector<bool>& isSingular,
+             std::vector<FieldDefect>& defects) {
+  for (HalfFace h = 0; h < tets.topology().mate.size(); ++h) {
+    if (!tets.topology().isBoundary(h) && tets.topology().mate[h] < h) continue;
+    const std::array<Index, 3> edges = walks.edgesOf(h);
+    if (std::all_of(edges.begin(), edges.end(), [&](Index edge) { return isSingular[edge]; }))
+      defects.push_back({FieldDefect::Kind::Flat, walks[edges[0]]});
+  }
+}
+
+void addZippers(const FrameTets& tets, const std::vector<Ends>& ends,
+                std::vector<FieldDefect>& defects) {
+  const std::vector<bool> isOuter = tets.boundaryVertices();
+  for (Index v = 0; v < ends.size(); ++v) {
+    if (isOuter[v] || ends[v].others > 0) continue;
+    const bool changes = ends[v].threes == 1 && ends[v].fives == 1;
+    if (changes || ends[v].threes + ends[v].fives == 1)
+      defects.push_back({FieldDefect::Kind::Zipper, {v, v}});
+  }
+}
+
 }  // namespace
 
 double likeness(const Frame& here, const Frame& there, lattice::Rotation rotation) {
@@ -165,19 +187,8 @@ std::vector<FieldDefect> defectsOf(const FrameTets& tets, const EdgeWalks& walks
       }
     }
   }
-  for (HalfFace h = 0; h < tets.topology().mate.size(); ++h) {
-    if (!tets.topology().isBoundary(h) && tets.topology().mate[h] < h) continue;
-    const std::array<Index, 3> edges = walks.edgesOf(h);
-    if (std::all_of(edges.begin(), edges.end(), [&](Index edge) { return isSingular[edge]; }))
-      defects.push_back({FieldDefect::Kind::Flat, walks[edges[0]]});
-  }
-  const std::vector<bool> isOuter = tets.boundaryVertices();
-  for (Index v = 0; v < ends.size(); ++v) {
-    if (isOuter[v] || ends[v].others > 0) continue;
-    const bool changes = ends[v].threes == 1 && ends[v].fives == 1;
-    if (changes || ends[v].threes + ends[v].fives == 1)
-      defects.push_back({FieldDefect::Kind::Zipper, {v, v}});
-  }
+  addFlat(tets, walks, isSingular, defects);
+  addZippers(tets, ends, defects);
   return defects;
 }
 

@@ -215,8 +215,7 @@ class Rematcher {
 
   double draw() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
-  /// Triangles inside of which two vertices are next to a defect.
-  [[nodiscard]] std::vector<HalfFace> facesNearDefects() const {
+  [[nodiscard]] std::vector<bool> badVertices() const {
     std::vector<bool> isBad(curves_.size());
     for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
       if (edges_[edge].cost <= kBad * edges_[edge].length) continue;
@@ -231,6 +230,12 @@ class Rematcher {
     for (Index v = 0; v < isBad.size(); ++v) {
       if (vertexCost(v) >= 0.9 * std::min(kZipper, kBoundaryNode) * unit_) isBad[v] = true;
     }
+    return isBad;
+  }
+
+  /// Triangles inside of which two vertices are next to a defect.
+  [[nodiscard]] std::vector<HalfFace> facesNearDefects() const {
+    const std::vector<bool> isBad = badVertices();
     std::vector<bool> isNear = isBad;
     for (const Tet& tet : tets_.mesh().tets) {
       if (!std::any_of(tet.begin(), tet.end(), [&](Index v) { return isBad[v]; })) continue;
@@ -279,13 +284,13 @@ void rematchFrames(FrameTets& tets, const EdgeWalks& walks, std::uint64_t seed, 
 }
 
 void smoothFrames(FrameTets& tets, Stage& stage) {
-  constexpr int kRounds = 10;
+  constexpr int kSmoothings = 10;
   std::vector<Index> free;
   for (Index t = 0; t < tets.size(); ++t) {
     if (!isConstrained(tets, t)) free.push_back(t);
   }
   const adjacency::TetTopology& topology = tets.topology();
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kSmoothings; ++round) {
     stage.context().throwIfCancelled();
     for (const Index t : free) {
       Frame sum = Frame::Zero();

@@ -63,7 +63,9 @@ class QuarticSpace {
   }
 
  private:
-  int& number(const Exponents& e) { return numbers_[static_cast<std::size_t>(5 * e[0] + e[1])]; }
+  int& number(const Exponents& e) {
+    return numbers_[5 * static_cast<std::size_t>(e[0]) + static_cast<std::size_t>(e[1])];
+  }
 
   /// All but the multiples of x^2 + y^2 + z^2.
   void findHarmonics() {
@@ -156,7 +158,7 @@ FrameTensor tensorOf(const Frame& frame) {
 
 Frame nearestFrame(const FrameTensor& tensor, const Frame& start) {
   constexpr int kMostSteps = 30;
-  constexpr double kAtRest = 1e-9;      // of the gradient
+  constexpr double kLevel = 1e-9;       // of the gradient
   constexpr double kConvexity = 0.05;   // Hessian matrices are made so convex at least
   constexpr double kLargestTurn = 0.5;  // in radians
   const double size = tensor.norm();
@@ -178,7 +180,7 @@ Frame nearestFrame(const FrameTensor& tensor, const Frame& start) {
       turned.col(k) = space.turn(k).transpose() * tensor;
     }
     const Vector3d gradient = changes.transpose() * tensor;
-    if (gradient.norm() <= kAtRest * size) break;
+    if (gradient.norm() <= kLevel * size) break;
     const Matrix3d product = turned.transpose() * changes;
     const Matrix3d hessian = 0.5 * (product + product.transpose());
     const Eigen::SelfAdjointEigenSolver<Matrix3d> spectrum(hessian, Eigen::EigenvaluesOnly);

@@ -187,10 +187,12 @@ void FrameTets::split(std::vector<SplitEdge> edges, Stage& stage) {
     const Index middle = splitter.split(edge, [&](Index t, std::size_t a, std::size_t b) {
       parents_.push_back(Index{parents_[t]});
       if (frames.empty()) return;
-      frames.push_back(Frame(frames[t]));
+      const Frame same = frames[t];
+      frames.push_back(same);
       const std::size_t second = mesh_.tets.size() - 1;
       for (std::size_t face = 0; face < 4; ++face) {
-        rotations.push_back(lattice::Rotation(rotations[4 * t + face]));
+        const lattice::Rotation across = rotations[4 * t + face];
+        rotations.push_back(across);
       }
       // Between both parts, charts agree.
       rotations[4 * t + a] = rotations[4 * second + b] = {};
