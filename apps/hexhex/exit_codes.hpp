@@ -39,6 +39,7 @@ enum ExitCode : int {
     case ErrorCode::HalfIntegerFixedPoint:
     case ErrorCode::TooLarge:
     case ErrorCode::AmbiguousMesh:
+    case ErrorCode::NotMeshable:
       return kInvalidMap;
     case ErrorCode::Cancelled:
       return kInterrupted;

@@ -36,6 +36,8 @@ double inverseJacobian(const std::array<Vec3, 4>& points, const TetParameters& u
   return product > 0 ? tripleProduct(columns[0], columns[1], columns[2]) / product : 0;
 }
 
+}  // namespace
+
 MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Tet>& tets,
                            const std::vector<TetParameters>& parameters) {
   std::vector<double> values(tets.size());
@@ -51,6 +53,8 @@ MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Te
   distortion.median = *middle;
   return distortion;
 }
+
+namespace {
 
 /// Features of the tet mesh after its edges were split.
 Features splitFeatures(const FeaturesView& given, std::size_t pointCount,

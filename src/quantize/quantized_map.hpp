@@ -2,11 +2,17 @@
 // checked.
 #pragma once
 
+#include <vector>
+
 #include <quantize/bend/bend.hpp>
 
 #include <hexhex/quantize.hpp>
 
 namespace hexhex::quantization {
+
+[[nodiscard]] MapDistortion distortionOf(const std::vector<Vec3>& points,
+                                         const std::vector<Tet>& tets,
+                                         const std::vector<TetParameters>& parameters);
 
 /// @param singular  edges of the map before it was bent
 /// @param given  whose features and regions come along

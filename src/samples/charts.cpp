@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <base/disjoint_sets.hpp>
-#include <samples/random.hpp>
+#include <base/random.hpp>
 #include <samples/steps.hpp>
 
 namespace hexhex::samples {

@@ -71,12 +71,7 @@ void refuseFlag(const LabelledMesh& mesh, adjacency::HalfFace h, const std::stri
   throw Error(ErrorCode::InvalidArgument, sentence, mesh.placeOf(h));
 }
 
-LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, Stage& stage) {
-  if (flags.size() != tets.tets.size()) {
-    throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(flags.size()) +
-                                                " labels of four faces, but " +
-                                                std::to_string(tets.tets.size()) + " tets.");
-  }
+LabelledMesh readPositiveTets(const TetMesh& tets, Stage& stage) {
   LabelledMesh mesh;
   mesh.input = readTets(tets, stage);
   requirePositive(mesh.input.view);
@@ -84,6 +79,16 @@ LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, S
   mesh.topology = igm::buildTopology(mesh.input.view, stage, defects);
   defects.throwIfAny();
   adjacency::addStars(mesh.topology, stage);
+  return mesh;
+}
+
+LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, Stage& stage) {
+  if (flags.size() != tets.tets.size()) {
+    throw Error(ErrorCode::InvalidArgument, "There are " + std::to_string(flags.size()) +
+                                                " labels of four faces, but " +
+                                                std::to_string(tets.tets.size()) + " tets.");
+  }
+  LabelledMesh mesh = readPositiveTets(tets, stage);
   mesh.flags.resize(mesh.topology.mate.size());
   for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
     const auto face = static_cast<std::size_t>(mesh.input.callersCorner(adjacency::localOf(h)));

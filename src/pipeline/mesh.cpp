@@ -1,0 +1,79 @@
+// From tets alone to a hexahedral mesh: the stages of the library one after the other.
+#include <array>
+#include <utility>
+
+#include <hexhex/error.hpp>
+#include <hexhex/extractor.hpp>
+#include <hexhex/mesh.hpp>
+
+#include <base/stage.hpp>
+
+namespace hexhex {
+
+namespace pipeline {
+namespace {
+
+void requirePassed(const VerifyReport& report) {
+  for (const VerifyItem& item : report.items) {
+    if (item.passed) continue;
+    throw Error(ErrorCode::VerificationFailed,
+                "The mesh does not agree with the map of the part: " + item.name + ": expected " +
+                    item.expected + ", found " + item.found +
+                    ". This is a bug; please report it with the part.");
+  }
+}
+
+/// Takes tagged edges for those that are found by angle, which vertices may leave if nothing else
+/// helps.
+ImproveReport improveWithoutTags(HexMesh& mesh, TetMapView map, const ImproveOptions& options,
+                                 Context& context) {
+  map.features = {};
+  HexFeatures features = std::exchange(mesh.features, {});
+  ImproveReport report = improve(mesh, map, options, context);
+  mesh.features = std::move(features);
+  return report;
+}
+
+void improvePart(MeshedPart& part, const ImproveOptions& options, Context& context) {
+  const Array<Vec3> extracted = part.mesh.points;
+  part.improvement = improve(part.mesh, part.map, options, context);
+  if (part.improvement.after.allPositive() || part.mesh.features.edges.empty()) return;
+  Array<Vec3> improved = std::exchange(part.mesh.points, extracted);
+  ImproveReport report = improveWithoutTags(part.mesh, part.map, options, context);
+  if (report.notPositive.size() < part.improvement.notPositive.size()) {
+    part.improvement = std::move(report);
+    part.tagsReleased = true;
+  } else {
+    part.mesh.points = std::move(improved);
+  }
+}
+
+}  // namespace
+}  // namespace pipeline
+
+MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context& context) {
+  constexpr std::array<WorkStep, 6> kSteps = {{{"mapFromTets", 20},
+                                               {"quantize", 10},
+                                               {"Extractor", 0.1},
+                                               {"Extractor::extract", 0.5},
+                                               {"Extractor::verify", 0.3},
+                                               {"improve", 10}}};
+  return inSteps(context, "meshFromTets", kSteps, [&] {
+    MeshedPart part;
+    ShapedMap seamless = mapFromTets(tets, options.shape, context);
+    part.shape = std::move(seamless.report);
+    QuantizedMap quantized = quantize(seamless.map, options.quantize, context);
+    part.quantization = std::move(quantized.report);
+    part.map = std::move(quantized.map);
+    {
+      Extractor extractor(part.map, {}, context);
+      part.mesh = extractor.extract({}, context);
+      part.verification = extractor.verify(part.mesh, {}, context);
+    }
+    pipeline::requirePassed(part.verification);
+    pipeline::improvePart(part, options.improve, context);
+    return part;
+  });
+}
+
+}  // namespace hexhex
