@@ -35,17 +35,14 @@ ImproveReport improveWithoutTags(HexMesh& mesh, TetMapView map, const ImproveOpt
 }
 
 void improvePart(MeshedPart& part, const ImproveOptions& options, Context& context) {
-  const Array<Vec3> extracted = part.mesh.points;
+  HexMesh other = part.mesh;
   part.improvement = improve(part.mesh, part.map, options, context);
   if (part.improvement.after.allPositive() || part.mesh.features.edges.empty()) return;
-  Array<Vec3> improved = std::exchange(part.mesh.points, extracted);
-  ImproveReport report = improveWithoutTags(part.mesh, part.map, options, context);
-  if (report.notPositive.size() < part.improvement.notPositive.size()) {
-    part.improvement = std::move(report);
-    part.tagsReleased = true;
-  } else {
-    part.mesh.points = std::move(improved);
-  }
+  ImproveReport report = improveWithoutTags(other, part.map, options, context);
+  if (report.notPositive.size() >= part.improvement.notPositive.size()) return;
+  part.mesh = std::move(other);
+  part.improvement = std::move(report);
+  part.tagsReleased = true;
 }
 
 }  // namespace
@@ -60,8 +57,8 @@ MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context
                                                {"improve", 10}}};
   return inSteps(context, "meshFromTets", kSteps, [&] {
     MeshedPart part;
-    ShapedMap seamless = mapFromTets(tets, options.shape, context);
-    part.shape = std::move(seamless.report);
+    const ShapedMap seamless = mapFromTets(tets, options.shape, context);
+    part.shape = seamless.report;
     QuantizedMap quantized = quantize(seamless.map, options.quantize, context);
     part.quantization = std::move(quantized.report);
     part.map = std::move(quantized.map);

@@ -188,6 +188,7 @@ void LabelCheck::visitLoop(const Labels& labels, Verdict& verdict) {
   }
   if (corners == 0) return;
   std::vector<Vec3> directions;
+  directions.reserve(all.size());
   for (const Piece& piece : all) directions.push_back(visitPiece(labels, piece, verdict));
   int turns = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {

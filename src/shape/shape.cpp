@@ -76,7 +76,7 @@ class PositiveTets {
 Surface readSurface(const PositiveTets& tets, Context& context) {
   Stage stage(context, "surface");
   try {
-    quantization::LabelledMesh mesh = quantization::readPositiveTets(tets.mesh(), stage);
+    quantization::LabelledMesh mesh = quantization::readUnlabelled(tets.mesh(), stage);
     Surface surface = surfaceOf(mesh.topology, tets.mesh().points);
     if (isManifold(surface)) return surface;
     igm::DefectCollector defects;

@@ -71,7 +71,7 @@ void refuseFlag(const LabelledMesh& mesh, adjacency::HalfFace h, const std::stri
   throw Error(ErrorCode::InvalidArgument, sentence, mesh.placeOf(h));
 }
 
-LabelledMesh readPositiveTets(const TetMesh& tets, Stage& stage) {
+LabelledMesh readUnlabelled(const TetMesh& tets, Stage& stage) {
   LabelledMesh mesh;
   mesh.input = readTets(tets, stage);
   requirePositive(mesh.input.view);
@@ -88,7 +88,7 @@ LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags, S
                                                 " labels of four faces, but " +
                                                 std::to_string(tets.tets.size()) + " tets.");
   }
-  LabelledMesh mesh = readPositiveTets(tets, stage);
+  LabelledMesh mesh = readUnlabelled(tets, stage);
   mesh.flags.resize(mesh.topology.mate.size());
   for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
     const auto face = static_cast<std::size_t>(mesh.input.callersCorner(adjacency::localOf(h)));

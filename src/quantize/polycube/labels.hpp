@@ -35,9 +35,9 @@ struct LabelledMesh {
   }
 };
 
-/// Tets without labels.
-/// @throws Error FlippedTet for tets that are not positive in space; those of broken meshes
-[[nodiscard]] LabelledMesh readPositiveTets(const TetMesh& tets, Stage& stage);
+/// Without labels.
+/// @throws Error for broken meshes, and FlippedTet for tets that are not positive in space
+[[nodiscard]] LabelledMesh readUnlabelled(const TetMesh& tets, Stage& stage);
 
 /// @throws Error as mapFromFlags() does, for what can be told of one tet or triangle at a time
 [[nodiscard]] LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags,
