@@ -13,7 +13,8 @@ namespace {
 
 const std::map<std::string, ShapeMethod>& methods() {
   static const std::map<std::string, ShapeMethod> kMethods = {{"auto", ShapeMethod::Auto},
-                                                              {"polycube", ShapeMethod::Polycube}};
+                                                              {"polycube", ShapeMethod::Polycube},
+                                                              {"frames", ShapeMethod::Frames}};
   return kMethods;
 }
 
@@ -26,6 +27,16 @@ std::string nameOf(ShapeMethod method) {
 
 bool isTurned(const ShapeReport& report) { return report.rotation != ShapeReport{}.rotation; }
 
+void printLabels(const ShapeReport& report) {
+  const LabelReport& labels = report.labels;
+  printLine("polycube", fmt::format("{}, {}{}{}", counted(labels.charts, "face"),
+                                    counted(labels.corners, "corner"),
+                                    isTurned(report) ? "; the part was turned" : "",
+                                    labels.isValid() ? "" : "; labels are not quite valid"));
+  printLine("faces off their axes",
+            fmt::format("{:.3g} on average, as 1 minus the cosine", labels.deviation));
+}
+
 }  // namespace
 
 void addPart(CLI::App& parser, std::string& part) {
@@ -37,8 +48,9 @@ void addPart(CLI::App& parser, std::string& part) {
 void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
   parser
       .add_option("--method", options.method,
-                  "How to make a map: polycube (the part becomes one of\n"
-                  "axis-aligned boxes), or auto: what fits best")
+                  "How to make a map: frames (along a smooth field: good\n"
+                  "cells, where there is a map), polycube (the part becomes\n"
+                  "one of axis-aligned boxes), auto: what fits best")
       ->transform(CLI::CheckedTransformer(methods()).description(""))
       ->option_text("NAME [auto]");
   parser
@@ -48,13 +60,8 @@ void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
 }
 
 void printShape(const ShapeReport& report) {
-  const LabelReport& labels = report.labels;
-  printLine("map", fmt::format("by {}: {}, {}{}{}", nameOf(report.method),
-                               counted(labels.charts, "face"), counted(labels.corners, "corner"),
-                               isTurned(report) ? "; the part was turned" : "",
-                               labels.isValid() ? "" : "; labels are not quite valid"));
-  printLine("faces off their axes",
-            fmt::format("{:.3g} on average, as 1 minus the cosine", labels.deviation));
+  printLine("map", "by " + nameOf(report.method));
+  if (report.method == ShapeMethod::Polycube) printLabels(report);
   printLine("scaled Jacobian", fmt::format("{:.3f} (worst) and {:.3f} (median) of the map",
                                            report.distortion.worst, report.distortion.median));
   if (report.featureEdges > 0) {
@@ -62,7 +69,6 @@ void printShape(const ShapeReport& report) {
                                          report.featureEdges));
   }
 }
-
 Json shapeAsJson(const ShapeReport& report) {
   const LabelReport& labels = report.labels;
   return {{"method", nameOf(report.method)},

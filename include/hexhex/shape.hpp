@@ -15,8 +15,9 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// How a map is made.
 enum class ShapeMethod : std::uint8_t {
-  Auto,     ///< the one that this library takes to be best
-  Polycube  ///< the object becomes one of axis-aligned boxes: no singular edges inside
+  Auto,      ///< along frames, and if there is no such map, by a polycube
+  Polycube,  ///< the object becomes one of axis-aligned boxes: no singular edges inside
+  Frames     ///< along a smooth field of frames, aligned with the boundary and its features
 };
 
 struct ShapeOptions {
@@ -68,9 +69,10 @@ struct ShapedMap {
 /// given corners, in another order if that was not positive. Deterministic, for any number of
 /// threads.
 ///
-/// By a polycube: the object is turned (Gregson et al. 2011); each boundary triangle gets one of
-/// six labels by graph cuts (Livesu et al. 2013), which random cuts in small places make valid; and
-/// mapFromFlags() makes a map of these.
+/// Along frames: the best meshes, but many fields are those of no mesh, which is known in seconds
+/// (Palmer et al. 2020). By a polycube: the object is turned (Gregson et al. 2011); each boundary
+/// triangle gets one of six labels by graph cuts (Livesu et al. 2013), which random cuts in small
+/// places make valid; and mapFromFlags() makes a map of these.
 ///
 /// @throws Error NotMeshable if there is no map, with the place that keeps it from one;
 ///               NonManifoldFace, NonManifoldEdge, NonManifoldVertex; FlippedTet for tets without

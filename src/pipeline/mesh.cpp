@@ -1,6 +1,9 @@
 // From tets alone to a hexahedral mesh: the stages of the library one after the other.
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <hexhex/error.hpp>
 #include <hexhex/extractor.hpp>
@@ -45,31 +48,75 @@ void improvePart(MeshedPart& part, const ImproveOptions& options, Context& conte
   part.tagsReleased = true;
 }
 
+MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
+                  Context& context) {
+  ShapeOptions shape = options.shape;
+  shape.method = method;
+  MeshedPart part;
+  const ShapedMap seamless = mapFromTets(tets, shape, context);
+  part.shape = seamless.report;
+  QuantizedMap quantized = quantize(seamless.map, options.quantize, context);
+  part.quantization = std::move(quantized.report);
+  part.map = std::move(quantized.map);
+  {
+    Extractor extractor(part.map, {}, context);
+    part.mesh = extractor.extract({}, context);
+    part.verification = extractor.verify(part.mesh, {}, context);
+  }
+  requirePassed(part.verification);
+  improvePart(part, options.improve, context);
+  return part;
+}
+
+/// Of cells and of the boundary: what is certified is at least 0, a perfect mesh has 1.
+double meritOf(const MeshedPart& part) {
+  constexpr double kGood = 0.3;  // what is above needs no better
+  constexpr double kFar = 0.01;  // of the diagonal
+  const ImproveReport& report = part.improvement;
+  if (!report.after.allPositive()) return -1;
+  const double quality = std::min(1.0, report.after.quality.minimum / kGood);
+  return quality * std::max(0.0, 1 - report.distanceAfter.hausdorff() / kFar);
+}
+
+/// What keeps one way from a mesh, and perhaps not another.
+bool isOfTheWay(const Error& error) {
+  return error.code() == ErrorCode::NotMeshable || error.code() == ErrorCode::FlippedTet;
+}
+
+MeshedPart meshByBest(const TetMesh& tets, const MeshOptions& options, Context& context) {
+  std::optional<MeshedPart> best;
+  std::optional<Error> problem;
+  for (const ShapeMethod method : {ShapeMethod::Frames, ShapeMethod::Polycube}) {
+    try {
+      MeshedPart part = meshBy(method, tets, options, context);
+      if (!best || meritOf(part) > meritOf(*best)) best = std::move(part);
+    } catch (const Error& error) {
+      if (!isOfTheWay(error)) throw;
+      problem = error;
+    }
+  }
+  if (!best) throw Error(*problem);
+  return std::move(*best);
+}
+
 }  // namespace
 }  // namespace pipeline
 
 MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context& context) {
-  constexpr std::array<WorkStep, 6> kSteps = {{{"mapFromTets", 20},
-                                               {"quantize", 10},
-                                               {"Extractor", 0.1},
-                                               {"Extractor::extract", 0.5},
-                                               {"Extractor::verify", 0.3},
-                                               {"improve", 10}}};
-  return inSteps(context, "meshFromTets", kSteps, [&] {
-    MeshedPart part;
-    const ShapedMap seamless = mapFromTets(tets, options.shape, context);
-    part.shape = seamless.report;
-    QuantizedMap quantized = quantize(seamless.map, options.quantize, context);
-    part.quantization = std::move(quantized.report);
-    part.map = std::move(quantized.map);
-    {
-      Extractor extractor(part.map, {}, context);
-      part.mesh = extractor.extract({}, context);
-      part.verification = extractor.verify(part.mesh, {}, context);
-    }
-    pipeline::requirePassed(part.verification);
-    pipeline::improvePart(part, options.improve, context);
-    return part;
+  constexpr std::array<WorkStep, 6> kWay = {{{"mapFromTets", 20},
+                                             {"quantize", 10},
+                                             {"Extractor", 0.1},
+                                             {"Extractor::extract", 0.5},
+                                             {"Extractor::verify", 0.3},
+                                             {"improve", 10}}};
+  std::vector<WorkStep> steps(kWay.begin(), kWay.end());
+  if (options.shape.method == ShapeMethod::Auto) {
+    steps.insert(steps.end(), kWay.begin(), kWay.end());
+  }
+  return inSteps(context, "meshFromTets", steps, [&] {
+    return options.shape.method == ShapeMethod::Auto
+               ? pipeline::meshByBest(tets, options, context)
+               : pipeline::meshBy(options.shape.method, tets, options, context);
   });
 }
 

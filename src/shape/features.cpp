@@ -18,7 +18,7 @@ int axisInMap(const TetMap& map, adjacency::HalfFace h) {
 
 }  // namespace
 
-FoundFeatures featuresOf(const TetMap& map, double angle, Stage& stage) {
+FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned, Stage& stage) {
   adjacency::TetTopology topology;
   topology.tets = map.tets;
   topology.pointCount = map.points.size();
@@ -33,7 +33,10 @@ FoundFeatures featuresOf(const TetMap& map, double angle, Stage& stage) {
     const Index beyond = surface.beyond(side);
     if (dot(surface.normals[here], surface.normals[beyond]) > std::cos(angle)) continue;
     ++features.count;
-    if (axisInMap(map, surface.faces[here]) == axisInMap(map, surface.faces[beyond])) continue;
+    if (!areAligned &&
+        axisInMap(map, surface.faces[here]) == axisInMap(map, surface.faces[beyond])) {
+      continue;
+    }
     const Index a = surface.tails[side];
     const Index b = surface.head(side);
     features.aligned.push_back({.vertices = {std::min(a, b), std::max(a, b)}, .tag = 1});

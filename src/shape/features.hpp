@@ -18,6 +18,8 @@ struct FoundFeatures {
 
 /// @param map    whose boundary triangles are perpendicular to axes
 /// @param angle  in radians, that the surface turns by at a feature
-[[nodiscard]] FoundFeatures featuresOf(const TetMap& map, double angle, Stage& stage);
+/// @param areAligned  whether all are edges of the map
+[[nodiscard]] FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned,
+                                       Stage& stage);
 
 }  // namespace hexhex::shape

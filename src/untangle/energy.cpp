@@ -59,6 +59,32 @@ double regularized(double epsilon, double det) noexcept {
   return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
 }
 
+Vector coordinatesOf(const Problem& problem, const Vector& unknowns) {
+  const SparseRows& sums = problem.sums;
+  if (sums.size() == 0) return unknowns;
+  Vector coordinates = Vector::Zero(std::ssize(sums.begins) - 1);
+  for (std::size_t row = 0; row < sums.size(); ++row) {
+    double& sum = coordinates[static_cast<Eigen::Index>(row)];
+    for (std::size_t i = sums.begins[row]; i < sums.begins[row + 1]; ++i) {
+      sum += sums.entries[i].factor * unknowns[sums.entries[i].column];
+    }
+  }
+  return coordinates;
+}
+
+Vector byUnknowns(const Problem& problem, const Vector& byCoordinates) {
+  const SparseRows& sums = problem.sums;
+  if (sums.size() == 0) return byCoordinates;
+  Vector result = Vector::Zero(std::ssize(problem.x));
+  for (std::size_t row = 0; row < sums.size(); ++row) {
+    const double value = byCoordinates[static_cast<Eigen::Index>(row)];
+    for (std::size_t i = sums.begins[row]; i < sums.begins[row + 1]; ++i) {
+      result[sums.entries[i].column] += sums.entries[i].factor * value;
+    }
+  }
+  return result;
+}
+
 Gradients cornerGradients(const Element& element) {
   Gradients g;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -85,7 +111,7 @@ Eigen::Matrix3d targetOf(const Problem& problem, const Element& element) {
   return toEigen(problem.matrices[static_cast<std::size_t>(element.target)]);
 }
 
-Uses::Uses(const Problem& problem) : begins_(problem.x.size() + 1) {
+Uses::Uses(const Problem& problem) : begins_(coordinateCount(problem) + 1) {
   const auto forEachUse = [&problem](const auto& visit) {
     std::uint32_t entry = 0;
     for (const Element& element : problem.elements) {
@@ -136,14 +162,16 @@ void Energy::add(const Element& element, const Eigen::Matrix3d& j, double densit
   height.energy += element.weight * density;
 }
 
-Height Energy::at(const Vector& x, double epsilon) const {
+Height Energy::at(const Vector& unknowns, double epsilon) const {
+  const Vector x = coordinatesOf(problem_, unknowns);
   return collect([&](std::size_t /*index*/, const Element& element, Height& part) {
     const Eigen::Matrix3d j = jacobian(problem_, element, x.data());
     add(element, j, Density(j, j.determinant(), epsilon).value, part);
   });
 }
 
-Height Energy::at(const Vector& x, double epsilon, Vector& gradient) {
+Height Energy::at(const Vector& unknowns, double epsilon, Vector& gradient) {
+  const Vector x = coordinatesOf(problem_, unknowns);
   const Height height = collect([&](std::size_t index, const Element& element, Height& part) {
     const Eigen::Matrix3d j = jacobian(problem_, element, x.data());
     const Density density(j, j.determinant(), epsilon);
@@ -154,7 +182,7 @@ Height Energy::at(const Vector& x, double epsilon, Vector& gradient) {
         element.weight * byMatrix * cornerGradients(element).transpose();
   });
   gradient.resize(x.size());
-  parallelFor(stage_, unknownCount(), kEnergyGrain, [&](std::size_t unknown) {
+  parallelFor(stage_, coordinateCount(problem_), kEnergyGrain, [&](std::size_t unknown) {
     double sum = 0;
     for (const std::uint32_t use : uses_(unknown)) {
       const Corner& corner = problem_.elements[use / 12].corners[use % 12 / 3];
@@ -162,6 +190,7 @@ Height Energy::at(const Vector& x, double epsilon, Vector& gradient) {
     }
     gradient[static_cast<Eigen::Index>(unknown)] = sum;
   });
+  if (problem_.sums.size() != 0) gradient = byUnknowns(problem_, gradient);
   return height;
 }
 

@@ -30,8 +30,8 @@ struct Height {
   std::size_t flipped = 0;  ///< elements whose determinant is not positive
 };
 
-/// Which elements have an unknown, and as which coordinate: entries are 12 * element + 3 * corner +
-/// axis.
+/// Which elements have a coordinate, and as which of theirs: entries are 12 * element + 3 * corner
+/// + axis.
 class Uses {
  public:
   explicit Uses(const Problem& problem);
@@ -43,6 +43,14 @@ class Uses {
   std::vector<std::uint32_t> begins_;
   std::vector<std::uint32_t> entries_;
 };
+
+[[nodiscard]] inline std::size_t coordinateCount(const Problem& problem) noexcept {
+  return problem.sums.size() == 0 ? problem.x.size() : problem.sums.size();
+}
+/// What corners take their coordinates from.
+[[nodiscard]] Vector coordinatesOf(const Problem& problem, const Vector& unknowns);
+/// From derivatives by these to derivatives by the unknowns.
+[[nodiscard]] Vector byUnknowns(const Problem& problem, const Vector& byCoordinates);
 
 /// Gradients of all four corners.
 [[nodiscard]] Eigen::Matrix<double, 4, 3> cornerGradients(const Element& element);
@@ -66,9 +74,9 @@ class Energy {
   [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
   [[nodiscard]] const Uses& uses() const noexcept { return uses_; }
 
-  [[nodiscard]] Height at(const Vector& x, double epsilon) const;
+  [[nodiscard]] Height at(const Vector& unknowns, double epsilon) const;
   /// @param[out] gradient  by unknown; of no use where the energy is infinite
-  [[nodiscard]] Height at(const Vector& x, double epsilon, Vector& gradient);
+  [[nodiscard]] Height at(const Vector& unknowns, double epsilon, Vector& gradient);
 
  private:
   template <class Visit>

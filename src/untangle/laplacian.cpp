@@ -14,7 +14,7 @@ constexpr double kShift = 1e-9;
 }  // namespace
 
 Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses) {
-  const auto n = static_cast<int>(problem.x.size());
+  const auto n = static_cast<int>(coordinateCount(problem));
   Eigen::SparseMatrix<double> matrix(n, n);
   std::vector<std::pair<int, double>> column;
   for (int u = 0; u < n; ++u) {
@@ -46,13 +46,26 @@ Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses) 
     }
   }
   matrix.finalize();
-  return matrix.selfadjointView<Eigen::Lower>();
+  const Eigen::SparseMatrix<double> both = matrix.selfadjointView<Eigen::Lower>();
+  if (problem.sums.size() == 0) return both;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int row = 0; row < n; ++row) {
+    const auto begin = problem.sums.begins[static_cast<std::size_t>(row)];
+    const auto end = problem.sums.begins[static_cast<std::size_t>(row) + 1];
+    for (std::size_t i = begin; i < end; ++i) {
+      entries.emplace_back(row, problem.sums.entries[i].column, problem.sums.entries[i].factor);
+    }
+  }
+  Eigen::SparseMatrix<double> sums(n, std::ssize(problem.x));
+  sums.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> half = both * sums;
+  return sums.transpose() * half;
 }
 
 Vector targetForces(const Problem& problem, const Uses& uses) {
-  Vector rest(static_cast<Eigen::Index>(problem.x.size()));
-  const std::vector<double> origin(problem.x.size(), 0.0);
-  for (std::size_t u = 0; u < problem.x.size(); ++u) {
+  const std::vector<double> origin(coordinateCount(problem), 0.0);
+  Vector rest(std::ssize(origin));
+  for (std::size_t u = 0; u < origin.size(); ++u) {
     double sum = 0;
     for (const std::uint32_t use : uses(u)) {
       const Element& element = problem.elements[use / 12];
@@ -64,7 +77,7 @@ Vector targetForces(const Problem& problem, const Uses& uses) {
     }
     rest[static_cast<Eigen::Index>(u)] = sum;
   }
-  return rest;
+  return byUnknowns(problem, rest);
 }
 
 }  // namespace hexhex::untangle

@@ -31,7 +31,8 @@ namespace hexhex::untangle {
 using Matrix3 = std::array<Vec3, 3>;  ///< rows
 
 /// Coordinate k is constant[k] + sign[k] * x[unknown[k]], or constant[k] alone where unknown[k] is
-/// negative. Several coordinates, also of one corner, may share an unknown.
+/// negative. (Or a sum of unknowns in place of one: Problem::sums.) Several coordinates, also of
+/// one corner, may share an unknown.
 struct Corner {
   Vec3 constant{};
   std::array<int, 3> unknown = {-1, -1, -1};
@@ -66,6 +67,18 @@ struct Element {
   return rows;
 }
 
+/// Rows of a matrix, one behind the other.
+struct SparseRows {
+  struct Entry {
+    int column = 0;
+    double factor = 0;
+  };
+  std::vector<Entry> entries;
+  std::vector<std::size_t> begins = {0};  ///< per row, and the end of the last one
+
+  [[nodiscard]] std::size_t size() const noexcept { return begins.size() - 1; }
+};
+
 struct Problem {
   std::vector<Element> elements;
   std::vector<Matrix3> matrices;
@@ -73,6 +86,9 @@ struct Problem {
   /// constant need it: otherwise some collapse.
   double pull = 0;
   std::vector<double> x;  ///< the unknowns: where they are, and where they are to go
+  /// Coordinates that are sums of several unknowns: what corners call unknown i is then row i of
+  /// these. Without rows, it is x[i].
+  SparseRows sums;
 };
 
 }  // namespace hexhex::untangle

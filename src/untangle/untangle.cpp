@@ -126,10 +126,11 @@ Result Solver::run(const Options& options) {
   if (result.end == End::Positive) result.steps += parts_->polish(options.polishing, x);
   problem.x.assign(x.begin(), x.end());
   const Height height = parts_->energy.at(x, 0);
+  const Vector coordinates = coordinatesOf(problem, x);
   result.energy = height.energy;
   result.leastDeterminant = height.leastDeterminant;
   for (std::size_t i = 0; height.flipped > 0 && i < problem.elements.size(); ++i) {
-    const double det = jacobian(problem, problem.elements[i], x.data()).determinant();
+    const double det = jacobian(problem, problem.elements[i], coordinates.data()).determinant();
     if (!(det > 0)) result.flipped.push_back(i);
   }
   return result;
@@ -143,11 +144,12 @@ std::vector<std::size_t> flatElements(const Problem& problem) {
   constexpr double kFlat = 1e-13;
   std::mt19937_64 random(1);
   std::vector<char> isFlat(problem.elements.size(), 1);
-  std::vector<double> x(problem.x.size());
+  Vector x(std::ssize(problem.x));
   for (int draw = 0; draw < kDraws; ++draw) {
     for (double& value : x) value = static_cast<double>(random() >> 11) * 0x1p-43;  // below 1024
+    const Vector coordinates = coordinatesOf(problem, x);
     for (std::size_t i = 0; i < isFlat.size(); ++i) {
-      const Eigen::Matrix3d j = jacobian(problem, problem.elements[i], x.data());
+      const Eigen::Matrix3d j = jacobian(problem, problem.elements[i], coordinates.data());
       const double most = j.col(0).norm() * j.col(1).norm() * j.col(2).norm();
       if (std::abs(j.determinant()) > kFlat * most) isFlat[i] = 0;
     }

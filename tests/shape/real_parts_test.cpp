@@ -41,6 +41,7 @@ TEST(RealParts, EndInCertifiedMeshes) {
     Context context;
     const TetMesh tets = readTetMesh(file, {}, context);
     MeshOptions options;
+    options.shape.method = ShapeMethod::Polycube;
     options.quantize = {.cells = 2000, .densify = true};
     try {
       const MeshedPart part = meshFromTets(tets, options, context);

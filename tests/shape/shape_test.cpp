@@ -35,13 +35,14 @@ CubeBody angle() {
 
 ShapedMap shaped(const TetMesh& tets, int threads = 0) {
   Context context(threads);
-  return mapFromTets(tets, {}, context);
+  return mapFromTets(tets, {.method = ShapeMethod::Polycube}, context);
 }
 
 /// A mesh that is verified, once more; whether it is certified is for the caller to say.
 MeshedPart meshed(const TetMesh& tets, double cells) {
   Context context;
   MeshOptions options;
+  options.shape.method = ShapeMethod::Polycube;
   options.quantize = {.cells = cells, .densify = true};
   MeshedPart part = meshFromTets(tets, options, context);
   ExtractOptions exact;
@@ -215,7 +216,9 @@ TEST(Shapes, CanBeCancelled) {
       if (stage == where) running->cancel();
     });
     running = &context;
-    EXPECT_EQ(codeOf([&] { static_cast<void>(mapFromTets(tets, {}, context)); }),
+    EXPECT_EQ(codeOf([&] {
+                static_cast<void>(mapFromTets(tets, {.method = ShapeMethod::Polycube}, context));
+              }),
               ErrorCode::Cancelled)
         << where;
   }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -168,6 +169,22 @@ std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) co
   const Eigen::VectorXd free = (basis.transpose() * basis).ldlt().solve(basis.transpose() * target);
   const Eigen::VectorXd solution = basis * free;
   return {solution.data(), solution.data() + n};
+}
+
+std::vector<std::vector<std::pair<Index, double>>> IntegerSystem::combinations() const {
+  std::vector<std::vector<std::pair<Index, double>>> all(variableCount_);
+  for (const Index v : free_) all[v] = {{v, 1.0}};
+  for (std::size_t i = solved_.size(); i-- > 0;) {
+    const Solved& solved = solved_[i];
+    std::map<Index, double> sum;
+    for (const auto& [variable, factor] : solved.rest.terms()) {
+      const double share = -static_cast<double>(factor) / static_cast<double>(solved.coefficient);
+      for (const auto& [free, of] : all[variable]) sum[free] += share * of;
+    }
+    std::erase_if(sum, [](const auto& term) { return term.second == 0; });
+    all[solved.variable].assign(sum.begin(), sum.end());
+  }
+  return all;
 }
 
 std::vector<std::int64_t> IntegerSystem::roundedTo(const std::vector<double>& solution,

@@ -58,6 +58,10 @@ class IntegerSystem {
   [[nodiscard]] std::vector<std::int64_t> roundedTo(const std::vector<double>& solution,
                                                     std::int64_t step) const;
 
+  /// Each variable as a combination of free ones, which are in terms of themselves: pairs of a free
+  /// variable and its factor, ascending.
+  [[nodiscard]] std::vector<std::vector<std::pair<Index, double>>> combinations() const;
+
   [[nodiscard]] const std::vector<Index>& freeVariables() const noexcept { return free_; }
 
  private:

@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <quantize/polycube/labels.hpp>
+#include <shape/frames_field.hpp>
+#include <shape/frames_map.hpp>
+#include <shape/frames_matching.hpp>
+#include <shape/frames_rematch.hpp>
+#include <shape/frames_space.hpp>
+#include <shape/frames_tets.hpp>
+#include <untangle/untangle.hpp>
+
+#include <hexhex/error.hpp>
+
+#include <igm/defects.hpp>
+
+namespace hexhex::shape {
+
+namespace {
+
+using adjacency::HalfFace;
+
+/// Searches for rotations, each with random numbers of its own.
+constexpr std::uint64_t kSearches = 4;
+/// Times at which tets are refined around flips, and the solver begins anew.
+constexpr int kMostRefinements = 3;
+/// Weight of the pull towards frames: so that no part collapses, and then less.
+constexpr double kPull = 0.5;
+constexpr double kLastPull = 0.1;
+
+class FramesMapper {
+ public:
+  FramesMapper(const TetMesh& tets, double featureAngle, Stage& stage)
+      : stage_(stage), given_(read(tets, stage)), tets_(copied(), featureAngle, stage) {}
+
+  TetMap run() {
+    makeField();
+    for (int refinements = 0;; ++refinements) {
+      splitAtCurves();
+      const EdgeWalks walks(tets_);
+      untangle::Problem problem = seamlessProblem(tets_, walks, stage_);
+      requireRoom(problem);
+      const std::vector<Index> flipped = untangleTets(problem);
+      if (flipped.empty()) return mapOf(problem);
+      if (refinements == kMostRefinements) failFlipped(flipped);
+      refineAt(flipped);
+    }
+  }
+
+ private:
+  static quantization::LabelledMesh read(const TetMesh& tets, Stage& stage) {
+    quantization::LabelledMesh mesh = quantization::readUnlabelled(tets, stage);
+    // Walks around edges come back only on manifolds.
+    igm::DefectCollector defects;
+    igm::collectTopologyDefects(mesh.topology, stage, defects);
+    defects.throwIfAny();
+    return mesh;
+  }
+
+  [[nodiscard]] TetMesh copied() const {
+    const TetMapView& view = given_.input.view;
+    return {{view.points.begin(), view.points.end()}, {view.tets.begin(), view.tets.end()}};
+  }
+
+  /// The field, its rotations, and a decision on whether there is a map.
+  void makeField() {
+    tets_.makeRoom(stage_);
+    tets_.frames = frameField(tets_, stage_);
+    matchFrames(tets_, stage_);
+    const EdgeWalks walks(tets_);
+    const std::vector<lattice::Rotation> nearest = tets_.rotations;
+    std::vector<FieldDefect> fewest = defectsOf(tets_, walks);
+    std::vector<lattice::Rotation> best = nearest;
+    for (std::uint64_t seed = 0; seed < kSearches && !(seed > 0 && fewest.empty()); ++seed) {
+      tets_.rotations = nearest;
+      rematchFrames(tets_, walks, seed, stage_);
+      std::vector<FieldDefect> defects = defectsOf(tets_, walks);
+      if (seed > 0 && defects.size() >= fewest.size()) continue;
+      fewest = std::move(defects);
+      best = tets_.rotations;
+    }
+    tets_.rotations = std::move(best);
+    if (!fewest.empty()) failUnmeshable(fewest);
+    smoothFrames(tets_, stage_);
+  }
+
+  /// Splits regular edges between vertices that are bound to curves or to the boundary.
+  void splitAtCurves() {
+    while (true) {
+      const EdgeWalks walks(tets_);
+      std::vector<bool> isBound(tets_.mesh().points.size());
+      std::vector<bool> isSingular(walks.size());
+      for (std::size_t edge = 0; edge < walks.size(); ++edge) {
+        isSingular[edge] = walks.isBoundary(edge)
+                               ? boundaryValence(tets_, walks, edge) != 2
+                               : turningAt(tets_, walks, edge).kind != EdgeTurning::Kind::Regular;
+        if (!isSingular[edge]) continue;
+        for (const Index v : walks[edge]) isBound[v] = true;
+      }
+      const std::vector<bool> isOuter = tets_.boundaryVertices();
+      std::vector<SplitEdge> edges;
+      for (std::size_t edge = 0; edge < walks.size(); ++edge) {
+        const auto [a, b] = walks[edge];
+        const bool isInside = !walks.isBoundary(edge);
+        const bool isTight =
+            (isBound[a] || (isInside && isOuter[a])) && (isBound[b] || (isInside && isOuter[b]));
+        if (isTight && !isSingular[edge]) edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+      if (edges.empty()) return;
+      tets_.split(std::move(edges), stage_);
+    }
+  }
+
+  void requireRoom(const untangle::Problem& problem) const {
+    const std::vector<std::size_t> flat = untangle::flatElements(problem);
+    if (flat.empty()) return;
+    throw Error(ErrorCode::TransitionResidual,
+                "No hexahedral mesh follows the frame field of this object: " +
+                    std::to_string(flat.size()) +
+                    " tets are flat in every map with its singular curves. Refine the tets there, "
+                    "or make a polycube of the object.",
+                {PlaceKind::Tet, tets_.parentOf(static_cast<Index>(flat.front()))});
+  }
+
+  /// @return tets that stay flipped
+  std::vector<Index> untangleTets(untangle::Problem& problem) const {
+    untangle::Solver solver(problem, stage_);
+    problem.pull = kPull;
+    solver.start();
+    const untangle::Result result = solver.run({.epsilon = 1, .polishing = 0, .isPatient = true});
+    if (!result.flipped.empty()) {
+      std::vector<Index> flipped;
+      for (const std::size_t t : result.flipped) flipped.push_back(static_cast<Index>(t));
+      return flipped;
+    }
+    problem.pull = kLastPull;
+    static_cast<void>(solver.run({.epsilon = 1e-3}));
+    return roundUnknowns(problem);
+  }
+
+  /// Splits the longest edge, at one of their vertices, of tets near flips.
+  void refineAt(const std::vector<Index>& flipped) {
+    std::vector<bool> isNear(tets_.mesh().points.size());
+    for (const Index t : flipped) {
+      for (const Index v : tets_.mesh().tets[t]) isNear[v] = true;
+    }
+    std::vector<SplitEdge> edges;
+    for (const Tet& tet : tets_.mesh().tets) {
+      if (std::count_if(tet.begin(), tet.end(), [&](Index v) { return isNear[v]; }) < 2) continue;
+      SplitEdge longest{};
+      double most = 0;
+      quantization::forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+        if (!isNear[edge[0]] && !isNear[edge[1]]) return;
+        const double length = (tets_.point(edge[1]) - tets_.point(edge[0])).norm();
+        if (length <= most) return;
+        most = length;
+        longest = edge;
+      });
+      edges.push_back(longest);
+    }
+    tets_.split(std::move(edges), stage_);
+  }
+
+  [[nodiscard]] TetMap mapOf(const untangle::Problem& problem) const {
+    return {.points = tets_.mesh().points,
+            .tets = tets_.mesh().tets,
+            .parameters = parametersOf(problem)};
+  }
+
+  /// In the caller's terms, if they know both vertices; else a tet there.
+  [[nodiscard]] Place placeOf(const SplitEdge& edge) const {
+    const std::size_t known = given_.input.view.points.size();
+    if (edge[0] < known && edge[1] < known) {
+      if (edge[0] == edge[1]) return {PlaceKind::Vertex, edge[0]};
+      return {PlaceKind::Edge, edge[0], edge[1]};
+    }
+    return {PlaceKind::Tet, tets_.parentOf(tets_.topology().vertexTet[std::max(edge[0], edge[1])])};
+  }
+
+  [[noreturn]] void failUnmeshable(const std::vector<FieldDefect>& defects) const {
+    const auto count = [&](FieldDefect::Kind kind) {
+      return std::count_if(defects.begin(), defects.end(),
+                           [kind](const FieldDefect& defect) { return defect.kind == kind; });
+    };
+    throw Error(
+        ErrorCode::TransitionResidual,
+        "No hexahedral mesh follows the frame field of this object: it turns about a diagonal at " +
+            std::to_string(count(FieldDefect::Kind::Compound)) +
+            " edges, singular curves end or change their valence at " +
+            std::to_string(count(FieldDefect::Kind::Zipper)) + " vertices, and " +
+            std::to_string(count(FieldDefect::Kind::Boundary)) +
+            " edges of the boundary turn as no hexahedra do. Refine the tets there, or make a "
+            "polycube of the object.",
+        placeOf(defects.front().edge));
+  }
+
+  [[noreturn]] void failFlipped(const std::vector<Index>& flipped) const {
+    throw Error(
+        ErrorCode::FlippedTet,
+        "No map was found along the frame field of this object: " + std::to_string(flipped.size()) +
+            " tets stay flipped, this one among them. Refine the tets there, or make a "
+            "polycube of the object.",
+        {PlaceKind::Tet, tets_.parentOf(flipped.front())});
+  }
+
+  Stage& stage_;
+  quantization::LabelledMesh given_;
+  FrameTets tets_;
+};
+
+}  // namespace
+
+TetMap mapFromFrames(const TetMesh& tets, double featureAngleInDegrees, Stage& stage) {
+  return FramesMapper(tets, featureAngleInDegrees, stage).run();
+}
+
+}  // namespace hexhex::shape

@@ -1,0 +1,259 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <shape/frames_rematch.hpp>
+
+namespace hexhex::shape {
+
+namespace {
+
+using adjacency::HalfFace;
+using Kind = EdgeTurning::Kind;
+
+/// Sweeps that take changes for the worse, fewer and fewer; and at most so many that do not.
+constexpr int kWarmSweeps = 40;
+constexpr int kColdSweeps = 40;
+/// Costs in lengths of edges, or of the edge itself.
+constexpr double kPerRadian = 0.4;  // across a triangle
+constexpr double kHalfTurn = 6;
+constexpr double kCompound = 10;
+constexpr double kSkew = 2;     // of a proper edge that follows another axis than its own
+constexpr double kAlong = 0.6;  // cosines below are skew
+constexpr double kZipper = 4;
+constexpr double kNode = 0.3;          // each curve but two
+constexpr double kBoundaryNode = 2.5;  // each curve but one
+constexpr double kWarmth = 0.3;
+/// Rotations that turn by more radians across a triangle are not tried.
+constexpr double kMostTurn = 2.2;
+/// Costs of an edge, in its lengths, from where it is worth a search.
+constexpr double kBad = 2.5;
+
+/// Singular edges at a vertex.
+struct Curves {
+  int threes = 0;
+  int fives = 0;
+  int improper = 0;
+
+  void count(Kind kind, int by) {
+    if (kind == Kind::Three) threes += by;
+    if (kind == Kind::Five) fives += by;
+    if (kind == Kind::HalfTurn || kind == Kind::Compound) improper += by;
+  }
+};
+
+class Rematcher {
+ public:
+  Rematcher(FrameTets& tets, const EdgeWalks& walks, std::uint64_t seed, Stage& stage)
+      : tets_(tets),
+        walks_(walks),
+        stage_(stage),
+        random_(seed),
+        isOuter_(tets.boundaryVertices()),
+        edges_(walks.size()),
+        curves_(tets.mesh().points.size()) {
+    double sum = 0;
+    for (std::size_t edge = 0; edge < walks.size(); ++edge) {
+      edges_[edge].length = (tets.point(walks[edge][0]) - tets.point(walks[edge][1])).norm();
+      sum += edges_[edge].length;
+      update(edge);
+    }
+    unit_ = sum / static_cast<double>(walks.size());
+  }
+
+  void run() {
+    for (int sweep = 0; sweep < kWarmSweeps + kColdSweeps; ++sweep) {
+      stage_.context().throwIfCancelled();
+      const double left = 1 - (sweep + 1.0) / kWarmSweeps;
+      std::vector<HalfFace> faces = facesNearDefects();
+      if (faces.empty()) return;
+      for (std::size_t i = faces.size() - 1; i > 0; --i) {
+        std::swap(faces[i], faces[random_() % (i + 1)]);
+      }
+      bool isChanged = false;
+      for (const HalfFace h : faces) {
+        if (improve(h, std::max(0.0, left) * kWarmth * unit_)) isChanged = true;
+      }
+      if (left <= 0 && !isChanged) return;
+    }
+  }
+
+ private:
+  struct Edge {
+    double length = 0;
+    double cost = 0;
+    Kind kind = Kind::Regular;
+  };
+
+  /// Of an edge, after a rotation of a triangle at it has changed.
+  void update(std::size_t edge) {
+    if (walks_.isBoundary(edge)) return;
+    Edge& at = edges_[edge];
+    const EdgeTurning turning = turningAt(tets_, walks_, edge);
+    if (turning.kind != at.kind) {
+      for (const Index v : walks_[edge]) {
+        curves_[v].count(at.kind, -1);
+        curves_[v].count(turning.kind, 1);
+      }
+    }
+    at.kind = turning.kind;
+    at.cost = at.length * costOf(turning);
+  }
+
+  static double costOf(const EdgeTurning& turning) {
+    if (turning.kind == Kind::Regular) return 0;
+    if (turning.kind == Kind::HalfTurn) return kHalfTurn;
+    if (turning.kind == Kind::Compound) return kCompound;
+    return 2 - turning.alignment + (turning.alignment < kAlong ? kSkew : 0);
+  }
+
+  [[nodiscard]] double vertexCost(Index v) const {
+    const auto& [threes, fives, improper] = curves_[v];
+    const int proper = threes + fives;
+    if (isOuter_[v]) return kBoundaryNode * unit_ * std::max(0, proper + improper - 1);
+    if (improper > 0 || proper == 0) return 0;
+    const bool isImpossible =
+        proper == 1 || (threes == 1 && fives == 1) || (threes == 3 && fives <= 1) || threes > 4;
+    return isImpossible ? kZipper * unit_ : kNode * unit_ * std::max(0, proper - 2);
+  }
+
+  [[nodiscard]] double faceCost(HalfFace h) const {
+    const double like =
+        likeness(tets_.frames[adjacency::tetOf(h)],
+                 tets_.frames[adjacency::tetOf(tets_.topology().mate[h])], tets_.rotations[h]);
+    return kPerRadian * unit_ * std::acos(std::clamp((like - 1) / 2, -1.0, 1.0));
+  }
+
+  [[nodiscard]] double costAround(HalfFace h, const std::array<Index, 3>& edges) const {
+    double cost = faceCost(h);
+    for (const Index edge : edges) cost += edges_[edge].cost;
+    for (const int k : lattice::kFaceCorners[h % 4]) {
+      cost += vertexCost(tets_.mesh().tets[adjacency::tetOf(h)][static_cast<std::size_t>(k)]);
+    }
+    return cost;
+  }
+
+  void set(HalfFace h, lattice::Rotation rotation, const std::array<Index, 3>& edges) {
+    tets_.rotations[h] = rotation;
+    tets_.rotations[tets_.topology().mate[h]] = rotation.inverse();
+    for (const Index edge : edges) update(edge);
+  }
+
+  /// Tries all rotations across a triangle.
+  /// @param warmth  exponential noise of that mean is taken off the cost of changes
+  /// @return whether another one is better
+  bool improve(HalfFace h, double warmth) {
+    const std::array<Index, 3> edges = walks_.edgesOf(h);
+    const lattice::Rotation old = tets_.rotations[h];
+    lattice::Rotation best = old;
+    double least = costAround(h, edges) - 1e-12 * unit_;
+    for (int r = 0; r < lattice::Rotation::kCount; ++r) {
+      if (lattice::Rotation(r) == old) continue;
+      tets_.rotations[h] = lattice::Rotation(r);
+      if (faceCost(h) > kPerRadian * unit_ * kMostTurn) continue;
+      set(h, lattice::Rotation(r), edges);
+      const double noise = warmth > 0 ? -warmth * std::log(1 - draw()) : 0;
+      const double cost = costAround(h, edges) - noise;
+      if (cost >= least) continue;
+      least = cost;
+      best = lattice::Rotation(r);
+    }
+    set(h, best, edges);
+    return best != old;
+  }
+
+  double draw() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+
+  /// Triangles inside, with no edge on the boundary, of which two vertices are next to a defect.
+  [[nodiscard]] std::vector<HalfFace> facesNearDefects() const {
+    std::vector<bool> isBad(curves_.size());
+    for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
+      if (edges_[edge].cost <= kBad * edges_[edge].length) continue;
+      for (const Index v : walks_[edge]) isBad[v] = true;
+    }
+    for (Index v = 0; v < isBad.size(); ++v) {
+      if (vertexCost(v) >= 0.9 * std::min(kZipper, kBoundaryNode) * unit_) isBad[v] = true;
+    }
+    std::vector<bool> isNear = isBad;
+    for (const Tet& tet : tets_.mesh().tets) {
+      if (!std::any_of(tet.begin(), tet.end(), [&](Index v) { return isBad[v]; })) continue;
+      for (const Index v : tet) isNear[v] = true;
+    }
+    std::vector<HalfFace> faces;
+    const adjacency::TetTopology& topology = tets_.topology();
+    for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+      if (topology.isBoundary(h) || topology.mate[h] < h) continue;
+      int near = 0;
+      for (const int k : lattice::kFaceCorners[h % 4]) {
+        near += isNear[topology.tets[adjacency::tetOf(h)][static_cast<std::size_t>(k)]] ? 1 : 0;
+      }
+      if (near < 2) continue;
+      const std::array<Index, 3> edges = walks_.edgesOf(h);
+      if (std::none_of(edges.begin(), edges.end(),
+                       [&](Index edge) { return walks_.isBoundary(edge); })) {
+        faces.push_back(h);
+      }
+    }
+    return faces;
+  }
+
+  FrameTets& tets_;
+  const EdgeWalks& walks_;
+  Stage& stage_;
+  std::mt19937_64 random_;
+  std::vector<bool> isOuter_;
+  std::vector<Edge> edges_;
+  std::vector<Curves> curves_;  ///< per vertex
+  double unit_ = 0;             ///< the mean length of edges
+};
+
+/// Whether a tet's frame has a condition to meet.
+bool isConstrained(const FrameTets& tets, Index t) {
+  bool isBound = false;
+  for (int face = 0; face < 4; ++face) {
+    if (tets.topology().isBoundary(adjacency::halfFaceOf(t, face))) isBound = true;
+  }
+  quantization::forEachEdgeOf(tets.mesh().tets[t],
+                              [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+                                if (tets.isFeature(edge)) isBound = true;
+                              });
+  return isBound;
+}
+
+}  // namespace
+
+void rematchFrames(FrameTets& tets, const EdgeWalks& walks, std::uint64_t seed, Stage& stage) {
+  Rematcher(tets, walks, seed, stage).run();
+}
+
+void smoothFrames(FrameTets& tets, Stage& stage) {
+  constexpr int kRounds = 10;
+  std::vector<Index> free;
+  for (Index t = 0; t < tets.size(); ++t) {
+    if (!isConstrained(tets, t)) free.push_back(t);
+  }
+  const adjacency::TetTopology& topology = tets.topology();
+  for (int round = 0; round < kRounds; ++round) {
+    stage.context().throwIfCancelled();
+    for (const Index t : free) {
+      Frame sum = Frame::Zero();
+      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+        if (topology.isBoundary(h)) continue;
+        const Frame& there = tets.frames[adjacency::tetOf(topology.mate[h])];
+        const double area = tets.normal(h).norm();
+        for (int k = 0; k < 3; ++k) {
+          sum.col(k) += area * there * vectorOf(tets.rotations[h](lattice::direction(k, 1)));
+        }
+      }
+      const Eigen::JacobiSVD<Frame> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      const Frame nearest = svd.matrixU() * svd.matrixV().transpose();
+      if (nearest.determinant() > 0) tets.frames[t] = nearest;
+    }
+  }
+}
+
+}  // namespace hexhex::shape

@@ -1,0 +1,263 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <shape/frames_tets.hpp>
+
+#include <hexhex/error.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex::shape {
+
+namespace {
+
+using adjacency::HalfFace;
+using quantization::forEachEdgeOf;
+using quantization::sortOut;
+
+bool contains(const std::vector<SplitEdge>& edges, const SplitEdge& edge) {
+  return std::binary_search(edges.begin(), edges.end(), edge);
+}
+
+/// Calls visit(edge, half-face) for the three edges of each boundary triangle.
+template <class Visit>
+void forEachBoundaryEdge(const adjacency::TetTopology& topology, const Visit& visit) {
+  for (HalfFace h = 0; h < topology.mate.size(); ++h) {
+    if (!topology.isBoundary(h)) continue;
+    forEachEdgeOf(topology.tets[adjacency::tetOf(h)],
+                  [&](const SplitEdge& edge, lattice::CornerMask corners) {
+                    if (!lattice::contains(corners, adjacency::localOf(h))) visit(edge, h);
+                  });
+  }
+}
+
+/// The corner behind which a walk around the edge of these two corners goes on, counterclockwise
+/// as seen from b: c, where a, b, c and the fourth corner make an even permutation.
+int leftCorner(int a, int b) {
+  std::array<int, 4> order = {a, b, 0, 0};
+  int n = 2;
+  for (int corner = 0; corner < 4; ++corner) {
+    if (corner != a && corner != b) order[static_cast<std::size_t>(n++)] = corner;
+  }
+  int inversions = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) inversions += order[i] > order[j] ? 1 : 0;
+  }
+  return inversions % 2 == 0 ? order[2] : order[3];
+}
+
+}  // namespace
+
+FrameTets::FrameTets(TetMesh mesh, double featureAngleInDegrees, Stage& stage)
+    : mesh_(std::move(mesh)) {
+  for (Index t = 0; t < mesh_.tets.size(); ++t) parents_.push_back(t);
+  buildTopology(stage);
+  findFeatures(featureAngleInDegrees * std::numbers::pi / 180, stage);
+}
+
+bool FrameTets::isFeature(const SplitEdge& edge) const { return contains(features_, edge); }
+
+Eigen::Vector3d FrameTets::normal(HalfFace h) const {
+  const Tet& tet = mesh_.tets[adjacency::tetOf(h)];
+  // Corners of a face are in the order that looks inwards.
+  const auto corner = [&](std::size_t k) {
+    return point(tet[static_cast<std::size_t>(lattice::kFaceCorners[h % 4][k])]);
+  };
+  const Eigen::Vector3d first = corner(0);
+  return (corner(2) - first).cross(corner(1) - first);
+}
+
+double FrameTets::volume(Index tet) const {
+  const Tet& v = mesh_.tets[tet];
+  const Eigen::Vector3d first = point(v[0]);
+  return (point(v[1]) - first).cross(point(v[2]) - first).dot(point(v[3]) - first) / 6;
+}
+
+std::vector<bool> FrameTets::boundaryVertices() const {
+  std::vector<bool> isOuter(mesh_.points.size());
+  forEachBoundaryEdge(topology_, [&](const SplitEdge& edge, HalfFace /*h*/) {
+    isOuter[edge[0]] = isOuter[edge[1]] = true;
+  });
+  return isOuter;
+}
+
+void FrameTets::buildTopology(Stage& stage) {
+  topology_ = {};
+  topology_.tets = mesh_.tets;
+  topology_.pointCount = mesh_.points.size();
+  if (!adjacency::matchFaces(topology_, stage)) {
+    throw Error(ErrorCode::Internal,
+                "Splitting has made tets that are no manifold. This is a bug.");
+  }
+  adjacency::addStars(topology_, stage);
+  double sum = 0;
+  for (Index t = 0; t < size(); ++t) sum += volume(t);
+  // Six regular tets fill about as much as a cube.
+  edgeLength_ = std::cbrt(6 * sum / static_cast<double>(size()));
+}
+
+void FrameTets::findFeatures(double angle, Stage& stage) {
+  stage.context().throwIfCancelled();
+  std::vector<std::pair<SplitEdge, HalfFace>> sides;
+  forEachBoundaryEdge(topology_,
+                      [&](const SplitEdge& edge, HalfFace h) { sides.emplace_back(edge, h); });
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
+    const Eigen::Vector3d here = normal(sides[i].second).normalized();
+    const Eigen::Vector3d there = normal(sides[i + 1].second).normalized();
+    if (here.dot(there) < std::cos(angle)) features_.push_back(sides[i].first);
+  }
+}
+
+std::vector<SplitEdge> FrameTets::tightEdges() const {
+  std::vector<SplitEdge> outer;
+  forEachBoundaryEdge(topology_,
+                      [&](const SplitEdge& edge, HalfFace /*h*/) { outer.push_back(edge); });
+  sortOut(outer);
+  const std::vector<bool> isOuter = boundaryVertices();
+  std::vector<bool> isFeatured(mesh_.points.size());
+  for (const SplitEdge& edge : features_) isFeatured[edge[0]] = isFeatured[edge[1]] = true;
+  std::vector<SplitEdge> tight;
+  for (const Tet& tet : mesh_.tets) {
+    forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+      if (!isOuter[edge[0]] || !isOuter[edge[1]]) return;
+      const bool isFeatureless = isFeatured[edge[0]] && isFeatured[edge[1]] && !isFeature(edge);
+      if (isFeatureless || !contains(outer, edge)) tight.push_back(edge);
+    });
+  }
+  // Of triangles between three features, one is split.
+  for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
+    if (!topology_.isBoundary(h)) continue;
+    int count = 0;
+    SplitEdge last{};
+    forEachEdgeOf(mesh_.tets[adjacency::tetOf(h)],
+                  [&](const SplitEdge& edge, lattice::CornerMask corners) {
+                    if (lattice::contains(corners, adjacency::localOf(h)) || !isFeature(edge))
+                      return;
+                    ++count;
+                    last = edge;
+                  });
+    if (count == 3) tight.push_back(last);
+  }
+  return tight;
+}
+
+void FrameTets::makeRoom(Stage& stage) {
+  // Middles of edges are inside, or on the boundary but not on features, or, of triangles between
+  // three features, on one of these: so there are fewer and fewer.
+  while (true) {
+    std::vector<SplitEdge> edges = tightEdges();
+    if (edges.empty()) break;
+    split(std::move(edges), stage);
+  }
+  const std::vector<bool> isOuter = boundaryVertices();
+  std::vector<Index> outer;
+  for (Index t = 0; t < size(); ++t) {
+    const Tet& tet = mesh_.tets[t];
+    if (std::all_of(tet.begin(), tet.end(), [&](Index v) { return isOuter[v]; }))
+      outer.push_back(t);
+  }
+  splitTets(outer, stage);
+}
+
+void FrameTets::split(std::vector<SplitEdge> edges, Stage& stage) {
+  sortOut(edges);
+  const auto length = [&](const SplitEdge& edge) {
+    return (point(edge[1]) - point(edge[0])).squaredNorm();
+  };
+  std::stable_sort(edges.begin(), edges.end(),
+                   [&](const SplitEdge& a, const SplitEdge& b) { return length(a) > length(b); });
+  quantization::EdgeSplitter splitter(mesh_.points, mesh_.tets);
+  for (const SplitEdge& edge : edges) {
+    stage.context().throwIfCancelled();
+    const Index middle = splitter.split(edge, [&](Index t, std::size_t a, std::size_t b) {
+      parents_.push_back(Index{parents_[t]});
+      if (frames.empty()) return;
+      frames.push_back(Frame(frames[t]));
+      const std::size_t second = mesh_.tets.size() - 1;
+      for (std::size_t face = 0; face < 4; ++face) {
+        rotations.push_back(lattice::Rotation(rotations[4 * t + face]));
+      }
+      // Between both parts, charts agree.
+      rotations[4 * t + a] = rotations[4 * second + b] = {};
+    });
+    const auto at = std::lower_bound(features_.begin(), features_.end(), edge);
+    if (at == features_.end() || *at != edge) continue;
+    features_.erase(at);
+    for (const Index end : edge) {  // the new vertex has the largest number
+      const SplitEdge part = {end, middle};
+      features_.insert(std::lower_bound(features_.begin(), features_.end(), part), part);
+    }
+  }
+  buildTopology(stage);
+}
+
+void FrameTets::splitTets(const std::vector<Index>& tets, Stage& stage) {
+  for (const Index t : tets) {
+    const Tet whole = mesh_.tets[t];
+    const auto vertex = static_cast<Index>(mesh_.points.size());
+    Vec3 centre{};
+    for (const Index v : whole) {
+      for (std::size_t k = 0; k < 3; ++k) centre[k] += 0.25 * mesh_.points[v][k];
+    }
+    mesh_.points.push_back(centre);
+    for (std::size_t face = 0; face < 4; ++face) {
+      Tet part = whole;
+      part[face] = vertex;
+      if (face == 0) {
+        mesh_.tets[t] = part;
+      } else {
+        mesh_.tets.push_back(part);
+        parents_.push_back(Index{parents_[t]});
+      }
+    }
+  }
+  buildTopology(stage);
+}
+
+EdgeWalks::EdgeWalks(const FrameTets& tets) : fans_(tets.topology()) {
+  const adjacency::TetTopology& topology = tets.topology();
+  edges_.reserve(fans_.size());
+  for (std::size_t edge = 0; edge < fans_.size(); ++edge) {
+    const auto fan = fans_(edge);
+    adjacency::EdgeCorner first = fan.front();
+    HalfFace start = kNone;
+    for (const adjacency::EdgeCorner& at : fan) {
+      // The walk enters a tet through the face opposite its other corner.
+      const int behind = 6 - at.corner0 - at.corner1 - leftCorner(at.corner0, at.corner1);
+      const HalfFace h = adjacency::halfFaceOf(at.tet, behind);
+      if (!topology.isBoundary(h)) continue;
+      first = at;
+      start = h;
+    }
+    const Tet& tet = topology.tets[first.tet];
+    edges_.push_back({tet[first.corner0], tet[first.corner1]});
+    starts_.push_back(start);
+    const auto ends = static_cast<lattice::CornerMask>(lattice::cornerBit(first.corner0) |
+                                                       lattice::cornerBit(first.corner1));
+    adjacency::EdgeTurn turn(topology, first.tet, ends, leftCorner(first.corner0, first.corner1));
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      outs_.push_back(turn.out());
+      if (turn.next() == kNone) break;
+      turn.step();
+    }
+    begins_.push_back(outs_.size());
+  }
+}
+
+std::array<Index, 3> EdgeWalks::edgesOf(HalfFace h) const {
+  std::array<Index, 3> edges{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto ends = static_cast<lattice::CornerMask>(
+        lattice::kWholeTet ^ lattice::cornerBit(adjacency::localOf(h)) ^
+        lattice::cornerBit(lattice::kFaceCorners[h % 4][k]));
+    edges[k] = fans_.edgeOf(adjacency::tetOf(h), ends);
+  }
+  return edges;
+}
+
+}  // namespace hexhex::shape
