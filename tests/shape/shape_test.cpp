@@ -224,6 +224,24 @@ TEST(Shapes, CanBeCancelled) {
   }
 }
 
+/// Faces of a tetrahedron are oblique in each polycube; along frames they are not.
+TEST(Shapes, TakeTheBetterOfBothWays) {
+  const TetMap sample = generateSample(SampleKind::Tetrahedron).map;
+  const TetMesh tets = {sample.points, sample.tets};
+  const MeshedPart polycube = meshed(tets, 500);
+  Context context;
+  MeshOptions options;
+  options.quantize = {.cells = 500, .densify = true};
+  const MeshedPart best = meshFromTets(tets, options, context);
+  EXPECT_EQ(best.shape.method, ShapeMethod::Frames);
+  EXPECT_TRUE(best.verification.passed());
+  EXPECT_TRUE(best.improvement.after.allPositive());
+  EXPECT_GT(best.improvement.after.minimum, polycube.improvement.after.minimum);
+  const ShapedMap map = mapFromTets(tets, {}, context);
+  EXPECT_EQ(map.report.method, ShapeMethod::Frames);
+  EXPECT_EQ(map.report.taggedEdges, map.report.featureEdges);
+}
+
 /// Those of samples are bodies of several kinds, some with many tets in a point.
 TEST(Shapes, AreThoseOfSamples) {
   for (const SampleKindName& kind : sampleKinds()) {
