@@ -44,6 +44,7 @@ enum ExitCode : int {
     case ErrorCode::HalfIntegerFixedPoint:
     case ErrorCode::TooLarge:
     case ErrorCode::AmbiguousMesh:
+    case ErrorCode::NotMeshable:
       return kInvalidMap;
     case ErrorCode::Cancelled:
       return kInterrupted;
@@ -65,6 +66,8 @@ struct Command {
 [[nodiscard]] Command addVerify(CLI::App& app);
 [[nodiscard]] Command addGenerate(CLI::App& app);
 [[nodiscard]] Command addRepair(CLI::App& app);
+[[nodiscard]] Command addMap(CLI::App& app);
+[[nodiscard]] Command addMesh(CLI::App& app);
 [[nodiscard]] Command addQuantize(CLI::App& app);
 [[nodiscard]] Command addImprove(CLI::App& app);
 [[nodiscard]] Command addInfo(CLI::App& app);

@@ -34,6 +34,7 @@ constexpr const char* kFooter = R"(Examples:
   hexhex extract sphere.hexex -o fine.mesh --scale 4 --report fine.json
   hexhex verify sphere.hexex fine.mesh --scale 4
   hexhex info fine.mesh
+  hexhex mesh part.msh -o mesh.vtu --cells 50000         from tets alone
   hexhex extract seamless.hexex -o mesh.vtu --quantize --cells 50000
   hexhex improve sphere.vtu --map sphere.hexex -o better.vtu
   hexhex convert sphere.vtu sphere.msh           for Gmsh
@@ -115,9 +116,10 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
   app.failure_message(usageProblem);
-  const std::array commands = {addExtract(app),  addCheck(app),   addVerify(app),  addGenerate(app),
-                               addQuantize(app), addRepair(app),  addImprove(app), addInfo(app),
-                               addConvert(app),  addFormats(app), addView(app),    addHelp(app)};
+  const std::array commands = {addMesh(app),    addMap(app),      addExtract(app),  addCheck(app),
+                               addVerify(app),  addGenerate(app), addQuantize(app), addRepair(app),
+                               addImprove(app), addInfo(app),     addConvert(app),  addFormats(app),
+                               addView(app),    addHelp(app)};
   if (argc == 1) {
     fmt::print("{}", app.help());
     return kSuccess;

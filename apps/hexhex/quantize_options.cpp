@@ -10,30 +10,40 @@
 
 namespace hexhex::command {
 
+namespace {
+
+std::string whyNotPositive(const std::string& text) {
+  double value = 0;
+  return CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)
+             ? std::string()
+             : "'" + text + "' is not a number greater than 0";
+}
+
+}  // namespace
+
+std::array<CLI::Option*, 2> addDensity(CLI::App& parser, QuantizeOptions& options) {
+  CLI::Option* const cells = parser.add_option("--cells", options.cells, "About so many hexahedra")
+                                 ->check(whyNotPositive)
+                                 ->option_text("NUMBER");
+  CLI::Option* const edge = parser
+                                .add_option("--edge-length", options.edgeLength,
+                                            "Hexahedra with edges of about this length in space")
+                                ->check(whyNotPositive)
+                                ->option_text("LENGTH");
+  cells->excludes(edge);
+  return {cells, edge};
+}
+
 std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
                                                const std::string& scaleName) {
-  const auto positive = [](const std::string& text) {
-    double value = 0;
-    return CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)
-               ? std::string()
-               : "'" + text + "' is not a number greater than 0";
-  };
-  CLI::Option* const cells = parser.add_option("--cells", options.cells, "About so many hexahedra")
-                                 ->check(positive)
-                                 ->option_text("NUMBER");
+  const auto [cells, edge] = addDensity(parser, options);
   CLI::Option* const scale =
       parser
           .add_option(scaleName, options.scale,
                       "Multiply the seamless map's parameters by about so much")
-          ->check(positive)
+          ->check(whyNotPositive)
           ->option_text("NUMBER");
-  CLI::Option* const edge = parser
-                                .add_option("--edge-length", options.edgeLength,
-                                            "Hexahedra with edges of about this length in space")
-                                ->check(positive)
-                                ->option_text("LENGTH");
-  cells->excludes(scale)->excludes(edge);
-  scale->excludes(edge);
+  scale->excludes(cells)->excludes(edge);
   CLI::Option* const densify =
       parser.add_flag("--densify", options.densify,
                       "If the map cannot be bent onto so few cells: take the\n"

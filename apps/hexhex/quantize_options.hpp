@@ -12,7 +12,11 @@
 
 namespace hexhex::command {
 
-/// Adds --cells, an option of this name for the scale, --edge-length and --densify.
+/// Adds --cells and --edge-length.
+/// @return both
+std::array<CLI::Option*, 2> addDensity(CLI::App& parser, QuantizeOptions& options);
+
+/// Adds these, an option of this name for the scale and --densify.
 /// @return all of them
 std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
                                                const std::string& scaleName);

@@ -11,6 +11,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/parts.hpp>
 #include <hexhex/quantize.hpp>
+#include <hexhex/shape.hpp>
 
 #include "suggestions.hpp"
 
@@ -31,11 +32,16 @@ std::string MapSource::description() const {
   return isPair() ? tets + " and " + (flags.empty() ? polycube : flags) : file;
 }
 
+namespace {
+/// Instead of a file with labels.
+constexpr const char* kAutomaticFlags = "auto";
+}  // namespace
+
 std::vector<std::filesystem::path> MapSource::files() const {
   if (!isPair()) return {file};
   std::vector<std::filesystem::path> all = {tets};
   for (const std::string* const each : {&polycube, &flags, &surface}) {
-    if (!each->empty()) all.emplace_back(*each);
+    if (!each->empty() && *each != kAutomaticFlags) all.emplace_back(*each);
   }
   return all;
 }
@@ -89,7 +95,7 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
                       "... or labels 0 to 5 (+x -x +y -y +z -z) of its boundary:\n"
                       "a polycube's seamless map is made of them. Text with four\n"
                       "per tet, or one per triangle of --surface; or .vtu, .vtk\n"
-                      "with triangles (docs/quantize.md)")
+                      "with triangles (docs/quantize.md); auto: they are found")
           ->option_text("FILE");
   polycube->needs(tets)->excludes(flags);
   flags->needs(tets);
@@ -162,6 +168,10 @@ void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& 
 }
 
 TetMap readMap(const MapSource& source, Context& context) {
+  if (source.flags == kAutomaticFlags) {
+    const TetMesh tets = readTetMesh(source.tets, {}, context);
+    return mapFromTets(tets, {.method = ShapeMethod::Polycube}, context).map;
+  }
   if (!source.flags.empty()) {
     const TetMesh tets = readTetMesh(source.tets, {}, context);
     const FlagsFile flags = {source.flags, source.surface, source.flagsArray};

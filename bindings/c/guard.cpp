@@ -13,7 +13,7 @@
 
 static_assert(hexhex::c::statusOf(hexhex::ErrorCode::InvalidArgument) == HEXHEX_INVALID_ARGUMENT);
 static_assert(hexhex::c::statusOf(hexhex::ErrorCode::FlippedTet) == HEXHEX_FLIPPED_TET);
-static_assert(hexhex::c::statusOf(hexhex::ErrorCode::AmbiguousMesh) == HEXHEX_AMBIGUOUS_MESH);
+static_assert(hexhex::c::statusOf(hexhex::ErrorCode::NotMeshable) == HEXHEX_NOT_MESHABLE);
 static_assert(static_cast<int>(hexhex::PlaceKind::Cell) == HEXHEX_PLACE_CELL);
 // Any int may come in: without an underlying type, reading another number would be undefined.
 template <class... Enumerations>

@@ -35,7 +35,8 @@ enum class ErrorCode {
   OutOfMemory,            ///< memory was exhausted
   VerificationFailed,     ///< the result does not agree with the map
   Internal,               ///< a bug of this library
-  AmbiguousMesh           ///< a cell around an inner edge: faces of it have the same vertices
+  AmbiguousMesh,          ///< a cell around an inner edge: faces of it have the same vertices
+  NotMeshable             ///< no valid map of the shape was found
 };
 
 /// The name of a code, e.g. "FlippedTet".

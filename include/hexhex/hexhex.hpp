@@ -11,6 +11,7 @@
 #include <hexhex/improve.hpp>        // IWYU pragma: export
 #include <hexhex/io.hpp>             // IWYU pragma: export
 #include <hexhex/map_structure.hpp>  // IWYU pragma: export
+#include <hexhex/mesh.hpp>           // IWYU pragma: export
 #include <hexhex/partial.hpp>        // IWYU pragma: export
 #include <hexhex/parts.hpp>          // IWYU pragma: export
 #include <hexhex/patches.hpp>        // IWYU pragma: export
@@ -18,6 +19,7 @@
 #include <hexhex/quantize.hpp>       // IWYU pragma: export
 #include <hexhex/repair.hpp>         // IWYU pragma: export
 #include <hexhex/samples.hpp>        // IWYU pragma: export
+#include <hexhex/shape.hpp>          // IWYU pragma: export
 #include <hexhex/stream.hpp>         // IWYU pragma: export
 #include <hexhex/structure.hpp>      // IWYU pragma: export
 #include <hexhex/survey.hpp>         // IWYU pragma: export

@@ -20,8 +20,9 @@ constexpr auto kNames =
                                      "FlippedTet",         "HalfIntegerFixedPoint",
                                      "TooLarge",           "Cancelled",
                                      "OutOfMemory",        "VerificationFailed",
-                                     "Internal",           "AmbiguousMesh"});
-static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::AmbiguousMesh) + 1);
+                                     "Internal",           "AmbiguousMesh",
+                                     "NotMeshable"});
+static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::NotMeshable) + 1);
 
 }  // namespace
 

@@ -37,6 +37,8 @@ double inverseJacobian(const std::array<Vec3, 4>& points, const TetParameters& u
   return product > 0 ? tripleProduct(columns[0], columns[1], columns[2]) / product : 0;
 }
 
+}  // namespace
+
 MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Tet>& tets,
                            const std::vector<TetParameters>& parameters) {
   std::vector<double> values(tets.size());
@@ -52,6 +54,8 @@ MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Te
   distortion.median = *middle;
   return distortion;
 }
+
+namespace {
 
 /// Singular curves must be what they were.
 void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <base/disjoint_sets.hpp>
+#include <base/random.hpp>
 #include <lattice/charts_along_trees.hpp>
-#include <samples/random.hpp>
 #include <samples/steps.hpp>
 
 namespace hexhex::samples {

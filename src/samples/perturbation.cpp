@@ -9,8 +9,8 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/random.hpp>
 #include <base/vector3.hpp>
-#include <samples/random.hpp>
 #include <samples/steps.hpp>
 
 namespace hexhex::samples {

@@ -174,7 +174,6 @@ Height Energy::at(const Vector& unknowns, double epsilon) const {
 
 Height Energy::at(const Vector& unknowns, double epsilon, Vector& gradient) {
   const Vector x = coordinatesOf(problem_, unknowns);
-  assert(static_cast<std::size_t>(unknowns.size()) == unknownCount());
   assert(forces_.size() == problem_.elements.size());
   const Height height = collect([&](std::size_t index, const Element& element, Height& part) {
     const Eigen::Matrix3d j = jacobian(problem_, element, x.data());

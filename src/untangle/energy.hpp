@@ -70,7 +70,6 @@ class Energy {
   /// @param problem  must outlive this, and keep its elements; x and pull may change
   Energy(const Problem& problem, Stage& stage);
 
-  [[nodiscard]] std::size_t unknownCount() const noexcept { return problem_.x.size(); }
   [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
   [[nodiscard]] const Uses& uses() const noexcept { return uses_; }
 

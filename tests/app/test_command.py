@@ -884,6 +884,25 @@ class Repair(CommandTest):
         self.assertTrue(text.startswith("The map is seamless"), text)
         self.assertNotIn("OffLattice", text)
 
+    def test_map_and_mesh(self):
+        """From tets alone; a mesh is certified, or not written."""
+        self.run_command("generate", "box", "--cells", "2", "--refine", "2", "-o", "part.hexex", "--quiet")
+        if "cannot make maps" in self.run_command("map", "part.hexex", "-o", "shaped.hexex", expect=None).stderr:
+            self.skipTest("built without quantization")
+        self.run_command("quantize", "shaped.hexex", "-o", "integer.hexex", "--cells", "100")
+        run = self.run_command("mesh", "part.hexex", "-o", "part.vtu", "--cells", "100", "--method", "polycube",
+                               "--keep-map", "kept.hexex", "--report", "part.json")
+        self.assertIn("certified positive everywhere", run.stdout)
+        self.assertIn("6 faces, 8 corners", run.stdout)
+        report = json.loads((self.folder / "part.json").read_text())
+        self.assertTrue(report["map"]["labels"]["valid"])
+        self.assertEqual(report["map"]["tagged_edges"], report["map"]["feature_edges"])
+        self.assertEqual(report["improvement"]["not_positive"], [])
+        self.run_command("verify", "kept.hexex", "part.vtu")
+        self.run_command("quantize", "--tets", "part.hexex", "--flags", "auto", "-o", "auto.hexex", "--cells", "100")
+        self.run_command("mesh", "part.hexex", "-o", "bad.vtu", "--method", "magic", expect=BAD_USAGE)
+        self.assertFalse((self.folder / "bad.vtu").exists())
+
     def test_quantize(self):
         self.run_command("generate", "sphere", "--stretch", "0.5", "--charts", "random", "--quiet",
                          "-o", "seamless.hexex")

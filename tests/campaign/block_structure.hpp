@@ -3,13 +3,11 @@
 
 #include <string>
 
+#include <base/random.hpp>
 #include <samples/block_complex.hpp>
 #include <samples/kinds.hpp>
-#include <samples/random.hpp>
 
 namespace hexhex::campaign {
-
-using samples::Random;
 
 /// Mostly small things are drawn: they are fast, and large ones find little that they do not.
 inline std::uint64_t oftenOr(std::uint64_t usual, std::uint64_t rare, Random& random) {

@@ -11,8 +11,8 @@
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
-#include "quantize/labelled_bodies.hpp"
 #include "support/error_of.hpp"
+#include "support/labelled_bodies.hpp"
 
 namespace hexhex::test {
 

@@ -16,8 +16,8 @@
 #include <io/io_test_support.hpp>
 
 #include "extract/support.hpp"
-#include "quantize/labelled_bodies.hpp"
 #include "support/error_of.hpp"
+#include "support/labelled_bodies.hpp"
 
 namespace hexhex::test {
 

@@ -85,7 +85,8 @@ typedef enum hexhex_status HEXHEX_AS_INT {
   HEXHEX_OUT_OF_MEMORY = 21,
   HEXHEX_VERIFICATION_FAILED = 22,
   HEXHEX_INTERNAL = 23,
-  HEXHEX_AMBIGUOUS_MESH = 24
+  HEXHEX_AMBIGUOUS_MESH = 24,
+  HEXHEX_NOT_MESHABLE = 25
 } hexhex_status;
 
 /** The name of a status as in docs/errors.md, e.g. "FlippedTet"; "Ok"; "Unknown". Never NULL. */

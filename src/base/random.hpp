@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace hexhex::samples {
+namespace hexhex {
 
 /// SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 class Random {
@@ -40,4 +40,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace hexhex::samples
+}  // namespace hexhex

@@ -1,0 +1,83 @@
+// `hexhex map`: from tets alone to a seamless map.
+#include <memory>
+#include <string>
+
+#include <hexhex/io.hpp>
+#include <hexhex/shape.hpp>
+
+#include "command.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
+#include "output.hpp"
+#include "shape_options.hpp"
+#include "shared_options.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct MapArguments {
+  std::string part;
+  std::string output;
+  OutputChoice choice;
+  std::string report;
+  ShapeOptions options;
+  RunOptions run;
+};
+
+int run(const MapArguments& arguments) {
+  const WriteOptions writing = arguments.choice.options();
+  requireMapFormat(arguments.output, writing);
+  requireDifferent(arguments.part, arguments.output);
+  LongRun longRun(arguments.run, {{"readTetMesh", 0.5}, {"mapFromTets", 20}, {"writeMap", 0.5}});
+  Context& context = longRun.context();
+  requireWritable(arguments.output);
+  Report reportFile(arguments.report);
+  const TetMesh tets = readTetMesh(arguments.part, {}, context);
+  const ShapedMap result = mapFromTets(tets, arguments.options, context);
+  writeMap(result.map, arguments.output, writing, context);
+  longRun.finish();
+  if (reportFile.isWanted()) {
+    Json json = shapeAsJson(result.report);
+    for (const StageTime& stage : context.stageTimes()) {
+      json["seconds"][stage.stage] = stage.seconds;
+    }
+    reportFile.write(jsonText(json));
+  }
+  if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
+  printFiles(arguments.part, arguments.output);
+  printShape(result.report);
+  return kSuccess;
+}
+
+}  // namespace
+
+Command addMap(CLI::App& app) {
+  const auto arguments = std::make_shared<MapArguments>();
+  CLI::App* const parser = app.add_subcommand("map", "Make a seamless map of a part that has none");
+  addPart(*parser, arguments->part);
+  parser
+      ->add_option("-o,--output", arguments->output,
+                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
+      ->required()
+      ->option_text("FILE REQUIRED");
+  addOutputChoice(*parser, arguments->choice);
+  addShapeOptions(*parser, arguments->options);
+  parser
+      ->add_option("--feature-angle", arguments->options.featureAngle,
+                   "Edges where the surface turns by more than that, in\n"
+                   "degrees, get a tag where they are edges of the map")
+      ->check(CLI::Range(0.0, 180.0))
+      ->option_text("ANGLE [40]");
+  addReport(*parser, arguments->report, "Write in JSON what was made, and how long each step took");
+  addRunOptions(*parser, arguments->run);
+  parser->footer(
+      "Exit code 1: no map was found, or the tets are no mesh of a solid; nothing is written.\n"
+      "docs/making-maps.md explains what happens.\n\n"
+      "Example:\n"
+      "  hexhex map part.msh -o seamless.hexex\n"
+      "  hexhex quantize seamless.hexex -o integer.hexex --cells 50000\n"
+      "  hexhex mesh part.msh -o mesh.vtu --cells 50000     all in one go");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

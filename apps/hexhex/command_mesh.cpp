@@ -1,0 +1,180 @@
+// `hexhex mesh`: from tets alone to a hexahedral mesh whose cells are certified.
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/mesh.hpp>
+
+#include "command.hpp"
+#include "improve_options.hpp"
+#include "json.hpp"
+#include "long_run.hpp"
+#include "output.hpp"
+#include "quantize_options.hpp"
+#include "shape_options.hpp"
+#include "shared_options.hpp"
+#include "view_page.hpp"
+
+namespace hexhex::command {
+namespace {
+
+struct MeshArguments {
+  std::string part;
+  std::string output;
+  std::string map;   ///< empty: it is not kept
+  std::string page;  ///< empty: none
+  OutputChoice choice;
+  std::string report;
+  MeshOptions options;
+  bool allowBad = false;
+  RunOptions run;
+};
+
+void requireAllDifferent(const MeshArguments& arguments) {
+  const std::array<const std::string*, 5> files = {
+      &arguments.part, &arguments.output, &arguments.map, &arguments.page, &arguments.report};
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t k = i + 1; k < files.size(); ++k) {
+      if (!files[i]->empty() && !files[k]->empty()) requireDifferent(*files[i], *files[k]);
+    }
+  }
+}
+
+void requireCertified(const MeshArguments& arguments, const Certificate& certificate) {
+  if (certificate.allPositive() || arguments.allowBad) return;
+  throw Error(ErrorCode::NotMeshable,
+              refutationAsText(certificate) +
+                  " Nothing was written. Try another number of cells, or a larger --slack; "
+                  "--allow-bad writes the mesh as it is.",
+              {PlaceKind::Cell, certificate.worst.front().cell});
+}
+
+void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& longRun) {
+  Context& context = longRun.context();
+  if (!arguments.map.empty()) {
+    longRun.part("writing", [&] { writeMap(part.map, arguments.map, {}, context); });
+  }
+  WriteOptions writing = arguments.choice.options();
+  writing.scaledJacobians = part.improvement.after.scaledJacobians;
+  longRun.part("writing", [&] { writeHexMesh(part.mesh, arguments.output, writing, context); });
+  if (arguments.page.empty()) return;
+  ViewOptions options;
+  options.verification = &part.verification;
+  options.mapName = std::filesystem::path(arguments.part).filename().string();
+  options.scaledJacobians = part.improvement.after.scaledJacobians;
+  longRun.part("page",
+               [&] { writePage(part.mesh, arguments.page, arguments.output, options, context); });
+}
+
+Json partAsJson(const MeshArguments& arguments, const MeshedPart& part, std::size_t tets,
+                Context& context) {
+  Json seconds = Json::object();
+  for (const StageTime& stage : context.stageTimes()) seconds[stage.stage] = 0.0;
+  for (const StageTime& stage : context.stageTimes()) {
+    seconds[stage.stage] = seconds[stage.stage].get<double>() + stage.seconds;
+  }
+  return {{"part", {{"file", arguments.part}, {"tets", tets}}},
+          {"mesh",
+           {{"file", arguments.output},
+            {"cells", part.mesh.cells.size()},
+            {"vertices", part.mesh.points.size()}}},
+          {"map", shapeAsJson(part.shape)},
+          {"quantization", quantizeAsJson(part.quantization)},
+          {"verification", verificationAsJson(part.verification)},
+          {"improvement", improvementAsJson(part.improvement)},
+          {"tags_released", part.tagsReleased},
+          {"seconds", std::move(seconds)},
+          {"peak_memory_bytes", peakMemory()}};
+}
+
+void printPart(const MeshArguments& arguments, const MeshedPart& part, const LongRun& run) {
+  printFiles(arguments.part, arguments.output);
+  printShape(part.shape);
+  printLine("mesh", fmt::format("{} of {:.0f} asked for", counted(part.mesh.cells.size(), "cell"),
+                                part.quantization.cellsWanted));
+  printImprovement(part.improvement);
+  if (part.tagsReleased) {
+    printLine("sharp edges", "vertices left some, as cells were not positive otherwise");
+  }
+  printLine("time", run.partsAsText());
+}
+
+int run(const MeshArguments& arguments) {
+  requireHexMeshFormat(arguments.output, arguments.choice.options());
+  if (!arguments.map.empty()) requireMapFormat(arguments.map, WriteOptions{});
+  requireAllDifferent(arguments);
+  LongRun longRun(arguments.run, {{"readTetMesh", 0.5},
+                                  {"meshFromTets", 40},
+                                  {"writeMap", 0.1},
+                                  {"writeHexMesh", 0.3},
+                                  {"writeViewPage", 0.3}});
+  Context& context = longRun.context();
+  requireWritable(arguments.output);
+  if (!arguments.map.empty()) requireWritable(arguments.map);
+  requirePage(arguments.page);
+  Report reportFile(arguments.report);
+  const TetMesh tets =
+      longRun.part("reading", [&] { return readTetMesh(arguments.part, {}, context); });
+  MeshOptions options = arguments.options;
+  options.shape.featureAngle = options.improve.featureAngle;
+  const MeshedPart part =
+      longRun.part("meshing", [&] { return meshFromTets(tets, options, context); });
+  requireCertified(arguments, part.improvement.after);
+  writeAll(arguments, part, longRun);
+  longRun.finish();
+  if (reportFile.isWanted()) {
+    reportFile.write(jsonText(partAsJson(arguments, part, tets.tets.size(), context)));
+  }
+  if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
+  printPart(arguments, part, longRun);
+  return kSuccess;
+}
+
+void addOutputs(CLI::App& parser, MeshArguments& arguments) {
+  parser
+      .add_option("-o,--output", arguments.output,
+                  "The mesh to write; `hexhex formats` lists the formats")
+      ->required()
+      ->option_text("FILE REQUIRED");
+  addOutputChoice(parser, arguments.choice);
+  parser
+      .add_option("--keep-map", arguments.map,
+                  "Write the integer-grid map, too, for `extract` and `verify`")
+      ->option_text("FILE");
+  addReport(parser, arguments.report,
+            "Write in JSON: labels, map, quality, distances, and how\nlong each step took");
+  addPage(parser, arguments.page, "Write a page that shows the mesh in any browser");
+  parser.add_flag("--allow-bad", arguments.allowBad,
+                  "Write the mesh even if cells are not positive");
+}
+
+}  // namespace
+
+Command addMesh(CLI::App& app) {
+  const auto arguments = std::make_shared<MeshArguments>();
+  CLI::App* const parser =
+      app.add_subcommand("mesh", "Make a hexahedral mesh of a part that has no map");
+  addPart(*parser, arguments->part);
+  addOutputs(*parser, *arguments);
+  arguments->options.quantize.densify = true;
+  addDensity(*parser, arguments->options.quantize);
+  addShapeOptions(*parser, arguments->options.shape);
+  addImproveOptions(*parser, arguments->options.improve);
+  addRunOptions(*parser, arguments->run);
+  parser->footer(
+      "map, quantize, extract, verify and improve in one go. A mesh of which a cell is not\n"
+      "certified to be positive everywhere is not written. Exit code 1: no map was found, or no\n"
+      "such mesh. docs/making-maps.md explains what happens.\n\n"
+      "Example:\n"
+      "  hexhex mesh part.msh -o mesh.vtu --cells 50000 --view mesh.html");
+  return {parser, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace hexhex::command

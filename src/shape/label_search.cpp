@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <shape/label_search.hpp>
+
+namespace hexhex::shape {
+
+namespace {
+
+constexpr std::uint64_t kMostMoves = 1500;
+/// Once labels are valid, the rest is shape: borders become shorter, triangles face their labels.
+constexpr std::uint64_t kMovesIfValid = 300;
+/// Then it goes on from the best that was found.
+constexpr std::uint64_t kMovesUntilReturn = 400;
+constexpr std::size_t kLargestDisk = 3000;
+/// Of disks, in mean edges.
+constexpr double kLeastRadius = 1.5;
+constexpr double kLargestRadius = 25;
+/// A worsening of one wrong loop, corner or border is 1.
+constexpr double kTemperature = 0.15;
+
+/// Between two positive numbers, uniform on a logarithmic scale.
+double drawBetween(double low, double high, Random& random) {
+  return low * std::exp(random.share() * std::log(high / low));
+}
+
+bool isValid(const Verdict& verdict) { return verdict.report.isValid(); }
+
+}  // namespace
+
+LabelSearch::LabelSearch(const Surface& surface, const LabelCosts& costs, Random random)
+    : surface_(surface),
+      check_(surface, costs),
+      expansion_(surface, costs),
+      random_(random),
+      stamps_(surface.triangleCount()) {}
+
+CheckedLabels LabelSearch::improve(const Labels& start, Context& context) {
+  CheckedLabels current = {start, check_(start)};
+  CheckedLabels best = current;
+  std::uint64_t moves = 0;
+  while (moves < (isValid(best.verdict) ? kMovesIfValid : kMostMoves)) {
+    context.throwIfCancelled();
+    if (++moves % kMovesUntilReturn == 0) current = best;
+    Labels labels = current.labels;
+    move(labels, current.verdict);
+    if (labels == current.labels) continue;
+    const double rest = 1 - static_cast<double>(moves) / static_cast<double>(kMostMoves);
+    const double allowed =
+        random_.share() < 0.3 ? -kTemperature * rest * rest * std::log(1 - random_.share()) : 0;
+    Verdict verdict = check_(labels);
+    if (verdict.energy >= current.verdict.energy + allowed) continue;
+    current.labels = std::move(labels);
+    current.verdict = std::move(verdict);
+    // What is valid is better than what is not, however little that lacks.
+    const bool gains = isValid(current.verdict) == isValid(best.verdict)
+                           ? current.verdict.energy < best.verdict.energy
+                           : isValid(current.verdict);
+    if (gains) best = current;
+  }
+  best.moves = moves;
+  return best;
+}
+
+bool LabelSearch::mark(Index triangle) {
+  if (stamps_[triangle] == stamp_) return false;
+  stamps_[triangle] = stamp_;
+  return true;
+}
+
+std::vector<Index> LabelSearch::disk(Index centre, double radius) {
+  unmarkAll();
+  mark(centre);
+  std::vector<Index> disk = {centre};
+  for (std::size_t i = 0; i < disk.size() && disk.size() < kLargestDisk; ++i) {
+    for (Side side = 3 * disk[i]; side < 3 * disk[i] + 3; ++side) {
+      const Index beyond = surface_.beyond(side);
+      const Vec3 away = minus(surface_.centres[beyond], surface_.centres[centre]);
+      if (length(away) < radius && mark(beyond)) disk.push_back(beyond);
+    }
+  }
+  return disk;
+}
+
+/// A triangle where something is wrong, or one at a border, or near to such.
+Index LabelSearch::drawPlace(const Labels& labels, const Verdict& verdict) {
+  constexpr int kTries = 60;  // for a border
+  Index place = 0;
+  if (!verdict.places.empty() && random_.share() < 0.85) {
+    place = verdict.places[random_.below(verdict.places.size())];
+  } else {
+    const auto isAtBorder = [&](Index t) {
+      return labels[surface_.beyond(3 * t)] != labels[t] ||
+             labels[surface_.beyond(3 * t + 1)] != labels[t] ||
+             labels[surface_.beyond(3 * t + 2)] != labels[t];
+    };
+    for (int i = 0; i < kTries; ++i) {
+      place = static_cast<Index>(random_.below(labels.size()));
+      if (isAtBorder(place)) break;
+    }
+  }
+  if (random_.share() >= 0.3) return place;
+  const std::vector<Index> near = disk(place, 2.5 * surface_.meanEdge);
+  return near[random_.below(near.size())];
+}
+
+/// The nearer to the normal, the likelier; but any.
+lattice::Direction LabelSearch::drawLabel(Index triangle) {
+  const auto weight = [&](lattice::Direction label) {
+    return std::max(0.03, 0.35 + cosine(surface_.normals[triangle], label));
+  };
+  double sum = 0;
+  for (lattice::Direction label = 0; label < lattice::kDirections; ++label) sum += weight(label);
+  double left = random_.share() * sum;
+  for (lattice::Direction label = 0; label < lattice::kDirections; ++label) {
+    left -= weight(label);
+    if (left <= 0) return label;
+  }
+  return lattice::kDirections - 1;
+}
+
+Compactness LabelSearch::drawCompactness() {
+  const double weight = drawBetween(0.3, 12, random_);
+  return {weight, random_.share() < 0.5 ? 0 : drawBetween(0.5, 10, random_)};
+}
+
+/// @param labels  of which some may change
+void LabelSearch::move(Labels& labels, const Verdict& verdict) {
+  const Index place = drawPlace(labels, verdict);
+  const double largest = std::max(
+      2 * kLeastRadius, std::min(kLargestRadius, 0.4 * surface_.diagonal / surface_.meanEdge));
+  const double radius = surface_.meanEdge * drawBetween(kLeastRadius, largest, random_);
+  const double kind = random_.share();
+  if (kind < 0.2) {
+    const lattice::Direction label = drawLabel(place);
+    for (const Index t : disk(place, 0.5 * radius)) labels[t] = label;
+  } else if (kind < 0.32) {
+    changeChart(labels, place);
+  } else {
+    cutAgain(labels, place, radius, (kind - 0.32) / 0.68);
+  }
+}
+
+/// A whole chart gets the label of one beside it, or another one from a cut.
+void LabelSearch::changeChart(Labels& labels, Index place) {
+  unmarkAll();
+  mark(place);
+  std::vector<Index> chart = {place};
+  std::vector<lattice::Direction> beside;
+  for (std::size_t i = 0; i < chart.size(); ++i) {
+    for (Side side = 3 * chart[i]; side < 3 * chart[i] + 3; ++side) {
+      const Index beyond = surface_.beyond(side);
+      if (labels[beyond] != labels[place]) {
+        beside.push_back(labels[beyond]);
+      } else if (mark(beyond)) {
+        chart.push_back(beyond);
+      }
+    }
+  }
+  if (beside.empty() || chart.size() > labels.size() / 4) return;
+  std::sort(beside.begin(), beside.end());
+  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+  const lattice::Direction label = beside[random_.below(beside.size())];
+  if (random_.share() < 0.6) {
+    for (const Index t : chart) labels[t] = label;
+  } else {
+    cutWithout(labels, std::move(chart));
+  }
+}
+
+/// @param chart  whose triangles are marked
+void LabelSearch::cutWithout(Labels& labels, std::vector<Index> chart) {
+  const std::size_t inside = chart.size();
+  Region region = {std::move(chart), {}};
+  std::size_t begin = 0;
+  for (std::uint64_t rings = 1 + random_.below(3); rings > 0; --rings) {
+    const std::size_t end = region.triangles.size();
+    for (; begin < end; ++begin) {
+      const Side first = 3 * region.triangles[begin];
+      for (Side side = first; side < first + 3; ++side) {
+        if (mark(surface_.beyond(side))) region.triangles.push_back(surface_.beyond(side));
+      }
+    }
+  }
+  region.forbidden.resize(region.triangles.size());
+  const auto own = static_cast<std::uint8_t>(1U << labels[region.triangles.front()]);
+  std::fill_n(region.forbidden.begin(), inside, own);
+  expansion_.run(labels, region, drawCompactness(), 2, random_);
+}
+
+/// @param kind  0 to 1: without conditions, with a label forced in the middle, or one forbidden
+void LabelSearch::cutAgain(Labels& labels, Index place, double radius, double kind) {
+  Region region = {disk(place, radius), {}};
+  if (kind > 0.26) {
+    const bool forces = kind < 0.7;
+    const lattice::Direction label = forces ? drawLabel(place) : labels[place];
+    const unsigned only = 1U << label;
+    const double share = forces ? 0.15 + 0.5 * random_.share() : 0.3 + 0.6 * random_.share();
+    for (const Index t : region.triangles) {
+      const double distance = length(minus(surface_.centres[t], surface_.centres[place]));
+      const unsigned forbidden = distance >= share * radius ? 0 : forces ? ~only & 63U : only;
+      region.forbidden.push_back(static_cast<std::uint8_t>(forbidden));
+    }
+  }
+  expansion_.run(labels, region, drawCompactness(), 2, random_);
+}
+
+}  // namespace hexhex::shape

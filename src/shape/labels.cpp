@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+
+#include <shape/labels.hpp>
+
+#include <base/parallel.hpp>
+
+namespace hexhex::shape {
+
+namespace {
+
+/// From labels that follow the surface to those of few large faces.
+constexpr std::array<Compactness, 4> kStarts = {{{1, 0}, {3, 0}, {8, 1}, {20, 1}}};
+constexpr int kSweeps = 3;
+/// Searches beside each other, from the best starts; and once more if all fail.
+constexpr std::size_t kSearches = 2;
+constexpr int kRounds = 2;
+
+Labels nearestLabels(const Surface& surface) {
+  constexpr double kTie = 1e-9;  // the first of several axes that are as near
+  Labels labels(surface.triangleCount());
+  for (Index t = 0; t < labels.size(); ++t) {
+    for (lattice::Direction label = 1; label < lattice::kDirections; ++label) {
+      const Vec3& normal = surface.normals[t];
+      if (cosine(normal, label) > cosine(normal, labels[t]) + kTie) labels[t] = label;
+    }
+  }
+  return labels;
+}
+
+/// The better first: a valid one, then the one with less energy.
+void sortByMerit(std::vector<CheckedLabels>& all) {
+  const auto isBetter = [](const CheckedLabels& a, const CheckedLabels& b) {
+    const bool isValid = a.verdict.report.isValid();
+    if (isValid != b.verdict.report.isValid()) return isValid;
+    return a.verdict.energy < b.verdict.energy;
+  };
+  std::stable_sort(all.begin(), all.end(), isBetter);
+  const auto isSame = [](const CheckedLabels& a, const CheckedLabels& b) {
+    return a.labels == b.labels;
+  };
+  all.erase(std::unique(all.begin(), all.end(), isSame), all.end());
+}
+
+std::vector<CheckedLabels> cutAll(const Surface& surface, const LabelCosts& costs,
+                                  std::uint64_t seed, Stage& stage) {
+  Region all;
+  all.triangles.resize(surface.triangleCount());
+  std::iota(all.triangles.begin(), all.triangles.end(), Index{0});
+  std::vector<CheckedLabels> starts(kStarts.size());
+  parallelFor(stage, kStarts.size(), 1, [&](std::size_t i) {
+    Random random(seed, 2 + i);
+    starts[i].labels = nearestLabels(surface);
+    Expansion(surface, costs).run(starts[i].labels, all, kStarts[i], kSweeps, random);
+    starts[i].verdict = LabelCheck(surface, costs)(starts[i].labels);
+  });
+  return starts;
+}
+
+}  // namespace
+
+std::vector<CheckedLabels> labelsOf(const Surface& surface, std::uint64_t seed, Stage& stage) {
+  const LabelCosts costs(surface);
+  stage.setTotal(kStarts.size() + kSearches * kRounds);
+  std::vector<CheckedLabels> found = cutAll(surface, costs, seed, stage);
+  sortByMerit(found);
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    const std::size_t count = std::min(kSearches, found.size());
+    std::vector<CheckedLabels> better(count);
+    parallelFor(stage, count, 1, [&](std::size_t i) {
+      const Random random(seed, 16 + round * kSearches + i);
+      LabelSearch search(surface, costs, random);
+      better[i] = search.improve(found[i].labels, stage.context());
+    });
+    found.insert(found.end(), better.begin(), better.end());
+    sortByMerit(found);
+    if (found.front().verdict.report.isValid()) break;
+  }
+  return found;
+}
+
+}  // namespace hexhex::shape

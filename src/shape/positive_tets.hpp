@@ -1,0 +1,37 @@
+// Tets whose corners are in an order that makes them positive in space.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <shape/surface.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+namespace hexhex::shape {
+
+class PositiveTets {
+ public:
+  explicit PositiveTets(const TetMesh& given);
+
+  [[nodiscard]] const TetMesh& mesh() const { return mesh_; }
+  void turn(const Rotation& rotation) {
+    for (Vec3& point : mesh_.points) point = turned(rotation, point);
+  }
+  /// Of a place in these tets.
+  [[nodiscard]] Place givenPlace(const Place& place) const {
+    if (place.kind != PlaceKind::Face || !isSwapped_[place.index] || place.second < 2) return place;
+    return {place.kind, place.index, 5 - place.second};
+  }
+
+ private:
+  TetMesh mesh_;
+  std::vector<bool> isSwapped_;
+};
+
+/// The boundary of tets that are a manifold.
+/// @throws Error FlippedTet for flat tets, Orientation for folded ones; those of broken meshes
+[[nodiscard]] Surface readSurface(const PositiveTets& tets, Context& context);
+
+}  // namespace hexhex::shape

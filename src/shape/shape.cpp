@@ -1,0 +1,117 @@
+// A map for a part that has none: a polycube's, or one along a frame field.
+#include <string>
+
+#include <hexhex/shape.hpp>
+
+#if defined(HEXHEX_HAS_QUANTIZE)
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <quantize/quantized_map.hpp>
+#include <shape/features.hpp>
+#include <shape/frames_map.hpp>
+#include <shape/polycube_map.hpp>
+#include <shape/positive_tets.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#endif
+
+namespace hexhex {
+
+#if defined(HEXHEX_HAS_QUANTIZE)
+namespace shape {
+namespace {
+
+void requireInRange(const ShapeOptions& options) {
+  if (options.featureAngle >= 0 && options.featureAngle <= 180) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "The feature angle has to be from 0 to 180 degrees, and is " +
+                  std::to_string(options.featureAngle) + ".");
+}
+
+TetMap framesMap(const PositiveTets& tets, const ShapeOptions& options, Context& context) {
+  Stage stage(context, "frames");
+  try {
+    return mapFromFrames(tets.mesh(), options.featureAngle, stage);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::TransitionResidual && error.code() != ErrorCode::FlippedTet) {
+      throw;
+    }
+    throw Error(ErrorCode::NotMeshable, error.what(), tets.givenPlace(error.place()));
+  }
+}
+
+ShapedMap finish(const TetMesh& given, TetMap map, const ShapeOptions& options, ShapeReport report,
+                 Context& context) {
+  Stage stage(context, "features");
+  std::copy(given.points.begin(), given.points.end(), map.points.begin());
+  report.addedTets = map.tets.size() - given.tets.size();
+  // Frames take all features for edges of the mesh.
+  const FoundFeatures features = featuresOf(map, options.featureAngle * std::numbers::pi / 180,
+                                            report.method == ShapeMethod::Frames, stage);
+  report.featureEdges = features.count;
+  report.taggedEdges = features.aligned.size();
+  map.features.edges = features.aligned;
+  report.distortion = quantization::distortionOf(map.points, map.tets, map.parameters);
+  return {std::move(map), report};
+}
+
+ShapedMap mapBy(ShapeMethod method, const TetMesh& given, const PositiveTets& tets,
+                const Surface& surface, const ShapeOptions& options, Context& context) {
+  ShapeReport report;
+  report.method = method;
+  TetMap map = method == ShapeMethod::Frames
+                   ? framesMap(tets, options, context)
+                   : polycubeMap(tets, surface, options.seed, report, context);
+  return finish(given, std::move(map), options, report, context);
+}
+
+ShapedMap makeMap(const TetMesh& given, const ShapeOptions& options, Context& context) {
+  const PositiveTets tets(given);
+  const Surface surface = readSurface(tets, context);
+  if (options.method != ShapeMethod::Auto) {
+    return mapBy(options.method, given, tets, surface, options, context);
+  }
+  std::optional<Error> noFrames;
+  try {
+    return mapBy(ShapeMethod::Frames, given, tets, surface, options, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::NotMeshable) throw;
+    noFrames = error;
+  }
+  try {
+    return mapBy(ShapeMethod::Polycube, given, tets, surface, options, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::NotMeshable) throw;
+    throw Error(error.code(), std::string(error.what()) + " Frames: " + noFrames->what(),
+                error.place());
+  }
+}
+
+}  // namespace
+}  // namespace shape
+
+ShapedMap mapFromTets(const TetMesh& tets, const ShapeOptions& options, Context& context) {
+  constexpr std::array<WorkStep, 5> kSteps = {
+      {{"surface", 0.1}, {"frames", 6}, {"labelling", 2}, {"mapFromFlags", 4}, {"features", 0.1}}};
+  return inSteps(context, "mapFromTets", kSteps, [&] {
+    shape::requireInRange(options);
+    ShapedMap result;
+    withThreads(context.threads(), [&] { result = shape::makeMap(tets, options, context); });
+    return result;
+  });
+}
+#else
+ShapedMap mapFromTets(const TetMesh& /*tets*/, const ShapeOptions& /*options*/,
+                      Context& /*context*/) {
+  throw Error(ErrorCode::InvalidArgument,
+              "This build of hexhex cannot make maps of tets. Install Eigen (libeigen3-dev) and "
+              "build it anew.");
+}
+#endif
+
+}  // namespace hexhex

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <quantize/polycube/boundary_sides.hpp>
+#include <shape/surface.hpp>
+
+namespace hexhex::shape {
+
+namespace {
+
+/// Of a triangle without an area or an edge without a length, any will do.
+Vec3 normalized(const Vec3& v) {
+  const double size = length(v);
+  if (size == 0) return {0, 0, 1};
+  return {v[0] / size, v[1] / size, v[2] / size};
+}
+
+double diagonalOf(const std::vector<Vec3>& points, const std::vector<Index>& vertices) {
+  Vec3 low;
+  low.fill(std::numeric_limits<double>::infinity());
+  Vec3 high;
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (const Index v : vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], points[v][k]);
+      high[k] = std::max(high[k], points[v][k]);
+    }
+  }
+  return length(minus(high, low));
+}
+
+void measure(Surface& surface, const std::vector<Vec3>& points) {
+  const std::size_t count = surface.triangleCount();
+  double lengths = 0;
+  for (Side side = 0; side < 3 * count; ++side) {
+    const Vec3 edge = minus(points[surface.head(side)], points[surface.tails[side]]);
+    surface.lengths.push_back(length(edge));
+    surface.directions.push_back(normalized(edge));
+    lengths += surface.lengths.back();
+  }
+  for (Side first = 0; first < 3 * count; first += 3) {
+    const Vec3& a = points[surface.tails[first]];
+    const Vec3& b = points[surface.head(first)];
+    const Vec3& c = points[surface.head(Surface::next(first))];
+    const Vec3 normal = cross(minus(b, a), minus(c, a));
+    surface.normals.push_back(normalized(normal));
+    surface.areas.push_back(0.5 * length(normal));
+    surface.area += surface.areas.back();
+    const Vec3 sum = plus(plus(a, b), c);
+    surface.centres.push_back({sum[0] / 3, sum[1] / 3, sum[2] / 3});
+  }
+  surface.meanEdge = lengths / static_cast<double>(3 * count);
+  surface.meanArea = surface.area / static_cast<double>(count);
+  surface.diagonal = diagonalOf(points, surface.tails);
+}
+
+}  // namespace
+
+void Surface::turn(const Rotation& rotation) {
+  for (std::vector<Vec3>* const vectors : {&directions, &normals, &centres}) {
+    for (Vec3& v : *vectors) v = turned(rotation, v);
+  }
+}
+
+Surface surfaceOf(const adjacency::TetTopology& topology, const std::vector<Vec3>& points) {
+  const quantization::BoundarySides sides(topology);
+  Surface surface;
+  surface.pointCount = topology.pointCount;
+  for (std::size_t side = 0; side < sides.size(); ++side) {
+    if (side % 3 == 0) surface.faces.push_back(sides.face(side));
+    surface.tails.push_back(sides.tail(side));
+    surface.twins.push_back(static_cast<Side>(sides.twin(side)));
+  }
+  measure(surface, points);
+  return surface;
+}
+
+bool isManifold(const Surface& surface) {
+  // Fans: from a side to the one before it in the triangle beyond, around the tail.
+  std::vector<Index> sidesAt(surface.pointCount);
+  std::vector<Side> firstAt(surface.pointCount, kNone);
+  std::vector<std::array<Index, 2>> edges;
+  for (Side side = 0; side < surface.tails.size(); ++side) {
+    ++sidesAt[surface.tails[side]];
+    firstAt[surface.tails[side]] = side;
+    edges.push_back({surface.tails[side], surface.head(side)});
+  }
+  std::sort(edges.begin(), edges.end());
+  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+  for (std::size_t v = 0; v < sidesAt.size(); ++v) {
+    Side side = firstAt[v];
+    if (side == kNone) continue;
+    Index count = 0;
+    do {
+      side = Surface::next(surface.twins[side]);
+      ++count;
+    } while (side != firstAt[v]);
+    if (count != sidesAt[v]) return false;
+  }
+  return true;
+}
+
+}  // namespace hexhex::shape

@@ -1,0 +1,69 @@
+// The boundary of a tet mesh as labels see it: triangles, where they face, and who is beside whom.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <adjacency/tet_topology.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex::shape {
+
+/// 3 * triangle + 0 to 2: the sides of a boundary triangle.
+using Side = Index;
+
+/// Rows: the axes that it turns to x, y and z.
+using Rotation = std::array<Vec3, 3>;
+
+[[nodiscard]] inline Vec3 turned(const Rotation& rotation, const Vec3& v) {
+  return {dot(rotation[0], v), dot(rotation[1], v), dot(rotation[2], v)};
+}
+[[nodiscard]] inline Vec3 turnedBack(const Rotation& rotation, const Vec3& v) {
+  Vec3 result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) result[k] += rotation[i][k] * v[i];
+  }
+  return result;
+}
+
+struct Surface {
+  // Per side, counterclockwise as seen from outside:
+  std::vector<Index> tails;      ///< the vertex that it begins at
+  std::vector<Side> twins;       ///< the side of the triangle beyond, from head to tail
+  std::vector<double> lengths;   ///< in space
+  std::vector<Vec3> directions;  ///< from tail to head, of length 1
+
+  // Per triangle:
+  std::vector<adjacency::HalfFace> faces;
+  std::vector<Vec3> normals;  ///< outwards, of length 1
+  std::vector<Vec3> centres;
+  std::vector<double> areas;
+
+  std::size_t pointCount = 0;  ///< of the tet mesh
+  double area = 0;
+  double meanEdge = 0;
+  double meanArea = 0;
+  double diagonal = 0;  ///< of the bounding box
+
+  [[nodiscard]] std::size_t triangleCount() const noexcept { return faces.size(); }
+  [[nodiscard]] static Index triangleOf(Side side) noexcept { return side / 3; }
+  /// Of the same triangle, from the head on.
+  [[nodiscard]] static Side next(Side side) noexcept { return side / 3 * 3 + (side + 2) % 3; }
+  [[nodiscard]] Index head(Side side) const noexcept { return tails[next(side)]; }
+  [[nodiscard]] Index beyond(Side side) const noexcept { return triangleOf(twins[side]); }
+
+  void turn(const Rotation& rotation);
+};
+
+/// @param topology  with stars, of tets that are positive in space
+[[nodiscard]] Surface surfaceOf(const adjacency::TetTopology& topology,
+                                const std::vector<Vec3>& points);
+
+/// Whether around each edge there are two triangles, and around each vertex one fan of them.
+[[nodiscard]] bool isManifold(const Surface& surface);
+
+}  // namespace hexhex::shape

@@ -1,0 +1,256 @@
+// From tets alone to certified meshes: of bodies whose polycubes are known, turned and deformed; of
+// real parts, where the folder is there; and of what is no part.
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <hexhex/hexhex.hpp>
+
+#include "extract/support.hpp"
+#include "quantize/real_maps.hpp"
+#include "support/error_of.hpp"
+#include "support/labelled_bodies.hpp"
+
+namespace hexhex::test {
+namespace {
+
+using Cell = CubeBody::Cell;
+using Deform = std::function<Vec3(const Vec3&)>;
+
+CubeBody box() {
+  return {{2, 2, 1}, [](const Cell&) { return true; }};
+}
+CubeBody ring() {
+  return {{3, 3, 1}, [](const Cell& c) { return c[0] != 1 || c[1] != 1; }};
+}
+CubeBody angle() {
+  return {{2, 2, 1}, [](const Cell& c) { return c[0] == 0 || c[1] == 0; }};
+}
+
+ShapedMap shaped(const TetMesh& tets, int threads = 0) {
+  Context context(threads);
+  return mapFromTets(tets, {.method = ShapeMethod::Polycube}, context);
+}
+
+/// A mesh that is verified, once more; whether it is certified is for the caller to say.
+MeshedPart meshed(const TetMesh& tets, double cells) {
+  Context context;
+  MeshOptions options;
+  options.shape.method = ShapeMethod::Polycube;
+  options.quantize = {.cells = cells, .densify = true};
+  MeshedPart part = meshFromTets(tets, options, context);
+  ExtractOptions exact;
+  exact.tolerance = 0;
+  EXPECT_EQ(verifiedExtraction(part.map, exact).cells, part.mesh.cells);
+  return part;
+}
+
+/// @param faces, corners  of the polycube
+MeshedPart expectMesh(const TetMesh& tets, std::uint64_t faces, std::uint64_t corners,
+                      double cells = 600) {
+  MeshedPart outcome = meshed(tets, cells);
+  EXPECT_TRUE(outcome.shape.labels.isValid());
+  EXPECT_EQ(outcome.shape.labels.charts, faces);
+  EXPECT_EQ(outcome.shape.labels.corners, corners);
+  EXPECT_TRUE(outcome.improvement.after.allPositive());
+  EXPECT_GT(outcome.shape.distortion.worst, 0);
+  return outcome;
+}
+
+TEST(Shapes, AreBoxesHoweverTheyAreTurned) {
+  for (const double turn : {0.0, 0.4, 2.0}) {
+    SCOPED_TRACE(turn);
+    const TetMesh tets = box().labelled(3, [&](const Vec3& p) { return turned(p, turn); }).tets;
+    const MeshedPart outcome = expectMesh(tets, 6, 8);
+    // Faces are found to be flat, and all twelve edges are edges of the map.
+    EXPECT_LT(outcome.shape.labels.deviation, 1e-9);
+    EXPECT_EQ(outcome.shape.featureEdges, 12U * 3 + 8 * 3);  // two cubes long, but for four of them
+    EXPECT_EQ(outcome.shape.taggedEdges, outcome.shape.featureEdges);
+    EXPECT_EQ(outcome.mesh.features.edges.empty(), false);
+    EXPECT_GT(outcome.improvement.after.minimum, 0.99);
+    EXPECT_EQ(outcome.shape.rotation == ShapeReport{}.rotation, turn == 0);
+  }
+}
+
+TEST(Shapes, HaveTheFacesThatOneCanCount) {
+  const Deform bent = [](const Vec3& p) {
+    return turned({p[0] + 0.1 * p[1] * p[1], p[1], p[2] + 0.1 * p[0] * p[0]}, 0.3);
+  };
+  expectMesh(angle().labelled(3, bent).tets, 8, 12);
+  expectMesh(ring().labelled(3, bent).tets, 10, 16);
+}
+
+TEST(Shapes, AreBalls) {
+  const TetMesh ball = box()
+                           .labelled(4,
+                                     [](const Vec3& p) {
+                                       return rounded<3>({p[0] - 1, p[1] - 1, 2 * p[2] - 1});
+                                     })
+                           .tets;
+  const MeshedPart outcome = expectMesh(ball, 6, 8, 1000);
+  EXPECT_EQ(outcome.shape.featureEdges, 0U);
+}
+
+TEST(Shapes, AreCylinders) {
+  const TetMesh cylinder = box()
+                               .labelled(4,
+                                         [](const Vec3& p) {
+                                           const auto [x, y] = rounded<2>({p[0] - 1, p[1] - 1});
+                                           return turned({x, y, 2 * p[2]}, 0.5);
+                                         })
+                               .tets;
+  expectMesh(cylinder, 6, 8);
+}
+
+TEST(Shapes, AreTori) {
+  const TetMesh torus =
+      ring()
+          .labelled(
+              3,
+              [](const Vec3& p) {
+                const Vec3 inRing = {2 * p[0] - 3, 2 * p[1] - 3, 2 * p[2] - 1};
+                const double radius = std::max(std::abs(inRing[0]), std::abs(inRing[1]));
+                const double length = std::hypot(inRing[0], inRing[1]);
+                const auto [out, up] = rounded<2>({radius - 2, inRing[2]});
+                return Vec3{(3 + out) * inRing[0] / length, (3 + out) * inRing[1] / length, up};
+              })
+          .tets;
+  const MeshedPart outcome = meshed(torus, 1000);
+  EXPECT_TRUE(outcome.shape.labels.isValid());
+  EXPECT_TRUE(outcome.improvement.after.allPositive());
+}
+
+TEST(Shapes, AreWedges) {
+  const TetMesh wedge = box()
+                            .labelled(4,
+                                      [](const Vec3& p) {
+                                        return Vec3{p[0], p[1] * (1.2 - 0.5 * p[0]), p[2]};
+                                      })
+                            .tets;
+  expectMesh(wedge, 6, 8);
+}
+
+TEST(Shapes, MayHaveVoidsAndSeveralComponents) {
+  const CubeBody hollow({3, 3, 3}, [](const Cell& c) { return c != Cell{1, 1, 1}; });
+  expectMesh(hollow.labelled(2, [](const Vec3& p) { return p; }).tets, 12, 16);
+  const CubeBody two({3, 1, 1}, [](const Cell& c) { return c[0] != 1; });
+  expectMesh(two.labelled(3, [](const Vec3& p) { return turned(p, 0.2); }).tets, 12, 16);
+}
+
+TEST(Shapes, DoNotDependOnThreadsNorOnTheOrderOfCorners) {
+  const TetMesh tets =
+      angle().labelled(3, [](const Vec3& p) { return turned(rounded(p), 0.3); }).tets;
+  const ShapedMap one = shaped(tets, 1);
+  const ShapedMap four = shaped(tets, 4);
+  EXPECT_EQ(one.map.points, four.map.points);
+  EXPECT_EQ(one.map.parameters, four.map.parameters);
+  TetMesh swapped = tets;
+  for (std::size_t t = 0; t < swapped.tets.size(); t += 3) {
+    std::swap(swapped.tets[t][2], swapped.tets[t][3]);
+  }
+  const ShapedMap other = shaped(swapped);
+  EXPECT_EQ(one.map.points, other.map.points);
+  EXPECT_EQ(one.map.tets, other.map.tets);
+  EXPECT_EQ(one.map.parameters, other.map.parameters);
+}
+
+TEST(Shapes, KeepTheGivenPoints) {
+  const TetMesh tets = angle().labelled(2, [](const Vec3& p) { return turned(p, 0.3); }).tets;
+  const TetMap map = shaped(tets).map;
+  ASSERT_GE(map.points.size(), tets.points.size());
+  for (std::size_t v = 0; v < tets.points.size(); ++v) EXPECT_EQ(map.points[v], tets.points[v]);
+}
+
+TEST(Shapes, AreNoneWhereTetsAreFlatOrFolded) {
+  TetMesh tets = box().labelled(2, [](const Vec3& p) { return p; }).tets;
+  const auto inner = [&] {
+    for (Index v = 0; v < tets.points.size(); ++v) {
+      if (tets.points[v] == Vec3{1, 1, 0.5}) return v;
+    }
+    return kNone;
+  }();
+  ASSERT_NE(inner, kNone);
+  TetMesh folded = tets;
+  folded.points[inner] = {1, 2.5, 0.5};
+  const Error error = errorOf([&] { static_cast<void>(shaped(folded)); });
+  EXPECT_EQ(error.code(), ErrorCode::Orientation);
+  EXPECT_NE(std::string(error.what()).find("same side"), std::string::npos);
+  TetMesh flat = tets;
+  for (std::size_t i = 0; i < 4; ++i) flat.points[flat.tets[0][i]][2] = 0;
+  EXPECT_EQ(codeOf([&] { static_cast<void>(shaped(flat)); }), ErrorCode::FlippedTet);
+  EXPECT_EQ(codeOf([&] { static_cast<void>(shaped({})); }), ErrorCode::EmptyMesh);
+}
+
+TEST(Shapes, AreNoneWhereCubesMeetAtAnEdgeOrCorner) {
+  for (const bool atEdge : {true, false}) {
+    const CubeBody touching({2, 2, 2}, [&](const Cell& c) {
+      return c == Cell{0, 0, 0} || c == Cell{1, 1, atEdge ? 0 : 1};
+    });
+    const TetMesh tets = touching.labelled(2, [](const Vec3& p) { return p; }).tets;
+    EXPECT_EQ(codeOf([&] { static_cast<void>(shaped(tets)); }),
+              atEdge ? ErrorCode::NonManifoldEdge : ErrorCode::NonManifoldVertex);
+  }
+}
+
+TEST(Shapes, RefuseWhatIsOutOfRange) {
+  const TetMesh tets = box().labelled(1, [](const Vec3& p) { return p; }).tets;
+  for (const double angle : {-1.0, 181.0, std::nan("")}) {
+    Context context;
+    EXPECT_EQ(
+        codeOf([&] { static_cast<void>(mapFromTets(tets, {.featureAngle = angle}, context)); }),
+        ErrorCode::InvalidArgument);
+  }
+}
+
+TEST(Shapes, CanBeCancelled) {
+  const TetMesh tets = ring().labelled(3, [](const Vec3& p) { return turned(p, 0.3); }).tets;
+  for (const char* const where : {"surface", "labelling", "planes"}) {
+    Context* running = nullptr;
+    Context context(2, [&](std::string_view stage, double /*share*/) {
+      if (stage == where) running->cancel();
+    });
+    running = &context;
+    EXPECT_EQ(codeOf([&] {
+                static_cast<void>(mapFromTets(tets, {.method = ShapeMethod::Polycube}, context));
+              }),
+              ErrorCode::Cancelled)
+        << where;
+  }
+}
+
+/// Faces of a tetrahedron are oblique in each polycube; along frames they are not.
+TEST(Shapes, TakeTheBetterOfBothWays) {
+  const TetMap sample = generateSample(SampleKind::Tetrahedron).map;
+  const TetMesh tets = {sample.points, sample.tets};
+  const MeshedPart polycube = meshed(tets, 500);
+  Context context;
+  MeshOptions options;
+  options.quantize = {.cells = 500, .densify = true};
+  const MeshedPart best = meshFromTets(tets, options, context);
+  EXPECT_EQ(best.shape.method, ShapeMethod::Frames);
+  EXPECT_TRUE(best.verification.passed());
+  EXPECT_TRUE(best.improvement.after.allPositive());
+  EXPECT_GT(best.improvement.after.minimum, polycube.improvement.after.minimum);
+  const ShapedMap map = mapFromTets(tets, {}, context);
+  EXPECT_EQ(map.report.method, ShapeMethod::Frames);
+  EXPECT_EQ(map.report.taggedEdges, map.report.featureEdges);
+}
+
+/// Those of samples are bodies of several kinds, some with many tets in a point.
+TEST(Shapes, AreThoseOfSamples) {
+  for (const SampleKindName& kind : sampleKinds()) {
+    SCOPED_TRACE(kind.name);
+    const TetMap sample = generateSample(kind.kind).map;
+    const MeshedPart outcome = meshed({sample.points, sample.tets}, 500);
+    EXPECT_TRUE(outcome.improvement.after.allPositive());
+  }
+}
+
+}  // namespace
+}  // namespace hexhex::test
