@@ -27,7 +27,7 @@ struct MapArguments {
 int run(const MapArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
-  requireDifferent(arguments.part, arguments.output);
+  requireAllDifferent({arguments.part}, {arguments.output, arguments.report});
   LongRun longRun(arguments.run, {{"readTetMesh", 0.5}, {"mapFromTets", 20}, {"writeMap", 0.5}});
   Context& context = longRun.context();
   requireWritable(arguments.output);

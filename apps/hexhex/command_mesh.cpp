@@ -13,6 +13,7 @@
 #include <hexhex/mesh.hpp>
 
 #include "command.hpp"
+#include "extract_report.hpp"
 #include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
@@ -36,16 +37,6 @@ struct MeshArguments {
   bool allowBad = false;
   RunOptions run;
 };
-
-void requireAllDifferent(const MeshArguments& arguments) {
-  const std::array<const std::string*, 5> files = {
-      &arguments.part, &arguments.output, &arguments.map, &arguments.page, &arguments.report};
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t k = i + 1; k < files.size(); ++k) {
-      if (!files[i]->empty() && !files[k]->empty()) requireDifferent(*files[i], *files[k]);
-    }
-  }
-}
 
 void requireCertified(const MeshArguments& arguments, const Certificate& certificate) {
   if (certificate.allPositive() || arguments.allowBad) return;
@@ -109,7 +100,8 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Lon
 int run(const MeshArguments& arguments) {
   requireHexMeshFormat(arguments.output, arguments.choice.options());
   if (!arguments.map.empty()) requireMapFormat(arguments.map, WriteOptions{});
-  requireAllDifferent(arguments);
+  requireAllDifferent({arguments.part},
+                      {arguments.output, arguments.map, arguments.page, arguments.report});
   LongRun longRun(arguments.run, {{"readTetMesh", 0.5},
                                   {"meshFromTets", 40},
                                   {"writeMap", 0.1},

@@ -31,9 +31,10 @@ void printQuantized(const QuantizeReport& report) {
   printLine("quantization", quantizeSummary(report));
   printLine("motorcycle complex", counted(report.blocks, "block"));
   const bool isRounded = report.integersBy == "rounding";
-  printLine("integers",
-            "by " + report.integersBy +
-                (isRounded ? "; the library HiGHS finds better ones (docs/quantize.md, 'HiGHS')" : ""));
+  printLine(
+      "integers",
+      "by " + report.integersBy +
+          (isRounded ? "; the library HiGHS finds better ones (docs/quantize.md, 'HiGHS')" : ""));
   printLine("moved to be seamless", fmt::format("at most {:.3g}", report.displacement));
   printLine("scaled Jacobian",
             fmt::format("{:.3f} (worst) and {:.3f} (median) of the map; {:.3f} and {:.3f} before",

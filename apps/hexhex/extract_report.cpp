@@ -101,7 +101,8 @@ const char* engineName(Engine engine) noexcept {
   return engine == Engine::Atlas ? "atlas" : "propeller";
 }
 
-/// The largest amount of memory that this process has used so far, in bytes.
+}  // namespace
+
 std::uint64_t peakMemory() {
 #if defined(_WIN32)
   PROCESS_MEMORY_COUNTERS counters{};
@@ -119,8 +120,6 @@ std::uint64_t peakMemory() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * kUnit;
 #endif
 }
-
-}  // namespace
 
 std::string reportAsJson(const ExtractionRecord& record) {
   const ExtractStatistics& statistics = record.statistics;

@@ -23,6 +23,9 @@
 
 namespace hexhex::command {
 
+/// The largest amount of memory that this process has used so far, in bytes.
+[[nodiscard]] std::uint64_t peakMemory();
+
 struct FileSize {
   std::filesystem::path file;
   std::uint64_t bytes = 0;

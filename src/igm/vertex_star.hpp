@@ -10,7 +10,7 @@
 
 #include <base/low_level.hpp>
 #include <igm/half_face_crossing.hpp>
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 namespace hexhex::igm {
 

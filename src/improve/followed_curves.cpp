@@ -9,8 +9,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/followed_curves.hpp>
-#include <improve/triangle_edges.hpp>
-#include <improve/triangle_tree.hpp>
+#include <improve/surface_distance.hpp>
 
 namespace hexhex::improvement {
 

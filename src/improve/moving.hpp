@@ -10,7 +10,6 @@
 
 #include <base/stage.hpp>
 #include <improve/surface_distance.hpp>
-#include <improve/triangle_tree.hpp>
 #include <improve/vertex_places.hpp>
 
 namespace hexhex::improvement {

@@ -80,7 +80,7 @@ class FieldMaker {
       if (tets_.topology().isBoundary(adjacency::halfFaceOf(t, face))) outside = face;
     }
     std::optional<Vector3d> along;
-    quantization::forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask corners) {
+    tetmap::forEachEdgeOf(tet, [&](const VertexPair& edge, lattice::CornerMask corners) {
       if (outside >= 0 && lattice::contains(corners, outside)) return;
       if (tets_.isFeature(edge)) along = (tets_.point(edge[1]) - tets_.point(edge[0])).normalized();
     });

@@ -109,7 +109,7 @@ class FramesMapper {
         for (const Index v : walks[edge]) isBound[v] = true;
       }
       const std::vector<bool> isOuter = tets_.boundaryVertices();
-      std::vector<SplitEdge> edges;
+      std::vector<VertexPair> edges;
       for (std::size_t edge = 0; edge < walks.size(); ++edge) {
         const auto [a, b] = walks[edge];
         const bool isInside = !walks.isBoundary(edge);
@@ -155,12 +155,12 @@ class FramesMapper {
     for (const Index t : flipped) {
       for (const Index v : tets_.mesh().tets[t]) isNear[v] = true;
     }
-    std::vector<SplitEdge> edges;
+    std::vector<VertexPair> edges;
     for (const Tet& tet : tets_.mesh().tets) {
       if (std::count_if(tet.begin(), tet.end(), [&](Index v) { return isNear[v]; }) < 2) continue;
-      SplitEdge longest{};
+      VertexPair longest{};
       double most = 0;
-      quantization::forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+      tetmap::forEachEdgeOf(tet, [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
         if (!isNear[edge[0]] && !isNear[edge[1]]) return;
         const double length = (tets_.point(edge[1]) - tets_.point(edge[0])).norm();
         if (length <= most) return;
@@ -179,7 +179,7 @@ class FramesMapper {
   }
 
   /// In the caller's terms, if they know both vertices; else a tet there.
-  [[nodiscard]] Place placeOf(const SplitEdge& edge) const {
+  [[nodiscard]] Place placeOf(const VertexPair& edge) const {
     const std::size_t known = given_.input.view.points.size();
     if (edge[0] < known && edge[1] < known) {
       if (edge[0] == edge[1]) return {PlaceKind::Vertex, edge[0]};

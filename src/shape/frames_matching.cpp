@@ -49,7 +49,7 @@ const RotationKind& knownKind(lattice::Rotation rotation) {
   return kKinds[static_cast<std::size_t>(rotation.index())];
 }
 
-Eigen::Vector3d directionOf(const FrameTets& tets, const SplitEdge& edge) {
+Eigen::Vector3d directionOf(const FrameTets& tets, const VertexPair& edge) {
   return (tets.point(edge[1]) - tets.point(edge[0])).normalized();
 }
 

@@ -58,7 +58,7 @@ struct FieldDefect {
     HalfTurn,  ///< an edge where two curves of one valence have become one, mostly of no use
   };
   Kind kind = Kind::Compound;
-  SplitEdge edge{};  ///< of a zipper: its vertex twice; of a triangle: one of its edges
+  VertexPair edge{};  ///< of a zipper: its vertex twice; of a triangle: one of its edges
 
   [[nodiscard]] bool operator==(const FieldDefect&) const = default;
 };

@@ -270,10 +270,10 @@ bool isConstrained(const FrameTets& tets, Index t) {
   for (int face = 0; face < 4; ++face) {
     if (tets.topology().isBoundary(adjacency::halfFaceOf(t, face))) isBound = true;
   }
-  quantization::forEachEdgeOf(tets.mesh().tets[t],
-                              [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
-                                if (tets.isFeature(edge)) isBound = true;
-                              });
+  tetmap::forEachEdgeOf(tets.mesh().tets[t],
+                        [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
+                          if (tets.isFeature(edge)) isBound = true;
+                        });
   return isBound;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <shape/frames_tets.hpp>
+#include <tetmap/mutable_tets.hpp>
 
 #include <hexhex/error.hpp>
 
@@ -16,10 +17,10 @@ namespace hexhex::shape {
 namespace {
 
 using adjacency::HalfFace;
-using quantization::forEachEdgeOf;
-using quantization::sortOut;
+using tetmap::forEachEdgeOf;
+using tetmap::sortUnique;
 
-bool contains(const std::vector<SplitEdge>& edges, const SplitEdge& edge) {
+bool contains(const std::vector<VertexPair>& edges, const VertexPair& edge) {
   return std::binary_search(edges.begin(), edges.end(), edge);
 }
 
@@ -28,10 +29,10 @@ template <class Visit>
 void forEachBoundaryEdge(const adjacency::TetTopology& topology, const Visit& visit) {
   for (HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (!topology.isBoundary(h)) continue;
-    forEachEdgeOf(topology.tets[adjacency::tetOf(h)],
-                  [&](const SplitEdge& edge, lattice::CornerMask corners) {
-                    if (!lattice::contains(corners, adjacency::localOf(h))) visit(edge, h);
-                  });
+    tetmap::forEachEdgeOf(topology.tets[adjacency::tetOf(h)],
+                          [&](const VertexPair& edge, lattice::CornerMask corners) {
+                            if (!lattice::contains(corners, adjacency::localOf(h))) visit(edge, h);
+                          });
   }
 }
 
@@ -59,7 +60,7 @@ FrameTets::FrameTets(TetMesh mesh, double featureAngleInDegrees, Stage& stage)
   findFeatures(featureAngleInDegrees * std::numbers::pi / 180, stage);
 }
 
-bool FrameTets::isFeature(const SplitEdge& edge) const { return contains(features_, edge); }
+bool FrameTets::isFeature(const VertexPair& edge) const { return contains(features_, edge); }
 
 Eigen::Vector3d FrameTets::normal(HalfFace h) const {
   const Tet& tet = mesh_.tets[adjacency::tetOf(h)];
@@ -79,7 +80,7 @@ double FrameTets::volume(Index tet) const {
 
 std::vector<bool> FrameTets::boundaryVertices() const {
   std::vector<bool> isOuter(mesh_.points.size());
-  forEachBoundaryEdge(topology_, [&](const SplitEdge& edge, HalfFace /*h*/) {
+  forEachBoundaryEdge(topology_, [&](const VertexPair& edge, HalfFace /*h*/) {
     isOuter[edge[0]] = isOuter[edge[1]] = true;
   });
   return isOuter;
@@ -102,9 +103,9 @@ void FrameTets::buildTopology(Stage& stage) {
 
 void FrameTets::findFeatures(double angle, Stage& stage) {
   stage.context().throwIfCancelled();
-  std::vector<std::pair<SplitEdge, HalfFace>> sides;
+  std::vector<std::pair<VertexPair, HalfFace>> sides;
   forEachBoundaryEdge(topology_,
-                      [&](const SplitEdge& edge, HalfFace h) { sides.emplace_back(edge, h); });
+                      [&](const VertexPair& edge, HalfFace h) { sides.emplace_back(edge, h); });
   std::sort(sides.begin(), sides.end());
   for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
     const Eigen::Vector3d here = normal(sides[i].second).normalized();
@@ -113,17 +114,17 @@ void FrameTets::findFeatures(double angle, Stage& stage) {
   }
 }
 
-std::vector<SplitEdge> FrameTets::tightEdges() const {
-  std::vector<SplitEdge> outer;
+std::vector<VertexPair> FrameTets::tightEdges() const {
+  std::vector<VertexPair> outer;
   forEachBoundaryEdge(topology_,
-                      [&](const SplitEdge& edge, HalfFace /*h*/) { outer.push_back(edge); });
-  sortOut(outer);
+                      [&](const VertexPair& edge, HalfFace /*h*/) { outer.push_back(edge); });
+  tetmap::sortUnique(outer);
   const std::vector<bool> isOuter = boundaryVertices();
   std::vector<bool> isFeatured(mesh_.points.size());
-  for (const SplitEdge& edge : features_) isFeatured[edge[0]] = isFeatured[edge[1]] = true;
-  std::vector<SplitEdge> tight;
+  for (const VertexPair& edge : features_) isFeatured[edge[0]] = isFeatured[edge[1]] = true;
+  std::vector<VertexPair> tight;
   for (const Tet& tet : mesh_.tets) {
-    forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+    tetmap::forEachEdgeOf(tet, [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
       if (!isOuter[edge[0]] || !isOuter[edge[1]]) return;
       const bool isFeatureless = isFeatured[edge[0]] && isFeatured[edge[1]] && !isFeature(edge);
       if (isFeatureless || !contains(outer, edge)) tight.push_back(edge);
@@ -133,23 +134,22 @@ std::vector<SplitEdge> FrameTets::tightEdges() const {
   for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (!topology_.isBoundary(h)) continue;
     int count = 0;
-    SplitEdge last{};
-    forEachEdgeOf(mesh_.tets[adjacency::tetOf(h)],
-                  [&](const SplitEdge& edge, lattice::CornerMask corners) {
-                    if (lattice::contains(corners, adjacency::localOf(h)) || !isFeature(edge))
-                      return;
-                    ++count;
-                    last = edge;
-                  });
+    VertexPair last{};
+    tetmap::forEachEdgeOf(
+        mesh_.tets[adjacency::tetOf(h)], [&](const VertexPair& edge, lattice::CornerMask corners) {
+          if (lattice::contains(corners, adjacency::localOf(h)) || !isFeature(edge)) return;
+          ++count;
+          last = edge;
+        });
     if (count == 3) tight.push_back(last);
   }
   return tight;
 }
 
 void FrameTets::refine(Stage& stage) {
-  std::vector<SplitEdge> edges;
+  std::vector<VertexPair> edges;
   for (const Tet& tet : mesh_.tets) {
-    forEachEdgeOf(tet, [&](const SplitEdge& edge, lattice::CornerMask /*corners*/) {
+    tetmap::forEachEdgeOf(tet, [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
       if ((point(edge[1]) - point(edge[0])).norm() > edgeLength_) edges.push_back(edge);
     });
   }
@@ -160,7 +160,7 @@ void FrameTets::makeRoom(Stage& stage) {
   // Middles of edges are inside, or on the boundary but not on features, or, of triangles between
   // three features, on one of these: so there are fewer and fewer.
   while (true) {
-    std::vector<SplitEdge> edges = tightEdges();
+    std::vector<VertexPair> edges = tightEdges();
     if (edges.empty()) break;
     split(std::move(edges), stage);
   }
@@ -174,60 +174,63 @@ void FrameTets::makeRoom(Stage& stage) {
   splitTets(outer, stage);
 }
 
-void FrameTets::split(std::vector<SplitEdge> edges, Stage& stage) {
-  sortOut(edges);
-  const auto length = [&](const SplitEdge& edge) {
-    return (point(edge[1]) - point(edge[0])).squaredNorm();
-  };
-  std::stable_sort(edges.begin(), edges.end(),
-                   [&](const SplitEdge& a, const SplitEdge& b) { return length(a) > length(b); });
-  quantization::EdgeSplitter splitter(mesh_.points, mesh_.tets);
-  for (const SplitEdge& edge : edges) {
-    stage.context().throwIfCancelled();
-    const Index middle = splitter.split(edge, [&](Index t, std::size_t a, std::size_t b) {
-      parents_.push_back(Index{parents_[t]});
-      if (frames.empty()) return;
-      const Frame same = frames[t];
-      frames.push_back(same);
-      const std::size_t second = mesh_.tets.size() - 1;
-      for (std::size_t face = 0; face < 4; ++face) {
-        const lattice::Rotation across = rotations[4 * t + face];
-        rotations.push_back(across);
-      }
-      // Between both parts, charts agree.
-      rotations[4 * t + a] = rotations[4 * second + b] = {};
-    });
-    const auto at = std::lower_bound(features_.begin(), features_.end(), edge);
-    if (at == features_.end() || *at != edge) continue;
-    features_.erase(at);
-    for (const Index end : edge) {  // the new vertex has the largest number
-      const SplitEdge part = {end, middle};
-      features_.insert(std::lower_bound(features_.begin(), features_.end(), part), part);
-    }
+void FrameTets::split(std::vector<VertexPair> edges, Stage& stage) {
+  tetmap::sortUnique(edges);
+  std::vector<tetmap::EdgeInTet> places;
+  for (Index t = 0; t < size(); ++t) {
+    tetmap::forEachEdgeOf(mesh_.tets[t],
+                          [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
+                            if (contains(edges, edge)) places.push_back({edge, t});
+                          });
   }
+  tetmap::sortUnique(places);
+  const auto length = [&](const tetmap::EdgeInTet& edge) {
+    return (point(edge.vertices[1]) - point(edge.vertices[0])).squaredNorm();
+  };
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const auto& a, const auto& b) { return length(a) > length(b); });
+  tetmap::MutableTets mutableTets(std::move(mesh_.tets), topology_.mate, mesh_.points.size());
+  for (const tetmap::EdgeInTet& edge : places) {
+    stage.context().throwIfCancelled();
+    const auto [v, w] = edge.vertices;
+    const auto middle = static_cast<Index>(mesh_.points.size());
+    mesh_.points.push_back(tetmap::middleOf(mesh_.points[v], mesh_.points[w]));
+    for (const tetmap::Cut& cut : mutableTets.splitEdge(edge)) {
+      tetmap::carryTet(cut, parents_);
+      if (frames.empty()) continue;
+      tetmap::carryTet(cut, frames);
+      // Between both parts, charts agree.
+      tetmap::carryFaces(cut, lattice::Rotation(), rotations);
+    }
+    splitFeature(edge.vertices, middle);
+  }
+  mesh_.tets = std::move(mutableTets.tets);
   buildTopology(stage);
 }
 
+void FrameTets::splitFeature(const VertexPair& edge, Index middle) {
+  const auto at = std::lower_bound(features_.begin(), features_.end(), edge);
+  if (at == features_.end() || *at != edge) return;
+  features_.erase(at);
+  for (const Index end : edge) {  // the new vertex has the largest number
+    const VertexPair part = {end, middle};
+    features_.insert(std::lower_bound(features_.begin(), features_.end(), part), part);
+  }
+}
+
 void FrameTets::splitTets(const std::vector<Index>& tets, Stage& stage) {
+  tetmap::MutableTets mutableTets(std::move(mesh_.tets), topology_.mate, mesh_.points.size());
   for (const Index t : tets) {
-    const Tet whole = mesh_.tets[t];
-    const auto vertex = static_cast<Index>(mesh_.points.size());
+    const Tet whole = mutableTets.tets[t];
     Vec3 centre{};
     for (const Index v : whole) {
       for (std::size_t k = 0; k < 3; ++k) centre[k] += 0.25 * mesh_.points[v][k];
     }
     mesh_.points.push_back(centre);
-    for (std::size_t face = 0; face < 4; ++face) {
-      Tet part = whole;
-      part[face] = vertex;
-      if (face == 0) {
-        mesh_.tets[t] = part;
-      } else {
-        mesh_.tets.push_back(part);
-        parents_.push_back(Index{parents_[t]});
-      }
-    }
+    static_cast<void>(mutableTets.splitTet(t));
+    parents_.resize(mutableTets.tetCount(), Index{parents_[t]});
   }
+  mesh_.tets = std::move(mutableTets.tets);
   buildTopology(stage);
 }
 

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <vector>
 
-#include <adjacency/tet_topology.hpp>
-#include <quantize/bend/edge_splitter.hpp>
+#include <adjacency/edge_fan.hpp>
 #include <quantize/seamless/cut_graph.hpp>
 #include <shape/frames_tensor.hpp>
+#include <tetmap/cut.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -17,7 +17,7 @@
 
 namespace hexhex::shape {
 
-using quantization::SplitEdge;
+using tetmap::VertexPair;
 
 /// Tets that are positive in space.
 class FrameTets {
@@ -36,8 +36,8 @@ class FrameTets {
   /// Of a tet of the mesh given, the number of which this is a part.
   [[nodiscard]] Index parentOf(Index tet) const { return parents_[tet]; }
   /// Edges of the boundary at which it turns by more than the angle, ascending.
-  [[nodiscard]] const std::vector<SplitEdge>& features() const noexcept { return features_; }
-  [[nodiscard]] bool isFeature(const SplitEdge& edge) const;
+  [[nodiscard]] const std::vector<VertexPair>& features() const noexcept { return features_; }
+  [[nodiscard]] bool isFeature(const VertexPair& edge) const;
 
   [[nodiscard]] Eigen::Vector3d point(Index vertex) const {
     const Vec3& p = mesh_.points[vertex];
@@ -57,7 +57,7 @@ class FrameTets {
   /// Splits all edges that are longer than they are on the average.
   void refine(Stage& stage);
   /// Splits edges, the longest first. Parts of a tet inherit its frame.
-  void split(std::vector<SplitEdge> edges, Stage& stage);
+  void split(std::vector<VertexPair> edges, Stage& stage);
 
   std::vector<Frame> frames;  ///< per tet; none before there is a field
   /// Per half-face: from parameters of the tet here to those of its neighbour. Inverse to each
@@ -67,12 +67,13 @@ class FrameTets {
  private:
   void buildTopology(Stage& stage);
   void findFeatures(double angle, Stage& stage);
+  void splitFeature(const VertexPair& edge, Index middle);
   void splitTets(const std::vector<Index>& tets, Stage& stage);
-  [[nodiscard]] std::vector<SplitEdge> tightEdges() const;
+  [[nodiscard]] std::vector<VertexPair> tightEdges() const;
 
   TetMesh mesh_;
   std::vector<Index> parents_;
-  std::vector<SplitEdge> features_;
+  std::vector<VertexPair> features_;
   adjacency::TetTopology topology_;
   double edgeLength_ = 0;
 };
@@ -83,7 +84,7 @@ class EdgeWalks {
   explicit EdgeWalks(const FrameTets& tets);
 
   [[nodiscard]] std::size_t size() const noexcept { return edges_.size(); }
-  [[nodiscard]] const SplitEdge& operator[](std::size_t edge) const { return edges_[edge]; }
+  [[nodiscard]] const VertexPair& operator[](std::size_t edge) const { return edges_[edge]; }
   [[nodiscard]] bool isBoundary(std::size_t edge) const { return starts_[edge] != kNone; }
   /// Of a boundary edge: the half-face outside of the first tet. The last one of outs() is outside
   /// of the last tet.
@@ -94,11 +95,11 @@ class EdgeWalks {
   }
   /// The three edges of a triangle.
   [[nodiscard]] std::array<Index, 3> edgesOf(adjacency::HalfFace h) const;
-  [[nodiscard]] const quantization::EdgeFans& fans() const noexcept { return fans_; }
+  [[nodiscard]] const adjacency::EdgeFans& fans() const noexcept { return fans_; }
 
  private:
-  quantization::EdgeFans fans_;
-  std::vector<SplitEdge> edges_;
+  adjacency::EdgeFans fans_;
+  std::vector<VertexPair> edges_;
   std::vector<adjacency::HalfFace> starts_;
   std::vector<std::size_t> begins_ = {0};
   std::vector<adjacency::HalfFace> outs_;

@@ -16,7 +16,7 @@
 
 #include <hexhex/hexhex.hpp>
 
-#include "quantize/labelled_bodies.hpp"
+#include "support/labelled_bodies.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <tetmap/freedom.hpp>
 
-#include <lattice/transition.hpp>
+#include <lattice/grid_motion.hpp>
 
 namespace hexhex::tetmap {
 namespace {

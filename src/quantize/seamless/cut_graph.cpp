@@ -49,19 +49,6 @@ lattice::Rotation canonicalRotation(const TetParameters& u) {
   return best;
 }
 
-/// Per half-face, the rotation that takes its triangle nearest to the neighbour's.
-std::vector<lattice::Rotation> fitRotations(const adjacency::TetTopology& topology,
-                                            std::span<const TetParameters> parameters) {
-  std::vector<lattice::Rotation> rotations(topology.mate.size());
-  for (adjacency::HalfFace h = 0; h < rotations.size(); ++h) {
-    const adjacency::HalfFace mate = topology.mate[h];
-    if (mate == kNone || mate < h) continue;
-    rotations[h] = igm::bestRotation(igm::SharedTriangle(topology, parameters, h));
-    rotations[mate] = rotations[h].inverse();
-  }
-  return rotations;
-}
-
 /// Walks a tree of each component and puts all tets into the chart of its first one.
 /// @return the motion of each tet; marks triangles of the tree in `isTree`
 std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
@@ -194,10 +181,22 @@ double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b) {
   return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
 }
 
+std::vector<lattice::Rotation> fitRotations(const adjacency::TetTopology& topology,
+                                            std::span<const TetParameters> parameters) {
+  std::vector<lattice::Rotation> rotations(topology.mate.size());
+  for (adjacency::HalfFace h = 0; h < rotations.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    rotations[h] = igm::bestRotation(igm::SharedTriangle(topology, parameters, h));
+    rotations[mate] = rotations[h].inverse();
+  }
+  return rotations;
+}
+
 CutGraph cutOpen(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
-                 std::span<const TetParameters> parameters) {
+                 std::span<const TetParameters> parameters,
+                 std::span<const lattice::Rotation> rotations) {
   CutGraph graph;
-  const std::vector<lattice::Rotation> rotations = fitRotations(topology, parameters);
   std::vector<bool> isTree(topology.mate.size());
   // Charts may lie anywhere: far away, sums would lose what differences still have.
   graph.parameters.assign(parameters.begin(), parameters.end());

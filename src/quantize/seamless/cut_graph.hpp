@@ -61,11 +61,17 @@ struct CutGraph {
   std::size_t sectorCount = 0;
 };
 
+/// Per half-face, the rotation that takes its triangle nearest to the neighbour's.
+[[nodiscard]] std::vector<lattice::Rotation> fitRotations(
+    const adjacency::TetTopology& topology, std::span<const TetParameters> parameters);
+
 /// Moves charts along a tree of tets, cuts all other triangles, then mends the cut where it ends:
 /// across the last triangle of the cut at an inner edge charts agree, unless the edge is singular.
+/// @param rotations  per half-face, between the charts given
 [[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology,
                                const adjacency::EdgeFans& edges,
-                               std::span<const TetParameters> parameters);
+                               std::span<const TetParameters> parameters,
+                               std::span<const lattice::Rotation> rotations);
 
 /// Calls visit(half-face) for the triangles of the tet at an edge.
 template <class Visit>

@@ -493,7 +493,8 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   defects.throwIfAny();
   const adjacency::TetTopology& topology = result.topology;
   const adjacency::EdgeFans edges(topology);
-  const CutGraph graph = cutOpen(topology, edges, result.input.view.parameters);
+  const std::span<const TetParameters> parameters = result.input.view.parameters;
+  const CutGraph graph = cutOpen(topology, edges, parameters, fitRotations(topology, parameters));
   result.size = largestCoordinate(graph);
   requireSize(result.size);
   result.unit = std::exp2(std::floor(std::log2(kLargest / result.size)));
