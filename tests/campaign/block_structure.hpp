@@ -9,6 +9,9 @@
 
 namespace hexhex::campaign {
 
+/// Not that of the tests, which draws otherwise.
+using hexhex::Random;
+
 /// Mostly small things are drawn: they are fast, and large ones find little that they do not.
 inline std::uint64_t oftenOr(std::uint64_t usual, std::uint64_t rare, Random& random) {
   return random.below(4) > 0 ? usual : rare;
