@@ -13,8 +13,7 @@ struct EngineSwitches {
   bool wideIds = false;  ///< numbers vertices with 64 bits even if 32 would do (streaming)
 
   // Speed alone: the result is the same without.
-  bool lookAcrossCuts =
-      true;               ///< before corners behind cuts are traced (atlas/cell_emitter.hpp)
+  bool lookAcrossCuts = true;  ///< before corners behind cuts are traced (atlas/cell_emitter.hpp)
   bool hugePages = true;  ///< for large arrays; of the whole process, as the next (base/memory.hpp)
   bool pagePool = true;   ///< smaller arrays share huge pages
   bool fewPoints = true;  ///< tets with few points in their boxes (lattice/few_points.hpp)

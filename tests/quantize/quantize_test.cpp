@@ -347,7 +347,8 @@ TEST(Quantize, NamesEachAttempt) {
   const QuantizeReport report = quantize(map, sameScale(), context).report;
   const std::string first = "bending 1 of at most 40: " + std::to_string(report.cells) +
                             " cells in " + std::to_string(report.blocks) + " blocks";
-  EXPECT_NE(std::find(stages.begin(), stages.end(), first), stages.end()) << first;
+  const auto isFirst = [&](const std::string& stage) { return stage.starts_with(first); };
+  EXPECT_TRUE(std::any_of(stages.begin(), stages.end(), isFirst)) << first;
 }
 
 std::filesystem::path dataFolder() {
@@ -383,9 +384,10 @@ TEST(QuantizeRealMaps, ThatHaveFaultsAreRefusedForThese) {
   EXPECT_LE(block, blocks);
   // What it says works does.
   unsigned works = 0;
-  const std::size_t after = bent.find("attempts. ");
+  const std::size_t after = bent.find(" cells work");
   ASSERT_NE(after, std::string::npos) << bent;
-  ASSERT_EQ(std::sscanf(bent.c_str() + after, "attempts. %u cells work", &works), 1) << bent;
+  const std::size_t before = bent.rfind(". ", after);
+  ASSERT_EQ(std::sscanf(bent.c_str() + before, ". %u cells work", &works), 1) << bent;
   const TetMap map = readMap(folder / "two_components_flipped_block.hexex");
   EXPECT_EQ(quantize(map, cells(works)).report.cells, works);
 }

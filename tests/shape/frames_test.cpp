@@ -16,8 +16,8 @@
 
 #include <hexhex/hexhex.hpp>
 
-#include "support/labelled_bodies.hpp"
 #include "support/error_of.hpp"
+#include "support/labelled_bodies.hpp"
 
 namespace hexhex::test {
 
