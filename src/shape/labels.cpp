@@ -15,8 +15,8 @@ namespace {
 constexpr std::array<Compactness, 4> kStarts = {{{1, 0}, {3, 0}, {8, 1}, {20, 1}}};
 constexpr int kSweeps = 3;
 /// Searches beside each other, from the best starts; and once more if all fail.
-constexpr std::size_t kSearches = 2;
-constexpr int kRounds = 2;
+constexpr std::size_t kLabelSearches = 2;
+constexpr int kLabelRounds = 2;
 
 Labels nearestLabels(const Surface& surface) {
   constexpr double kTie = 1e-9;  // the first of several axes that are as near
@@ -63,14 +63,14 @@ std::vector<CheckedLabels> cutAll(const Surface& surface, const LabelCosts& cost
 
 std::vector<CheckedLabels> labelsOf(const Surface& surface, std::uint64_t seed, Stage& stage) {
   const LabelCosts costs(surface);
-  stage.setTotal(kStarts.size() + kSearches * kRounds);
+  stage.setTotal(kStarts.size() + kLabelSearches * kLabelRounds);
   std::vector<CheckedLabels> found = cutAll(surface, costs, seed, stage);
   sortByMerit(found);
-  for (std::size_t round = 0; round < kRounds; ++round) {
-    const std::size_t count = std::min(kSearches, found.size());
+  for (std::size_t round = 0; round < kLabelRounds; ++round) {
+    const std::size_t count = std::min(kLabelSearches, found.size());
     std::vector<CheckedLabels> better(count);
     parallelFor(stage, count, 1, [&](std::size_t i) {
-      const Random random(seed, 16 + round * kSearches + i);
+      const Random random(seed, 16 + round * kLabelSearches + i);
       LabelSearch search(surface, costs, random);
       better[i] = search.improve(found[i].labels, stage.context());
     });

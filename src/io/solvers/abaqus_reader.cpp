@@ -30,7 +30,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// The next word of a line, up to a comma; the line goes on behind it.
-std::string_view takeWord(std::string_view& line) {
+std::string_view takeField(std::string_view& line) {
   const std::size_t comma = std::min(line.find(','), line.size());
   const std::string_view word = trimmed(line.substr(0, comma));
   line.remove_prefix(std::min(comma + 1, line.size()));
@@ -136,9 +136,9 @@ class AbaqusReader {
     std::string text(trimmed(line_));
     while (text.ends_with(',') && nextLine()) text += trimmed(line_);
     std::string_view rest = text;
-    AbaqusKeyword keyword{lowerCase(takeWord(rest)), {}};
+    AbaqusKeyword keyword{lowerCase(takeField(rest)), {}};
     while (!rest.empty()) {
-      const std::string_view word = takeWord(rest);
+      const std::string_view word = takeField(rest);
       const std::size_t equals = std::min(word.find('='), word.size());
       std::string_view value = trimmed(word.substr(std::min(equals + 1, word.size())));
       if (value.size() > 1 && value.starts_with('"') && value.ends_with('"')) {
@@ -217,11 +217,11 @@ class AbaqusReader {
     std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set].items;
     while (nextData()) {
       std::string_view rest = line_;
-      nodeNumbers_.push_back(integer(takeWord(rest), "the number of a node"));
+      nodeNumbers_.push_back(integer(takeField(rest), "the number of a node"));
       Vec3 point{};
       for (double& coordinate : point) {
         if (rest.empty()) break;  // those that are left out are 0
-        const std::string_view word = takeWord(rest);
+        const std::string_view word = takeField(rest);
         if (!word.empty()) coordinate = real(word);
       }
       lists_.points.push_back(point);
@@ -242,7 +242,7 @@ class AbaqusReader {
     if (!set.empty()) blockSets_.push_back(set);
     while (nextData()) {
       std::string_view rest = line_;
-      const std::uint64_t number = integer(takeWord(rest), "the number of an element");
+      const std::uint64_t number = integer(takeField(rest), "the number of an element");
       if (type.cells == nullptr && name.find("c3d") == std::string::npos) continue;
       if (type.cells == nullptr) {
         fail("elements of the type " + quoted(std::string_view(name)) + " are not known",
@@ -255,7 +255,7 @@ class AbaqusReader {
           if (!nextData()) fail("the nodes of element " + std::to_string(number) + " are missing");
           rest = line_;
         }
-        places.push_back(integer(takeWord(rest), "a node of an element"));
+        places.push_back(integer(takeField(rest), "a node of an element"));
       }
     }
   }
@@ -270,7 +270,7 @@ class AbaqusReader {
         continue;
       }
       while (!trimmed(rest).empty()) {
-        const std::string_view word = takeWord(rest);
+        const std::string_view word = takeField(rest);
         if (word.empty()) continue;
         std::uint64_t number = 0;
         const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -295,9 +295,9 @@ class AbaqusReader {
 
   /// "first, last, step"
   void addRange(std::string_view rest, Set& set) {
-    const std::uint64_t first = integer(takeWord(rest), "the first of a range");
-    const std::uint64_t last = integer(takeWord(rest), "the last of a range");
-    const std::string_view word = takeWord(rest);
+    const std::uint64_t first = integer(takeField(rest), "the first of a range");
+    const std::uint64_t last = integer(takeField(rest), "the last of a range");
+    const std::string_view word = takeField(rest);
     const std::uint64_t step = word.empty() ? 1 : integer(word, "the step of a range");
     if (step == 0 || last < first) fail("a range is \"first, last, step\", upwards");
     takeRoom((last - first) / step + 1);
@@ -321,8 +321,8 @@ class AbaqusReader {
     while (nextData()) {
       if (!type.empty() && type != "element") continue;
       std::string_view rest = line_;
-      const std::string_view elements = takeWord(rest);
-      const std::string face = lowerCase(takeWord(rest));
+      const std::string_view elements = takeField(rest);
+      const std::string face = lowerCase(takeField(rest));
       const auto* const found = face.size() == 2 && face[0] == 's'
                                     ? std::find(kAbaqusFaces.begin(), kAbaqusFaces.end(), face[1])
                                     : kAbaqusFaces.end();

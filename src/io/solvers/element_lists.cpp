@@ -123,6 +123,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   std::vector<FeatureEdge> features;
+  features.reserve(found.size());
   for (const auto& [tag, edge] : found) features.push_back({edge, tag});
   return features;
 }

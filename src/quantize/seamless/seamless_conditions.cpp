@@ -24,11 +24,11 @@ std::array<IntegerForm, 3> rotated(lattice::Rotation rotation,
   return image;
 }
 
-using Equations = tetmap::PointEquations<IntegerForm>;
+using SharedEquations = tetmap::PointEquations<IntegerForm>;
 
 /// Two ways to a sector give the same parameter there.
 void addDifference(const VertexConditions::Sector& reached, const VertexConditions::Sector& known,
-                   Equations& equations) {
+                   SharedEquations& equations) {
   for (std::size_t k = 0; k < 3; ++k) {
     IntegerForm rest = reached.translation[k];
     rest.add(known.translation[k], -1);
@@ -38,7 +38,7 @@ void addDifference(const VertexConditions::Sector& reached, const VertexConditio
 
 /// What planes say in a sector.
 void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unknowns,
-               Equations& equations) {
+               SharedEquations& equations) {
   for (int from = 0; from < 3; ++from) {
     const auto axis =
         static_cast<std::size_t>(lattice::axisOf(sector.rotation(lattice::direction(from, 1))));
@@ -205,7 +205,7 @@ VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topolo
                               const CutGraph& graph, const SharedUnknowns& unknowns,
                               std::vector<IntegerForm>& equations) {
   VertexConditions conditions;
-  Equations ofPoint;
+  SharedEquations ofPoint;
   // All sectors from the first one, across the cut; each further way between them is a condition.
   const std::vector<Crossing> crossings = crossingsAt(vertex, topology, graph);
   conditions.sectors.push_back({graph.sectors[topology.star(vertex)[0]], {}, {}});
@@ -234,7 +234,7 @@ VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topolo
   for (const VertexConditions::Sector& sector : conditions.sectors) {
     addPlanes(sector, unknowns, ofPoint);
   }
-  Equations::Solution solution = std::move(ofPoint).solve();
+  SharedEquations::Solution solution = std::move(ofPoint).solve();
   for (std::size_t k = 0; k < 3; ++k) {
     auto& [coefficients, rest] = solution.coordinates[k];
     conditions.fixed[k] = {coefficients[k], std::move(rest)};
