@@ -114,7 +114,8 @@ Vec3 newtonStep(const EnergySlope& slope, std::span<const Vec3> directions) noex
     for (std::size_t k = 0; k < i; ++k) right[i] -= a[i][k] * right[k];
     right[i] /= a[i][i];
   }
-  for (std::size_t i = count; i-- > 0;) {
+  for (std::size_t i = count; i > 0;) {
+    --i;
     for (std::size_t k = i + 1; k < count; ++k) right[i] -= a[k][i] * right[k];
     right[i] /= a[i][i];
   }

@@ -30,7 +30,8 @@ igm::OrientedMap readTets(const TetMesh& tets, Stage& stage) {
 void requirePositive(const TetMapView& view) {
   std::size_t count = 0;
   Index first = 0;
-  for (std::size_t t = view.tets.size(); t-- > 0;) {
+  for (std::size_t t = view.tets.size(); t > 0;) {
+    --t;
     const Tet& tet = view.tets[t];
     const auto edge = [&](std::size_t i) {
       return minus(view.points[tet[i]], view.points[tet[0]]);

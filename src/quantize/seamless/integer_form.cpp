@@ -158,7 +158,8 @@ std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) co
   const auto n = static_cast<Eigen::Index>(variableCount_);
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(free_.size()));
   for (std::size_t k = 0; k < free_.size(); ++k) basis(free_[k], static_cast<Eigen::Index>(k)) = 1;
-  for (std::size_t i = solved_.size(); i-- > 0;) {
+  for (std::size_t i = solved_.size(); i > 0;) {
+    --i;
     const Solved& solved = solved_[i];
     for (const auto& [variable, factor] : solved.rest.terms()) {
       basis.row(solved.variable) -= static_cast<double>(factor) /
@@ -174,7 +175,8 @@ std::vector<double> IntegerSystem::nearest(const std::vector<double>& wanted) co
 std::vector<std::vector<std::pair<Index, double>>> IntegerSystem::combinations() const {
   std::vector<std::vector<std::pair<Index, double>>> all(variableCount_);
   for (const Index v : free_) all[v] = {{v, 1.0}};
-  for (std::size_t i = solved_.size(); i-- > 0;) {
+  for (std::size_t i = solved_.size(); i > 0;) {
+    --i;
     const Solved& solved = solved_[i];
     std::map<Index, double> sum;
     for (const auto& [variable, factor] : solved.rest.terms()) {
@@ -193,7 +195,8 @@ std::vector<std::int64_t> IntegerSystem::roundedTo(const std::vector<double>& so
   for (const Index v : free_) {
     values[v] = std::llround(solution[v] / static_cast<double>(step)) * step;
   }
-  for (std::size_t i = solved_.size(); i-- > 0;) {
+  for (std::size_t i = solved_.size(); i > 0;) {
+    --i;
     const Solved& solved = solved_[i];
     const auto rest = solved.rest(values);
     if (rest % solved.coefficient != 0) return {};
