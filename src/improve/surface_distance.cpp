@@ -71,7 +71,6 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
     std::size_t end;
     double squared;
   };
-  assert(!triangles_.empty());
   double best = kFar;
   std::size_t triangle = 0;
   std::vector<Range> open = {{0, 0, triangles_.size(), boxes_[0].squaredDistance(point)}};
