@@ -213,7 +213,7 @@ std::string listed(const std::vector<Vec3>& points, bool numbered) {
 
 HexMesh abaqus(const std::string& text) {
   Context context;
-  return readAbaqus({text, "m.inp"}, context);
+  return AbaqusFormat::readMesh({text, "m.inp"}, context);
 }
 
 const std::string kInpNodes =
@@ -436,14 +436,14 @@ TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {
     if (i % 2 == 0) bytes.resize(random.below(good.size()));
     if (i % 2 == 1) bytes[random.below(good.size())] = static_cast<char>(random.below(256));
     try {
-      static_cast<void>(readExodus({bytes, "a.e"}, context));
+      static_cast<void>(ExodusFormat::readMesh({bytes, "a.e"}, context));
     } catch (const Error&) {
       ++refused;
     }
   }
   EXPECT_GE(refused, 200U);
   const Failure hdf = failureOf([&] {
-    static_cast<void>(readExodus({"\x89HDF\r\n\x1a\n........", "a.e"}, context));
+    static_cast<void>(ExodusFormat::readMesh({"\x89HDF\r\n\x1a\n........", "a.e"}, context));
   });
   EXPECT_NE(hdf.sentence.find("nccopy"), std::string::npos) << hdf.sentence;
 }

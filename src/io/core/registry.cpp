@@ -60,9 +60,9 @@ void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
 
 constexpr Format exodusFormat(std::string_view name, std::string_view extension) {
   return {.label = {name, extension, "Exodus II"},
-          .readTets = readExodusTets,
-          .meshes = {readExodus, writeExodusFile},
-          .curved = {holdsCurvedExodus, readCurvedExodus}};
+          .readTets = ExodusFormat::readTets,
+          .meshes = {ExodusFormat::readMesh, writeExodusFile},
+          .curved = {ExodusFormat::holdsCurved, ExodusFormat::readCurved}};
 }
 
 constexpr std::array kFormatTable = {
@@ -117,9 +117,9 @@ constexpr std::array kFormatTable = {
            .readTets = readGmshTets,
            .meshes = {readGmsh, writeGmsh22Text}},
     Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"},
-           .readTets = readAbaqusTets,
-           .meshes = {readAbaqus, writeAbaqus},
-           .curved = {holdsCurvedAbaqus, readCurvedAbaqus}},
+           .readTets = AbaqusFormat::readTets,
+           .meshes = {AbaqusFormat::readMesh, writeAbaqus},
+           .curved = {AbaqusFormat::holdsCurved, AbaqusFormat::readCurved}},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"}, .meshes = {.write = writeMfem}},
     Format{.label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
            .meshes = {.write = writeOpenFoam}},

@@ -74,12 +74,13 @@ AbaqusType abaqusType(std::string_view name) {
 /// Reads a file and those that it includes.
 class AbaqusReader {
  public:
-  AbaqusReader(const Input& input, Stage& stage) : input_(input), stage_(stage) {}
+  AbaqusReader(const Input& input, ElementParts parts, Stage& stage)
+      : input_(input), parts_(parts), stage_(stage) {}
 
   ElementLists read() {
     Array<char> room;
     readFile(input_.text(room, stage_, "*"), input_.name(), input_.path());
-    finish();
+    if (parts_ == ElementParts::All) finish();
     return std::move(lists_);
   }
 
@@ -152,6 +153,7 @@ class AbaqusReader {
   }
 
   void readBlock(const AbaqusKeyword& keyword) {
+    if (parts_ == ElementParts::Types && keyword.name != "*element") return;
     if (keyword.name == "*node") {
       readNodes(keyword);
     } else if (keyword.name == "*element") {
@@ -249,6 +251,7 @@ class AbaqusReader {
              ErrorCode::FileUnsupported);
       }
       block.numbers.push_back(number);
+      if (parts_ == ElementParts::Types) return;
       if (!set.empty()) elementSets_[set].items.push_back(number);
       for (std::size_t k = 0; k < type.nodes; ++k) {
         if (trimmed(rest).empty()) {
@@ -464,6 +467,7 @@ class AbaqusReader {
   }
 
   const Input& input_;
+  ElementParts parts_;
   Stage& stage_;
   TextScanner* scanner_ = nullptr;
   std::string_view line_;
@@ -482,28 +486,10 @@ class AbaqusReader {
   std::vector<Surface> surfaces_;
 };
 
-ElementLists readLists(const Input& input, std::string_view name, Context& context) {
-  return inStage(context, name, [&](Stage& stage) { return AbaqusReader(input, stage).read(); });
-}
-
 }  // namespace
 
-HexMesh readAbaqus(const Input& input, Context& context) {
-  return hexMeshOf(readLists(input, "read mesh", context), input);
-}
-
-TetCells readAbaqusTets(const Input& input, Context& context) {
-  return tetsOf(readLists(input, "read tets", context), input);
-}
-
-bool holdsCurvedAbaqus(const Input& input, Context& context) {
-  return areCurved(readLists(input, "read mesh", context));
-}
-
-LagrangeMesh readCurvedAbaqus(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&](Stage& stage) {
-    return curvedMeshOf(AbaqusReader(input, stage).read(), input, stage);
-  });
+ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage) {
+  return AbaqusReader(input, parts, stage).read();
 }
 
 }  // namespace hexhex::io

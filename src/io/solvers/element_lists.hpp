@@ -79,4 +79,35 @@ void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std:
 /// @throws Error FileUnsupported for other volume cells, too
 [[nodiscard]] LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage);
 
+/// What of a file is read: types and numbers of elements alone can be told without their nodes.
+enum class ElementParts : std::uint8_t { All, Types };
+
+/// Reads the lists of one format.
+using ReadElementLists = ElementLists (*)(const Input&, ElementParts, Stage&);
+
+/// What the registry has of a format, by the function that reads its lists.
+template <ReadElementLists read>
+struct ElementFormat {
+  [[nodiscard]] static HexMesh readMesh(const Input& input, Context& context) {
+    return inStage(context, "read mesh", [&](Stage& stage) {
+      return hexMeshOf(read(input, ElementParts::All, stage), input);
+    });
+  }
+  [[nodiscard]] static TetCells readTets(const Input& input, Context& context) {
+    return inStage(context, "read tets", [&](Stage& stage) {
+      return tetsOf(read(input, ElementParts::All, stage), input);
+    });
+  }
+  [[nodiscard]] static bool holdsCurved(const Input& input, Context& context) {
+    return inStage(context, "read mesh", [&](Stage& stage) {
+      return areCurved(read(input, ElementParts::Types, stage));
+    });
+  }
+  [[nodiscard]] static LagrangeMesh readCurved(const Input& input, Context& context) {
+    return inStage(context, "read mesh", [&](Stage& stage) {
+      return curvedMeshOf(read(input, ElementParts::All, stage), input, stage);
+    });
+  }
+};
+
 }  // namespace hexhex::io

@@ -28,12 +28,14 @@ constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  
 
 class ExodusReader {
  public:
-  ExodusReader(std::string_view bytes, const std::string& name, Stage& /*stage*/)
-      : file_(bytes, name), name_(name) {}
-
-  static constexpr std::string_view kFirst = {};
+  ExodusReader(std::string_view bytes, const std::string& name, ElementParts parts)
+      : file_(bytes, name), name_(name), parts_(parts) {}
 
   ElementLists read() {
+    if (parts_ == ElementParts::Types) {
+      readBlocks();
+      return std::move(lists_);
+    }
     readPoints();
     readBlocks();
     readSides();
@@ -138,7 +140,7 @@ class ExodusReader {
     block.numbers.resize(count);
     for (std::size_t i = 0; i < count; ++i) block.numbers[i] = next - count + i;
     block.regions.assign(count, region);
-    if (!isRead) return;  // others are only counted
+    if (!isRead || parts_ == ElementParts::Types) return;  // others are only counted
     const std::vector<std::int64_t> nodes = file_.integers(values);
     block.nodes.resize(nodes.size());
     const bool isCurved = each == 20 || each == kExodusPlaces.size();
@@ -213,6 +215,7 @@ class ExodusReader {
 
   NetcdfReader file_;
   const std::string& name_;
+  ElementParts parts_;
   ElementLists lists_;
 };
 
@@ -227,29 +230,12 @@ void requireExodus(const Input& input) {
   requireNetcdf({head.data(), size}, input.name());
 }
 
-ElementLists readExodusLists(const Input& input, std::string_view stage, Context& context) {
-  requireExodus(input);
-  return readWith<ExodusReader>(input, stage, context);
-}
-
 }  // namespace
 
-HexMesh readExodus(const Input& input, Context& context) {
-  return hexMeshOf(readExodusLists(input, "read mesh", context), input);
-}
-
-TetCells readExodusTets(const Input& input, Context& context) {
-  return tetsOf(readExodusLists(input, "read tets", context), input);
-}
-
-bool holdsCurvedExodus(const Input& input, Context& context) {
-  return areCurved(readExodusLists(input, "read mesh", context));
-}
-
-LagrangeMesh readCurvedExodus(const Input& input, Context& context) {
-  ElementLists lists = readExodusLists(input, "read mesh", context);
-  return inStage(context, "read mesh",
-                 [&](Stage& stage) { return curvedMeshOf(std::move(lists), input, stage); });
+ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
+  requireExodus(input);
+  Array<char> room;
+  return ExodusReader(input.text(room, stage, ""), input.name(), parts).read();
 }
 
 }  // namespace hexhex::io

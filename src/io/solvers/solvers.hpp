@@ -13,6 +13,7 @@
 
 #include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
+#include <io/solvers/element_lists.hpp>
 
 namespace hexhex::io {
 
@@ -33,10 +34,8 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
 /// says, or the number of the set in its order. *INCLUDE is followed.
 /// @throws Error FileNotFound, FileSyntax (with the line), FileUnsupported, IndexOutOfRange,
 ///         NotFinite, TooLarge
-[[nodiscard]] HexMesh readAbaqus(const Input& input, Context& context);
-[[nodiscard]] TetCells readAbaqusTets(const Input& input, Context& context);
-[[nodiscard]] bool holdsCurvedAbaqus(const Input& input, Context& context);
-[[nodiscard]] LagrangeMesh readCurvedAbaqus(const Input& input, Context& context);
+[[nodiscard]] ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage);
+using AbaqusFormat = ElementFormat<readAbaqus>;
 
 /// `.cgns`: the CFD General Notation System, in HDF5; only in builds with HDF5
 /// (HEXHEX_HAS_HDF5). Writes one base with one unstructured zone: a section HEXA_8 for each region,
@@ -66,10 +65,8 @@ void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
 /// with 20 and 27 nodes are curved cells; other volume elements are counted.
 /// @throws Error FileNotFound, FileSyntax (with the byte), FileUnsupported, IndexOutOfRange,
 ///         NotFinite, TooLarge
-[[nodiscard]] HexMesh readExodus(const Input& input, Context& context);
-[[nodiscard]] TetCells readExodusTets(const Input& input, Context& context);
-[[nodiscard]] bool holdsCurvedExodus(const Input& input, Context& context);
-[[nodiscard]] LagrangeMesh readCurvedExodus(const Input& input, Context& context);
+[[nodiscard]] ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage);
+using ExodusFormat = ElementFormat<readExodus>;
 
 /// MFEM mesh v1.0, only by the name of the format, since MFEM's files have the extension of
 /// MEDIT's. Writes cells (attribute 1), boundary quads and tagged quads inside (attribute: the
