@@ -109,13 +109,14 @@ class FramesMapper {
         for (const Index v : walks[edge]) isBound[v] = true;
       }
       const std::vector<bool> isOuter = tets_.boundaryVertices();
-      std::vector<VertexPair> edges;
+      std::vector<tetmap::EdgeInTet> edges;
       for (std::size_t edge = 0; edge < walks.size(); ++edge) {
         const auto [a, b] = walks[edge];
         const bool isInside = !walks.isBoundary(edge);
         const bool isTight =
             (isBound[a] || (isInside && isOuter[a])) && (isBound[b] || (isInside && isOuter[b]));
-        if (isTight && !isSingular[edge]) edges.push_back({std::min(a, b), std::max(a, b)});
+        if (!isTight || isSingular[edge]) continue;
+        edges.push_back({tetmap::pairOf(a, b), adjacency::tetOf(walks.outs(edge).front())});
       }
       if (edges.empty()) return;
       tets_.split(std::move(edges), stage_);
@@ -155,8 +156,9 @@ class FramesMapper {
     for (const Index t : flipped) {
       for (const Index v : tets_.mesh().tets[t]) isNear[v] = true;
     }
-    std::vector<VertexPair> edges;
-    for (const Tet& tet : tets_.mesh().tets) {
+    std::vector<tetmap::EdgeInTet> edges;
+    for (Index t = 0; t < tets_.size(); ++t) {
+      const Tet& tet = tets_.mesh().tets[t];
       if (std::count_if(tet.begin(), tet.end(), [&](Index v) { return isNear[v]; }) < 2) continue;
       VertexPair longest{};
       double most = 0;
@@ -167,7 +169,7 @@ class FramesMapper {
         most = length;
         longest = edge;
       });
-      edges.push_back(longest);
+      edges.push_back({longest, t});
     }
     tets_.split(std::move(edges), stage_);
   }

@@ -17,12 +17,6 @@ namespace hexhex::shape {
 namespace {
 
 using adjacency::HalfFace;
-using tetmap::forEachEdgeOf;
-using tetmap::sortUnique;
-
-bool contains(const std::vector<VertexPair>& edges, const VertexPair& edge) {
-  return std::binary_search(edges.begin(), edges.end(), edge);
-}
 
 /// Calls visit(edge, half-face) for the three edges of each boundary triangle.
 template <class Visit>
@@ -60,7 +54,9 @@ FrameTets::FrameTets(TetMesh mesh, double featureAngleInDegrees, Stage& stage)
   findFeatures(featureAngleInDegrees * std::numbers::pi / 180, stage);
 }
 
-bool FrameTets::isFeature(const VertexPair& edge) const { return contains(features_, edge); }
+bool FrameTets::isFeature(const VertexPair& edge) const {
+  return std::binary_search(features_.begin(), features_.end(), edge);
+}
 
 Eigen::Vector3d FrameTets::normal(HalfFace h) const {
   const Tet& tet = mesh_.tets[adjacency::tetOf(h)];
@@ -87,13 +83,12 @@ std::vector<bool> FrameTets::boundaryVertices() const {
 }
 
 void FrameTets::buildTopology(Stage& stage) {
-  topology_ = {};
-  topology_.tets = mesh_.tets;
-  topology_.pointCount = mesh_.points.size();
-  if (!adjacency::matchFaces(topology_, stage)) {
+  auto topology = adjacency::manifoldTopology(mesh_.tets, mesh_.points.size(), stage);
+  if (!topology) {
     throw Error(ErrorCode::Internal,
                 "Splitting has made tets that are no manifold. This is a bug.");
   }
+  topology_ = std::move(*topology);
   adjacency::addStars(topology_, stage);
   double sum = 0;
   for (Index t = 0; t < size(); ++t) sum += volume(t);
@@ -114,23 +109,16 @@ void FrameTets::findFeatures(double angle, Stage& stage) {
   }
 }
 
-std::vector<VertexPair> FrameTets::tightEdges() const {
-  std::vector<VertexPair> outer;
+tetmap::BoundaryCurves FrameTets::boundaryCurves() const {
+  std::vector<VertexPair> edges;
   forEachBoundaryEdge(topology_,
-                      [&](const VertexPair& edge, HalfFace /*h*/) { outer.push_back(edge); });
-  tetmap::sortUnique(outer);
-  const std::vector<bool> isOuter = boundaryVertices();
-  std::vector<bool> isFeatured(mesh_.points.size());
-  for (const VertexPair& edge : features_) isFeatured[edge[0]] = isFeatured[edge[1]] = true;
-  std::vector<VertexPair> tight;
-  for (const Tet& tet : mesh_.tets) {
-    tetmap::forEachEdgeOf(tet, [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
-      if (!isOuter[edge[0]] || !isOuter[edge[1]]) return;
-      const bool isFeatureless = isFeatured[edge[0]] && isFeatured[edge[1]] && !isFeature(edge);
-      if (isFeatureless || !contains(outer, edge)) tight.push_back(edge);
-    });
-  }
-  // Of triangles between three features, one is split.
+                      [&](const VertexPair& edge, HalfFace /*h*/) { edges.push_back(edge); });
+  tetmap::sortUnique(edges);
+  return {mesh_.points.size(), std::move(edges), features_};
+}
+
+std::vector<tetmap::EdgeInTet> FrameTets::edgesBetweenFeatures() const {
+  std::vector<tetmap::EdgeInTet> edges;
   for (HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (!topology_.isBoundary(h)) continue;
     int count = 0;
@@ -141,17 +129,19 @@ std::vector<VertexPair> FrameTets::tightEdges() const {
           ++count;
           last = edge;
         });
-    if (count == 3) tight.push_back(last);
+    if (count == 3) edges.push_back({last, adjacency::tetOf(h)});
   }
-  return tight;
+  return edges;
 }
 
 void FrameTets::refine(Stage& stage) {
-  std::vector<VertexPair> edges;
-  for (const Tet& tet : mesh_.tets) {
-    tetmap::forEachEdgeOf(tet, [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
-      if ((point(edge[1]) - point(edge[0])).norm() > edgeLength_) edges.push_back(edge);
-    });
+  std::vector<tetmap::EdgeInTet> edges;
+  for (Index t = 0; t < size(); ++t) {
+    tetmap::forEachEdgeOf(mesh_.tets[t],
+                          [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
+                            if ((point(edge[1]) - point(edge[0])).norm() > edgeLength_)
+                              edges.push_back({edge, t});
+                          });
   }
   split(std::move(edges), stage);
 }
@@ -160,51 +150,34 @@ void FrameTets::makeRoom(Stage& stage) {
   // Middles of edges are inside, or on the boundary but not on features, or, of triangles between
   // three features, on one of these: so there are fewer and fewer.
   while (true) {
-    std::vector<VertexPair> edges = tightEdges();
+    std::vector<tetmap::EdgeInTet> edges = boundaryCurves().tightEdges(mesh_.tets);
+    const std::vector<tetmap::EdgeInTet> more = edgesBetweenFeatures();
+    edges.insert(edges.end(), more.begin(), more.end());
     if (edges.empty()) break;
     split(std::move(edges), stage);
   }
-  const std::vector<bool> isOuter = boundaryVertices();
+  const tetmap::BoundaryCurves boundary = boundaryCurves();
   std::vector<Index> outer;
   for (Index t = 0; t < size(); ++t) {
-    const Tet& tet = mesh_.tets[t];
-    if (std::all_of(tet.begin(), tet.end(), [&](Index v) { return isOuter[v]; }))
-      outer.push_back(t);
+    if (boundary.hasAllOf(mesh_.tets[t])) outer.push_back(t);
   }
   splitTets(outer, stage);
 }
 
-void FrameTets::split(std::vector<VertexPair> edges, Stage& stage) {
-  tetmap::sortUnique(edges);
-  std::vector<tetmap::EdgeInTet> places;
-  for (Index t = 0; t < size(); ++t) {
-    tetmap::forEachEdgeOf(mesh_.tets[t],
-                          [&](const VertexPair& edge, lattice::CornerMask /*corners*/) {
-                            if (contains(edges, edge)) places.push_back({edge, t});
-                          });
-  }
-  tetmap::sortUnique(places);
-  const auto length = [&](const tetmap::EdgeInTet& edge) {
-    return (point(edge.vertices[1]) - point(edge.vertices[0])).squaredNorm();
-  };
-  std::stable_sort(places.begin(), places.end(),
-                   [&](const auto& a, const auto& b) { return length(a) > length(b); });
-  tetmap::MutableTets mutableTets(std::move(mesh_.tets), topology_.mate, mesh_.points.size());
-  for (const tetmap::EdgeInTet& edge : places) {
-    stage.context().throwIfCancelled();
-    const auto [v, w] = edge.vertices;
-    const auto middle = static_cast<Index>(mesh_.points.size());
-    mesh_.points.push_back(tetmap::middleOf(mesh_.points[v], mesh_.points[w]));
-    for (const tetmap::Cut& cut : mutableTets.splitEdge(edge)) {
-      tetmap::carryTet(cut, parents_);
-      if (frames.empty()) continue;
-      tetmap::carryTet(cut, frames);
-      // Between both parts, charts agree.
-      tetmap::carryFaces(cut, lattice::Rotation(), rotations);
-    }
-    splitFeature(edge.vertices, middle);
-  }
-  mesh_.tets = std::move(mutableTets.tets);
+void FrameTets::split(std::vector<tetmap::EdgeInTet> edges, Stage& stage) {
+  static_cast<void>(tetmap::splitLongestFirst(
+      mesh_, topology_.mate, std::move(edges),
+      [&](const VertexPair& edge, Index middle, const std::vector<tetmap::Cut>& cuts) {
+        stage.context().throwIfCancelled();
+        for (const tetmap::Cut& cut : cuts) {
+          tetmap::carryTet(cut, parents_);
+          if (frames.empty()) continue;
+          tetmap::carryTet(cut, frames);
+          // Between both parts, charts agree.
+          tetmap::carryFaces(cut, lattice::Rotation(), rotations);
+        }
+        splitFeature(edge, middle);
+      }));
   buildTopology(stage);
 }
 

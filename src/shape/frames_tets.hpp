@@ -8,7 +8,7 @@
 #include <adjacency/edge_fan.hpp>
 #include <quantize/seamless/cut_graph.hpp>
 #include <shape/frames_tensor.hpp>
-#include <tetmap/cut.hpp>
+#include <tetmap/boundary_curves.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -57,7 +57,7 @@ class FrameTets {
   /// Splits all edges that are longer than they are on the average.
   void refine(Stage& stage);
   /// Splits edges, the longest first. Parts of a tet inherit its frame.
-  void split(std::vector<VertexPair> edges, Stage& stage);
+  void split(std::vector<tetmap::EdgeInTet> edges, Stage& stage);
 
   std::vector<Frame> frames;  ///< per tet; none before there is a field
   /// Per half-face: from parameters of the tet here to those of its neighbour. Inverse to each
@@ -69,7 +69,9 @@ class FrameTets {
   void findFeatures(double angle, Stage& stage);
   void splitFeature(const VertexPair& edge, Index middle);
   void splitTets(const std::vector<Index>& tets, Stage& stage);
-  [[nodiscard]] std::vector<VertexPair> tightEdges() const;
+  [[nodiscard]] tetmap::BoundaryCurves boundaryCurves() const;
+  /// Of boundary triangles between three features, one each.
+  [[nodiscard]] std::vector<tetmap::EdgeInTet> edgesBetweenFeatures() const;
 
   TetMesh mesh_;
   std::vector<Index> parents_;

@@ -2,12 +2,18 @@
 // is carried along by cut.hpp.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <adjacency/edge_fan.hpp>
 #include <tetmap/cut.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <base/vector3.hpp>
 
 namespace hexhex::tetmap {
 
@@ -84,5 +90,34 @@ class MutableTets {
   std::vector<Part> parts_;
   std::vector<Index> firstPart_;  ///< per tet
 };
+
+/// Splits edges in their middles, the longest first, which keeps tets round.
+/// @param mate   as TetTopology has it
+/// @param edges  each once or more
+/// @param carry  carry(edge, middle, cuts), after each of them
+/// @return `mate` afterwards
+template <class Carry>
+std::vector<adjacency::HalfFace> splitLongestFirst(TetMesh& mesh,
+                                                   std::span<const adjacency::HalfFace> mate,
+                                                   std::vector<EdgeInTet> edges,
+                                                   const Carry& carry) {
+  sortUnique(edges);
+  const auto squaredLength = [&mesh](const EdgeInTet& edge) {
+    const Vec3 d = minus(mesh.points[edge.vertices[1]], mesh.points[edge.vertices[0]]);
+    return dot(d, d);
+  };
+  std::stable_sort(edges.begin(), edges.end(), [&](const EdgeInTet& a, const EdgeInTet& b) {
+    return squaredLength(a) > squaredLength(b);
+  });
+  MutableTets tets(std::move(mesh.tets), mate, mesh.points.size());
+  for (const EdgeInTet& edge : edges) {
+    const auto [v, w] = edge.vertices;
+    const auto middle = static_cast<Index>(mesh.points.size());
+    mesh.points.push_back(middleOf(mesh.points[v], mesh.points[w]));
+    carry(edge.vertices, middle, tets.splitEdge(edge));
+  }
+  mesh.tets = std::move(tets.tets);
+  return std::move(tets.mate);
+}
 
 }  // namespace hexhex::tetmap
