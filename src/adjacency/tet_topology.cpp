@@ -10,6 +10,15 @@ constexpr std::size_t kTetTopologyGrain = 4096;
 
 }  // namespace
 
+std::optional<TetTopology> manifoldTopology(std::span<const Tet> tets, std::size_t pointCount,
+                                            Stage& stage) {
+  TetTopology topology;
+  topology.tets = tets;
+  topology.pointCount = pointCount;
+  if (!matchFaces(topology, stage)) return std::nullopt;
+  return topology;
+}
+
 void addStars(TetTopology& topology, Stage& stage) {
   if (!topology.stars.empty()) return;
   topology.stars = VertexLists<CornerIndex>(topology.pointCount, stage, [&](const auto& add) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -167,6 +168,12 @@ struct SharedCorners {
 /// @return false if a triangle belongs to more than two tets, or if two tets at one do not see it
 ///         with opposite orientation; nothing may then be made of the result but a list of defects
 [[nodiscard]] bool matchFaces(TetTopology& topology, Stage& stage);
+
+/// The same of tets that should be a manifold.
+/// @param tets  must outlive the result
+/// @return nothing if they are not
+[[nodiscard]] std::optional<TetTopology> manifoldTopology(std::span<const Tet> tets,
+                                                          std::size_t pointCount, Stage& stage);
 
 /// Lists the corners at each vertex. Does nothing if they are listed.
 void addStars(TetTopology& topology, Stage& stage);

@@ -50,6 +50,19 @@ using IntegerVector = std::array<std::int64_t, 3>;
   return dot(a, cross(b, c));
 }
 
+/// The angle of a tet at the edge between two of its corners, as if it were positive.
+[[nodiscard]] inline double dihedralAngle(const std::array<Vec3, 4>& tet, std::size_t a,
+                                          std::size_t b) noexcept {
+  std::size_t c = 0;
+  while (c == a || c == b) ++c;
+  const std::size_t d = 6 - a - b - c;
+  const Vec3 edge = minus(tet[b], tet[a]);
+  const Vec3 left = cross(edge, minus(tet[c], tet[a]));
+  const Vec3 right = cross(edge, minus(tet[d], tet[a]));
+  const Vec3 normal = cross(left, right);
+  return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
+}
+
 /// The axis of the largest component, the first of several.
 [[nodiscard]] inline std::size_t dominantAxis(const Vec3& v) noexcept {
   // As numbers, since a branch could not be predicted.

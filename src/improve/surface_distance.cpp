@@ -16,16 +16,16 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 /// Triangles in a leaf.
 constexpr std::size_t kLeaf = 4;
 
-}  // namespace
-
-double TriangleTree::Box::squaredDistance(const Vec3& point) const noexcept {
+double squaredDistance(const Box& box, const Vec3& point) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double d = std::max({low[k] - point[k], point[k] - high[k], 0.0});
+    const double d = std::max({box.low[k] - point[k], point[k] - box.high[k], 0.0});
     sum += d * d;
   }
   return sum;
 }
+
+}  // namespace
 
 TriangleTree::TriangleTree(std::span<const std::array<Vec3, 3>> triangles) {
   triangles_.reserve(triangles.size());
@@ -39,14 +39,9 @@ TriangleTree::TriangleTree(std::span<const std::array<Vec3, 3>> triangles) {
 }
 
 void TriangleTree::build(std::size_t node, std::size_t begin, std::size_t end) {
-  Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  Box box;
   for (std::size_t t = begin; t < end; ++t) {
-    for (const Vec3& corner : triangles_[t].corners) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.low[k] = std::min(box.low[k], corner[k]);
-        box.high[k] = std::max(box.high[k], corner[k]);
-      }
-    }
+    for (const Vec3& corner : triangles_[t].corners) box.add(corner);
   }
   boxes_[node] = box;
   if (2 * node + 2 >= boxes_.size()) return;
@@ -72,7 +67,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
   };
   double best = kFar;
   std::size_t triangle = 0;
-  std::vector<Range> open = {{0, 0, triangles_.size(), boxes_[0].squaredDistance(point)}};
+  std::vector<Range> open = {{0, 0, triangles_.size(), squaredDistance(boxes_[0], point)}};
   while (!open.empty()) {
     const Range range = open.back();
     open.pop_back();
@@ -88,8 +83,8 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
     }
     const std::size_t middle = range.begin + (range.end - range.begin) / 2;
     const std::size_t child = 2 * range.node + 1;
-    Range low{child, range.begin, middle, boxes_[child].squaredDistance(point)};
-    Range high{child + 1, middle, range.end, boxes_[child + 1].squaredDistance(point)};
+    Range low{child, range.begin, middle, squaredDistance(boxes_[child], point)};
+    Range high{child + 1, middle, range.end, squaredDistance(boxes_[child + 1], point)};
     if (low.squared < high.squared) std::swap(low, high);
     open.push_back(low);
     open.push_back(high);
@@ -166,18 +161,11 @@ double largestOf(std::span<const double> distances) {
 }  // namespace
 
 double diagonalOf(const ReferenceSurface& surface) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3 low = {kInfinity, kInfinity, kInfinity};
-  Vec3 high = {-kInfinity, -kInfinity, -kInfinity};
+  Box box;
   for (Index t = 0; t < surface.triangleCount(); ++t) {
-    for (const Vec3& corner : surface.triangle(t)) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], corner[k]);
-        high[k] = std::max(high[k], corner[k]);
-      }
-    }
+    for (const Vec3& corner : surface.triangle(t)) box.add(corner);
   }
-  return length(minus(high, low));
+  return box.diagonal();
 }
 
 TriangleTree treeOf(const ReferenceSurface& surface) {

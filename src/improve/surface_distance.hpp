@@ -9,6 +9,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <base/box.hpp>
 #include <improve/reference_surface.hpp>
 
 namespace hexhex::improvement {
@@ -24,11 +25,6 @@ class TriangleTree {
   [[nodiscard]] Nearest nearest(const Vec3& point) const;
 
  private:
-  struct Box {
-    Vec3 low;
-    Vec3 high;
-    [[nodiscard]] double squaredDistance(const Vec3& point) const noexcept;
-  };
   void build(std::size_t node, std::size_t begin, std::size_t end);
 
   struct Triangle {

@@ -30,10 +30,8 @@ std::array<Index, n> sorted(std::array<Index, n> vertices) {
 
 /// Triangles of the boundary, then tagged ones inside and those between regions.
 void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
-  adjacency::TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  if (!adjacency::matchFaces(topology, stage)) {
+  const auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
+  if (!topology) {
     throw Error(ErrorCode::InvalidArgument,
                 "The tets of the map are no manifold: a triangle belongs to more than two of them, "
                 "or to two on the same side. `hexhex check` tells where.");
@@ -48,7 +46,7 @@ void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
   std::sort(tagged.begin(), tagged.end(), byVertices);
   std::vector<FeatureFace> inner;
   for (adjacency::HalfFace face = 0; face < 4 * map.tets.size(); ++face) {
-    const adjacency::HalfFace mate = topology.mate[face];
+    const adjacency::HalfFace mate = topology->mate[face];
     if (mate != kNone && mate < face) continue;
     FeatureFace triangle;
     const auto vertices = adjacency::faceVertices(map.tets[adjacency::tetOf(face)], face % 4);

@@ -60,16 +60,14 @@ namespace {
 /// Singular curves must be what they were.
 void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {
   Stage stage(context, "singular curves");
-  adjacency::TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  if (!adjacency::matchFaces(topology, stage)) {
+  auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
+  if (!topology) {
     throw Error(ErrorCode::Internal, "Quantization has made a mesh that is no manifold.");
   }
-  adjacency::addStars(topology, stage);
-  const adjacency::EdgeFans edges(topology);
+  adjacency::addStars(*topology, stage);
+  const adjacency::EdgeFans edges(*topology);
   const std::span<const TetParameters> parameters = map.parameters;
-  if (irregularEdges(edges, topology.tets, parameters) != expected) {
+  if (irregularEdges(edges, topology->tets, parameters) != expected) {
     throw Error(ErrorCode::Internal,
                 "Quantization has changed singular curves of the map. This is a bug.");
   }

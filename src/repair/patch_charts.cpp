@@ -32,17 +32,9 @@ bool isAlong(const Vec3& v, int axis, double tolerance) {
 }
 
 /// The angle of a tet at the edge between two of its corners: negative if the tet is flipped.
-double dihedralAngle(const TetParameters& u, int corner0, int corner1) {
-  std::array<Vec3, 2> others{};
-  std::size_t count = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (k != corner0 && k != corner1) others[count++] = u[static_cast<std::size_t>(k)];
-  }
-  const Vec3& origin = u[static_cast<std::size_t>(corner0)];
-  const Vec3 e = minus(u[static_cast<std::size_t>(corner1)], origin);
-  const Vec3 a = cross(e, minus(others[0], origin));
-  const Vec3 b = cross(e, minus(others[1], origin));
-  const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+double angleInMap(const TetParameters& u, int corner0, int corner1) {
+  const double angle =
+      dihedralAngle(u, static_cast<std::size_t>(corner0), static_cast<std::size_t>(corner1));
   return determinantOf(u) < 0 ? -angle : angle;
 }
 
@@ -320,8 +312,8 @@ bool PatchCharts::improvePairs(std::uint32_t f) {
 double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
   double sum = 0;
   const auto add = [&](Index tet) {
-    sum += dihedralAngle(parameters_(tet), topology_.localCorner(tet, edge.vertex0),
-                         topology_.localCorner(tet, edge.vertex1));
+    sum += angleInMap(parameters_(tet), topology_.localCorner(tet, edge.vertex0),
+                       topology_.localCorner(tet, edge.vertex1));
   };
   Index tet = edge.tet;
   for (const Crossing& crossing : fan.crossings) {

@@ -19,13 +19,9 @@ int axisInMap(const TetMap& map, adjacency::HalfFace h) {
 }  // namespace
 
 FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned, Stage& stage) {
-  adjacency::TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  if (!adjacency::matchFaces(topology, stage)) {
-    throw Error(ErrorCode::Internal, "A polycube's map is no manifold.");
-  }
-  const Surface surface = surfaceOf(topology, map.points);
+  const auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
+  if (!topology) throw Error(ErrorCode::Internal, "A polycube's map is no manifold.");
+  const Surface surface = surfaceOf(*topology, map.points);
   FoundFeatures features;
   for (Side side = 0; side < surface.tails.size(); ++side) {
     if (side > surface.twins[side]) continue;

@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <quantize/polycube/boundary_sides.hpp>
 #include <shape/surface.hpp>
+
+#include <base/box.hpp>
 
 namespace hexhex::shape {
 
@@ -14,20 +14,6 @@ Vec3 normalized(const Vec3& v) {
   const double size = length(v);
   if (size == 0) return {0, 0, 1};
   return {v[0] / size, v[1] / size, v[2] / size};
-}
-
-double diagonalOf(const std::vector<Vec3>& points, const std::vector<Index>& vertices) {
-  Vec3 low;
-  low.fill(std::numeric_limits<double>::infinity());
-  Vec3 high;
-  high.fill(-std::numeric_limits<double>::infinity());
-  for (const Index v : vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], points[v][k]);
-      high[k] = std::max(high[k], points[v][k]);
-    }
-  }
-  return length(minus(high, low));
 }
 
 void measure(Surface& surface, const std::vector<Vec3>& points) {
@@ -52,7 +38,9 @@ void measure(Surface& surface, const std::vector<Vec3>& points) {
   }
   surface.meanEdge = lengths / static_cast<double>(3 * count);
   surface.meanArea = surface.area / static_cast<double>(count);
-  surface.diagonal = diagonalOf(points, surface.tails);
+  Box box;
+  for (const Index v : surface.tails) box.add(points[v]);
+  surface.diagonal = box.diagonal();
 }
 
 }  // namespace

@@ -67,15 +67,13 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
   problem.planes.resize(4 * problem.tets.size());
   Context context;
   Stage stage(context, "test");
-  adjacency::TetTopology topology;
-  topology.tets = problem.tets;
-  topology.pointCount = problem.points.size();
-  if (!adjacency::matchFaces(topology, stage)) throw std::runtime_error("no manifold");
-  adjacency::addStars(topology, stage);
-  problem.irregularEdges = irregularEdges(adjacency::EdgeFans(topology), topology.tets,
+  auto topology = adjacency::manifoldTopology(problem.tets, problem.points.size(), stage);
+  if (!topology) throw std::runtime_error("no manifold");
+  adjacency::addStars(*topology, stage);
+  problem.irregularEdges = irregularEdges(adjacency::EdgeFans(*topology), topology->tets,
                                           std::span<const TetParameters>(reference.parameters));
   for (adjacency::HalfFace h = 0; h < problem.transitions.size(); ++h) {
-    if (topology.isBoundary(h)) {
+    if (topology->isBoundary(h)) {
       std::array<Vec3, 3> here{};
       for (std::size_t k = 0; k < 3; ++k) {
         here[k] = target.parameters[adjacency::tetOf(h)]
@@ -85,7 +83,7 @@ inline BendProblem problemFrom(const TetMap& target, const TetMap& reference) {
       continue;
     }
     const igm::FittedTransition fit =
-        igm::fitTransition(igm::SharedTriangle(topology, target.parameters, h));
+        igm::fitTransition(igm::SharedTriangle(*topology, target.parameters, h));
     if (fit.residual > 1e-9) throw std::runtime_error("no transition fits");
     problem.transitions[h] = fit.transition;
   }

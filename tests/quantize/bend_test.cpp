@@ -173,23 +173,21 @@ TEST(Bend, FindsEdgesThatAreWoundTwice) {
   const TetMap map = oriented(generateSample(SampleKind::Star, options).map);
   Context context;
   Stage stage(context, "test");
-  adjacency::TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  ASSERT_TRUE(adjacency::matchFaces(topology, stage));
-  adjacency::addStars(topology, stage);
-  const IrregularEdges irregular = irregularEdges(adjacency::EdgeFans(topology), topology.tets,
+  auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
+  ASSERT_TRUE(topology);
+  adjacency::addStars(*topology, stage);
+  const IrregularEdges irregular = irregularEdges(adjacency::EdgeFans(*topology), topology->tets,
                                                   std::span<const TetParameters>(map.parameters));
   EXPECT_EQ(irregular.begin()->second, 8);
-  EXPECT_TRUE(tetsAtOtherTurns(topology, irregular, map.parameters, stage).empty());
-  EXPECT_FALSE(tetsAtOtherTurns(topology, {}, map.parameters, stage).empty());
+  EXPECT_TRUE(tetsAtOtherTurns(*topology, irregular, map.parameters, stage).empty());
+  EXPECT_FALSE(tetsAtOtherTurns(*topology, {}, map.parameters, stage).empty());
   // In space, the angles around the axis add up to 360 degrees only.
   std::vector<TetParameters> inSpace;
   for (const Tet& tet : map.tets) {
     inSpace.push_back(
         {map.points[tet[0]], map.points[tet[1]], map.points[tet[2]], map.points[tet[3]]});
   }
-  EXPECT_FALSE(tetsAtOtherTurns(topology, irregular, inSpace, stage).empty());
+  EXPECT_FALSE(tetsAtOtherTurns(*topology, irregular, inSpace, stage).empty());
 }
 
 /// Every seventh tet's first edge, more or less.
@@ -207,11 +205,9 @@ void expectSameMapAfterSplits(const TetMap& map) {
   const std::vector<tetmap::EdgeInTet> edges = someEdges(map);
   Context context;
   Stage stage(context, "topology");
-  adjacency::TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  ASSERT_TRUE(adjacency::matchFaces(topology, stage));
-  ASSERT_TRUE(splitEdges(state, topology, edges, 100 * map.tets.size()));
+  auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
+  ASSERT_TRUE(topology);
+  ASSERT_TRUE(splitEdges(state, *topology, edges, 100 * map.tets.size()));
   EXPECT_EQ(state.problem.points.size(), map.points.size() + edges.size());
   EXPECT_GT(state.problem.tets.size(), map.tets.size() + edges.size());
   const TetMap split{state.problem.points, state.problem.tets, state.bent};

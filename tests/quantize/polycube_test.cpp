@@ -28,10 +28,8 @@ Labelled labelled(const TetMap& map) {
   Labelled result{{map.points, map.tets}, {}};
   Context context;
   Stage stage(context, "test");
-  adjacency::TetTopology topology;
-  topology.tets = map.tets;
-  topology.pointCount = map.points.size();
-  EXPECT_TRUE(adjacency::matchFaces(topology, stage));
+  const adjacency::TetTopology topology =
+      adjacency::manifoldTopology(map.tets, map.points.size(), stage).value();
   result.flags.assign(map.tets.size(), {-1, -1, -1, -1});
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
     if (!topology.isBoundary(h)) continue;

@@ -29,11 +29,9 @@ class Splitting : public ::testing::Test {
  protected:
   void SetUp() override {
     Stage stage(context_, "topology");
-    adjacency::TetTopology topology;
-    topology.tets = grid_.tets;
-    topology.pointCount = points_.size();
-    ASSERT_TRUE(adjacency::matchFaces(topology, stage));
-    mesh_ = MutableTets(grid_.tets, topology.mate, points_.size());
+    auto topology = adjacency::manifoldTopology(grid_.tets, points_.size(), stage);
+    ASSERT_TRUE(topology);
+    mesh_ = MutableTets(grid_.tets, topology->mate, points_.size());
     for (Index t = 0; t < grid_.tets.size(); ++t) {
       original_.push_back(t);
       TetParameters corners{};
@@ -61,11 +59,9 @@ class Splitting : public ::testing::Test {
     ASSERT_EQ(mesh_.vertexCount(), points_.size());
     ASSERT_EQ(mesh_.mate.size(), 4 * mesh_.tets.size());
     Stage stage(context_, "topology");
-    adjacency::TetTopology topology;
-    topology.tets = mesh_.tets;
-    topology.pointCount = points_.size();
-    ASSERT_TRUE(adjacency::matchFaces(topology, stage));
-    EXPECT_TRUE(std::equal(mesh_.mate.begin(), mesh_.mate.end(), topology.mate.begin()));
+    auto topology = adjacency::manifoldTopology(mesh_.tets, points_.size(), stage);
+    ASSERT_TRUE(topology);
+    EXPECT_TRUE(std::equal(mesh_.mate.begin(), mesh_.mate.end(), topology->mate.begin()));
     double volume = 0;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
       EXPECT_GT(volumeOf(points_, mesh_.tets[t]), 0);

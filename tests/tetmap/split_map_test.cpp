@@ -23,10 +23,8 @@ TEST(SplitMap, CarriesEveryArray) {
   map.rotations.assign(map.tets.size(), {0, 0, 0, 0});
   Context context;
   Stage stage(context, "topology");
-  adjacency::TetTopology topology;
-  topology.tets = before.tets;
-  topology.pointCount = before.points.size();
-  ASSERT_TRUE(adjacency::matchFaces(topology, stage));
+  auto topology = adjacency::manifoldTopology(before.tets, before.points.size(), stage);
+  ASSERT_TRUE(topology);
   // A feature edge first; the second is in the way of the third, which has a tet in common with it.
   const std::array<Index, 2> feature = before.features.edges[0].vertices;
   const auto at = std::find_if(before.tets.begin(), before.tets.end(), [&](const Tet& tet) {
@@ -41,7 +39,7 @@ TEST(SplitMap, CarriesEveryArray) {
   map.edgeValences = {{feature[1], feature[0], 1}, {*end, feature[0], 2}};
   const std::vector<EdgeInTet> edges = {{pairOf(feature[0], feature[1]), tet},
                                         {pairOf(feature[0], *end), tet}};
-  ASSERT_EQ(splitEdges(map, topology, edges), 1U);
+  ASSERT_EQ(splitEdges(map, *topology, edges), 1U);
   const auto middle = static_cast<Index>(before.points.size());
   ASSERT_EQ(map.points.size(), middle + 1U);
   EXPECT_EQ(map.points[middle], middleOf(before.points[feature[0]], before.points[feature[1]]));

@@ -36,11 +36,10 @@ double determinantOf(const std::array<Vec3, 3>& edges) {
 class Round {
  public:
   Round(BendState& state, Stage& stage) : state_(state), stage_(stage) {
-    topology_.tets = state.problem.tets;
-    topology_.pointCount = state.problem.points.size();
-    if (!adjacency::matchFaces(topology_, stage)) {
-      throw Error(ErrorCode::Internal, "What is to be bent is no manifold.");
-    }
+    auto topology =
+        adjacency::manifoldTopology(state.problem.tets, state.problem.points.size(), stage);
+    if (!topology) throw Error(ErrorCode::Internal, "What is to be bent is no manifold.");
+    topology_ = std::move(*topology);
     adjacency::addStars(topology_, stage);
     unknowns_ = findUnknowns(state.problem, topology_, stage);
   }

@@ -170,17 +170,6 @@ void numberSectors(const adjacency::TetTopology& topology, CutGraph& graph) {
 
 }  // namespace
 
-double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b) {
-  const std::size_t c = lattice::firstCorner(
-      static_cast<lattice::CornerMask>(lattice::kWholeTet ^ (1U << a) ^ (1U << b)));
-  const std::size_t d = 6 - a - b - c;
-  const Vec3 edge = minus(tet[b], tet[a]);
-  const Vec3 left = cross(edge, minus(tet[c], tet[a]));
-  const Vec3 right = cross(edge, minus(tet[d], tet[a]));
-  const Vec3 normal = cross(left, right);
-  return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
-}
-
 std::vector<lattice::Rotation> fitRotations(const adjacency::TetTopology& topology,
                                             std::span<const TetParameters> parameters) {
   std::vector<lattice::Rotation> rotations(topology.mate.size());

@@ -16,9 +16,6 @@
 
 namespace hexhex::quantization {
 
-/// Of a tet at its edge (a, b).
-[[nodiscard]] double dihedralAngle(const TetParameters& tet, std::size_t a, std::size_t b);
-
 /// Quarter turns around each edge: the sum of its tets' angles in the map.
 /// @tparam Corners  four points each, of whatever numbers
 template <class Corners>
