@@ -20,6 +20,7 @@
 
 #include <base/vector3.hpp>
 
+#include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
 #include "support/sampled_distance.hpp"
@@ -34,19 +35,6 @@ using hexhex::testing::Random;
 ImproveReport improved(HexMesh& mesh, const ImproveOptions& options = {}, int threads = 2) {
   Context context(threads);
   return improve(mesh, options, context);
-}
-
-ImproveReport improvedOn(HexMesh& mesh, const TetMap& map, const ImproveOptions& options = {},
-                         int threads = 2) {
-  Context context(threads);
-  return improve(mesh, map, options, context);
-}
-
-HexMesh extracted(const TetMap& map, int scale) {
-  ExtractOptions options;
-  options.scale = scale;
-  Context context(2);
-  return extract(map, options, context);
 }
 
 /// What holds of every mesh.

@@ -16,6 +16,7 @@
 
 #include <base/vector3.hpp>
 
+#include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
 
@@ -24,18 +25,10 @@ using hexhex::testing::identityMap;
 
 namespace pillows {
 
-ImproveReport improvedOn(HexMesh& mesh, const TetMap& map, PillowMode mode, int threads = 2) {
-  Context context(threads);
+ImproveReport improvedWith(HexMesh& mesh, const TetMap& map, PillowMode mode, int threads = 2) {
   ImproveOptions options;
   options.pillow = mode;
-  return improve(mesh, map, options, context);
-}
-
-HexMesh extracted(const TetMap& map, int scale) {
-  ExtractOptions options;
-  options.scale = scale;
-  Context context(2);
-  return extract(map, options, context);
+  return improvedOn(mesh, map, options, threads);
 }
 
 /// What labels make of a smooth body: a cube whose edges and corners are nowhere on its surface.
@@ -65,12 +58,12 @@ std::uint64_t bad(const ImproveReport& report) { return report.notPositive.size(
 
 TEST(ImprovePillow, VerticesSlideAcrossBordersOfLabelsOnASmoothSurface) {
   const TetMap map = pillows::ellipsoid(8, {1, 1, 1});
-  HexMesh mesh = pillows::extracted(map, 1);
-  const ImproveReport ball = pillows::improvedOn(mesh, map, PillowMode::Never);
+  HexMesh mesh = extracted(map, 1);
+  const ImproveReport ball = pillows::improvedWith(mesh, map, PillowMode::Never);
   EXPECT_EQ(ball.vertices[2] + ball.vertices[3], 0U);
   const TetMap box = identityMap(4);
-  mesh = pillows::extracted(box, 1);
-  const ImproveReport cube = pillows::improvedOn(mesh, box, PillowMode::Never);
+  mesh = extracted(box, 1);
+  const ImproveReport cube = pillows::improvedWith(mesh, box, PillowMode::Never);
   EXPECT_EQ(cube.vertices[2], 12U * 3);
   EXPECT_EQ(cube.vertices[3], 8U);
 }
@@ -78,11 +71,11 @@ TEST(ImprovePillow, VerticesSlideAcrossBordersOfLabelsOnASmoothSurface) {
 TEST(ImprovePillow, RaisesTheMinimumOfSmoothBodies) {
   for (const Vec3& axes : {Vec3{1, 1, 1}, Vec3{1, 1.5, 0.7}}) {
     const TetMap map = pillows::ellipsoid(8, axes);
-    const HexMesh mesh = pillows::extracted(map, 1);
+    const HexMesh mesh = extracted(map, 1);
     HexMesh without = mesh;
     HexMesh with = mesh;
-    const ImproveReport never = pillows::improvedOn(without, map, PillowMode::Never);
-    const ImproveReport automatic = pillows::improvedOn(with, map, PillowMode::Auto);
+    const ImproveReport never = pillows::improvedWith(without, map, PillowMode::Never);
+    const ImproveReport automatic = pillows::improvedWith(with, map, PillowMode::Auto);
     EXPECT_EQ(never.addedCells, 0U);
     EXPECT_EQ(automatic.addedCells, 6U * 64);
     EXPECT_EQ(with.cells.size(), mesh.cells.size() + automatic.addedCells);
@@ -111,10 +104,10 @@ TEST(ImprovePillow, RaisesTheMinimumOfSmoothBodies) {
 
 TEST(ImprovePillow, CanBeImprovedAgainWithItsMap) {
   const TetMap map = pillows::ellipsoid(6, {1, 1.3, 0.8});
-  HexMesh mesh = pillows::extracted(map, 1);
-  const ImproveReport first = pillows::improvedOn(mesh, map, PillowMode::Always);
+  HexMesh mesh = extracted(map, 1);
+  const ImproveReport first = pillows::improvedWith(mesh, map, PillowMode::Always);
   ASSERT_GT(first.addedCells, 0U);
-  const ImproveReport second = pillows::improvedOn(mesh, map, PillowMode::Never);
+  const ImproveReport second = pillows::improvedWith(mesh, map, PillowMode::Never);
   EXPECT_EQ(second.vertices, first.vertices);
   EXPECT_TRUE(second.after.allPositive());
   EXPECT_GE(second.after.quality.minimum, first.after.quality.minimum);
@@ -124,10 +117,10 @@ TEST(ImprovePillow, CanBeImprovedAgainWithItsMap) {
 
 TEST(ImprovePillow, GivesTheSameBytesWithAnyNumberOfThreads) {
   const TetMap map = pillows::ellipsoid(6, {1, 1.3, 0.8});
-  HexMesh one = pillows::extracted(map, 1);
+  HexMesh one = extracted(map, 1);
   HexMesh four = one;
-  pillows::improvedOn(one, map, PillowMode::Always, 1);
-  pillows::improvedOn(four, map, PillowMode::Always, 4);
+  pillows::improvedWith(one, map, PillowMode::Always, 1);
+  pillows::improvedWith(four, map, PillowMode::Always, 4);
   EXPECT_TRUE(
       std::equal(one.points.begin(), one.points.end(), four.points.begin(), four.points.end()));
   EXPECT_TRUE(std::equal(one.cells.begin(), one.cells.end(), four.cells.begin(), four.cells.end()));
@@ -139,9 +132,9 @@ TEST(ImprovePillow, LeavesAlignedBlocksAlone) {
     options.cells = 3;
     options.jitter = jitter;
     const TetMap map = generateSample(SampleKind::Box, options).map;
-    HexMesh mesh = pillows::extracted(map, 1);
+    HexMesh mesh = extracted(map, 1);
     const HexMesh before = mesh;
-    const ImproveReport report = pillows::improvedOn(mesh, map, PillowMode::Auto);
+    const ImproveReport report = pillows::improvedWith(mesh, map, PillowMode::Auto);
     EXPECT_EQ(report.addedCells, 0U);
     EXPECT_EQ(mesh.cells, before.cells);
   }
@@ -157,10 +150,10 @@ TEST(ImprovePillow, AutoIsNeverWorse) {
       options.jitter = jitter;
       options.features = jitter > 0.5;
       const TetMap map = generateSample(kind, options).map;
-      HexMesh without = pillows::extracted(map, 2);
+      HexMesh without = extracted(map, 2);
       HexMesh with = without;
-      const ImproveReport never = pillows::improvedOn(without, map, PillowMode::Never);
-      const ImproveReport automatic = pillows::improvedOn(with, map, PillowMode::Auto);
+      const ImproveReport never = pillows::improvedWith(without, map, PillowMode::Never);
+      const ImproveReport automatic = pillows::improvedWith(with, map, PillowMode::Auto);
       EXPECT_LE(pillows::bad(automatic), pillows::bad(never));
       if (pillows::bad(automatic) == pillows::bad(never)) {
         EXPECT_GE(automatic.after.quality.minimum, never.after.quality.minimum);
@@ -178,8 +171,8 @@ TEST(ImprovePillow, KeepsRegionsAndTagsOnTheirFaces) {
     for (const Index v : tet) x += map.points[v][0] / 4;
     map.regions.push_back(x < 3 ? 1 : 2);
   }
-  HexMesh mesh = pillows::extracted(map, 1);
-  const ImproveReport report = pillows::improvedOn(mesh, map, PillowMode::Always);
+  HexMesh mesh = extracted(map, 1);
+  const ImproveReport report = pillows::improvedWith(mesh, map, PillowMode::Always);
   EXPECT_EQ(report.addedCells, 6U * 36);
   EXPECT_TRUE(report.after.allPositive());
   EXPECT_LT(report.innerDistanceAfter, 1e-9);
