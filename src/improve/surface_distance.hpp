@@ -8,8 +8,8 @@
 #include <hexhex/improve.hpp>
 #include <hexhex/types.hpp>
 
-#include <base/stage.hpp>
 #include <base/box.hpp>
+#include <base/stage.hpp>
 #include <improve/reference_surface.hpp>
 
 namespace hexhex::improvement {

@@ -313,7 +313,7 @@ double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
   double sum = 0;
   const auto add = [&](Index tet) {
     sum += angleInMap(parameters_(tet), topology_.localCorner(tet, edge.vertex0),
-                       topology_.localCorner(tet, edge.vertex1));
+                      topology_.localCorner(tet, edge.vertex1));
   };
   Index tet = edge.tet;
   for (const Crossing& crossing : fan.crossings) {
