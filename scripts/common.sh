@@ -101,6 +101,10 @@ parts_packages=(libmetis5 libscotch-7.0 openfoam petsc-dev libexodusii-dev libde
 # What compiles for WebAssembly: a compiler of its own, about a gigabyte with what it brings.
 wasm_packages=(emscripten libfast-float-dev libfmt-dev nlohmann-json3-dev libeigen3-dev)
 
+# Other compilers and libraries that have to take the code.
+libcxx_packages=(clang-19 libc++-19-dev libc++abi-19-dev)
+mingw_packages=(g++-mingw-w64-x86-64-posix wine)
+
 # The same for packages that can be done without.
 install_optional() {
   install_missing "$@" || say "Without $*, what needs them is left out."
