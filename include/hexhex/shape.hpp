@@ -76,8 +76,9 @@ struct ShapedMap {
 ///
 /// @throws Error NotMeshable if there is no map, with the place that keeps it from one;
 ///               NonManifoldFace, NonManifoldEdge, NonManifoldVertex; FlippedTet for tets without
-///               volume; Orientation for tets that overlap their neighbours; those of broken
-///               meshes; InvalidArgument for options out of range, or if canQuantize() is false
+///               volume; Orientation for tets that overlap their neighbours; TooLarge for more
+///               than 500,000 tets; those of broken meshes; InvalidArgument for options out of
+///               range, or if canQuantize() is false
 [[nodiscard]] ShapedMap mapFromTets(const TetMesh& tets, const ShapeOptions& options,
                                     Context& context);
 

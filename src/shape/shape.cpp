@@ -33,7 +33,25 @@ void requireInRange(const ShapeOptions& options) {
                   std::to_string(options.featureAngle) + ".");
 }
 
+/// What more tets take is minutes and gigabytes: for frames, and for a polycube.
+constexpr std::size_t kMostForFrames = 250'000;
+constexpr std::size_t kMostTets = 500'000;
+
+void requireFewEnough(const TetMesh& tets) {
+  if (tets.tets.size() <= kMostTets) return;
+  throw Error(ErrorCode::TooLarge,
+              "The part has " + std::to_string(tets.tets.size()) +
+                  " tets; maps are made of up to " + std::to_string(kMostTets) +
+                  ". Tets about as large as the hexahedra are small enough: mesh the part with "
+                  "longer edges. The number of hexahedra does not depend on it.");
+}
+
 TetMap framesMap(const PositiveTets& tets, const ShapeOptions& options, Context& context) {
+  if (tets.mesh().tets.size() > kMostForFrames) {
+    throw Error(ErrorCode::NotMeshable,
+                "Frames are found for up to " + std::to_string(kMostForFrames) +
+                    " tets, and here are " + std::to_string(tets.mesh().tets.size()) + ".");
+  }
   Stage stage(context, "frames");
   try {
     return mapFromFrames(tets.mesh(), options.featureAngle, stage);
@@ -100,6 +118,7 @@ ShapedMap mapFromTets(const TetMesh& tets, const ShapeOptions& options, Context&
       {{"surface", 0.1}, {"frames", 6}, {"labelling", 2}, {"mapFromFlags", 4}, {"features", 0.1}}};
   return inSteps(context, "mapFromTets", kSteps, [&] {
     shape::requireInRange(options);
+    shape::requireFewEnough(tets);
     ShapedMap result;
     withThreads(context.threads(), [&] { result = shape::makeMap(tets, options, context); });
     return result;

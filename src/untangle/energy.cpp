@@ -33,6 +33,15 @@ Eigen::Matrix3d cofactorOf(const Eigen::Matrix3d& j) {
   return columns;
 }
 
+/// std::hypot takes as long as all else of an element's energy; neither square is out of range.
+double rootOf(double epsilon, double det) {
+  return epsilon == 0 ? std::abs(det) : std::sqrt(epsilon * epsilon + det * det);
+}
+
+double positivePart(double epsilon, double det, double root) {
+  return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
+}
+
 /// |J|^2 / chi^(2/3) + (det^2 + 1) / chi, and its derivatives: angles, and volumes.
 struct Density {
   double value = std::numeric_limits<double>::infinity();
@@ -42,8 +51,9 @@ struct Density {
 
   Density(const Eigen::Matrix3d& j, double det, double epsilon) {
     if (epsilon == 0 && det <= 0) return;
-    const double chi = regularized(epsilon, det);
-    const double slope = 0.5 * (1 + det / std::hypot(epsilon, det));
+    const double root = rootOf(epsilon, det);
+    const double chi = positivePart(epsilon, det, root);
+    const double slope = 0.5 * (1 + det / root);
     const double share = 1 / std::cbrt(chi * chi);
     const double shape = j.squaredNorm() * share;
     const double volume = (det * det + 1) / chi;
@@ -56,9 +66,8 @@ struct Density {
 }  // namespace
 
 double regularized(double epsilon, double det) noexcept {
-  const double root = std::hypot(epsilon, det);
   assert(epsilon > 0 || det > 0);
-  return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
+  return positivePart(epsilon, det, rootOf(epsilon, det));
 }
 
 Vector coordinatesOf(const Problem& problem, const Vector& unknowns) {
@@ -183,14 +192,15 @@ Height Energy::at(const Vector& unknowns, double epsilon, Vector& gradient) {
     if (problem_.pull > 0) byMatrix += problem_.pull * (j - targetOf(problem_, element));
     Eigen::Map<Corners>(forces_[index].data()) =
         element.weight * byMatrix * cornerGradients(element).transpose();
+    // Here, where the element is at hand: reading it once more below takes longer than all of this.
+    for (std::size_t use = 0; use < 12; ++use) {
+      forces_[index][use] *= element.corners[use / 3].sign[use % 3];
+    }
   });
   gradient.resize(x.size());
   parallelFor(stage_, coordinateCount(problem_), kEnergyGrain, [&](std::size_t unknown) {
     double sum = 0;
-    for (const std::uint32_t use : uses_(unknown)) {
-      const Corner& corner = problem_.elements[use / 12].corners[use % 12 / 3];
-      sum += corner.sign[use % 3] * forces_[use / 12][use % 12];
-    }
+    for (const std::uint32_t use : uses_(unknown)) sum += forces_[use / 12][use % 12];
     gradient[static_cast<Eigen::Index>(unknown)] = sum;
   });
   if (problem_.sums.size() != 0) gradient = byUnknowns(problem_, gradient);

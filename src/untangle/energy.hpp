@@ -85,7 +85,8 @@ class Energy {
   const Problem& problem_;
   Stage& stage_;
   Uses uses_;
-  std::vector<std::array<double, 12>> forces_;  ///< per element, corner and axis
+  /// Per element, corner and axis: its part of the derivative by that coordinate.
+  std::vector<std::array<double, 12>> forces_;
 };
 
 }  // namespace hexhex::untangle

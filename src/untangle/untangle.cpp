@@ -125,7 +125,7 @@ constexpr int kStepsOfRound = 10;
 constexpr int kMostStepsOfRound = 100;
 constexpr double kFastDecrease = 0.03;
 struct Pace {
-  /// Rounds after which there are to be fewer flipped elements than ever before.
+  /// Rounds over which it is measured how fast flips vanish.
   int patience;
   /// The penalty grows at least as if the energy had fallen by this share.
   double leastFollowed;
@@ -147,6 +147,16 @@ double nextEpsilon(double epsilon, double followed, double leastDeterminant) {
   return std::max(kLeastEpsilon, 2 * std::sqrt(std::max(0.0, square)));
 }
 
+/// Whether flips vanish so slowly, or not at all, that there would be some left after all rounds.
+/// @param fewest  that there were up to each round
+bool isTooSlow(const std::vector<std::size_t>& fewest, int patience) {
+  const int rounds = static_cast<int>(fewest.size());
+  if (rounds <= patience) return false;
+  const auto now = static_cast<double>(fewest.back());
+  const auto before = static_cast<double>(fewest[static_cast<std::size_t>(rounds - 1 - patience)]);
+  return now * std::pow(now / before, (kMostRounds - rounds) / patience) >= 1;
+}
+
 }  // namespace
 
 struct Solver::Parts {
@@ -160,22 +170,20 @@ struct Solver::Parts {
   End untangle(double epsilon, const Pace& pace, Vector& x, int& steps) {
     std::size_t fewest = energy.at(x, epsilon).flipped;
     Vector best = x;
-    int idle = 0;
-    int rounds = 0;
-    for (; fewest > 0 && idle < pace.patience && rounds < kMostRounds; ++rounds) {
+    std::vector<std::size_t> history = {fewest};
+    while (fewest > 0 && !isTooSlow(history, pace.patience)) {
       Lbfgs descent(energy, metric, x, epsilon);
       const double before = descent.height().energy;
       steps += descendRound(descent, x);
       const Height& now = descent.height();
-      idle = now.flipped < fewest ? 0 : idle + 1;
       if (now.flipped <= fewest) best = x;
       fewest = std::min(fewest, now.flipped);
+      history.push_back(fewest);
       const double followed = std::max(1 - now.energy / before, pace.leastFollowed);
       epsilon = nextEpsilon(epsilon, followed, now.leastDeterminant);
     }
     x = best;
-    if (fewest == 0) return End::Positive;
-    return rounds == kMostRounds ? End::OutOfSteps : End::Stalled;
+    return fewest == 0 ? End::Positive : End::Stalled;
   }
 
   /// @return steps

@@ -10,10 +10,10 @@
 // 50 lines of code", ACM Transactions on Graphics 40 (2021): a penalty for flipped elements grows
 // as fast as the energy can follow. Each penalty gets a few steps of a quasi-Newton method whose
 // metric is the Laplacian of the elements, inverted by multigrid: a step takes a time proportional
-// to the number of elements. It ends when there are no fewer flipped elements after 8 penalties (16
-// if it is to be patient), or after 150 of them. (Newton's method with a semidefinite stand-in for
-// the Hessian matrix finds the same maps, but takes half as long again over those of
-// docs/quantize.md, and three times as long over the hardest one.)
+// to the number of elements. It ends when flipped elements vanish so slowly, over the last 8
+// penalties (16 if it is to be patient), that some would be left after 150 of them. (Newton's
+// method with a semidefinite stand-in for the Hessian matrix finds the same maps, but takes half as
+// long again over those of docs/quantize.md, and three times as long over the hardest one.)
 //
 // Where flips stay, flatElements() says which ones no unknowns can mend.
 #pragma once
@@ -41,9 +41,8 @@ struct Options {
 };
 
 enum class End : unsigned char {
-  Positive,    ///< no element is flipped
-  Stalled,     ///< for many steps there were never fewer flipped elements than before
-  OutOfSteps,  ///< fewer and fewer were, but too slowly
+  Positive,  ///< no element is flipped
+  Stalled,   ///< there were hardly fewer flipped elements, or none fewer, over many steps
 };
 
 struct Result {

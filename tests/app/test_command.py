@@ -901,7 +901,22 @@ class Repair(CommandTest):
         self.run_command("verify", "kept.hexex", "part.vtu")
         self.run_command("quantize", "--tets", "part.hexex", "--flags", "auto", "-o", "auto.hexex", "--cells", "100")
         self.run_command("mesh", "part.hexex", "-o", "bad.vtu", "--method", "magic", expect=BAD_USAGE)
-        self.assertFalse((self.folder / "bad.vtu").exists())
+        # What both ways say is in the report; what is no solid leaves nothing behind.
+        run = self.run_command("mesh", "part.hexex", "-o", "best.vtu", "--cells", "100", "--report", "best.json")
+        self.assertIn("no other way was needed", run.stdout)
+        report = json.loads((self.folder / "best.json").read_text())
+        self.assertEqual([way["method"] for way in report["ways"]], ["polycube", "frames"])
+        self.assertTrue(report["ways"][0]["certified"])
+        self.assertIn("polycube: scaled Jacobian", report["why"])
+        flat = (self.folder / "part.hexex").read_text().splitlines()
+        count = int(flat[0])
+        flat[1:count + 1] = [line.rsplit(maxsplit=1)[0] + " 0" for line in flat[1:count + 1]]
+        (self.folder / "flat.hexex").write_text("\n".join(flat))
+        for command in "mesh", "map":
+            cells = ["--cells", "100"] if command == "mesh" else []
+            self.assert_fails(command, "flat.hexex", "-o", "bad.hexex" if command == "map" else "bad.vtu", *cells,
+                              expect=INVALID_MAP, code="FlippedTet")
+        self.assertEqual(list(self.folder.glob("bad*")), [])
 
     def test_quantize(self):
         self.run_command("generate", "sphere", "--stretch", "0.5", "--charts", "random", "--quiet",

@@ -167,37 +167,6 @@ TEST(Shapes, KeepTheGivenPoints) {
   for (std::size_t v = 0; v < tets.points.size(); ++v) EXPECT_EQ(map.points[v], tets.points[v]);
 }
 
-TEST(Shapes, AreNoneWhereTetsAreFlatOrFolded) {
-  TetMesh tets = box().labelled(2, [](const Vec3& p) { return p; }).tets;
-  const auto inner = [&] {
-    for (Index v = 0; v < tets.points.size(); ++v) {
-      if (tets.points[v] == Vec3{1, 1, 0.5}) return v;
-    }
-    return kNone;
-  }();
-  ASSERT_NE(inner, kNone);
-  TetMesh folded = tets;
-  folded.points[inner] = {1, 2.5, 0.5};
-  const Error error = errorOf([&] { static_cast<void>(shaped(folded)); });
-  EXPECT_EQ(error.code(), ErrorCode::Orientation);
-  EXPECT_NE(std::string(error.what()).find("same side"), std::string::npos);
-  TetMesh flat = tets;
-  for (std::size_t i = 0; i < 4; ++i) flat.points[flat.tets[0][i]][2] = 0;
-  EXPECT_EQ(codeOf([&] { static_cast<void>(shaped(flat)); }), ErrorCode::FlippedTet);
-  EXPECT_EQ(codeOf([&] { static_cast<void>(shaped({})); }), ErrorCode::EmptyMesh);
-}
-
-TEST(Shapes, AreNoneWhereCubesMeetAtAnEdgeOrCorner) {
-  for (const bool atEdge : {true, false}) {
-    const CubeBody touching({2, 2, 2}, [&](const Cell& c) {
-      return c == Cell{0, 0, 0} || c == Cell{1, 1, atEdge ? 0 : 1};
-    });
-    const TetMesh tets = touching.labelled(2, [](const Vec3& p) { return p; }).tets;
-    EXPECT_EQ(codeOf([&] { static_cast<void>(shaped(tets)); }),
-              atEdge ? ErrorCode::NonManifoldEdge : ErrorCode::NonManifoldVertex);
-  }
-}
-
 TEST(Shapes, RefuseWhatIsOutOfRange) {
   const TetMesh tets = box().labelled(1, [](const Vec3& p) { return p; }).tets;
   for (const double angle : {-1.0, 181.0, std::nan("")}) {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <quantize/polycube/labels.hpp>
 
 #include <base/vector3.hpp>
@@ -25,6 +27,10 @@ igm::OrientedMap readTets(const TetMesh& tets, Stage& stage) {
   return input;
 }
 
+/// Six times the volume over the cube of the longest edge: what has less is flat, whatever rounding
+/// made of it. Slivers of meshers have 1e-3 to 1e-8.
+constexpr double kFlat = 1e-12;
+
 /// Before neighbours are compared: of a tet whose corners are in the wrong order, they would only
 /// say that one of two is.
 void requirePositive(const TetMapView& view) {
@@ -36,7 +42,10 @@ void requirePositive(const TetMapView& view) {
     const auto edge = [&](std::size_t i) {
       return minus(view.points[tet[i]], view.points[tet[0]]);
     };
-    if (tripleProduct(edge(1), edge(2), edge(3)) > 0) continue;
+    double longest = 0;
+    for (std::size_t i = 1; i < 4; ++i) longest = std::max(longest, length(edge(i)));
+    const double volume = tripleProduct(edge(1), edge(2), edge(3));
+    if (volume > kFlat * longest * longest * longest) continue;
     ++count;
     first = static_cast<Index>(t);
   }

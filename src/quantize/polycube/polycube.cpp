@@ -51,6 +51,9 @@ double scaleOf(const TetMapView& view) {
   return std::exp2(std::ceil(std::log2(kPolycubeUnits / std::max(size, 1e-300))));
 }
 
+/// Where fewer tets than this share stay flipped, finer ones help before fixed planes do.
+constexpr double kFewShare = 1e-3;
+
 template <class Count>
 std::string counted(Count count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
@@ -123,7 +126,7 @@ class PolycubeMaker {
     for (int refinements = 0;; ++refinements) {
       makeRoom(tets_);
       std::optional<BentTets> best;
-      if (bend(best)) break;
+      if (bend(refinements < kMostRefinements, best)) break;
       if (refinements == kMostRefinements || work_ > kMostWork) fail(*best, tets_);
       refineAt(tets_, verticesAt(*best));
     }
@@ -136,9 +139,10 @@ class PolycubeMaker {
     return readLabels(tets, flags, stage);
   }
 
+  /// @param mayRefine  whether this is not the last chance
   /// @param[out] best  the map with the fewest flips, if none is good
   /// @return whether there is a map
-  bool bend(std::optional<BentTets>& best) {
+  bool bend(bool mayRefine, std::optional<BentTets>& best) {
     mesh_ = read(tets_.mesh, tets_.flags);
     const PolycubeProblem start = place();
     const auto planeAt = [&](int axis, Index vertex) {
@@ -150,6 +154,7 @@ class PolycubeMaker {
     const std::vector<PolycubeEdge> edges = PolycubeBorders(mesh_).edges(planeAt);
     Stage stage(context_, "untangling");
     for (const bool fixPlanes : {false, true}) {
+      if (fixPlanes && mayRefine && isFew(*best)) break;
       BentTets bent = bendTets(mesh_, start, edges, fixPlanes, stage);
       work_ += static_cast<double>(bent.steps) * static_cast<double>(tets_.flags.size());
       announce(bent, fixPlanes);
@@ -160,6 +165,12 @@ class PolycubeMaker {
       if (!best || bent.flipped.size() < best->flipped.size()) best.emplace(std::move(bent));
     }
     return false;
+  }
+
+  /// A few places that have no room: they stay flipped whatever planes do.
+  [[nodiscard]] bool isFew(const BentTets& bent) const {
+    return kFewShare * static_cast<double>(tets_.flags.size()) >=
+           static_cast<double>(bent.flipped.size());
   }
 
   /// Says how that went.
