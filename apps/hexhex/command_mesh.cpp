@@ -64,6 +64,23 @@ void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& l
                [&] { writePage(part.mesh, arguments.page, arguments.output, options, context); });
 }
 
+Json waysAsJson(const MeshedPart& part) {
+  Json ways = Json::array();
+  for (const WayReport& way : part.ways) {
+    Json json = {{"method", nameOf(way.method)}};
+    if (!way.refusal.empty()) json["refusal"] = way.refusal;
+    if (way.hasMesh) {
+      json["certified"] = way.isCertified;
+      json["minimum"] = way.minimum;
+      json["distance"] = way.distance;
+      json["curves_followed"] = way.curvesFollowed;
+      json["merit"] = way.merit;
+    }
+    ways.push_back(std::move(json));
+  }
+  return ways;
+}
+
 Json partAsJson(const MeshArguments& arguments, const MeshedPart& part, std::size_t tets,
                 Context& context) {
   Json seconds = Json::object();
@@ -76,6 +93,8 @@ Json partAsJson(const MeshArguments& arguments, const MeshedPart& part, std::siz
            {{"file", arguments.output},
             {"cells", part.mesh.cells.size()},
             {"vertices", part.mesh.points.size()}}},
+          {"ways", waysAsJson(part)},
+          {"why", part.whyThisWay},
           {"map", shapeAsJson(part.shape)},
           {"quantization", quantizeAsJson(part.quantization)},
           {"verification", verificationAsJson(part.verification)},
@@ -88,6 +107,10 @@ Json partAsJson(const MeshArguments& arguments, const MeshedPart& part, std::siz
 void printPart(const MeshArguments& arguments, const MeshedPart& part, const LongRun& run) {
   printFiles(arguments.part, arguments.output);
   printShape(part.shape);
+  if (!part.whyThisWay.empty()) printLine("kept", part.whyThisWay);
+  for (const WayReport& way : part.ways) {
+    if (!way.refusal.empty()) printLine("no " + nameOf(way.method), way.refusal);
+  }
   printLine("mesh", fmt::format("{} of {:.0f} asked for", counted(part.mesh.cells.size(), "cell"),
                                 part.quantization.cellsWanted));
   printImprovement(part.improvement);

@@ -18,13 +18,6 @@ const std::map<std::string, ShapeMethod>& methods() {
   return kMethods;
 }
 
-std::string nameOf(ShapeMethod method) {
-  for (const auto& [name, each] : methods()) {
-    if (each == method) return name;
-  }
-  return {};
-}
-
 bool isTurned(const ShapeReport& report) { return report.rotation != ShapeReport{}.rotation; }
 
 void printLabels(const ShapeReport& report) {
@@ -38,6 +31,13 @@ void printLabels(const ShapeReport& report) {
 }
 
 }  // namespace
+
+std::string nameOf(ShapeMethod method) {
+  for (const auto& [name, each] : methods()) {
+    if (each == method) return name;
+  }
+  return {};
+}
 
 void addPart(CLI::App& parser, std::string& part) {
   parser.add_option("PART", part, "A mesh of tets, " + extensionsThat(&FileFormat::readsTets))

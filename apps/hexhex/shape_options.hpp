@@ -11,6 +11,9 @@
 
 namespace hexhex::command {
 
+/// As the option --method has it.
+[[nodiscard]] std::string nameOf(ShapeMethod method);
+
 /// Adds an argument PART.
 void addPart(CLI::App& parser, std::string& part);
 /// Adds --method and --seed.

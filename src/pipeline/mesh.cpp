@@ -1,9 +1,9 @@
 // From tets alone to a hexahedral mesh: the stages of the library one after the other.
-#include <algorithm>
 #include <array>
-#include <optional>
+#include <cstddef>
 #include <utility>
-#include <vector>
+
+#include <pipeline/best_way.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/extractor.hpp>
@@ -15,6 +15,9 @@ namespace hexhex {
 
 namespace pipeline {
 namespace {
+
+/// Both ways at once take 6 kB per tet.
+constexpr std::size_t kMostTetsAtOnce = 200'000;
 
 void requirePassed(const VerifyReport& report) {
   for (const VerifyItem& item : report.items) {
@@ -48,14 +51,10 @@ void improvePart(MeshedPart& part, const ImproveOptions& options, Context& conte
   part.tagsReleased = true;
 }
 
-MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
-                  Context& context) {
-  ShapeOptions shape = options.shape;
-  shape.method = method;
-  MeshedPart part;
-  const ShapedMap seamless = mapFromTets(tets, shape, context);
-  part.shape = seamless.report;
-  QuantizedMap quantized = quantize(seamless.map, options.quantize, context);
+/// Makes a mesh of the map in `part.shape`'s report.
+void meshOf(MeshedPart& part, const TetMap& seamless, const MeshOptions& options,
+            Context& context) {
+  QuantizedMap quantized = quantize(seamless, options.quantize, context);
   part.quantization = std::move(quantized.report);
   part.map = std::move(quantized.map);
   {
@@ -65,58 +64,48 @@ MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& op
   }
   requirePassed(part.verification);
   improvePart(part, options.improve, context);
-  return part;
 }
 
-/// Of cells and of the boundary: what is certified is at least 0, a perfect mesh has 1.
-double meritOf(const MeshedPart& part) {
-  constexpr double kGood = 0.3;  // what is above needs no better
-  constexpr double kFar = 0.01;  // of the diagonal
-  const ImproveReport& report = part.improvement;
-  if (!report.after.allPositive()) return -1;
-  const double quality = std::min(1.0, report.after.quality.minimum / kGood);
-  return quality * std::max(0.0, 1 - report.distanceAfter.hausdorff() / kFar);
-}
-
-/// What keeps one way from a mesh, and perhaps not another.
-bool isOfTheWay(const Error& error) {
-  return error.code() == ErrorCode::NotMeshable || error.code() == ErrorCode::FlippedTet;
-}
-
-MeshedPart meshByBest(const TetMesh& tets, const MeshOptions& options, Context& context) {
-  std::optional<MeshedPart> best;
-  std::optional<Error> problem;
-  for (const ShapeMethod method : {ShapeMethod::Frames, ShapeMethod::Polycube}) {
+/// @throws Refusal  if another way may lead to a mesh
+MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
+                  Context& context) {
+  constexpr std::array<WorkStep, 6> kSteps = {{{"mapFromTets", 20},
+                                               {"quantize", 10},
+                                               {"Extractor", 0.1},
+                                               {"Extractor::extract", 0.5},
+                                               {"Extractor::verify", 0.3},
+                                               {"improve", 10}}};
+  return inSteps(context, "meshFromTets", kSteps, [&] {
+    MeshedPart part;
+    bool hasMap = false;
     try {
-      MeshedPart part = meshBy(method, tets, options, context);
-      if (!best || meritOf(part) > meritOf(*best)) best = std::move(part);
+      ShapeOptions shape = options.shape;
+      shape.method = method;
+      ShapedMap seamless = mapFromTets(tets, shape, context);
+      hasMap = true;
+      part.shape = seamless.report;
+      meshOf(part, seamless.map, options, context);
     } catch (const Error& error) {
-      if (!isOfTheWay(error)) throw;
-      problem = error;
+      if (isOfTheWay(error.code(), hasMap)) throw Refusal(error);
+      throw;
     }
-  }
-  if (!best) throw Error(*problem);
-  return std::move(*best);
+    return part;
+  });
 }
 
 }  // namespace
 }  // namespace pipeline
 
 MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context& context) {
-  constexpr std::array<WorkStep, 6> kWay = {{{"mapFromTets", 20},
-                                             {"quantize", 10},
-                                             {"Extractor", 0.1},
-                                             {"Extractor::extract", 0.5},
-                                             {"Extractor::verify", 0.3},
-                                             {"improve", 10}}};
-  std::vector<WorkStep> steps(kWay.begin(), kWay.end());
-  if (options.shape.method == ShapeMethod::Auto) {
-    steps.insert(steps.end(), kWay.begin(), kWay.end());
+  if (options.shape.method != ShapeMethod::Auto) {
+    return pipeline::meshBy(options.shape.method, tets, options, context);
   }
-  return inSteps(context, "meshFromTets", steps, [&] {
-    return options.shape.method == ShapeMethod::Auto
-               ? pipeline::meshByBest(tets, options, context)
-               : pipeline::meshBy(options.shape.method, tets, options, context);
+  const pipeline::Way way = [&](ShapeMethod method, Context& own) {
+    return pipeline::meshBy(method, tets, options, own);
+  };
+  constexpr WorkStep kBoth{"both ways", 1};
+  return inSteps(context, "meshFromTets", {&kBoth, 1}, [&] {
+    return pipeline::bestOfBothWays(way, tets.tets.size() <= pipeline::kMostTetsAtOnce, context);
   });
 }
 

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <pipeline/best_way.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+
+namespace hexhex::pipeline {
+namespace {
+
+constexpr double kGood = 0.3;       // a scaled Jacobian that is above needs no better
+constexpr double kFar = 0.01;       // of the diagonal
+constexpr double kFollowed = 0.99;  // of the length of curves
+
+/// The quicker one first.
+constexpr std::array<ShapeMethod, 2> kWays = {ShapeMethod::Polycube, ShapeMethod::Frames};
+
+std::string_view nameOf(ShapeMethod method) {
+  return method == ShapeMethod::Frames ? "frames" : "polycube";
+}
+
+/// Of one way: its mesh, why there is none, or what ends the search.
+struct Outcome {
+  std::optional<MeshedPart> part;
+  std::optional<Error> refusal;
+  std::exception_ptr failure;
+  bool isNeeded = true;
+};
+
+WayReport reportOf(ShapeMethod method, const Outcome& outcome) {
+  WayReport report;
+  report.method = method;
+  if (!outcome.isNeeded) return report;
+  if (outcome.refusal) report.refusal = outcome.refusal->what();
+  if (!outcome.part) return report;
+  const ImproveReport& improved = outcome.part->improvement;
+  report.hasMesh = true;
+  report.isCertified = improved.after.allPositive();
+  report.minimum = improved.after.quality.minimum;
+  report.distance = improved.distanceAfter.hausdorff();
+  report.curvesFollowed = improved.curvesFollowed;
+  if (!report.isCertified) return report;
+  report.merit = std::min(1.0, report.minimum / kGood) * std::max(0.0, 1 - report.distance / kFar) *
+                 report.curvesFollowed;
+  return report;
+}
+
+/// A better mesh would not be worth the wait.
+bool isGoodEnough(const Outcome& outcome) {
+  if (!outcome.part) return false;
+  const WayReport report = reportOf(ShapeMethod::Auto, outcome);
+  return report.isCertified && report.minimum >= kGood && report.distance <= kSurfaceTolerance &&
+         report.curvesFollowed >= kFollowed;
+}
+
+/// "frames: scaled Jacobian 0.3 at least, 0.0056 diagonals from the part, 100 % of curves"
+std::string figuresOf(const WayReport& way) {
+  std::ostringstream text;
+  text.precision(2);
+  text << nameOf(way.method) << ": scaled Jacobian " << way.minimum << " at least, " << way.distance
+       << " diagonals from the part, " << std::lround(100 * way.curvesFollowed) << " % of curves";
+  return text.str();
+}
+
+std::string whyKept(const WayReport& kept, const WayReport& other, bool otherIsNeeded) {
+  if (!otherIsNeeded) return figuresOf(kept) + "; no other way was needed";
+  if (!other.hasMesh) return "the only way with a mesh";
+  if (kept.isCertified != other.isCertified) return "the only way with a certified mesh";
+  return figuresOf(kept) + "; " + figuresOf(other);
+}
+
+[[noreturn]] void failBoth(const std::array<Outcome, 2>& outcomes) {
+  const Error& first = *outcomes[0].refusal;
+  const Error& second = *outcomes[1].refusal;
+  if (std::string_view(first.what()) == second.what()) throw Error(first);
+  throw Error(ErrorCode::NotMeshable,
+              "Neither way leads to a mesh. By a polycube: " + std::string(first.what()) +
+                  " Along frames: " + second.what(),
+              first.place().kind == PlaceKind::None ? second.place() : first.place());
+}
+
+/// Both ways, each with a context of its own, whose progress and cancellation are the caller's.
+class BothWays {
+ public:
+  BothWays(const Way& way, Context& context)
+      : way_(way), caller_(context), contexts_{contextOf(0), contextOf(1)} {}
+
+  MeshedPart run(bool atOnce) {
+    if (atOnce) {
+      withThreads(caller_.threads(), [&] {
+        Stage stage(caller_, "both ways");
+        parallelFor(stage, kWays.size(), 1, [&](std::size_t i) { go(i); });
+      });
+    } else {
+      for (std::size_t i = 0; i < kWays.size(); ++i) {
+        if (i == 0 || !isGoodEnough(outcomes_[0])) go(i);
+      }
+    }
+    for (const Context& context : contexts_) {
+      for (const StageTime& time : context.stageTimes()) {
+        caller_.addStageTime(time.stage, time.seconds);
+      }
+    }
+    return better();
+  }
+
+ private:
+  [[nodiscard]] Context contextOf(std::size_t i) {
+    return Context(caller_.threads(), [this, i](std::string_view stage, double share) {
+      shares_[i].store(share);
+      if (caller_.cancelled()) contexts_[i].cancel();
+      caller_.report(std::string(nameOf(kWays[i])) + ": " + std::string(stage),
+                     (shares_[0].load() + shares_[1].load()) / 2);
+    });
+  }
+
+  void go(std::size_t i) {
+    try {
+      outcomes_[i].part = way_(kWays[i], contexts_[i]);
+      if (i == 0 && isGoodEnough(outcomes_[0])) contexts_[1].cancel();
+    } catch (const Refusal& refusal) {
+      outcomes_[i].refusal = refusal;
+    } catch (...) {
+      outcomes_[i].failure = std::current_exception();
+    }
+  }
+
+  MeshedPart better() {
+    // Whatever the other way came to in the meantime: with one thread, it would not have begun.
+    if (isGoodEnough(outcomes_[0])) {
+      outcomes_[1] = {};
+      outcomes_[1].isNeeded = false;
+    }
+    for (const Outcome& outcome : outcomes_) {
+      if (outcome.failure) std::rethrow_exception(outcome.failure);
+    }
+    if (!outcomes_[0].part && !outcomes_[1].part) failBoth(outcomes_);
+    std::array<WayReport, 2> reports;
+    for (std::size_t i = 0; i < kWays.size(); ++i) reports[i] = reportOf(kWays[i], outcomes_[i]);
+    // Of two that are not certified, frames': they are nearer to it.
+    const bool isFirst = outcomes_[0].part && reports[0].merit > reports[1].merit;
+    const std::size_t kept = isFirst || !outcomes_[1].part ? 0 : 1;
+    MeshedPart part = std::move(*outcomes_[kept].part);
+    part.whyThisWay = whyKept(reports[kept], reports[1 - kept], outcomes_[1 - kept].isNeeded);
+    part.ways.assign(reports.begin(), reports.end());
+    return part;
+  }
+
+  const Way& way_;
+  Context& caller_;
+  std::array<std::atomic<double>, 2> shares_{};
+  std::array<Context, 2> contexts_;
+  std::array<Outcome, 2> outcomes_;
+};
+
+}  // namespace
+
+bool isOfTheWay(ErrorCode code, bool hasMap) noexcept {
+  switch (code) {
+    case ErrorCode::NotMeshable:
+      return true;
+    case ErrorCode::FlippedTet:
+    case ErrorCode::HalfIntegerFixedPoint:
+    case ErrorCode::TransitionResidual:
+    case ErrorCode::BoundaryOffLattice:
+    case ErrorCode::SingularityOffLattice:
+    case ErrorCode::AmbiguousMesh:
+    case ErrorCode::TooLarge:
+    case ErrorCode::EmptyMesh:
+    case ErrorCode::NonManifoldFace:
+    case ErrorCode::NonManifoldEdge:
+    case ErrorCode::NonManifoldVertex:
+    case ErrorCode::Orientation:
+      return hasMap;
+    default:
+      return false;
+  }
+}
+
+MeshedPart bestOfBothWays(const Way& way, bool atOnce, Context& context) {
+  return BothWays(way, context).run(atOnce && effectiveThreads(context.threads()) > 1);
+}
+
+}  // namespace hexhex::pipeline
