@@ -219,8 +219,8 @@ export class Hexhex {
     return { map: new TetMap(this, answer.map), report: answer.report };
   }
 
-  /** A hexahedral mesh of tets that have no map, certified and verified, and the integer-grid map that it is of.
-   * Cells may still not be positive in the end: the report of the improvement says which.
+  /** A hexahedral mesh of tets that have no map, and the integer-grid map that it is of. Cells may still not be
+   * positive in the end: the report of the improvement says which.
    * @param tets  of readTets() or makeMap(), or any map, whose parameters are not used */
   mesh(tets: TetMap, options: MeshOptions): { mesh: HexMesh; map: TetMap; report: MeshReport } {
     const answer = this.call<MapAnswer & MeshAnswer & { report: MeshReport }>("mesh", { tets: tets.id, ...options });
