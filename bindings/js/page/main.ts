@@ -329,7 +329,7 @@ function bindDrop(): void {
 
 function bind({ version, formats, samples }: Start): void {
   const names = (can: "readsMaps" | "readsHexMeshes" | "readsTets") =>
-    formats.filter((format) => format[can] && format.extension).map(({ extension }) => extension).join(", ");
+    [...new Set(formats.filter((format) => format[can]).map(({ extension }) => extension))].filter(Boolean).join(", ");
   element("map-formats").textContent = names("readsMaps");
   element("mesh-formats").textContent = names("readsHexMeshes");
   element("tet-formats").textContent = names("readsTets");
