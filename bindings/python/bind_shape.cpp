@@ -11,9 +11,13 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 namespace {
 
+const char* nameOf(ShapeMethod method) {
+  return method == ShapeMethod::Frames ? "frames" : "polycube";
+}
+
 Dict asDict(const ShapeReport& r) {
   Dict d;
-  d["method"] = r.method == ShapeMethod::Frames ? "frames" : "polycube";
+  d["method"] = nameOf(r.method);
   d["rotation"] = ownedArray<double, 2>(std::array(r.rotation), {3, 3});
   d["charts"] = r.labels.charts;
   d["corners"] = r.labels.corners;
@@ -30,6 +34,16 @@ Dict asDict(const ShapeReport& r) {
   d["worst"] = r.distortion.worst;
   d["median"] = r.distortion.median;
   return d;
+}
+
+/// What WayReport of the package has, in its order.
+nb::list asList(const std::vector<WayReport>& ways) {
+  nb::list list;
+  for (const WayReport& way : ways) {
+    list.append(nb::make_tuple(nameOf(way.method), way.hasMesh, way.refusal, way.isCertified,
+                               way.minimum, way.distance, way.curvesFollowed, way.merit));
+  }
+  return list;
 }
 
 nb::tuple mapOfTets(const InPoints& points, const InTets& tets, const ShapeOptions& options,
@@ -53,8 +67,9 @@ nb::tuple meshOfTets(const InPoints& points, const InTets& tets, const ShapeOpti
       [&](Context& context) { return meshFromTets(tetMeshOf(points, tets), options, context); },
       &stages);
   return nb::make_tuple(std::move(part.mesh), std::move(part.map), asDict(part.shape),
-                        python::asDict(part.quantization), asList(part.verification),
-                        asTuple(std::move(part.improvement)), part.tagsReleased, asList(stages));
+                        python::asDict(part.quantization), python::asList(part.verification),
+                        asTuple(std::move(part.improvement)), asList(part.ways), part.whyThisWay,
+                        part.tagsReleased, python::asList(stages));
 }
 
 }  // namespace

@@ -875,6 +875,13 @@ static void test_shape(void) {
     hexhex_map_destroy(integer);
     mesh = NULL;
     integer = NULL;
+    CHECK(reports.why[0] == 0); /* there was no choice */
+    shape.method = HEXHEX_METHOD_AUTO;
+    CHECK_OK(hexhex_mesh_from_tets(&tets, &options, NULL, &mesh, NULL, &reports, &error));
+    CHECK(again.method != HEXHEX_METHOD_AUTO && strlen(reports.why) > 10);
+    hexhex_mesh_destroy(mesh);
+    mesh = NULL;
+    shape.method = HEXHEX_METHOD_POLYCUBE;
     /* What is not asked for need not be there. */
     CHECK_OK(hexhex_mesh_from_tets(&tets, &options, NULL, &mesh, NULL, NULL, &error));
     hexhex_mesh_destroy(mesh);

@@ -592,7 +592,12 @@ def test_mesh_of_tets_refuses(tmp_path):
     with pytest.raises(hexhex.MapError) as caught:  # a tet is no box, but has a mesh
         hexhex.map_from_tets(*corner, method="polycube")
     assert caught.value.code == "NotMeshable" and caught.value.place
-    assert hexhex.mesh(*corner, cells=9).all_positive
+    part = hexhex.mesh(*corner, cells=9)
+    assert part.all_positive and part.why
+    ways = {way.method: way for way in part.ways}
+    assert ways["polycube"].refusal and not ways["polycube"].has_mesh
+    assert ways["frames"].certified and not ways["frames"].refusal
+    assert ways["frames"].minimum == part.improvement.after.minimum
     with pytest.raises(ZeroDivisionError):
         hexhex.mesh(*corner, cells=9, progress=lambda stage, share: 1 / 0)
 

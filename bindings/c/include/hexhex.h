@@ -1288,9 +1288,12 @@ typedef struct hexhex_mesh_reports {
   hexhex_quantize_report* quantization;
   hexhex_improve_report* improvement;
   int tags_released; /**< 1: vertices may have left edges with a tag, to make cells positive */
+  char why[512]; /**< with HEXHEX_METHOD_AUTO: why this way was taken; UTF-8, cut off if longer */
 } hexhex_mesh_reports;
-#define HEXHEX_MESH_REPORTS_INIT \
-  { sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0 }
+#define HEXHEX_MESH_REPORTS_INIT                            \
+  {                                                         \
+    sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, { 0 } \
+  }
 
 /** A hexahedral mesh of tets that have no map: hexhex_map_from_tets(), hexhex_quantize(),
  * hexhex_extract(), hexhex_verify() and hexhex_mesh_improve(). Cells may still not be positive in

@@ -62,6 +62,7 @@ from ._types import (
     Survey,
     VerifyItem,
     VerifyReport,
+    WayReport,
     _floats,
     _generators,
     _indices,
@@ -85,7 +86,7 @@ __all__ = [
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
     "MeshWriter", "MeshedPart", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
     "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "ShapeReport",
-    "Survey", "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "can_quantize", "can_repair",
+    "Survey", "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "WayReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
     "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
     "improve",
@@ -705,12 +706,12 @@ def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
     improvement = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow)
     many, length = _densities(cells, edge_length)
     workers = _threads(threads)
-    made, integer_map, values, quantization, rows, improved, *rest = _hexhex.mesh_from_tets(
+    made, integer_map, values, quantization, rows, improved, ways, *rest = _hexhex.mesh_from_tets(
         *_tets_of(points, tets, workers, progress), shape, many, length, improvement, workers,
         progress)
     return MeshedPart(Mesh._from_handle(made), Map._from_handle(integer_map), ShapeReport(**values),
                       QuantizeReport(**quantization), _verification_of(rows),
-                      _improvement_of(improved), *rest)
+                      _improvement_of(improved), [WayReport(*way) for way in ways], *rest)
 
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,

@@ -883,6 +883,20 @@ class ImproveReport:
 
 
 @dataclasses.dataclass(frozen=True)
+class WayReport:
+    """What one way led to, and what its mesh is judged by."""
+
+    method: str  #: "frames" or "polycube"
+    has_mesh: bool
+    refusal: str  #: why there is no mesh; empty if there is one, or none was needed
+    certified: bool  #: all cells are positive
+    minimum: float  #: scaled Jacobian
+    distance: float  #: between the boundaries, in diagonals
+    curves_followed: float  #: share of the length of sharp edges
+    merit: float  #: 0 to 1 for a certified mesh; otherwise -1
+
+
+@dataclasses.dataclass(frozen=True)
 class MeshedPart:
     """What hexhex.mesh() makes of tets."""
 
@@ -892,6 +906,8 @@ class MeshedPart:
     quantization: QuantizeReport
     verification: VerifyReport  #: before vertices moved
     improvement: ImproveReport
+    ways: list[WayReport]  #: with the method "auto": both
+    why: str  #: with the method "auto": why this mesh was kept
     tags_released: bool  #: vertices may have left edges with a tag, to make cells positive
     stages: list[tuple[str, float]]  #: name and seconds
 
