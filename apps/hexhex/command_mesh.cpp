@@ -64,44 +64,22 @@ void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& l
                [&] { writePage(part.mesh, arguments.page, arguments.output, options, context); });
 }
 
-Json waysAsJson(const MeshedPart& part) {
-  Json ways = Json::array();
-  for (const WayReport& way : part.ways) {
-    Json json = {{"method", nameOf(way.method)}};
-    if (!way.refusal.empty()) json["refusal"] = way.refusal;
-    if (way.hasMesh) {
-      json["certified"] = way.isCertified;
-      json["minimum"] = way.minimum;
-      json["distance"] = way.distance;
-      json["curves_followed"] = way.curvesFollowed;
-      json["merit"] = way.merit;
-    }
-    ways.push_back(std::move(json));
-  }
-  return ways;
-}
-
-Json partAsJson(const MeshArguments& arguments, const MeshedPart& part, std::size_t tets,
-                Context& context) {
+Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, std::size_t tets,
+                  Context& context) {
   Json seconds = Json::object();
   for (const StageTime& stage : context.stageTimes()) seconds[stage.stage] = 0.0;
   for (const StageTime& stage : context.stageTimes()) {
     seconds[stage.stage] = seconds[stage.stage].get<double>() + stage.seconds;
   }
-  return {{"part", {{"file", arguments.part}, {"tets", tets}}},
-          {"mesh",
-           {{"file", arguments.output},
-            {"cells", part.mesh.cells.size()},
-            {"vertices", part.mesh.points.size()}}},
-          {"ways", waysAsJson(part)},
-          {"why", part.whyThisWay},
-          {"map", shapeAsJson(part.shape)},
-          {"quantization", quantizeAsJson(part.quantization)},
-          {"verification", verificationAsJson(part.verification)},
-          {"improvement", improvementAsJson(part.improvement)},
-          {"tags_released", part.tagsReleased},
-          {"seconds", std::move(seconds)},
-          {"peak_memory_bytes", peakMemory()}};
+  Json json = {{"part", {{"file", arguments.part}, {"tets", tets}}},
+               {"mesh",
+                {{"file", arguments.output},
+                 {"cells", part.mesh.cells.size()},
+                 {"vertices", part.mesh.points.size()}}}};
+  json.update(partAsJson(part));
+  json["seconds"] = std::move(seconds);
+  json["peak_memory_bytes"] = peakMemory();
+  return json;
 }
 
 void printPart(const MeshArguments& arguments, const MeshedPart& part, const LongRun& run) {
@@ -145,7 +123,7 @@ int run(const MeshArguments& arguments) {
   writeAll(arguments, part, longRun);
   longRun.finish();
   if (reportFile.isWanted()) {
-    reportFile.write(jsonText(partAsJson(arguments, part, tets.tets.size(), context)));
+    reportFile.write(jsonText(reportAsJson(arguments, part, tets.tets.size(), context)));
   }
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
   printPart(arguments, part, longRun);

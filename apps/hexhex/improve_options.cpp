@@ -149,40 +149,4 @@ void printImprovement(const ImproveReport& report) {
   warnOfImprovement(report);
 }
 
-Json improvementAsJson(const ImproveReport& report) {
-  const auto distance = [](const SurfaceDistance& d) {
-    return Json{
-        {"from_mesh", d.fromMesh}, {"from_surface", d.fromSurface}, {"hausdorff", d.hausdorff()}};
-  };
-  return {
-      {"before",
-       {{"quality", qualityAsJson(report.before)}, {"validity", validityAsJson(report.before)}}},
-      {"after",
-       {{"quality", qualityAsJson(report.after)}, {"validity", validityAsJson(report.after)}}},
-      {"not_positive", report.notPositive},
-      {"diagonal", report.diagonal},
-      {"distance_before", distance(report.distanceBefore)},
-      {"distance_after", distance(report.distanceAfter)},
-      {"inner_distance_before", report.innerDistanceBefore},
-      {"inner_distance_after", report.innerDistanceAfter},
-      {"far_cells_before", report.farCellsBefore},
-      {"far_cells", report.farCells},
-      {"vertices",
-       {{"free", report.vertices[0]},
-        {"on_patches", report.vertices[1]},
-        {"on_curves", report.vertices[2]},
-        {"fixed", report.vertices[3]},
-        {"fixed_by_tags", report.taggedVertices},
-        {"fixed_by_option", report.boundaryVertices}}},
-      {"moved_vertices", report.movedVertices},
-      {"largest_move", report.largestMove},
-      {"mean_move", report.meanMove},
-      {"off_surface", report.offSurface},
-      {"off_creases", report.offCreases},
-      {"added_cells", report.addedCells},
-      {"curve_length", report.curveLength},
-      {"curves_followed", report.curvesFollowed},
-      {"seconds", report.seconds}};
-}
-
 }  // namespace hexhex::command

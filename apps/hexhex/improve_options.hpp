@@ -7,8 +7,6 @@
 
 #include <hexhex/improve.hpp>
 
-#include "json.hpp"
-
 namespace hexhex::command {
 
 /// Adds --target, --passes, --fix-boundary, --feature-angle, --slack and --pillow.
@@ -21,8 +19,5 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
 
 /// What happened, in some lines on the standard output; cells that stay bad as a warning.
 void printImprovement(const ImproveReport& report);
-
-/// docs/report.md explains the keys.
-[[nodiscard]] Json improvementAsJson(const ImproveReport& report);
 
 }  // namespace hexhex::command

@@ -41,7 +41,39 @@ Json defectsAsJson(const std::vector<Defect>& defects) {
   return list;
 }
 
+Json distortionAsJson(const MapDistortion& distortion) {
+  return {{"worst", distortion.worst}, {"median", distortion.median}};
+}
+
+Json certificateAsJson(const Certificate& certificate) {
+  return {{"quality", qualityAsJson(certificate)}, {"validity", validityAsJson(certificate)}};
+}
+
+Json waysAsJson(const MeshedPart& part) {
+  Json ways = Json::array();
+  for (const WayReport& way : part.ways) {
+    Json json = {{"method", nameOf(way.method)}};
+    if (!way.refusal.empty()) json["refusal"] = way.refusal;
+    if (way.hasMesh) {
+      json["certified"] = way.isCertified;
+      json["minimum"] = way.minimum;
+      json["distance"] = way.distance;
+      json["curves_followed"] = way.curvesFollowed;
+      json["merit"] = way.merit;
+    }
+    ways.push_back(std::move(json));
+  }
+  return ways;
+}
+
 }  // namespace
+
+std::string nameOf(ShapeMethod method) {
+  for (const auto& [name, kind] : kShapeMethods) {
+    if (kind == method) return std::string(name);
+  }
+  return {};
+}
 
 Json checkAsJson(const CheckReport& report, int scale,
                  const std::optional<SeamlessReport>& seamless) {
@@ -113,9 +145,6 @@ Json checksumsAsJson(const MeshSurvey& survey) {
 }
 
 Json quantizeAsJson(const QuantizeReport& report) {
-  const auto distortion = [](const MapDistortion& d) {
-    return Json{{"worst", d.worst}, {"median", d.median}};
-  };
   return {{"cells_wanted", report.cellsWanted},
           {"cells", report.cells},
           {"scale", report.scale},
@@ -128,8 +157,72 @@ Json quantizeAsJson(const QuantizeReport& report) {
           {"attempts", report.attempts},
           {"split_edges", report.splitEdges},
           {"added_tets", report.addedTets},
-          {"scaled_jacobian_before", distortion(report.distortionBefore)},
-          {"scaled_jacobian_after", distortion(report.distortionAfter)}};
+          {"scaled_jacobian_before", distortionAsJson(report.distortionBefore)},
+          {"scaled_jacobian_after", distortionAsJson(report.distortionAfter)}};
+}
+
+Json improvementAsJson(const ImproveReport& report) {
+  const auto distance = [](const SurfaceDistance& d) {
+    return Json{
+        {"from_mesh", d.fromMesh}, {"from_surface", d.fromSurface}, {"hausdorff", d.hausdorff()}};
+  };
+  return {{"before", certificateAsJson(report.before)},
+          {"after", certificateAsJson(report.after)},
+          {"not_positive", report.notPositive},
+          {"diagonal", report.diagonal},
+          {"distance_before", distance(report.distanceBefore)},
+          {"distance_after", distance(report.distanceAfter)},
+          {"inner_distance_before", report.innerDistanceBefore},
+          {"inner_distance_after", report.innerDistanceAfter},
+          {"far_cells_before", report.farCellsBefore},
+          {"far_cells", report.farCells},
+          {"vertices",
+           {{"free", report.vertices[0]},
+            {"on_patches", report.vertices[1]},
+            {"on_curves", report.vertices[2]},
+            {"fixed", report.vertices[3]},
+            {"fixed_by_tags", report.taggedVertices},
+            {"fixed_by_option", report.boundaryVertices}}},
+          {"moved_vertices", report.movedVertices},
+          {"largest_move", report.largestMove},
+          {"mean_move", report.meanMove},
+          {"off_surface", report.offSurface},
+          {"off_creases", report.offCreases},
+          {"added_cells", report.addedCells},
+          {"curve_length", report.curveLength},
+          {"curves_followed", report.curvesFollowed},
+          {"seconds", report.seconds}};
+}
+
+Json shapeAsJson(const ShapeReport& report) {
+  const LabelReport& labels = report.labels;
+  return {{"method", nameOf(report.method)},
+          {"rotation", report.rotation},
+          {"labels",
+           {{"valid", labels.isValid()},
+            {"charts", labels.charts},
+            {"corners", labels.corners},
+            {"bad_loops", labels.badLoops},
+            {"bad_corners", labels.badCorners},
+            {"opposite_edges", labels.oppositeEdges},
+            {"turning_points", labels.turningPoints},
+            {"wrong_turns", labels.wrongTurns},
+            {"deviation", labels.deviation}}},
+          {"label_moves", report.labelMoves},
+          {"added_tets", report.addedTets},
+          {"feature_edges", report.featureEdges},
+          {"tagged_edges", report.taggedEdges},
+          {"scaled_jacobian", distortionAsJson(report.distortion)}};
+}
+
+Json partAsJson(const MeshedPart& part) {
+  return {{"ways", waysAsJson(part)},
+          {"why", part.whyThisWay},
+          {"map", shapeAsJson(part.shape)},
+          {"quantization", quantizeAsJson(part.quantization)},
+          {"verification", verificationAsJson(part.verification)},
+          {"improvement", improvementAsJson(part.improvement)},
+          {"tags_released", part.tagsReleased}};
 }
 
 const char* kindName(const SeamlessReport& report) noexcept {

@@ -1,14 +1,19 @@
 // Reports as JSON, for programs. docs/report.md explains the keys.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
 #include <hexhex/check.hpp>
+#include <hexhex/improve.hpp>
+#include <hexhex/mesh.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
+#include <hexhex/shape.hpp>
 #include <hexhex/survey.hpp>
 #include <hexhex/verify.hpp>
 
@@ -26,6 +31,20 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json verificationAsJson(const VerifyReport& verification);
 [[nodiscard]] Json checksumsAsJson(const MeshSurvey& survey);
 [[nodiscard]] Json quantizeAsJson(const QuantizeReport& report);
+[[nodiscard]] Json improvementAsJson(const ImproveReport& report);
+[[nodiscard]] Json shapeAsJson(const ShapeReport& report);
+/// The reports of a part, without its files and times.
+[[nodiscard]] Json partAsJson(const MeshedPart& part);
+
+struct NamedMethod {
+  std::string_view name;
+  ShapeMethod kind;
+};
+/// As the option --method has them.
+inline constexpr std::array<NamedMethod, 3> kShapeMethods = {{{"auto", ShapeMethod::Auto},
+                                                              {"polycube", ShapeMethod::Polycube},
+                                                              {"frames", ShapeMethod::Frames}}};
+[[nodiscard]] std::string nameOf(ShapeMethod method);
 
 /// What a map is that is no integer-grid map: "integer up to a scale", "seamless", "almost
 /// seamless", "neither".

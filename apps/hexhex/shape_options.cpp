@@ -11,13 +11,6 @@ namespace hexhex::command {
 
 namespace {
 
-const std::map<std::string, ShapeMethod>& methods() {
-  static const std::map<std::string, ShapeMethod> kMethods = {{"auto", ShapeMethod::Auto},
-                                                              {"polycube", ShapeMethod::Polycube},
-                                                              {"frames", ShapeMethod::Frames}};
-  return kMethods;
-}
-
 bool isTurned(const ShapeReport& report) { return report.rotation != ShapeReport{}.rotation; }
 
 void printLabels(const ShapeReport& report) {
@@ -32,13 +25,6 @@ void printLabels(const ShapeReport& report) {
 
 }  // namespace
 
-std::string nameOf(ShapeMethod method) {
-  for (const auto& [name, each] : methods()) {
-    if (each == method) return name;
-  }
-  return {};
-}
-
 void addPart(CLI::App& parser, std::string& part) {
   parser.add_option("PART", part, "A mesh of tets, " + extensionsThat(&FileFormat::readsTets))
       ->required()
@@ -46,12 +32,14 @@ void addPart(CLI::App& parser, std::string& part) {
 }
 
 void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
+  std::map<std::string, ShapeMethod> methods;
+  for (const auto& [name, kind] : kShapeMethods) methods.emplace(name, kind);
   parser
       .add_option("--method", options.method,
                   "How to make a map: frames (along a smooth field: good\n"
                   "cells, where there is a map), polycube (the part becomes\n"
                   "one of axis-aligned boxes), auto: what fits best")
-      ->transform(CLI::CheckedTransformer(methods()).description(""))
+      ->transform(CLI::CheckedTransformer(methods).description(""))
       ->option_text("NAME [auto]");
   parser
       .add_option("--seed", options.seed,
@@ -68,27 +56,6 @@ void printShape(const ShapeReport& report) {
     printLine("sharp edges", fmt::format("{} of {} are edges of the map", report.taggedEdges,
                                          report.featureEdges));
   }
-}
-Json shapeAsJson(const ShapeReport& report) {
-  const LabelReport& labels = report.labels;
-  return {{"method", nameOf(report.method)},
-          {"rotation", report.rotation},
-          {"labels",
-           {{"valid", labels.isValid()},
-            {"charts", labels.charts},
-            {"corners", labels.corners},
-            {"bad_loops", labels.badLoops},
-            {"bad_corners", labels.badCorners},
-            {"opposite_edges", labels.oppositeEdges},
-            {"turning_points", labels.turningPoints},
-            {"wrong_turns", labels.wrongTurns},
-            {"deviation", labels.deviation}}},
-          {"label_moves", report.labelMoves},
-          {"added_tets", report.addedTets},
-          {"feature_edges", report.featureEdges},
-          {"tagged_edges", report.taggedEdges},
-          {"scaled_jacobian",
-           {{"worst", report.distortion.worst}, {"median", report.distortion.median}}}};
 }
 
 }  // namespace hexhex::command

@@ -7,12 +7,7 @@
 
 #include <hexhex/shape.hpp>
 
-#include "json.hpp"
-
 namespace hexhex::command {
-
-/// As the option --method has it.
-[[nodiscard]] std::string nameOf(ShapeMethod method);
 
 /// Adds an argument PART.
 void addPart(CLI::App& parser, std::string& part);
@@ -21,8 +16,5 @@ void addShapeOptions(CLI::App& parser, ShapeOptions& options);
 
 /// Some lines on the standard output.
 void printShape(const ShapeReport& report);
-
-/// docs/report.md explains the keys.
-[[nodiscard]] Json shapeAsJson(const ShapeReport& report);
 
 }  // namespace hexhex::command

@@ -3,50 +3,63 @@
 #include <hexhex/error.hpp>
 #include <hexhex/improve.hpp>
 
-#include "handles.hpp"
+#include "options.hpp"
+
+namespace hexhex::c {
+
+void writeReport(const ImproveReport& r, hexhex_improve_report* out) {
+  if (out == nullptr) return;
+  const hexhex_improve_report result = {
+      .size = sizeof(hexhex_improve_report),
+      .not_positive_before = r.before.refuted + r.before.undecided,
+      .not_positive_after = r.notPositive.size(),
+      .minimum_before = r.before.quality.minimum,
+      .minimum_after = r.after.quality.minimum,
+      .mean_before = r.before.quality.mean,
+      .mean_after = r.after.quality.mean,
+      .diagonal = r.diagonal,
+      .from_mesh_before = r.distanceBefore.fromMesh,
+      .from_surface_before = r.distanceBefore.fromSurface,
+      .from_mesh_after = r.distanceAfter.fromMesh,
+      .from_surface_after = r.distanceAfter.fromSurface,
+      .far_cells_before = r.farCellsBefore,
+      .far_cells_after = r.farCells.size(),
+      .free_vertices = r.vertices[0],
+      .patch_vertices = r.vertices[1],
+      .curve_vertices = r.vertices[2],
+      .fixed_vertices = r.vertices[3],
+      .moved_vertices = r.movedVertices,
+      .largest_move = r.largestMove,
+      .mean_move = r.meanMove,
+      .off_surface = r.offSurface,
+      .seconds = r.seconds,
+      .inner_distance_before = r.innerDistanceBefore,
+      .inner_distance_after = r.innerDistanceAfter,
+      .tagged_vertices = r.taggedVertices,
+      .boundary_vertices = r.boundaryVertices,
+      .off_creases = r.offCreases,
+      .added_cells = r.addedCells,
+      .curve_length = r.curveLength,
+      .curves_followed = r.curvesFollowed};
+  writeStruct(result, *out, "report");
+}
+
+ImproveOptions improveOptions(const hexhex_improve_options* options) {
+  const hexhex_improve_options o = readStruct(options, HEXHEX_IMPROVE_OPTIONS_INIT, "options");
+  if (o.pillow < HEXHEX_PILLOW_NEVER || o.pillow > HEXHEX_PILLOW_ALWAYS) {
+    throw Error(ErrorCode::InvalidArgument, "There is no such mode of pillows.");
+  }
+  return {.target = o.target,
+          .passes = o.passes,
+          .fixBoundary = o.fix_boundary != 0,
+          .featureAngle = o.feature_angle,
+          .slack = o.slack,
+          .pillow = static_cast<PillowMode>(o.pillow)};
+}
+
+}  // namespace hexhex::c
 
 namespace {
-
-hexhex_improve_report reportOf(const hexhex::ImproveReport& r) {
-  return {.size = sizeof(hexhex_improve_report),
-          .not_positive_before = r.before.refuted + r.before.undecided,
-          .not_positive_after = r.notPositive.size(),
-          .minimum_before = r.before.quality.minimum,
-          .minimum_after = r.after.quality.minimum,
-          .mean_before = r.before.quality.mean,
-          .mean_after = r.after.quality.mean,
-          .diagonal = r.diagonal,
-          .from_mesh_before = r.distanceBefore.fromMesh,
-          .from_surface_before = r.distanceBefore.fromSurface,
-          .from_mesh_after = r.distanceAfter.fromMesh,
-          .from_surface_after = r.distanceAfter.fromSurface,
-          .far_cells_before = r.farCellsBefore,
-          .far_cells_after = r.farCells.size(),
-          .free_vertices = r.vertices[0],
-          .patch_vertices = r.vertices[1],
-          .curve_vertices = r.vertices[2],
-          .fixed_vertices = r.vertices[3],
-          .moved_vertices = r.movedVertices,
-          .largest_move = r.largestMove,
-          .mean_move = r.meanMove,
-          .off_surface = r.offSurface,
-          .seconds = r.seconds,
-          .inner_distance_before = r.innerDistanceBefore,
-          .inner_distance_after = r.innerDistanceAfter,
-          .tagged_vertices = r.taggedVertices,
-          .boundary_vertices = r.boundaryVertices,
-          .off_creases = r.offCreases,
-          .added_cells = r.addedCells,
-          .curve_length = r.curveLength,
-          .curves_followed = r.curvesFollowed};
-}
-
-hexhex::PillowMode pillowOf(hexhex_pillow_mode mode) {
-  if (mode < HEXHEX_PILLOW_NEVER || mode > HEXHEX_PILLOW_ALWAYS) {
-    throw hexhex::Error(hexhex::ErrorCode::InvalidArgument, "There is no such mode of pillows.");
-  }
-  return static_cast<hexhex::PillowMode>(mode);
-}
 
 /// @param meshOf  the mesh of a handle
 template <class Handle, class MeshOf>
@@ -59,20 +72,14 @@ hexhex_status improveMesh(Handle* mesh, const hexhex_map* map,
     const Used used(mesh, "mesh");
     std::optional<Used<const hexhex_map>> given;
     if (map != nullptr) given.emplace(map, "map");
-    const hexhex_improve_options o = readStruct(options, HEXHEX_IMPROVE_OPTIONS_INIT, "options");
-    const hexhex::ImproveOptions chosen = {.target = o.target,
-                                           .passes = o.passes,
-                                           .fixBoundary = o.fix_boundary != 0,
-                                           .featureAngle = o.feature_angle,
-                                           .slack = o.slack,
-                                           .pillow = pillowOf(o.pillow)};
+    const hexhex::ImproveOptions chosen = improveOptions(options);
     requireStruct(report, "report");
     ContextOrDefault working(context);
     auto& improved = meshOf(*used);
     const hexhex::ImproveReport made =
         given ? hexhex::improve(improved, (*given)->view, chosen, *working)
               : hexhex::improve(improved, chosen, *working);
-    if (report != nullptr) writeStruct(reportOf(made), *report, "report");
+    writeReport(made, report);
   });
 }
 

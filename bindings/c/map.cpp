@@ -1,7 +1,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/quantize.hpp>
 
-#include "handles.hpp"
+#include "options.hpp"
 
 namespace {
 
@@ -49,15 +49,6 @@ hexhex::TetMapView viewOf(const hexhex_map_arrays& given) {
   return view;
 }
 
-hexhex::TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument) {
-  using namespace hexhex::c;
-  const hexhex_map_arrays given =
-      readStruct(&require(arrays, argument), HEXHEX_MAP_ARRAYS_INIT, argument);
-  const auto points = borrowed<hexhex::Vec3>(given.points, given.point_count, "points");
-  const auto tets = borrowed<hexhex::Tet>(given.tets, given.tet_count, "tets");
-  return {.points = {points.begin(), points.end()}, .tets = {tets.begin(), tets.end()}};
-}
-
 }  // namespace
 
 namespace hexhex::c {
@@ -71,6 +62,14 @@ void give(std::shared_ptr<const TetMap> map, hexhex_map** out) {
 
 void give(TetMap&& map, hexhex_map** out) {
   give(std::make_shared<const TetMap>(std::move(map)), out);
+}
+
+TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument) {
+  const hexhex_map_arrays given =
+      readStruct(&require(arrays, argument), HEXHEX_MAP_ARRAYS_INIT, argument);
+  const auto points = borrowed<Vec3>(given.points, given.point_count, "points");
+  const auto tets = borrowed<Tet>(given.tets, given.tet_count, "tets");
+  return {.points = {points.begin(), points.end()}, .tets = {tets.begin(), tets.end()}};
 }
 
 TetMap copyOf(const hexhex_map& map) { return map.owned ? *map.owned : owned(map.view); }

@@ -1,8 +1,10 @@
-// Options and statistics of extractions.
+// Options and reports of several files.
 #pragma once
 
 #include <hexhex/extract.hpp>
+#include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/quantize.hpp>
 
 #include "handles.hpp"
 
@@ -14,6 +16,17 @@ namespace hexhex::c {
 [[nodiscard]] ReadOptions readOptions(const hexhex_read_options* options);
 /// @param cells  as many scaled Jacobians are there, if any
 [[nodiscard]] WriteOptions writeOptions(const hexhex_write_options* options, std::size_t cells);
+
+/// @param options  not null
+[[nodiscard]] QuantizeOptions quantizeOptions(const hexhex_quantize_options* options);
+[[nodiscard]] ImproveOptions improveOptions(const hexhex_improve_options* options);
+
+/// @param out  may be null
+void writeReport(const QuantizeReport& report, hexhex_quantize_report* out);
+void writeReport(const ImproveReport& report, hexhex_improve_report* out);
+
+/// Points and tets of the caller's arrays.
+[[nodiscard]] TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument);
 
 [[nodiscard]] Repaired repairedBy(ExtractStatistics&& statistics);
 /// @param map, report  may be null

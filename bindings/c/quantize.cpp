@@ -2,11 +2,23 @@
 
 #include <hexhex/quantize.hpp>
 
-#include "handles.hpp"
+#include "options.hpp"
 
-namespace {
+namespace hexhex::c {
 
-hexhex_quantize_report reportOf(const hexhex::QuantizeReport& r) {
+QuantizeOptions quantizeOptions(const hexhex_quantize_options* options) {
+  const hexhex_quantize_options o =
+      readStruct(&require(options, "options"), HEXHEX_QUANTIZE_OPTIONS_INIT, "options");
+  return {.cells = o.cells,
+          .scale = o.scale,
+          .edgeLength = o.edge_length,
+          .densify = o.densify != 0,
+          .wallTag = o.wall_tag,
+          .tolerance = o.tolerance};
+}
+
+void writeReport(const QuantizeReport& r, hexhex_quantize_report* out) {
+  if (out == nullptr) return;
   hexhex_quantize_report result = {.size = sizeof(hexhex_quantize_report),
                                    .cells_wanted = r.cellsWanted,
                                    .cells = r.cells,
@@ -25,10 +37,10 @@ hexhex_quantize_report reportOf(const hexhex::QuantizeReport& r) {
                                    .worst_after = r.distortionAfter.worst,
                                    .median_after = r.distortionAfter.median};
   r.integersBy.copy(result.integers_by, sizeof result.integers_by - 1);
-  return result;
+  writeStruct(result, *out, "report");
 }
 
-}  // namespace
+}  // namespace hexhex::c
 
 int hexhex_can_quantize(void) { return hexhex::canQuantize() ? 1 : 0; }
 
@@ -39,18 +51,10 @@ hexhex_status hexhex_quantize(const hexhex_map* map, const hexhex_quantize_optio
   return guarded(error, [&] {
     require(quantized, "quantized");
     const Used given(map, "map");
-    const hexhex_quantize_options o =
-        readStruct(&require(options, "options"), HEXHEX_QUANTIZE_OPTIONS_INIT, "options");
+    const hexhex::QuantizeOptions chosen = quantizeOptions(options);
     ContextOrDefault used(context);
-    hexhex::QuantizedMap made = hexhex::quantize(given->view,
-                                                 {.cells = o.cells,
-                                                  .scale = o.scale,
-                                                  .edgeLength = o.edge_length,
-                                                  .densify = o.densify != 0,
-                                                  .wallTag = o.wall_tag,
-                                                  .tolerance = o.tolerance},
-                                                 *used);
-    if (report != nullptr) writeStruct(reportOf(made.report), *report, "report");
+    hexhex::QuantizedMap made = hexhex::quantize(given->view, chosen, *used);
+    writeReport(made.report, report);
     give(std::move(made.map), quantized);
   });
 }

@@ -90,13 +90,22 @@ void take(const Json& options, const char* key, T& value) {
   found->get_to(value);
 }
 
-/// What has this name. @throws Error InvalidArgument
-template <class Entry>
-auto kindNamed(std::span<const Entry> entries, const std::string& name) {
-  for (const Entry& entry : entries) {
-    if (entry.name == name) return entry.kind;
+/// The same by the name of what the request has. @throws Error InvalidArgument
+template <class Entries, class Kind>
+void takeNamed(const Json& options, const char* key, const Entries& entries, Kind& kind) {
+  const auto found = options.find(key);
+  if (found == options.end()) return;
+  const auto name = found->get<std::string>();
+  std::string names;
+  for (const auto& entry : entries) {
+    if (entry.name == name) {
+      kind = entry.kind;
+      return;
+    }
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw Error(ErrorCode::InvalidArgument, "There is no \"" + name + "\". See samples().");
+  throw Error(ErrorCode::InvalidArgument, "There is no " + std::string(key) + " \"" + name +
+                                              "\". Choose one of " + names + ".");
 }
 
 Json arrayAt(const void* data, std::size_t length, const char* type) {
@@ -118,8 +127,8 @@ Json mapAnswer(TetMap map) {
   return {{"map", id}, {"points", kept.points.size()}, {"tets", kept.tets.size()}};
 }
 
-Json meshAnswer(HexMesh mesh) {
-  const std::uint32_t id = keep(Mesh{std::move(mesh)});
+Json meshAnswer(Mesh mesh) {
+  const std::uint32_t id = keep(std::move(mesh));
   const HexMesh& kept = std::get<Mesh>(objects().at(id)).mesh;
   return {{"mesh", id}, {"vertices", kept.points.size()}, {"cells", kept.cells.size()}};
 }
@@ -146,6 +155,7 @@ Json about(const Json& /*request*/, Context& /*context*/) {
                        {"description", format.description},
                        {"readsMaps", format.readsMaps},
                        {"writesMaps", format.writesMaps},
+                       {"readsTets", format.readsTets},
                        {"readsHexMeshes", format.readsHexMeshes},
                        {"writesHexMeshes", format.writesHexMeshes}});
   }
@@ -172,21 +182,19 @@ Json generate(const Json& request, Context& /*context*/) {
   take(request, "features", options.features);
   take(request, "seed", options.seed);
   take(request, "defects", options.defects);
-  std::string name;
-  if (take(request, "charts", name); !name.empty()) options.charts = kindNamed(chartStyles(), name);
-  name.clear();
-  if (take(request, "defectKind", name); !name.empty()) {
-    options.defectKind = kindNamed(defectKinds(), name);
-  }
-  return mapAnswer(generateSample(kindNamed(sampleKinds(), request.at("kind")), options).map);
+  takeNamed(request, "charts", chartStyles(), options.charts);
+  takeNamed(request, "defectKind", defectKinds(), options.defectKind);
+  SampleKind kind{};
+  takeNamed(request, "kind", sampleKinds(), kind);
+  return mapAnswer(generateSample(kind, options).map);
 }
 
-/// A map whose arrays JavaScript fills: room for so many points and tets.
+/// A map whose arrays JavaScript fills: room for so many points and tets, and parameters or none.
 Json makeMap(const Json& request, Context& /*context*/) {
   TetMap map;
   map.points.resize(request.at("points"));
   map.tets.resize(request.at("tets"));
-  map.parameters.resize(map.tets.size());
+  if (request.at("parameters").get<bool>()) map.parameters.resize(map.tets.size());
   return mapAnswer(std::move(map));
 }
 
@@ -195,16 +203,25 @@ Json readMap(const Json& request, Context& context) {
       hexhex::readMap(request.at("file").get<std::string>(), readOptions(request), context));
 }
 
+/// Without parameters.
+Json readTets(const Json& request, Context& context) {
+  TetMesh tets = readTetMesh(request.at("file").get<std::string>(), readOptions(request), context);
+  TetMap map;
+  map.points = std::move(tets.points);
+  map.tets = std::move(tets.tets);
+  return mapAnswer(std::move(map));
+}
+
 Json readMesh(const Json& request, Context& context) {
   return meshAnswer(
-      readHexMesh(request.at("file").get<std::string>(), readOptions(request), context));
+      {readHexMesh(request.at("file").get<std::string>(), readOptions(request), context)});
 }
 
 Json read(const Json& request, Context& context) {
   auto content =
       readMapOrHexMesh(request.at("file").get<std::string>(), readOptions(request), context);
   if (auto* const map = std::get_if<TetMap>(&content)) return mapAnswer(std::move(*map));
-  return meshAnswer(std::move(std::get<HexMesh>(content)));
+  return meshAnswer({std::move(std::get<HexMesh>(content))});
 }
 
 Json mapArrays(const Json& request, Context& /*context*/) {
@@ -268,13 +285,45 @@ Json quantizeMap(const Json& request, Context& context) {
   return answer;
 }
 
+struct NamedPillow {
+  std::string_view name;
+  PillowMode kind;
+};
+constexpr std::array<NamedPillow, 3> kPillows = {
+    {{"never", PillowMode::Never}, {"auto", PillowMode::Auto}, {"always", PillowMode::Always}}};
+
+/// Of tets, a mesh and its map.
+Json meshTets(const Json& request, Context& context) {
+  const TetMap& tets = get<TetMap>(request, "tets");
+  MeshOptions options;
+  options.quantize.densify = true;
+  take(request, "cells", options.quantize.cells);
+  take(request, "edgeLength", options.quantize.edgeLength);
+  takeNamed(request, "method", command::kShapeMethods, options.shape.method);
+  take(request, "seed", options.shape.seed);
+  take(request, "target", options.improve.target);
+  take(request, "passes", options.improve.passes);
+  take(request, "fixBoundary", options.improve.fixBoundary);
+  take(request, "featureAngle", options.improve.featureAngle);
+  options.shape.featureAngle = options.improve.featureAngle;
+  take(request, "slack", options.improve.slack);
+  takeNamed(request, "pillow", kPillows, options.improve.pillow);
+  MeshedPart part = meshFromTets({tets.points, tets.tets}, options, context);
+  Json report = command::partAsJson(part);
+  Json answer = meshAnswer(
+      {std::move(part.mesh), std::move(part.improvement.after), std::move(part.verification)});
+  answer.update(mapAnswer(std::move(part.map)));
+  answer["report"] = std::move(report);
+  return answer;
+}
+
 Json extractMesh(const Json& request, Context& context) {
   const TetMap& map = get<TetMap>(request, "map");
   ExtractOptions options;
   take(request, "scale", options.scale);
   take(request, "tolerance", options.tolerance);
   ExtractStatistics statistics;
-  Json answer = meshAnswer(extract(map, options, context, &statistics));
+  Json answer = meshAnswer({extract(map, options, context, &statistics)});
   answer["seconds"] = statistics.seconds;
   return answer;
 }
@@ -336,9 +385,10 @@ Json freeObject(const Json& request, Context& /*context*/) {
 using Function = Json (*)(const Json& request, Context& context);
 constexpr std::array kFunctions = std::to_array<std::pair<std::string_view, Function>>({
   {"about", about}, {"generate", generate}, {"makeMap", makeMap}, {"readMap", readMap},
-      {"readMesh", readMesh}, {"read", read}, {"mapArrays", mapArrays}, {"meshArrays", meshArrays},
-      {"check", checkMap}, {"quantize", quantizeMap}, {"extract", extractMesh},
-      {"verify", verifyMesh}, {"certify", certifyMesh}, {"write", write},
+      {"readTets", readTets}, {"mesh", meshTets}, {"readMesh", readMesh}, {"read", read},
+      {"mapArrays", mapArrays}, {"meshArrays", meshArrays}, {"check", checkMap},
+      {"quantize", quantizeMap}, {"extract", extractMesh}, {"verify", verifyMesh},
+      {"certify", certifyMesh}, {"write", write},
 #if HEXHEX_HAS_VIEWER
       {"writePage", writePage},
 #endif

@@ -12,27 +12,17 @@ namespace {
 
 nb::tuple extractPieces(const ArrayMap& map, bool patches, const Options& options, int threads,
                         const Progress& progress) {
-  Notes notes;
   const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
-  PiecewiseLinearMesh mesh = run(
-      threads, progress,
-      [&](Context& context) {
-        return extractPiecewiseLinear(map.view(), parts, options.get(), context, &notes.statistics);
-      },
-      &notes.stages);
-  return nb::make_tuple(std::move(mesh), asTuple(notes));
+  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+    return extractPiecewiseLinear(map.view(), parts, options.get(), context, &statistics);
+  });
 }
 
 nb::tuple extractOrder(const ArrayMap& map, int order, const Options& options, int threads,
                        const Progress& progress) {
-  Notes notes;
-  LagrangeMesh mesh = run(
-      threads, progress,
-      [&](Context& context) {
-        return extractLagrange(map.view(), order, options.get(), context, &notes.statistics);
-      },
-      &notes.stages);
-  return nb::make_tuple(std::move(mesh), asTuple(notes));
+  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+    return extractLagrange(map.view(), order, options.get(), context, &statistics);
+  });
 }
 
 /// Views by name, which keep the mesh alive.

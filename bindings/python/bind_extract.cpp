@@ -72,10 +72,10 @@ class PythonSink : public MeshSink {
 
 /// work(sink), where an exception of the target is the one that comes out.
 template <class Work>
-void intoSink(const nb::object& target, const Work& work) {
+auto intoSink(const nb::object& target, const Work& work) {
   PythonSink sink(target);
   try {
-    work(sink);
+    return work(sink);
   } catch (const Error&) {
     sink.reraise();
     throw;
@@ -92,43 +92,28 @@ void readInto(const nb::object& target, const std::string& file, const std::stri
 
 nb::tuple extractMesh(const ArrayMap& map, const Options& options, int threads,
                       const Progress& progress) {
-  Notes notes;
-  HexMesh mesh = run(
-      threads, progress,
-      [&](Context& context) {
-        return extract(map.view(), options.get(), context, &notes.statistics);
-      },
-      &notes.stages);
-  return nb::make_tuple(std::move(mesh), asTuple(notes));
+  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+    return extract(map.view(), options.get(), context, &statistics);
+  });
 }
 
 nb::tuple extractInto(const nb::object& target, const ArrayMap& map, const Options& options,
                       int threads, const Progress& progress) {
-  Notes notes;
-  intoSink(target, [&](MeshSink& sink) {
-    run(
-        threads, progress,
-        [&](Context& context) {
-          extractTo(sink, map.view(), options.get(), context, &notes.statistics);
-        },
-        &notes.stages);
+  return intoSink(target, [&](MeshSink& sink) {
+    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      extractTo(sink, map.view(), options.get(), context, &statistics);
+    });
   });
-  return asTuple(notes);
 }
 
 nb::tuple extractIntoFile(const std::string& file, const ArrayMap& map, const Options& options,
                           const std::string& format, int threads, const Progress& progress) {
-  Notes notes;
-  run(
-      threads, progress,
-      [&](Context& context) {
-        WriteOptions writing;
-        writing.format = format;
-        const std::unique_ptr<MeshSink> sink = openMeshSink(file, writing, context);
-        extractTo(*sink, map.view(), options.get(), context, &notes.statistics);
-      },
-      &notes.stages);
-  return asTuple(notes);
+  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+    WriteOptions writing;
+    writing.format = format;
+    const std::unique_ptr<MeshSink> sink = openMeshSink(file, writing, context);
+    extractTo(*sink, map.view(), options.get(), context, &statistics);
+  });
 }
 
 /// An extractor with the arrays that it refers to.
@@ -141,66 +126,45 @@ class PyExtractor {
         })) {}
 
   nb::tuple extract(const Options& options, int threads, const Progress& progress) {
-    Notes notes;
-    HexMesh mesh = run(
-        threads, progress,
-        [&](Context& context) {
-          const std::unique_lock<std::mutex> lock = oneAtATime();
-          return extractor_.extract(options.get(), context, &notes.statistics);
-        },
-        &notes.stages);
-    return nb::make_tuple(std::move(mesh), asTuple(notes));
+    return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      return extractor_.extract(options.get(), context, &statistics);
+    });
   }
   nb::tuple extractInto(const nb::object& target, const Options& options, int threads,
                         const Progress& progress) {
-    Notes notes;
-    intoSink(target, [&](MeshSink& sink) {
-      run(
-          threads, progress,
-          [&](Context& context) {
-            const std::unique_lock<std::mutex> lock = oneAtATime();
-            extractor_.extractTo(sink, options.get(), context, &notes.statistics);
-          },
-          &notes.stages);
+    return intoSink(target, [&](MeshSink& sink) {
+      return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+        extractor_.extractTo(sink, options.get(), context, &statistics);
+      });
     });
-    return asTuple(notes);
   }
   nb::tuple extractPieces(bool patches, const Options& options, int threads,
                           const Progress& progress) {
     const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
-    Notes notes;
-    PiecewiseLinearMesh mesh = run(
-        threads, progress,
-        [&](Context& context) {
-          const std::unique_lock<std::mutex> lock = oneAtATime();
-          return extractor_.extractPiecewiseLinear(parts, options.get(), context,
-                                                   &notes.statistics);
-        },
-        &notes.stages);
-    return nb::make_tuple(std::move(mesh), asTuple(notes));
+    return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      return extractor_.extractPiecewiseLinear(parts, options.get(), context, &statistics);
+    });
   }
   nb::tuple extractOrder(int order, const Options& options, int threads, const Progress& progress) {
-    Notes notes;
-    LagrangeMesh mesh = run(
-        threads, progress,
-        [&](Context& context) {
-          const std::unique_lock<std::mutex> lock = oneAtATime();
-          return extractor_.extractLagrange(order, options.get(), context, &notes.statistics);
-        },
-        &notes.stages);
-    return nb::make_tuple(std::move(mesh), asTuple(notes));
+    return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      return extractor_.extractLagrange(order, options.get(), context, &statistics);
+    });
   }
   [[nodiscard]] std::uint64_t cells() const { return extractor_.cellsAtScaleOne(); }
 
  private:
-  /// Not waited for: whoever calls from his own progress function would wait for ever.
-  std::unique_lock<std::mutex> oneAtATime() {
-    std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) {
-      throw Error(ErrorCode::InvalidArgument,
-                  "The extractor is in use by another call. Make one for each thread.");
-    }
-    return lock;
+  /// runNoted(), one at a time. Not waited for: whoever calls from his own progress function would
+  /// wait for ever.
+  template <class Work>
+  nb::tuple runAlone(int threads, const Progress& progress, const Work& work) {
+    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      const std::unique_lock lock(mutex_, std::try_to_lock);
+      if (!lock) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "The extractor is in use by another call. Make one for each thread.");
+      }
+      return work(context, statistics);
+    });
   }
   ArrayMap map_;
   std::mutex mutex_;

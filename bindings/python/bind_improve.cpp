@@ -8,25 +8,8 @@
 using namespace nanobind::literals;
 
 namespace hexhex::python {
-namespace {
 
-/// A mesh that is moved, straight or curved, of a copy of one that others may hold.
-template <class AnyMesh>
-nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, int passes,
-                      bool fixBoundary, double featureAngle, double slack, PillowMode pillow,
-                      int threads, const Progress& progress) {
-  const ImproveOptions options = {.target = target,
-                                  .passes = passes,
-                                  .fixBoundary = fixBoundary,
-                                  .featureAngle = featureAngle,
-                                  .slack = slack,
-                                  .pillow = pillow};
-  AnyMesh moved;
-  ImproveReport report = run(threads, progress, [&](Context& context) {
-    moved = mesh;
-    return map != nullptr ? improve(moved, map->view(), options, context)
-                          : improve(moved, options, context);
-  });
+nb::tuple asTuple(ImproveReport&& report) {
   const auto listOfCells = [](Array<std::uint64_t>&& cells) {
     const std::size_t count = cells.size();
     return nb::cast(ownedArray<std::uint64_t, 1>(std::move(cells), {count}));
@@ -57,8 +40,22 @@ nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, double target, i
   d["curve_length"] = report.curveLength;
   d["curves_followed"] = report.curvesFollowed;
   d["seconds"] = report.seconds;
-  return nb::make_tuple(std::move(moved), asTuple(std::move(report.before)),
-                        asTuple(std::move(report.after)), d);
+  return nb::make_tuple(asTuple(std::move(report.before)), asTuple(std::move(report.after)), d);
+}
+
+namespace {
+
+/// A mesh that is moved, straight or curved, of a copy of one that others may hold.
+template <class AnyMesh>
+nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, const ImproveOptions& options,
+                      int threads, const Progress& progress) {
+  AnyMesh moved;
+  ImproveReport report = run(threads, progress, [&](Context& context) {
+    moved = mesh;
+    return map != nullptr ? improve(moved, map->view(), options, context)
+                          : improve(moved, options, context);
+  });
+  return nb::make_tuple(std::move(moved), asTuple(std::move(report)));
 }
 
 }  // namespace
@@ -68,9 +65,16 @@ void bindImprove(nb::module_& module) {
       .value("never", PillowMode::Never)
       .value("auto", PillowMode::Auto)
       .value("always", PillowMode::Always);
+  nb::class_<ImproveOptions>(module, "ImproveOptions")
+      .def(
+          "__init__",
+          [](ImproveOptions* self, double target, int passes, bool fixBoundary, double featureAngle,
+             double slack, PillowMode pillow) {
+            new (self) ImproveOptions{target, passes, fixBoundary, featureAngle, slack, pillow};
+          },
+          "target"_a, "passes"_a, "fix_boundary"_a, "feature_angle"_a, "slack"_a, "pillow"_a);
   const auto define = [&module](auto function) {
-    module.def("improve", function, "mesh"_a, "map"_a.none(), "target"_a, "passes"_a,
-               "fix_boundary"_a, "feature_angle"_a, "slack"_a, "pillow"_a, "threads"_a,
+    module.def("improve", function, "mesh"_a, "map"_a.none(), "options"_a, "threads"_a,
                "progress"_a.none());
   };
   define(&improveMesh<HexMesh>);

@@ -113,23 +113,17 @@ nb::tuple mapStructureOf(const ArrayMap& map, double tolerance, int threads,
                         asList(s.defects));
 }
 
-TetMesh meshOf(const InPoints& points, const InTets& tets) {
-  const auto vertices = elements<Vec3>(points);
-  const auto corners = elements<Tet>(tets);
-  return {{vertices.begin(), vertices.end()}, {corners.begin(), corners.end()}};
-}
-
 TetMap mapOfFlags(const InPoints& points, const InTets& tets, const In<std::int8_t, 4>& flags,
                   int threads, const Progress& progress) {
   return run(threads, progress, [&](Context& context) {
-    return mapFromFlags(meshOf(points, tets), elements<FaceFlags>(flags), context);
+    return mapFromFlags(tetMeshOf(points, tets), elements<FaceFlags>(flags), context);
   });
 }
 
 TetMap pairOf(const InPoints& points, const InTets& tets, const InPoints& polycubePoints,
               const InTets& polycubeTets, int threads) {
   return run(threads, {}, [&](Context& context) {
-    return mapFromPair(meshOf(points, tets), meshOf(polycubePoints, polycubeTets), context);
+    return mapFromPair(tetMeshOf(points, tets), tetMeshOf(polycubePoints, polycubeTets), context);
   });
 }
 

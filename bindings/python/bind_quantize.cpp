@@ -8,7 +8,6 @@
 using namespace nanobind::literals;
 
 namespace hexhex::python {
-namespace {
 
 Dict asDict(const QuantizeReport& r) {
   Dict d;
@@ -31,6 +30,8 @@ Dict asDict(const QuantizeReport& r) {
   return d;
 }
 
+namespace {
+
 nb::tuple quantizeMap(const ArrayMap& map, double cells, double scale, double edgeLength,
                       bool densify, std::int32_t wallTag, double tolerance, int threads,
                       const Progress& progress) {
@@ -44,10 +45,8 @@ nb::tuple quantizeMap(const ArrayMap& map, double cells, double scale, double ed
   QuantizedMap made = run(
       threads, progress, [&](Context& context) { return quantize(map.view(), options, context); },
       &times);
-  Dict report = asDict(made.report);
-  nb::list stages;
-  for (const StageTime& time : times) stages.append(nb::make_tuple(time.stage, time.seconds));
-  report["stages"] = stages;
+  Dict report = python::asDict(made.report);
+  report["stages"] = asList(times);
   return nb::make_tuple(std::move(made.map), report);
 }
 

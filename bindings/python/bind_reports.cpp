@@ -4,11 +4,9 @@
 
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <hexhex/check.hpp>
-#include <hexhex/verify.hpp>
 
 #include "border.hpp"
 
@@ -42,6 +40,14 @@ nb::list asList(const std::vector<Defect>& defects) {
   return list;
 }
 
+nb::list asList(const VerifyReport& report) {
+  nb::list rows;
+  for (const VerifyItem& item : report.items) {
+    rows.append(nb::make_tuple(item.name, item.expected, item.found, item.passed));
+  }
+  return rows;
+}
+
 namespace {
 
 Dict asDict(const CheckReport& r) {
@@ -68,20 +74,12 @@ Dict asDict(const CheckReport& r) {
   return d;
 }
 
-using VerifyRow = std::tuple<std::string, std::string, std::string, bool>;
-
-std::vector<VerifyRow> verifyMesh(const ArrayMap& map, const HexMesh& mesh, int scale,
-                                  double tolerance, int digits, int threads,
-                                  const Progress& progress) {
-  const VerifyReport report = run(threads, progress, [&](Context& context) {
+nb::list verifyMesh(const ArrayMap& map, const HexMesh& mesh, int scale, double tolerance,
+                    int digits, int threads, const Progress& progress) {
+  return asList(run(threads, progress, [&](Context& context) {
     return verify(map.view(), mesh, {.scale = scale, .tolerance = tolerance, .digits = digits},
                   context);
-  });
-  std::vector<VerifyRow> rows;
-  for (const VerifyItem& item : report.items) {
-    rows.emplace_back(item.name, item.expected, item.found, item.passed);
-  }
-  return rows;
+  }));
 }
 
 }  // namespace

@@ -36,6 +36,13 @@ TetMap ArrayMap::copy() const {
           .regions = copied(from.regions)};
 }
 
+TetMesh tetMeshOf(const InPoints& points, const InTets& tets) {
+  TetMesh mesh;
+  assign(mesh.points, elements<Vec3>(points));
+  assign(mesh.tets, elements<Tet>(tets));
+  return mesh;
+}
+
 void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work,
              std::vector<StageTime>* stages) {
   std::optional<nb::python_error> raised;
@@ -120,6 +127,12 @@ nb::list countsAsList(const std::array<std::uint64_t, 4>& counts) {
 
 }  // namespace
 
+nb::list asList(const std::vector<StageTime>& stages) {
+  nb::list list;
+  for (const StageTime& time : stages) list.append(nb::make_tuple(time.stage, time.seconds));
+  return list;
+}
+
 nb::tuple asTuple(const Notes& notes) {
   const ExtractStatistics& s = notes.statistics;
   Dict d;
@@ -142,10 +155,7 @@ nb::tuple asTuple(const Notes& notes) {
   d["cut_faces"] = s.cutFaces;
   d["overlapping_tets"] = s.overlappingTets;
   d["traced_cells"] = s.tracedCells;
-  nb::list stages;
-  for (const StageTime& time : notes.stages)
-    stages.append(nb::make_tuple(time.stage, time.seconds));
-  d["stages"] = stages;
+  d["stages"] = asList(notes.stages);
   if (!s.repairedMap) return nb::make_tuple(d, nb::none(), nb::none());
   // Nobody else holds it; Python has no const.
   return nb::make_tuple(d, asDict(s.repair), std::const_pointer_cast<TetMap>(s.repairedMap));

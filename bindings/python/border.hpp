@@ -16,8 +16,11 @@
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/improve.hpp>
 #include <hexhex/quality.hpp>
+#include <hexhex/quantize.hpp>
 #include <hexhex/types.hpp>
+#include <hexhex/verify.hpp>
 
 namespace hexhex::python {
 
@@ -123,9 +126,35 @@ struct Options {
 /// (statistics, report of the repair or None, repaired map or None)
 [[nodiscard]] nb::tuple asTuple(const Notes& notes);
 
+/// What work(context, statistics) makes, and what it tells beside that; the latter alone if it
+/// makes nothing.
+template <class Work>
+nb::tuple runNoted(int threads, const Progress& progress, const Work& work) {
+  Notes notes;
+  const auto noted = [&](Context& context) { return work(context, notes.statistics); };
+  if constexpr (std::is_void_v<decltype(noted(std::declval<Context&>()))>) {
+    run(threads, progress, noted, &notes.stages);
+    return asTuple(notes);
+  } else {
+    auto made = run(threads, progress, noted, &notes.stages);
+    return nb::make_tuple(std::move(made), asTuple(notes));
+  }
+}
+
+/// Names and seconds.
+[[nodiscard]] nb::list asList(const std::vector<StageTime>& stages);
+
+/// Copies of both, for functions that need nothing else.
+[[nodiscard]] TetMesh tetMeshOf(const InPoints& points, const InTets& tets);
+
 /// The fields of the class Quality, in their order.
 [[nodiscard]] nb::tuple asTuple(Certificate&& certificate);
 [[nodiscard]] Dict asDict(const RepairReport& report);
+[[nodiscard]] Dict asDict(const QuantizeReport& report);
+/// (quality before, quality after, the rest)
+[[nodiscard]] nb::tuple asTuple(ImproveReport&& report);
+/// (name, expected, found, whether it passed) of each check
+[[nodiscard]] nb::list asList(const VerifyReport& report);
 [[nodiscard]] Dict asDict(const Expectation& expected);
 [[nodiscard]] nb::list asList(const std::vector<Defect>& defects);
 
@@ -139,5 +168,6 @@ void bindQuantize(nb::module_& module);
 void bindParts(nb::module_& module);
 void bindTeam(nb::module_& module);
 void bindImprove(nb::module_& module);
+void bindShape(nb::module_& module);
 
 }  // namespace hexhex::python

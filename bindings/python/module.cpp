@@ -60,6 +60,7 @@ NB_MODULE(_hexhex, module) {
   bindParts(module);
   bindTeam(module);
   bindImprove(module);
+  bindShape(module);
 }
 
 }  // namespace hexhex::python

@@ -231,6 +231,32 @@ def check_quantize():
     require(cells(filter_) == 3584, f"{cells(filter_)} cells of a quantized map")
 
 
+def check_mesh():
+    """Tets without their map become the mesh that the command makes of them."""
+    run("generate", "cylinder", "--cells", "2", "--refine", "2", "-o", "tets.vtu")
+    tets = XMLUnstructuredGridReader(FileName=[os.path.join(OUT, "tets.vtu")])
+    for method, name in enumerate(["auto", "polycube", "frames"]):
+        run("mesh", "tets.vtu", "-o", "meshed.vtu", "--cells", "300", "--method", name)
+        expected = fetch(XMLUnstructuredGridReader(FileName=[os.path.join(OUT, "meshed.vtu")]), 0)
+        filter_ = HexHexMesh(Input=tets, Cells=300, Method=method)
+        filter_.UpdatePipeline()
+        found = fetch(filter_, 0)
+        places = [[mesh.GetPoint(i) for i in range(mesh.GetNumberOfPoints())] for mesh in (expected, found)]
+        require(cells(filter_) == expected.GetNumberOfCells() > 0 and places[0] == places[1],
+                f"another mesh by {name} than the command's")
+        worst = found.GetCellData().GetArray("scaled_jacobian").GetRange()[0]
+        require(worst > 0, f"a scaled Jacobian of {worst} by {name}")
+        lines = fetch(filter_, 1)
+        require(0 not in [v for v, in rows(lines, "valence")] and lines.GetNumberOfCells() > 0,
+                f"no singular edges by {name}")
+    layered = HexHexMesh(Input=tets, Cells=300, Method=2, Pillow=2)
+    layered.UpdatePipeline()
+    require(cells(layered) > cells(filter_), "no layer of cells")
+    for options in ({"Cells": -1}, {"FeatureAngle": 200}):
+        require(messages_of(HexHexMesh(Input=tets, **options), "InvalidArgument", "vtkHexHexMesh"),
+                f"no error for {options}")
+
+
 def check_improve():
     """Before and after: what the command makes of a distorted mesh, and no worse cell than there was."""
     run("generate", "torus", "--jitter", "0.9", "--cells", "3", "-o", "rough.hexex")
@@ -271,7 +297,7 @@ def check_errors():
     require(cells(filter_) == 0, "cells of a map that is no map")
 
 
-def messages_of(filter_, code):
+def messages_of(filter_, code, of="vtkHexHexExtract"):
     """The error message with a code, and with its place, that an update of a filter leads to."""
     log = os.path.join(OUT, "messages.txt")
     output = vtkFileOutputWindow()
@@ -285,7 +311,7 @@ def messages_of(filter_, code):
     vtkOutputWindow.SetInstance(None)
     with open(log, encoding="utf-8") as file:
         lines = file.read().splitlines()
-    return [line for line in lines if "vtkHexHexExtract" in line and f"[{code}" in line]
+    return [line for line in lines if of in line and f"[{code}" in line]
 
 
 def take_picture(filter_, name):
@@ -342,6 +368,7 @@ check_map_blocks()
 check_cancel()
 check_repair()
 check_quantize()
+check_mesh()
 check_improve()
 check_errors()
 take_picture(sphere, "sphere.png")

@@ -749,8 +749,7 @@ static void test_quantize(void) {
     CHECK(report.arcs > 0 && report.shortest_arc > 0 && report.longest_arc >= report.shortest_arc);
     CHECK(fabs(report.cells_wanted - 448) < 1e-6 && report.cells == 448);
     CHECK(fabs(report.scale / options.scale - 1) < 0.1 && report.displacement < 1e-9);
-    CHECK(strcmp(report.integers_by, "HiGHS") == 0 ||
-          strcmp(report.integers_by, "rounding") == 0);
+    CHECK(strcmp(report.integers_by, "HiGHS") == 0 || strcmp(report.integers_by, "rounding") == 0);
     CHECK(report.worst_before > 0 && report.worst_before <= report.median_before);
     CHECK(report.worst_after > 0 && report.median_after <= 1);
     CHECK_OK(hexhex_extract(quantized, NULL, NULL, &mesh, NULL, &error));
@@ -791,6 +790,120 @@ static void test_quantize(void) {
   }
   hexhex_context_destroy(context);
   hexhex_map_destroy(seamless);
+}
+
+/* From the tets of a generated map, without the map: once more a map, and a mesh. */
+static void test_shape(void) {
+  hexhex_error error;
+  hexhex_map* given = NULL;
+  hexhex_map* seamless = NULL;
+  hexhex_map* integer = NULL;
+  hexhex_mesh* mesh = NULL;
+  hexhex_context* context = NULL;
+  struct progress progress = {0, 1000000, -1};
+  hexhex_context_options context_options = HEXHEX_CONTEXT_OPTIONS_INIT;
+  context_options.progress = on_progress;
+  context_options.user = &progress;
+  CHECK_OK(hexhex_context_create(&context_options, &context, &error));
+  CHECK_OK(hexhex_map_generate("cylinder", NULL, &given, &error));
+  hexhex_map_arrays tets = HEXHEX_MAP_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(given, &tets, &error));
+  tets.parameters = NULL;
+  hexhex_shape_options shape = HEXHEX_SHAPE_OPTIONS_INIT;
+  hexhex_quantize_options fineness = HEXHEX_QUANTIZE_OPTIONS_INIT;
+  hexhex_mesh_options options = HEXHEX_MESH_OPTIONS_INIT;
+  fineness.cells = 300;
+  fineness.densify = 1;
+  shape.method = HEXHEX_METHOD_POLYCUBE;
+  options.quantize = &fineness;
+  options.shape = &shape;
+  hexhex_shape_report made = HEXHEX_SHAPE_REPORT_INIT;
+  if (!hexhex_can_quantize()) {
+    CHECK(hexhex_map_from_tets(&tets, &shape, context, &seamless, &made, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    CHECK(hexhex_mesh_from_tets(&tets, &options, context, &mesh, NULL, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+  } else {
+    CHECK_OK(hexhex_map_from_tets(&tets, &shape, context, &seamless, &made, &error));
+    CHECK(progress.calls > 0 && hexhex_context_stage_count(context) > 2);
+    CHECK(made.size == sizeof made && made.method == HEXHEX_METHOD_POLYCUBE);
+    /* As many faces as a box has, at least; and two rims, where the surface turns. */
+    CHECK(made.charts >= 6 && made.corners >= 8 && made.bad_loops == 0);
+    CHECK(made.feature_edges > 0 && made.tagged_edges <= made.feature_edges);
+    CHECK(made.deviation > 0 && made.deviation < 0.5 && made.worst > 0 && made.median <= 1);
+    for (int i = 0; i < 9; ++i) {
+      double product = 0; /* of two rows: a rotation */
+      for (int k = 0; k < 3; ++k) {
+        product += made.rotation[3 * (i / 3) + k] * made.rotation[3 * (i % 3) + k];
+      }
+      CHECK(fabs(product - (i / 3 == i % 3)) < 1e-9);
+    }
+    hexhex_seamless_report found = HEXHEX_SEAMLESS_REPORT_INIT;
+    CHECK_OK(hexhex_examine_seamless(seamless, NULL, &found, &error));
+    CHECK(found.kind == HEXHEX_SEAMLESS);
+    hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+    CHECK_OK(hexhex_map_get_arrays(seamless, &arrays, &error));
+    CHECK(memcmp(arrays.points, tets.points, 3 * sizeof(double) * tets.point_count) == 0);
+    CHECK(arrays.tet_count == tets.tet_count + made.added_tets);
+    CHECK(arrays.feature_edge_count == made.tagged_edges);
+
+    hexhex_quantize_report quantized = HEXHEX_QUANTIZE_REPORT_INIT;
+    hexhex_improve_report improved = HEXHEX_IMPROVE_REPORT_INIT;
+    hexhex_mesh_reports reports = HEXHEX_MESH_REPORTS_INIT;
+    hexhex_shape_report again = HEXHEX_SHAPE_REPORT_INIT;
+    reports.shape = &again;
+    reports.quantization = &quantized;
+    reports.improvement = &improved;
+    CHECK_OK(hexhex_mesh_from_tets(&tets, &options, context, &mesh, &integer, &reports, &error));
+    CHECK(memcmp(&again, &made, sizeof made) == 0 && reports.shape == &again);
+    CHECK(quantized.cells_wanted == 300 && quantized.cells > 30 && quantized.cells < 3000);
+    CHECK(improved.minimum_after > 0 && improved.not_positive_after == 0);
+    hexhex_certificate certificate = HEXHEX_CERTIFICATE_INIT;
+    CHECK_OK(hexhex_mesh_certify(mesh, NULL, NULL, NULL, &certificate, &error));
+    CHECK(certificate.positive == quantized.cells && certificate.refuted == 0);
+    /* The map is the mesh's, up to where the improvement moved vertices. */
+    hexhex_mesh* extracted = NULL;
+    hexhex_mesh_arrays theirs = HEXHEX_MESH_ARRAYS_INIT;
+    hexhex_mesh_arrays ours = HEXHEX_MESH_ARRAYS_INIT;
+    CHECK_OK(hexhex_extract(integer, NULL, NULL, &extracted, NULL, &error));
+    CHECK_OK(hexhex_mesh_get_arrays(extracted, &theirs, &error));
+    CHECK_OK(hexhex_mesh_get_arrays(mesh, &ours, &error));
+    CHECK(ours.cell_count == theirs.cell_count && ours.cell_count == quantized.cells);
+    CHECK(memcmp(ours.cells, theirs.cells, 8 * sizeof(uint32_t) * ours.cell_count) == 0);
+    hexhex_mesh_destroy(extracted);
+    hexhex_mesh_destroy(mesh);
+    hexhex_map_destroy(integer);
+    mesh = NULL;
+    integer = NULL;
+    CHECK(reports.why[0] == 0); /* there was no choice */
+    shape.method = HEXHEX_METHOD_AUTO;
+    CHECK_OK(hexhex_mesh_from_tets(&tets, &options, NULL, &mesh, NULL, &reports, &error));
+    CHECK(again.method != HEXHEX_METHOD_AUTO && strlen(reports.why) > 10);
+    hexhex_mesh_destroy(mesh);
+    mesh = NULL;
+    shape.method = HEXHEX_METHOD_POLYCUBE;
+    /* What is not asked for need not be there. */
+    CHECK_OK(hexhex_mesh_from_tets(&tets, &options, NULL, &mesh, NULL, NULL, &error));
+    hexhex_mesh_destroy(mesh);
+    mesh = NULL;
+    progress.stop_after = progress.calls + 2;
+    CHECK(hexhex_mesh_from_tets(&tets, &options, context, &mesh, &integer, &reports, &error) ==
+          HEXHEX_CANCELLED);
+    /* No solid: a tet without volume. */
+    double flat[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+    uint32_t corners[4] = {0, 1, 2, 3};
+    hexhex_map_arrays one = HEXHEX_MAP_ARRAYS_INIT;
+    one.points = flat;
+    one.point_count = 4;
+    one.tets = corners;
+    one.tet_count = 1;
+    CHECK(hexhex_mesh_from_tets(&one, &options, NULL, &mesh, &integer, &reports, &error) ==
+          HEXHEX_FLIPPED_TET);
+    CHECK(mesh == NULL && integer == NULL && strlen(error.message) > 20);
+    hexhex_map_destroy(seamless);
+  }
+  hexhex_context_destroy(context);
+  hexhex_map_destroy(given);
 }
 
 static void test_curved(const char* folder) {
@@ -1605,6 +1718,7 @@ int main(void) {
   test_improve();
   test_improve_curved(folder);
   test_quantize();
+  test_shape();
   test_curved(folder);
   test_numbers_that_are_none();
   test_answers();

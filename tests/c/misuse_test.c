@@ -109,6 +109,13 @@ static int32_t out_int32;
 static int64_t out_int64;
 static hexhex_lagrange_arrays out_lagrange_arrays = HEXHEX_LAGRANGE_ARRAYS_INIT;
 static hexhex_map_arrays out_map_arrays = HEXHEX_MAP_ARRAYS_INIT;
+static const double tet_points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+static const uint32_t tet_corners[4] = {0, 1, 2, 3};
+static const hexhex_map_arrays one_tet = {.size = sizeof(hexhex_map_arrays),
+                                          .points = tet_points,
+                                          .point_count = 4,
+                                          .tets = tet_corners,
+                                          .tet_count = 1};
 static hexhex_map_structure_arrays out_map_structure_arrays = HEXHEX_MAP_STRUCTURE_ARRAYS_INIT;
 static hexhex_mesh_arrays out_mesh_arrays = HEXHEX_MESH_ARRAYS_INIT;
 static hexhex_patch_arrays out_patch_arrays = HEXHEX_PATCH_ARRAYS_INIT;
@@ -226,6 +233,14 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
     quantize.scale = 1;
     REFUSED(hexhex_quantize(h->map, &quantize, h->context, &made.map, NULL, &error));
     REFUSED(hexhex_examine_seamless(h->map, h->context, &out_seamless_report, &error));
+  }
+  if (concerns(k_context)) {
+    hexhex_quantize_options fineness = HEXHEX_QUANTIZE_OPTIONS_INIT;
+    hexhex_mesh_options meshing = {sizeof(hexhex_mesh_options), NULL, &fineness, NULL};
+    fineness.cells = 10;
+    REFUSED(hexhex_map_from_tets(&one_tet, NULL, h->context, &made.map, NULL, &error));
+    REFUSED(
+        hexhex_mesh_from_tets(&one_tet, &meshing, h->context, &made.mesh, &made.map, NULL, &error));
   }
   if (concerns(k_mesh | k_context)) { /* a map may be NULL */
     REFUSED(hexhex_mesh_improve(h->mesh, h->map, NULL, h->context, NULL, &error));
@@ -599,6 +614,24 @@ static void test_sizes_of_structs(const char* file) {
           hexhex_mesh_improve(h.mesh, NULL, &s, NULL, NULL, &error));
     WRONG(improve_report, HEXHEX_IMPROVE_REPORT_INIT,
           hexhex_mesh_improve(h.mesh, NULL, NULL, NULL, &s, &error));
+    WRONG(map_arrays, one_tet, hexhex_map_from_tets(&s, NULL, NULL, &map, NULL, &error));
+    WRONG(shape_options, HEXHEX_SHAPE_OPTIONS_INIT,
+          hexhex_map_from_tets(&one_tet, &s, NULL, &map, NULL, &error));
+    WRONG(shape_report, HEXHEX_SHAPE_REPORT_INIT,
+          hexhex_map_from_tets(&one_tet, NULL, NULL, &map, &s, &error));
+    hexhex_mesh_options meshing = {sizeof(hexhex_mesh_options), NULL, &unscaled, NULL};
+    hexhex_mesh_options of_meshing = meshing;
+    hexhex_mesh_reports reports = HEXHEX_MESH_REPORTS_INIT;
+    WRONG(mesh_options, meshing,
+          hexhex_mesh_from_tets(&one_tet, &s, NULL, &mesh, &map, NULL, &error));
+    WRONG(shape_options, HEXHEX_SHAPE_OPTIONS_INIT,
+          (of_meshing.shape = &s,
+           hexhex_mesh_from_tets(&one_tet, &of_meshing, NULL, &mesh, &map, NULL, &error)));
+    WRONG(mesh_reports, HEXHEX_MESH_REPORTS_INIT,
+          hexhex_mesh_from_tets(&one_tet, &meshing, NULL, &mesh, &map, &s, &error));
+    WRONG(improve_report, HEXHEX_IMPROVE_REPORT_INIT,
+          (reports.improvement = &s,
+           hexhex_mesh_from_tets(&one_tet, &meshing, NULL, &mesh, &map, &reports, &error)));
     WRONG(seamless_report, HEXHEX_SEAMLESS_REPORT_INIT,
           hexhex_examine_seamless(h.map, NULL, &s, &error));
     WRONG(extract_options, HEXHEX_EXTRACT_OPTIONS_INIT,
@@ -779,6 +812,33 @@ static void test_densities(const char* file) {
   REFUSED(hexhex_quantize(h.map, &options, NULL, NULL, &report, &error));
   check_alive(&h);
   destroy_all(&h);
+}
+
+/* Options of meshes from tets that are out of range, and what is missing. */
+static void test_shapes(void) {
+  static const double angles[] = {-1, 181, NAN, INFINITY};
+  hexhex_map* map = NULL;
+  hexhex_mesh* mesh = NULL;
+  hexhex_quantize_options fineness = HEXHEX_QUANTIZE_OPTIONS_INIT;
+  fineness.cells = 10;
+  for (size_t i = 0; i < 6; ++i) {
+    hexhex_shape_options shape = HEXHEX_SHAPE_OPTIONS_INIT;
+    hexhex_mesh_options options = {sizeof(hexhex_mesh_options), &shape, &fineness, NULL};
+    if (i < 4) shape.feature_angle = angles[i];
+    if (i >= 4) shape.method = i == 4 ? (hexhex_shape_method)3 : (hexhex_shape_method)-1;
+    REFUSED(hexhex_map_from_tets(&one_tet, &shape, NULL, &map, NULL, &error));
+    REFUSED(hexhex_mesh_from_tets(&one_tet, &options, NULL, &mesh, &map, NULL, &error));
+  }
+  hexhex_mesh_options options = {sizeof(hexhex_mesh_options), NULL, &fineness, NULL};
+  REFUSED(hexhex_map_from_tets(NULL, NULL, NULL, &map, NULL, &error));
+  REFUSED(hexhex_map_from_tets(&one_tet, NULL, NULL, NULL, NULL, &error));
+  REFUSED(hexhex_mesh_from_tets(&one_tet, NULL, NULL, &mesh, NULL, NULL, &error));
+  REFUSED(hexhex_mesh_from_tets(&one_tet, &options, NULL, NULL, &map, NULL, &error));
+  fineness.scale = 1; /* one of both */
+  REFUSED(hexhex_mesh_from_tets(&one_tet, &options, NULL, &mesh, &map, NULL, &error));
+  options.quantize = NULL;
+  REFUSED(hexhex_mesh_from_tets(&one_tet, &options, NULL, &mesh, &map, NULL, &error));
+  CHECK(map == NULL && mesh == NULL);
 }
 
 /* Improvements that are refused leave the mesh alone, even if only the report cannot be filled. */
@@ -970,6 +1030,7 @@ int main(void) {
   test_counts(file);
   test_numbers(file);
   test_densities(file);
+  test_shapes();
   test_improvements(file);
   test_threads(file);
   char command[64];

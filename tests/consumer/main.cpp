@@ -10,6 +10,14 @@ int main() {
     const hexhex::HexMesh mesh = hexhex::extract(sample.map);
     hexhex::Extractor extractor(sample.map);
     const hexhex::HexMesh fine = extractor.extract(2);
+    if (hexhex::canQuantize()) {  // with what the library links or loads for it
+      hexhex::Context context;
+      const hexhex::MeshOptions options = {
+          .shape = {}, .quantize = {.cells = 500, .densify = true}, .improve = {}};
+      const hexhex::MeshedPart part =
+          hexhex::meshFromTets({sample.map.points, sample.map.tets}, options, context);
+      if (!part.improvement.after.allPositive()) return 1;
+    }
     std::cout << mesh.cells.size() << " and " << fine.cells.size() << " hexahedra\n";
     return hexhex::verify(sample.map, mesh).passed() && fine.cells.size() == 8 * mesh.cells.size()
                ? 0

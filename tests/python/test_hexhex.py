@@ -515,6 +515,93 @@ def test_quantization_refuses():
         hexhex.quantize(map, cells=100, progress=lambda stage, share: 1 / 0)
 
 
+def volume_of_tets(points, tets):
+    corners = np.asarray(points)[tets]
+    return np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])).sum() / 6
+
+
+def test_map_from_tets():
+    needs_quantization()
+    tets = hexhex.generate("cylinder")
+    for method in ("frames", "polycube"):
+        map, report = hexhex.map_from_tets(tets.points, tets.tets, method=method)
+        assert report.method == method and 0 < report.worst <= report.median <= 1
+        assert np.allclose(report.rotation @ report.rotation.T, np.eye(3))
+        assert np.array_equal(map.points[:len(tets.points)], tets.points)
+        assert len(map.tets) == len(tets.tets) + report.added_tets
+        assert 0 < len(map.features.edges) == report.tagged_edges <= report.feature_edges
+        assert hexhex.examine_seamless(map).kind == "seamless"
+        if method == "polycube":  # as many faces and corners as a box, at least
+            assert report.charts >= 6 and report.corners >= 8 and report.deviation > 0
+    again = hexhex.map_from_tets(tets.points, tets.tets, method=method, threads=1)[0]
+    assert np.array_equal(map.igm, again.igm)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "torus"])
+def test_mesh_of_tets(kind, tmp_path):
+    needs_quantization()
+    tets = hexhex.generate(kind)
+    told = set()
+    part = hexhex.mesh(tets.points, tets.tets, cells=500, method="polycube",
+                       progress=lambda stage, share: told.add(stage))
+    assert {"labelling", "motorcycle complex", "quality"} <= told and len(part.stages) > 10
+    assert part.shape.method == "polycube" and part.verification
+    assert part.quantization.cells_wanted == 500
+    assert len(part.mesh.cells) == part.quantization.cells + part.improvement.added_cells
+    assert part.all_positive and hexhex.quality(part.mesh).all_positive
+    assert hexhex.quality(part.mesh).minimum == part.improvement.after.minimum > 0
+    # The mesh fills the solid: the volume behind its boundary.
+    p = part.mesh.points[part.mesh.boundary_quads()]
+    volume = sum(np.einsum("ij,ij->i", p[:, 0], np.cross(p[:, i], p[:, i + 1])).sum()
+                 for i in (1, 2)) / 6
+    assert volume == pytest.approx(volume_of_tets(tets.points, tets.tets), rel=0.03)
+    # Its cells are those of its map, which the improvement has not changed.
+    assert np.array_equal(hexhex.extract(part.map).cells, part.mesh.cells)
+    # The same of a file that holds tets alone.
+    meshio = pytest.importorskip("meshio")
+    file = tmp_path / "tets.vtu"
+    meshio.Mesh(tets.points, [("tetra", tets.tets)]).write(file)
+    same = hexhex.mesh(file, cells=500, method="polycube")
+    assert np.array_equal(same.mesh.points, part.mesh.points)
+    assert "500" not in repr(part) and f"{len(part.mesh.cells)} cells" in repr(part)
+
+
+def test_mesh_by_edge_length_and_with_a_layer():
+    needs_quantization()
+    tets = hexhex.generate("box")  # of side 2
+    part = hexhex.mesh(tets.points, tets.tets, edge_length=0.5, pillow="always")
+    side = np.ptp(np.asarray(tets.points)[:, 0])
+    assert part.quantization.cells == round(side / 0.5) ** 3
+    assert part.improvement.added_cells == 6 * round(side / 0.5) ** 2 and part.all_positive
+
+
+def test_mesh_of_tets_refuses(tmp_path):
+    needs_quantization()
+    corner = (np.eye(4, 3, -1), [[0, 1, 2, 3]])
+    for given, options in (
+            (corner, {}), (corner, {"cells": 0}), (corner, {"cells": 9, "edge_length": 1}),
+            (corner, {"cells": 9, "method": "magic"}), (corner, {"cells": 9, "seed": -1}),
+            (corner, {"cells": 9, "pillow": "yes"}), (corner, {"cells": 9, "feature_angle": 200}),
+            (corner, {"cells": 9, "threads": 0}), (corner[:1], {"cells": 9}),
+            ((tmp_path, corner[1]), {"cells": 9}), ((corner[0], [[0, 1, 2, 4]]), {"cells": 9})):
+        with pytest.raises((hexhex.ArgumentError, hexhex.MapError)) as caught:
+            hexhex.mesh(*given, **options)
+        assert caught.value.code in ("InvalidArgument", "IndexOutOfRange")
+    with pytest.raises(hexhex.FileError):
+        hexhex.mesh(tmp_path / "none.vtu", cells=9)
+    with pytest.raises(hexhex.MapError) as caught:  # a tet is no box, but has a mesh
+        hexhex.map_from_tets(*corner, method="polycube")
+    assert caught.value.code == "NotMeshable" and caught.value.place
+    part = hexhex.mesh(*corner, cells=9)
+    assert part.all_positive and part.why
+    ways = {way.method: way for way in part.ways}
+    assert ways["polycube"].refusal and not ways["polycube"].has_mesh
+    assert ways["frames"].certified and not ways["frames"].refusal
+    assert ways["frames"].minimum == part.improvement.after.minimum
+    with pytest.raises(ZeroDivisionError):
+        hexhex.mesh(*corner, cells=9, progress=lambda stage, share: 1 / 0)
+
+
 def test_interrupts_after_quantization():
     """Solvers may handle signals while they work: Ctrl-C stays ours."""
     needs_quantization()

@@ -1217,6 +1217,97 @@ HEXHEX_API hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map
                                              hexhex_context* context, hexhex_improve_report* report,
                                              hexhex_error* error);
 
+/* ---- From tets alone ------------------------------------------------------------------------- */
+
+/** How a map is made: see ShapeMethod in <hexhex/shape.hpp>. */
+typedef enum hexhex_shape_method HEXHEX_AS_INT {
+  HEXHEX_METHOD_AUTO = 0,     /**< what fits best */
+  HEXHEX_METHOD_POLYCUBE = 1, /**< the object becomes one of axis-aligned boxes */
+  HEXHEX_METHOD_FRAMES = 2    /**< along a smooth field of frames */
+} hexhex_shape_method;
+
+/** See ShapeOptions in <hexhex/shape.hpp>. */
+typedef struct hexhex_shape_options {
+  size_t size;
+  hexhex_shape_method method;
+  double feature_angle; /**< where the surface turns by more is a feature; degrees, 0 to 180 */
+  uint64_t seed;        /**< of random decisions: another one may find what this one does not */
+} hexhex_shape_options;
+#define HEXHEX_SHAPE_OPTIONS_INIT \
+  { sizeof(hexhex_shape_options), HEXHEX_METHOD_AUTO, 40, 1 }
+
+/** How a map was made. See ShapeReport and LabelReport in <hexhex/shape.hpp>. */
+typedef struct hexhex_shape_report {
+  size_t size;
+  hexhex_shape_method method; /**< that made the map */
+  double rotation[9];         /**< by rows: the axes in space that became those of the map */
+  uint64_t charts;            /**< of a polycube, as the next eight: its faces */
+  uint64_t corners;           /**< where three charts or more meet */
+  uint64_t bad_loops;         /**< borders of charts with fewer than four corners, */
+  uint64_t bad_corners;       /**< corners of more than three charts, */
+  uint64_t opposite_edges;    /**< edges of the mesh between opposite labels, */
+  uint64_t turning_points;    /**< places where edges of the polycube would run back, */
+  uint64_t wrong_turns;   /**< charts whose right angles do not add up: labels are valid without */
+  double deviation;       /**< mean of 1 minus the cosine between normals and labels */
+  uint64_t label_moves;   /**< random changes that were tried */
+  uint64_t added_tets;    /**< by splits */
+  uint64_t feature_edges; /**< of the tets, beyond the angle */
+  uint64_t tagged_edges;  /**< of these: edges of the map */
+  double worst;           /**< distortion of the map as scaled Jacobian, at most 1 */
+  double median;
+} hexhex_shape_report;
+#define HEXHEX_SHAPE_REPORT_INIT \
+  { sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+/** A seamless map of tets that have none, for hexhex_quantize(). Where there is none, the status is
+ * HEXHEX_NOT_MESHABLE, with the place that keeps the tets from it. See mapFromTets() in
+ * <hexhex/shape.hpp>; hexhex_can_quantize() says whether this build can.
+ * @param tets         of which points and tets are used
+ * @param options      or NULL
+ * @param[out] report  made with HEXHEX_SHAPE_REPORT_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_map_from_tets(const hexhex_map_arrays* tets,
+                                              const hexhex_shape_options* options,
+                                              hexhex_context* context, hexhex_map** map,
+                                              hexhex_shape_report* report, hexhex_error* error);
+
+/** Options of the steps of hexhex_mesh_from_tets(); NULL for those of a step: all defaults. */
+typedef struct hexhex_mesh_options {
+  size_t size;
+  const hexhex_shape_options* shape;
+  const hexhex_quantize_options* quantize; /**< how fine the mesh is to be: not NULL */
+  const hexhex_improve_options* improve;
+} hexhex_mesh_options;
+#define HEXHEX_MESH_OPTIONS_INIT \
+  { sizeof(hexhex_mesh_options), NULL, NULL, NULL }
+
+/** Where hexhex_mesh_from_tets() reports. Pointers are the caller's, to structs that are made with
+ * their _INIT macro, or NULL. */
+typedef struct hexhex_mesh_reports {
+  size_t size;
+  hexhex_shape_report* shape;
+  hexhex_quantize_report* quantization;
+  hexhex_improve_report* improvement;
+  int tags_released; /**< 1: vertices may have left edges with a tag, to make cells positive */
+  char why[512]; /**< with HEXHEX_METHOD_AUTO: why this way was taken; UTF-8, cut off if longer */
+} hexhex_mesh_reports;
+#define HEXHEX_MESH_REPORTS_INIT                            \
+  {                                                         \
+    sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, { 0 } \
+  }
+
+/** A hexahedral mesh of tets that have no map: hexhex_map_from_tets(), hexhex_quantize(),
+ * hexhex_extract(), hexhex_verify() and hexhex_mesh_improve(). Cells may still not be positive in
+ * the end: the report of the improvement says how many. See <hexhex/mesh.hpp>.
+ * @param tets             of which points and tets are used
+ * @param options          not NULL
+ * @param[out] map         the integer-grid map that the mesh is of, or NULL
+ * @param[in,out] reports  made with HEXHEX_MESH_REPORTS_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_mesh_from_tets(const hexhex_map_arrays* tets,
+                                               const hexhex_mesh_options* options,
+                                               hexhex_context* context, hexhex_mesh** mesh,
+                                               hexhex_map** map, hexhex_mesh_reports* reports,
+                                               hexhex_error* error);
+
 /* ---- Curved meshes --------------------------------------------------------------------------- */
 
 /** A mesh with the exact shapes of its edges (arcs) and faces (patches), piece by piece: see

@@ -3,7 +3,8 @@ import { ColorManagement } from "three";
 import { decodeBase64 } from "../viewer/format";
 import { element, fillFacts, grouped, make } from "../viewer/ui/dom";
 import { MapScene } from "./map_scene";
-import type { OpenedMap, OpenedMesh, Source, Start } from "./messages";
+import type { MeshOptions, SampleOptions } from "../src/types.js";
+import type { MapShape, OpenedMap, OpenedMesh, OpenedPart, Source, Start } from "./messages";
 import { Session, TaskError } from "./session";
 
 ColorManagement.enabled = false;
@@ -12,15 +13,17 @@ ColorManagement.enabled = false;
 const kMostCells = 25e6;
 const kDownloads = [".vtu", ".mesh", ".msh", ".vtk", ".ovm"];
 /** Beside the plain samples: what else the page can do. */
-const kMoreSamples = [
+const kMoreSamples: { label: string; kind: string; options: SampleOptions; withoutMap?: boolean }[] = [
   { label: "sphere, damaged", kind: "sphere", options: { cells: 6, refine: 3, defects: 4 } },
   { label: "cylinder, seamless", kind: "cylinder", options: { cells: 4, refine: 3, stretch: 0.3 } },
+  { label: "cylinder, without a map", kind: "cylinder", options: { cells: 2, refine: 3 }, withoutMap: true },
 ];
 
 let session: Session;
 let scene: MapScene | null = null;
 let map: OpenedMap | null = null;
 let mesh: OpenedMesh | null = null;
+let part: OpenedPart | null = null;
 /** What a new worker reads again. */
 let source: { files: File[] } | { sample: Source & { sample: string } } | null = null;
 /** Hexahedra that were asked of the quantization of that; 0: it was not quantized. */
@@ -68,9 +71,10 @@ const buffersOf = (content: Source) => ("files" in content ? content.files.map((
 async function recover(): Promise<void> {
   forgetMesh();
   await session.restart();
-  if (!map) return;
+  if (!map && !part) return;
   const content = await contentOf();
   await session.run("reopen", [content, quantized], buffersOf(content));
+  if (part) showPart(part);  // its map has gone with the worker
 }
 
 /** The same; without what there was if that does not work, or is cancelled. */
@@ -117,8 +121,8 @@ function forgetMesh(): void {
 
 function forget(): void {
   forgetMesh();
-  map = null;
-  for (const id of ["map", "extracting", "quantizing", "canvas"]) element(id).hidden = true;
+  map = part = null;
+  for (const id of ["map", "extracting", "quantizing", "meshing", "canvas"]) element(id).hidden = true;
   element("welcome").hidden = false;
 }
 
@@ -163,7 +167,7 @@ function showMap(opened: OpenedMap): void {
   ]);
   element("verdict").textContent = report.valid ? "The map is valid." : "The map is not valid:";
   showDefects(opened);
-  element("extracting").hidden = !report.valid;
+  element("extracting").hidden = !report.valid || part !== null;  // of a part, the mesh is there
   if (report.expected) {
     const most = Math.max(1, Math.floor(Math.cbrt(kMostCells / report.expected.cells)));
     const slider = element<HTMLInputElement>("scale");
@@ -175,16 +179,32 @@ function showMap(opened: OpenedMap): void {
   element("quantizing").hidden = !seamless;
   element("quantize-hint").textContent =
     `The map is ${report.kind}: its integers are still to be chosen.`;
+  draw(opened.shape);
+}
+
+function draw(shape: MapShape): void {
   showView("map");
   try {
     scene ??= new MapScene(element<HTMLCanvasElement>("canvas"));
-    scene.show(opened.shape);
+    scene.show(shape);
   } catch (error) {
     tell(`The map cannot be drawn, but all else works. ${messageOf(error)}`);
   }
 }
 
-function showMesh(opened: OpenedMesh): void {
+function showPart(opened: OpenedPart): void {
+  map = null;
+  part = opened;
+  for (const id of ["welcome", "extracting", "quantizing"]) element(id).hidden = true;
+  for (const id of ["map", "meshing"]) element(id).hidden = false;
+  element("map-name").textContent = opened.name;
+  fillFacts(element("map-facts"), [["points", grouped(opened.points)], ["tets", grouped(opened.tets), "map-tets"]]);
+  element("verdict").textContent = "There is no map on these tets.";
+  element("defects").replaceChildren();
+  draw(opened.shape);
+}
+
+function showMesh(opened: OpenedMesh, why = ""): void {
   mesh = opened;
   const { quality, validity } = opened.certificate;
   element("welcome").hidden = true;
@@ -207,6 +227,7 @@ function showMesh(opened: OpenedMesh): void {
       ? `Verified: it is the mesh of ${map!.name} at scale ${opened.scale}.`
       : `It is not the mesh of ${map!.name} at scale ${opened.scale}: ` +
         failed.map(({ name, expected, found }) => `${name} ${found} instead of ${expected}`).join("; ");
+  element("why").textContent = why;
   URL.revokeObjectURL(meshUrl);
   if (typeof opened.view === "string") {
     tell(opened.view);
@@ -227,8 +248,10 @@ function open(from: NonNullable<typeof source>): Promise<void> {
     await session.restart();
     const content = await contentOf();
     const opened = await session.run("open", [content], buffersOf(content));
+    element("part-hint").textContent = opened.noMap;
+    if (opened.part) showPart(opened.part);
     if (opened.map) showMap(opened.map);
-    element("show-map").hidden = !opened.map;
+    element("show-map").hidden = !opened.map && !opened.part;
     if (opened.mesh) showMesh(opened.mesh);
   });
 }
@@ -241,10 +264,27 @@ function extract(): Promise<void> {
   });
 }
 
+function cellsIn(id: string): number {
+  const wanted = element<HTMLInputElement>(id).valueAsNumber;
+  if (!(wanted >= 1)) throw new Error("Say about how many hexahedra it shall be.");
+  return wanted;
+}
+
+function meshPart(): Promise<void> {
+  return work(async () => {
+    const cells = cellsIn("part-cells");
+    const method = element<HTMLSelectElement>("method").value as MeshOptions["method"];
+    forgetMesh();
+    showPart(part!);
+    const made = await session.run("mesh", [{ cells, method }]);
+    showMap(made.map);
+    showMesh(made.mesh, made.why && `Kept: ${made.why}.`);
+  });
+}
+
 function quantize(): Promise<void> {
   return work(async () => {
-    const wanted = element<HTMLInputElement>("wanted").valueAsNumber;
-    if (!(wanted >= 1)) throw new Error("Say about how many hexahedra it shall be.");
+    const wanted = cellsIn("wanted");
     forgetMesh();
     const opened = await session.run("quantize", [wanted]);
     quantized = wanted;
@@ -288,13 +328,14 @@ function bindDrop(): void {
 }
 
 function bind({ version, formats, samples }: Start): void {
-  const names = (can: "readsMaps" | "readsHexMeshes") =>
-    formats.filter((format) => format[can] && format.extension).map(({ extension }) => extension).join(", ");
+  const names = (can: "readsMaps" | "readsHexMeshes" | "readsTets") =>
+    [...new Set(formats.filter((format) => format[can]).map(({ extension }) => extension))].filter(Boolean).join(", ");
   element("map-formats").textContent = names("readsMaps");
   element("mesh-formats").textContent = names("readsHexMeshes");
+  element("tet-formats").textContent = names("readsTets");
   element("version").textContent = `hexhex ${version}`;
   const menu = element<HTMLSelectElement>("samples");
-  const entries = [
+  const entries: typeof kMoreSamples = [
     ...samples.map(({ name, description }) => ({ label: `${name}: ${description}`, kind: name, options: {} })),
     ...kMoreSamples,
   ];
@@ -307,7 +348,9 @@ function bind({ version, formats, samples }: Start): void {
     const entry = entries[Number(menu.value)];
     const chosen = menu.value !== "" && entry;
     menu.value = "";
-    if (chosen) void open({ sample: { sample: chosen.kind, options: chosen.options } });
+    if (!chosen) return;
+    const { kind, options, withoutMap } = chosen;
+    void open({ sample: { sample: kind, options, ...(withoutMap && { withoutMap }) } });
   });
   const input = element<HTMLInputElement>("files");
   input.addEventListener("change", () => {
@@ -318,6 +361,7 @@ function bind({ version, formats, samples }: Start): void {
   element("scale").addEventListener("input", showScale);
   element("extract").addEventListener("click", () => void extract());
   element("quantize").addEventListener("click", () => void quantize());
+  element("mesh-part").addEventListener("click", () => void meshPart());
   element("cancel").addEventListener("click", () => session.cancel());
   element("show-map").addEventListener("click", () => showView("map"));
   element("show-mesh").addEventListener("click", () => showView("mesh"));
@@ -341,7 +385,7 @@ async function start(): Promise<void> {
     (stage, share) => (element("progress").textContent = `${stage} ... ${Math.round(share * 100)} %`),
     (bytes) => (element("memory").textContent = `${Math.round(bytes / 2 ** 20)} MB of memory in use`),
   );
-  element<HTMLInputElement>("wanted").max = String(kMostCells);
+  for (const id of ["wanted", "part-cells"]) element<HTMLInputElement>(id).max = String(kMostCells);
   bind(await session.restart());
   bindDrop();
   setWorking(false);

@@ -1,10 +1,10 @@
 // What the page and its worker tell each other.
-import type { Certificate, CheckReport, FileFormat, SampleOptions, VerifyReport } from "../src/types.js";
+import type { Certificate, CheckReport, FileFormat, MeshOptions, SampleOptions, VerifyReport } from "../src/types.js";
 
 /** Where a map or mesh comes from: files, or a sample. */
 export type Source =
   | { files: { name: string; bytes: ArrayBuffer }[] }
-  | { sample: string; options: SampleOptions };
+  | { sample: string; options: SampleOptions; withoutMap?: boolean };
 
 /** The object of a map, for drawing: in a box around the origin, with 1 as its longest side. */
 export interface MapShape {
@@ -19,6 +19,14 @@ export interface MapShape {
 export interface OpenedMap {
   name: string;
   report: CheckReport;
+  shape: MapShape;
+}
+
+/** Tets without a map. */
+export interface OpenedPart {
+  name: string;
+  points: number;
+  tets: number;
   shape: MapShape;
 }
 
@@ -37,6 +45,9 @@ export interface OpenedMesh {
 export interface Opened {
   map: OpenedMap | null;
   mesh: OpenedMesh | null;
+  part: OpenedPart | null;
+  /** What keeps the file of the part from being one of a map or a mesh. */
+  noMap: string;
 }
 
 export interface Start {
@@ -54,6 +65,8 @@ export interface Tasks {
   /** Reads again what an earlier worker had. @param wanted  of quantize(); 0: it was not quantized */
   reopen: (source: Source, wanted: number) => null;
   quantize: (wanted: number) => OpenedMap;
+  /** Of the part. */
+  mesh: (options: MeshOptions) => { map: OpenedMap; mesh: OpenedMesh; why: string };
   extract: (scale: number) => OpenedMesh;
   /** A file's content: of the mesh. */
   write: (name: string) => Uint8Array<ArrayBuffer>;

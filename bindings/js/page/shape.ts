@@ -89,7 +89,7 @@ function edgesOf(place: Place, tets: Uint32Array): number[] {
   }
 }
 
-export function shapeOf(points: Float64Array, tets: Uint32Array, report: CheckReport): MapShape {
+export function shapeOf(points: Float64Array, tets: Uint32Array, report: Pick<CheckReport, "defects">): MapShape {
   const positions = scenePositions(points);
   const pointCount = points.length / 3;
   // A map whose tets name vertices that do not exist has no surface to show.

@@ -1,7 +1,7 @@
 // The worker: has the library, the map and the mesh, and does one task after the other.
 import { HexMesh, type Hexhex, HexhexError, load, TetMap } from "../src/index.js";
 import type { CheckReport, VerifyReport } from "../src/types.js";
-import type { FromWorker, OpenedMap, OpenedMesh, Source, TaskName, Tasks, ToWorker } from "./messages.js";
+import type { FromWorker, OpenedMap, OpenedMesh, OpenedPart, Source, TaskName, Tasks, ToWorker } from "./messages.js";
 import { shapeOf } from "./shape.js";
 
 declare const self: {
@@ -15,6 +15,10 @@ let mapName = "";
 let report: CheckReport | null = null;
 let mesh: HexMesh | null = null;
 let meshName = "";
+/** Tets without a map. */
+let part: TetMap | null = null;
+let partName = "";
+let noMap = "";
 
 function withoutExtension(name: string): string {
   return name.replace(/\.[^.]*$/, "");
@@ -24,26 +28,58 @@ function read(source: Source): void {
   if ("sample" in source) {
     map = library.generate(source.sample, source.options);
     mapName = `${source.sample}.hexex`;
+    if (!source.withoutMap) return;
+    part = library.makeMap(map.points.slice(), map.tets.slice());
+    partName = source.sample;
+    map = null;
     return;
   }
   for (const { name, bytes } of source.files) {
-    const found = library.read(new Uint8Array(bytes), name);
-    if (found instanceof TetMap ? map : mesh) {
+    const found = readFile(new Uint8Array(bytes), name);
+    const isTets = found instanceof TetMap;
+    if (isTets ? map ?? part : mesh) {
       throw new Error("These are two of a kind. Drop one map, one mesh, or a mesh with its map.");
     }
-    if (found instanceof TetMap) {
+    if (!isTets) {
+      mesh = found;
+      meshName = name;
+    } else if (found.parameters.length > 0) {
       map = found;
       mapName = name;
     } else {
-      mesh = found;
-      meshName = name;
+      part = found;
+      partName = name;
     }
   }
 }
 
+/** A map, a mesh, or tets without parameters. */
+function readFile(bytes: Uint8Array, name: string): TetMap | HexMesh {
+  try {
+    return library.read(bytes, name);
+  } catch (problem) {
+    if (!(problem instanceof HexhexError)) throw problem;
+    try {
+      const tets = library.readTets(bytes, name);
+      noMap = problem.message;
+      return tets;
+    } catch {
+      throw problem;
+    }
+  }
+}
+
+const shapeOfTets = (tets: TetMap, of: Pick<CheckReport, "defects">) =>
+  shapeOf(tets.points.slice(), tets.tets.slice(), of);
+
 function examineMap(): OpenedMap {
   report = library.check(map!);
-  return { name: mapName, report, shape: shapeOf(map!.points.slice(), map!.tets.slice(), report) };
+  return { name: mapName, report, shape: shapeOfTets(map!, report) };
+}
+
+function examinePart(tets: TetMap): OpenedPart {
+  const shape = shapeOfTets(tets, { defects: [] });
+  return { name: partName, points: tets.points.length / 3, tets: tets.tets.length / 4, shape };
 }
 
 /** The scale that the numbers of cells tell, or 1. */
@@ -62,8 +98,9 @@ function view(verification: VerifyReport | null): Uint8Array<ArrayBuffer> | stri
   }
 }
 
-function examineMesh(scale: number): OpenedMesh {
-  const verification = map && report?.valid ? library.verify(mesh!, map, { scale }) : null;
+const verifyMesh = (scale: number) => (map && report?.valid ? library.verify(mesh!, map, { scale }) : null);
+
+function examineMesh(scale: number, verification = verifyMesh(scale)): OpenedMesh {
   return {
     name: meshName,
     vertices: mesh!.points.length / 3,
@@ -96,7 +133,12 @@ const tasks: { [Name in TaskName]: (...given: Parameters<Tasks[Name]>) => Return
   open(source) {
     read(source);
     const opened = map ? examineMap() : null;
-    return { map: opened, mesh: mesh ? examineMesh(scaleOf(mesh.cells.length / 8)) : null };
+    return {
+      map: opened,
+      mesh: mesh ? examineMesh(scaleOf(mesh.cells.length / 8)) : null,
+      part: part ? examinePart(part) : null,
+      noMap,
+    };
   },
   reopen(source, wanted) {
     read(source);
@@ -107,6 +149,19 @@ const tasks: { [Name in TaskName]: (...given: Parameters<Tasks[Name]>) => Return
   quantize(wanted) {
     quantizeMap(wanted);
     return examineMap();
+  },
+  mesh(options) {
+    if (!part) throw new Error("There are no tets. Drop some.");
+    mesh?.free();
+    map?.free();
+    mesh = map = null;
+    const made = library.mesh(part, options);
+    ({ mesh, map } = made);
+    mapName = `the map of ${partName}`;
+    meshName = `${withoutExtension(partName)}.vtu`;
+    // Vertices have moved since it was verified.
+    const opened = { map: examineMap(), mesh: examineMesh(1, made.report.verification) };
+    return { ...opened, why: made.report.why };
   },
   extract(scale) {
     const from = requireMap();

@@ -12,8 +12,8 @@ import createModule from "./hexhex.mjs";
 import type { Module } from "./module.js";
 import { HexhexError } from "./types.js";
 import type {
-  Certificate, CheckOptions, CheckReport, ExtractOptions, FileFormat, Place, Progress, QuantizeOptions,
-  QuantizeReport, ReadOptions, SampleOptions, VerifyReport, WriteOptions,
+  Certificate, CheckOptions, CheckReport, ExtractOptions, FileFormat, MeshOptions, MeshReport, Place, Progress,
+  QuantizeOptions, QuantizeReport, ReadOptions, SampleOptions, VerifyReport, WriteOptions,
 } from "./types.js";
 
 export * from "./types.js";
@@ -110,7 +110,7 @@ export class HexMesh extends Held {
   constructor(
     library: Hexhex,
     id: number,
-    /** That the extraction took; undefined for a mesh from a file. */
+    /** That the extraction took; undefined for other meshes. */
     readonly seconds?: number,
   ) {
     super(library, id);
@@ -187,16 +187,25 @@ export class Hexhex {
     return "map" in answer ? new TetMap(this, answer.map) : new HexMesh(this, answer.mesh);
   }
 
-  /** A map of the caller's arrays, which are copied once: see TetMap for their contents. */
-  makeMap(points: ArrayLike<number>, tets: ArrayLike<number>, parameters: ArrayLike<number>): TetMap {
-    if (points.length % 3 !== 0 || tets.length % 4 !== 0 || parameters.length !== 3 * tets.length) {
+  /** Tets without a map, for mesh(): the result has no parameters. */
+  readTets(bytes: Uint8Array, name: string, options: ReadOptions = {}): TetMap {
+    const answer = this.withInput<MapAnswer>(bytes, name, (file) => this.call("readTets", { file, ...options }));
+    return new TetMap(this, answer.map);
+  }
+
+  /** A map of the caller's arrays, which are copied once: see TetMap for their contents.
+   * @param parameters  left out: tets without a map, for mesh() */
+  makeMap(points: ArrayLike<number>, tets: ArrayLike<number>, parameters?: ArrayLike<number>): TetMap {
+    if (points.length % 3 !== 0 || tets.length % 4 !== 0 ||
+        (parameters && parameters.length !== 3 * tets.length)) {
       throw new RangeError("There are three numbers per point, four per tet, and twelve parameters per tet.");
     }
-    const made = this.call<MapAnswer>("makeMap", { points: points.length / 3, tets: tets.length / 4 });
+    const sizes = { points: points.length / 3, tets: tets.length / 4, parameters: parameters !== undefined };
+    const made = this.call<MapAnswer>("makeMap", sizes);
     const map = new TetMap(this, made.map);
     map.points.set(points);
     map.tets.set(tets);
-    map.parameters.set(parameters);
+    if (parameters) map.parameters.set(parameters);
     return map;
   }
 
@@ -208,6 +217,14 @@ export class Hexhex {
   quantize(map: TetMap, options: QuantizeOptions): { map: TetMap; report: QuantizeReport } {
     const answer = this.call<MapAnswer & { report: QuantizeReport }>("quantize", { map: map.id, ...options });
     return { map: new TetMap(this, answer.map), report: answer.report };
+  }
+
+  /** A hexahedral mesh of tets that have no map, and the integer-grid map that it is of. Cells may still not be
+   * positive in the end: the report of the improvement says which.
+   * @param tets  of readTets() or makeMap(), or any map, whose parameters are not used */
+  mesh(tets: TetMap, options: MeshOptions): { mesh: HexMesh; map: TetMap; report: MeshReport } {
+    const answer = this.call<MapAnswer & MeshAnswer & { report: MeshReport }>("mesh", { tets: tets.id, ...options });
+    return { mesh: new HexMesh(this, answer.mesh), map: new TetMap(this, answer.map), report: answer.report };
   }
 
   extract(map: TetMap, options: ExtractOptions = {}): HexMesh {

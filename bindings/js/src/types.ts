@@ -32,6 +32,7 @@ export interface FileFormat {
   description: string;
   readsMaps: boolean;
   writesMaps: boolean;
+  readsTets: boolean;
   readsHexMeshes: boolean;
   writesHexMeshes: boolean;
 }
@@ -159,6 +160,102 @@ export interface QuantizeReport {
   added_tets: number;
   scaled_jacobian_before: { worst: number; median: number };
   scaled_jacobian_after: { worst: number; median: number };
+}
+
+/** One of the first two. */
+export interface MeshOptions {
+  /** There are more if a map of so few cannot be found. */
+  cells?: number;
+  edgeLength?: number;
+  method?: "auto" | "frames" | "polycube";
+  /** Of random decisions. */
+  seed?: number;
+  /** In degrees: where the surface turns by more is an edge of the object; 40 if it is not given. */
+  featureAngle?: number;
+  /** Cells with a smaller scaled Jacobian are improved; 0.3 if it is not given. */
+  target?: number;
+  passes?: number;
+  fixBoundary?: boolean;
+  /** So far may vertices leave the surface where nothing else helps, in diagonals: 1e-3 if it is not given. */
+  slack?: number;
+  /** A layer of cells under the boundary. */
+  pillow?: "never" | "auto" | "always";
+}
+
+export interface SurfaceDistance {
+  from_mesh: number;
+  from_surface: number;
+  hausdorff: number;
+}
+
+/** docs/report.md explains the keys of these. */
+export interface ShapeReport {
+  method: "frames" | "polycube";
+  rotation: number[][];
+  labels: {
+    valid: boolean;
+    charts: number;
+    corners: number;
+    bad_loops: number;
+    bad_corners: number;
+    opposite_edges: number;
+    turning_points: number;
+    wrong_turns: number;
+    deviation: number;
+  };
+  label_moves: number;
+  added_tets: number;
+  feature_edges: number;
+  tagged_edges: number;
+  scaled_jacobian: { worst: number; median: number };
+}
+
+export interface ImproveReport {
+  before: Certificate;
+  after: Certificate;
+  not_positive: number[];
+  diagonal: number;
+  distance_before: SurfaceDistance;
+  distance_after: SurfaceDistance;
+  inner_distance_before: number;
+  inner_distance_after: number;
+  far_cells_before: number;
+  far_cells: number[];
+  vertices: {
+    free: number;
+    on_patches: number;
+    on_curves: number;
+    fixed: number;
+    fixed_by_tags: number;
+    fixed_by_option: number;
+  };
+  moved_vertices: number;
+  largest_move: number;
+  mean_move: number;
+  off_surface: number;
+  off_creases: number;
+  added_cells: number;
+  curve_length: number;
+  curves_followed: number;
+  seconds: number;
+}
+
+export interface MeshReport {
+  ways: {
+    method: "frames" | "polycube";
+    refusal?: string;
+    certified?: boolean;
+    minimum?: number;
+    distance?: number;
+    curves_followed?: number;
+    merit?: number;
+  }[];
+  why: string;
+  map: ShapeReport;
+  quantization: QuantizeReport;
+  verification: VerifyReport;
+  improvement: ImproveReport;
+  tags_released: boolean;
 }
 
 export interface VerifyReport {

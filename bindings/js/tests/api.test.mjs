@@ -62,6 +62,65 @@ test("a seamless map is told apart, and quantized", () => {
   assert.ok(hexhex.verify(hexhex.extract(quantized.map), quantized.map).passed);
 });
 
+test("tets without a map become a mesh", () => {
+  const solid = hexhex.generate("cylinder");
+  const tets = hexhex.makeMap(solid.points, solid.tets);
+  assert.equal(tets.parameters.length, 0);
+  assert.throws(() => hexhex.extract(tets), (error) => error instanceof HexhexError);
+  const volume = volumeOf(solid.points, solid.tets, [[0, 1, 2, 3]]);
+  for (const method of ["frames", "polycube"]) {
+    const { mesh, map, report } = hexhex.mesh(tets, { cells: 300, method });
+    assert.equal(report.map.method, method);
+    assert.equal(report.quantization.integers_by, "rounding");  // HiGHS is not built in
+    assert.equal(report.quantization.cells_wanted, 300);
+    assert.equal(mesh.cells.length, 8 * report.quantization.cells);
+    assert.ok(report.verification.passed);
+    // Certified: by the improvement, and once more, of the file that it was written to.
+    assert.equal(report.improvement.not_positive.length, 0);
+    assert.equal(mesh.scaledJacobians.length, report.quantization.cells);
+    assert.deepEqual(hexhex.certify(mesh), report.improvement.after);
+    const again = hexhex.readMesh(hexhex.writeMesh(mesh, "c.vtu"), "c.vtu");
+    assert.equal(hexhex.certify(again).validity.positive, report.quantization.cells);
+    // It fills the solid, and its cells are those of its map.
+    const six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
+    assert.ok(Math.abs(volumeOf(mesh.points, mesh.cells, six, 8) / volume - 1) < 0.03);
+    assert.ok(hexhex.check(map).valid);
+    assert.deepEqual(hexhex.extract(map).cells, mesh.cells);
+  }
+  for (const options of [{}, { cells: 9, edgeLength: 1 }, { cells: -1 }, { cells: 9, method: "magic" }]) {
+    assert.throws(() => hexhex.mesh(tets, options), (error) => error.code === "InvalidArgument");
+  }
+});
+
+/** Of cells of `size` vertices, each cut into tets. */
+function volumeOf(points, cells, tets, size = 4) {
+  let sum = 0;
+  for (let cell = 0; cell < cells.length; cell += size) {
+    for (const corners of tets) {
+      const [o, a, b, c] = corners.map((k) => points.subarray(3 * cells[cell + k], 3 * cells[cell + k] + 3));
+      const [u, v, w] = [a, b, c].map((p) => p.map((x, axis) => x - o[axis]));
+      sum += u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+    }
+  }
+  return Math.abs(sum) / 6;
+}
+
+test("tets are read from files that hold no map", () => {
+  const solid = hexhex.generate("box", { refine: 2 });
+  // Medit's format, as tet meshers write it.
+  const rows = (array, size, last, add) => Array.from({ length: array.length / size }, (_, i) =>
+    [...array.subarray(size * i, size * (i + 1))].map((x) => x + add).join(" ") + last).join("\n");
+  const file = new TextEncoder().encode(`MeshVersionFormatted 2\nDimension 3\nVertices\n${solid.points.length / 3}\n` +
+    `${rows(solid.points, 3, " 0", 0)}\nTetrahedra\n${solid.tets.length / 4}\n${rows(solid.tets, 4, " 0", 1)}\nEnd\n`);
+  assert.throws(() => hexhex.readMap(file, "box.mesh"), HexhexError);
+  const tets = hexhex.readTets(file, "box.mesh");
+  assert.deepEqual(tets.tets, solid.tets);
+  assert.deepEqual(tets.points, solid.points);
+  const { mesh, report } = hexhex.mesh(tets, { cells: 64, pillow: "always" });
+  assert.equal(mesh.cells.length, 8 * (64 + 6 * 16));
+  assert.equal(report.improvement.added_cells, 6 * 16);
+});
+
 test("errors have a code, a sentence and a place", () => {
   const broken = hexhex.generate("sphere", { defects: 3 });
   assert.throws(() => hexhex.extract(broken), (error) =>

@@ -143,6 +143,56 @@ test("a seamless map is quantized", async ({ page }) => {
   expect(await text(page, "#mesh-cells")).toBe(String(cells));
 });
 
+test("tets without a map are meshed, and as often as one likes", async ({ page }) => {
+  // As tet meshers write it: Medit's format.
+  hexhex("generate", "cylinder", "--cells", "2", "--refine", "2", "-o", "cylinder.hexex");
+  writeFileSync(at("part.mesh"), meditOf(readFileSync(at("cylinder.hexex"), "utf8")));
+  await dropAndWait(page, "part.mesh");
+  await expect(page.locator("#verdict")).toHaveText("There is no map on these tets.");
+  await expect(page.locator("#part-hint")).toContainText("part.mesh");
+  await expect(problem(page)).toBeHidden();
+  const tets = await text(page, "#map-tets");
+  await page.locator("#part-cells").fill("300");
+  for (const method of ["frames", "polycube", "auto"]) {
+    await page.locator("#method").selectOption(method);
+    await click(page, "#mesh-part");
+    expect(await text(page, "#verification")).toBe("Verified: it is the mesh of the map of part.mesh at scale 1.");
+    expect(await text(page, "#valid-cells")).toBe("all cells, proven");
+    expect(await text(page, "#why")).toMatch(method === "auto" ? /^Kept: / : /^$/);
+    await expect(page.locator("#extracting")).toBeHidden();
+  }
+  const cells = await text(page, "#mesh-cells");
+  const frame = await meshView(page);
+  await expect(frame.locator("#all-cells")).toHaveText(cells!);
+  writeFileSync(at("part.vtu"), await saved(page, ".vtu"));
+  const info = JSON.parse(hexhex("info", "part.vtu", "--json"));
+  expect(info.validity.positive).toBe(Number(cells));
+  // What was cancelled leaves the tets.
+  await page.locator("#part-cells").fill("20000000");
+  await page.locator("#mesh-part").click();
+  await expect(page.locator("#progress")).toContainText("%");
+  await page.locator("#cancel").click();
+  await idle(page);
+  await expect(problem(page)).toBeHidden();
+  expect(await text(page, "#map-tets")).toBe(tets);
+  await page.locator("#part-cells").fill("300");
+  await click(page, "#mesh-part");
+  expect(await text(page, "#mesh-cells")).toBe(cells);
+  await page.locator("#samples").selectOption({ label: "cylinder, without a map" });
+  await page.waitForSelector("#meshing:not([hidden])");
+  await idle(page);
+});
+
+/** The tets of a .hexex file as a .mesh file. */
+function meditOf(hexex: string): string {
+  const lines = hexex.trim().split("\n");
+  const points = lines.slice(1, 1 + Number(lines[0]));
+  const tets = lines.slice(2 + points.length, 2 + points.length + Number(lines[1 + points.length]))
+    .map((line) => line.trim().split(/\s+/).slice(0, 4).map((v) => Number(v) + 1).join(" "));
+  const section = (name: string, rows: string[]) => `${name}\n${rows.length}\n${rows.map((row) => `${row} 0`).join("\n")}\n`;
+  return `MeshVersionFormatted 2\nDimension 3\n${section("Vertices", points)}${section("Tetrahedra", tets)}End\n`;
+}
+
 test("a mesh is viewed, and verified if its map is there", async ({ page }) => {
   await dropAndWait(page, "two.mesh");
   expect(await text(page, "#verification")).toContain("no valid map");
@@ -185,7 +235,7 @@ test("names of files and arrays are text", async ({ page }) => {
   const file = readFileSync(at("torus.vtk"), "latin1");
   writeFileSync(at("torus.vtk"), file.replace("\nigm ", "\n<img/src=x> "), "latin1");
   await dropAndWait(page, "torus.vtk");
-  await expect(problem(page)).toContainText("<img/src=x>");
+  await expect(page.locator("#part-hint")).toContainText("<img/src=x>");
   writeFileSync(at(`${hostile}.mesh`), readFileSync(at("two.mesh")));
   await dropAndWait(page, `${hostile}.mesh`);
   expect(await text(page, "#mesh-name")).toBe(`${hostile}.mesh`);

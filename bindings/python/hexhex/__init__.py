@@ -8,7 +8,7 @@
 >>> bool(hexhex.verify(map, mesh, scale=2))
 True
 
-All functions but quantize() may be called from several threads at once. They release the GIL while
+All functions but quantize() and mesh() may be called from several threads at once. They release the GIL while
 they work, and Ctrl-C cancels them.
 """
 
@@ -46,6 +46,7 @@ from ._types import (
     Map,
     MapStructure,
     Mesh,
+    MeshedPart,
     MeshPart,
     PartialMesh,
     PartNeighbour,
@@ -57,9 +58,11 @@ from ._types import (
     RepairReport,
     SampleKind,
     SeamlessReport,
+    ShapeReport,
     Survey,
     VerifyItem,
     VerifyReport,
+    WayReport,
     _floats,
     _generators,
     _indices,
@@ -81,13 +84,13 @@ __all__ = [
     "FileError", "FileFormat", "HexhexError", "Hole", "ImproveReport", "InternalError",
     "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
-    "MeshWriter", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
-    "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "Survey",
-    "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "can_quantize", "can_repair",
+    "MeshWriter", "MeshedPart", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
+    "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "ShapeReport",
+    "Survey", "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "WayReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
     "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
     "improve",
-    "map_from_flags", "map_from_pair", "map_structure", "quality", "quantize", "read",
+    "map_from_flags", "map_from_pair", "map_from_tets", "map_structure", "mesh", "quality", "quantize", "read",
     "read_curved", "read_flags", "read_map", "read_mesh", "read_pair", "read_tets", "read_to",
     "repair", "require_format", "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
 ]
@@ -121,11 +124,17 @@ def _map_of(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None,
     return Map(points, tets, igm)
 
 
+def _one_of(names: tuple[str, ...], name: str, what: str) -> str:
+    if name not in names:
+        *others, last = (f'"{each}"' for each in names)
+        raise ArgumentError(f'There is no {what} "{name}". Choose {", ".join(others)} or {last}.',
+                            "InvalidArgument")
+    return name
+
+
 def _options(scale: int, engine: str, tolerance: float, epsilon: float, repair: bool,
              round: bool) -> _hexhex.Options:
-    if engine not in ("atlas", "propeller"):
-        raise ArgumentError(f'There is no engine "{engine}". Choose "atlas" or "propeller".',
-                            "InvalidArgument")
+    _one_of(("atlas", "propeller"), engine, "engine")
     return _hexhex.Options(_whole(scale, "scale"), engine == "propeller", tolerance, epsilon, repair,
                            round)
 
@@ -281,9 +290,7 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
 
 
 def _check_partition(parts: int, ghosts: int, partition: str) -> None:
-    if partition not in ("curve", "metis", "scotch"):
-        raise ArgumentError(f'There is no partition "{partition}". Choose "curve", "metis" or '
-                            '"scotch".', "InvalidArgument")
+    _one_of(("curve", "metis", "scotch"), partition, "partition")
     if not 1 <= parts <= 1 << 20 or not 0 <= ghosts <= 16:
         raise ArgumentError(f"{parts} parts with {ghosts} layers of ghosts are out of range. Choose "
                             "1 to 1048576, and 0 to 16.", "InvalidArgument")
@@ -589,12 +596,15 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
     ... else: True
     True
     """
-    # 0 is what stands for None there, and is no number of cells.
-    many, factor, length = (0.0 if value is None else float(value) or float("nan")
-                            for value in (cells, scale, edge_length))
+    many, factor, length = _densities(cells, scale, edge_length)
     handle, values = _hexhex.quantize(map._arrays(), many, factor, length, densify, wall_tag,
                                       tolerance, _threads(threads), progress)
     return Map._from_handle(handle), QuantizeReport(**values)
+
+
+def _densities(*values: float | None) -> list[float]:
+    """0 is what stands for None there, and is no number of cells."""
+    return [0.0 if value is None else float(value) or float("nan") for value in values]
 
 
 def examine_seamless(map: Map, *, threads: int | None = None,
@@ -605,6 +615,103 @@ def examine_seamless(map: Map, *, threads: int | None = None,
     'seamless'
     """
     return SeamlessReport(*_hexhex.examine_seamless(map._arrays(), _threads(threads), progress))
+
+
+def _tets_of(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None, threads: int,
+             progress: Progress | None) -> tuple[Any, Any]:
+    """Arrays for the library, or what a file holds."""
+    if isinstance(points, (str, os.PathLike)):
+        if tets is not None:
+            raise ArgumentError("Give a file alone, or points and tets.", "InvalidArgument")
+        return tuple(_hexhex.read_tets(os.fspath(points), "", threads, progress))
+    if tets is None:
+        raise ArgumentError("Give a file, or points and tets.", "InvalidArgument")
+    return _floats(points, (3,), "points"), _indices(tets, 4, "tets")
+
+
+def _shape_options(method: str, feature_angle: float, seed: int) -> _hexhex.ShapeOptions:
+    if seed < 0:
+        raise ArgumentError(f"The seed is {seed}. Choose it from 0.", "InvalidArgument")
+    way = _one_of(("auto", "frames", "polycube"), method, "method")
+    return _hexhex.ShapeOptions(getattr(_hexhex.ShapeMethod, way), feature_angle, seed)
+
+
+def map_from_tets(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
+                  method: str = "auto", feature_angle: float = 40.0, seed: int = 1,
+                  threads: int | None = None,
+                  progress: Progress | None = None) -> tuple[Map, ShapeReport]:
+    """A seamless map of tets that have none, of which quantize() makes an integer-grid map. The given
+    points come first in it; tets may be split.
+
+    Args:
+        points: positions, float64 of shape (n, 3); or a file that read_tets() reads.
+        tets: vertices of each tet, from 0: integers of shape (m, 4).
+        method: "frames" (along a smooth field: good cells, where there is such a map), "polycube" (the
+            object becomes one of axis-aligned boxes), or "auto": what fits best.
+        feature_angle: edges where the surface turns by more degrees, 0 to 180, get a tag where they
+            are edges of the map.
+        seed: of random decisions: another one may find a map where this one does not.
+        threads, progress: as in extract().
+
+    Raises:
+        MapError: if there is no map, with the place that keeps the tets from one; for tets that are
+            no mesh of a solid.
+        ArgumentError: for options out of range, or if can_quantize() is False.
+        FileError: if the file cannot be read.
+
+    >>> tets = hexhex.generate("box")
+    >>> if hexhex.can_quantize():
+    ...     map, report = hexhex.map_from_tets(tets.points, tets.tets, method="polycube")
+    ...     report.charts, hexhex.examine_seamless(map).kind
+    ... else: (6, "seamless")
+    (6, 'seamless')
+    """
+    options, workers = _shape_options(method, feature_angle, seed), _threads(threads)
+    handle, values = _hexhex.map_from_tets(*_tets_of(points, tets, workers, progress), options,
+                                           workers, progress)
+    return Map._from_handle(handle), ShapeReport(**values)
+
+
+def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
+         cells: float | None = None, edge_length: float | None = None, method: str = "auto",
+         feature_angle: float = 40.0, seed: int = 1, target: float = 0.3, passes: int = 2,
+         fix_boundary: bool = False, slack: float = 1e-3, pillow: str = "never",
+         threads: int | None = None, progress: Progress | None = None) -> MeshedPart:
+    """A hexahedral mesh of tets that have no map: map_from_tets(), quantize(), extract(), verify() and
+    improve() in one go.
+
+    Args:
+        points, tets, method, seed: as in map_from_tets().
+        cells: hexahedra wanted; there are more if a map of so few cannot be found.
+        edge_length: of a hexahedron in space, on the average; instead of cells.
+        feature_angle: as in map_from_tets() and improve().
+        target, passes, fix_boundary, slack, pillow: as in improve().
+        threads, progress: as in extract().
+
+    Returns:
+        The mesh, its map, and reports. ``all_positive`` says whether all cells are proven to be
+        positive: a mesh is returned also if they are not.
+
+    Raises:
+        As map_from_tets().
+
+    >>> tets = hexhex.generate("cylinder")
+    >>> if hexhex.can_quantize():
+    ...     part = hexhex.mesh(tets.points, tets.tets, cells=300)
+    ...     part.all_positive, part.verification.passed
+    ... else: (True, True)
+    (True, True)
+    """
+    shape = _shape_options(method, feature_angle, seed)
+    improvement = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow)
+    many, length = _densities(cells, edge_length)
+    workers = _threads(threads)
+    made, integer_map, values, quantization, rows, improved, ways, *rest = _hexhex.mesh_from_tets(
+        *_tets_of(points, tets, workers, progress), shape, many, length, improvement, workers,
+        progress)
+    return MeshedPart(Mesh._from_handle(made), Map._from_handle(integer_map), ShapeReport(**values),
+                      QuantizeReport(**quantization), _verification_of(rows),
+                      _improvement_of(improved), [WayReport(*way) for way in ways], *rest)
 
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
@@ -669,6 +776,10 @@ def verify(map: Map, mesh: Mesh, *, scale: int = 1, tolerance: float = 1e-2, dig
     """
     rows = _hexhex.verify(map._arrays(), mesh._handle, _whole(scale, "scale"), tolerance,
                           _whole(digits, "number of digits"), _threads(threads), progress)
+    return _verification_of(rows)
+
+
+def _verification_of(rows: Any) -> VerifyReport:
     return VerifyReport([VerifyItem(*row) for row in rows])
 
 
@@ -1006,14 +1117,22 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
     >>> report.after.all_positive and report.after.minimum >= report.before.minimum
     True
     """
-    if pillow not in ("never", "auto", "always"):
-        raise ArgumentError(f'There is no pillow "{pillow}". Choose "never", "auto" or "always".',
-                            "InvalidArgument")
-    handle, before, after, values = _hexhex.improve(
-        mesh._handle, None if map is None else map._arrays(), target, passes, fix_boundary,
-        feature_angle, slack, getattr(_hexhex.PillowMode, pillow), _threads(threads), progress)
-    return (type(mesh)._from_handle(handle),
-            ImproveReport(_quality_of(before), _quality_of(after), **values))
+    options = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow)
+    handle, report = _hexhex.improve(mesh._handle, None if map is None else map._arrays(), options,
+                                     _threads(threads), progress)
+    return type(mesh)._from_handle(handle), _improvement_of(report)
+
+
+def _improve_options(target: float, passes: int, fix_boundary: bool, feature_angle: float,
+                     slack: float, pillow: str) -> _hexhex.ImproveOptions:
+    mode = _one_of(("never", "auto", "always"), pillow, "pillow")
+    return _hexhex.ImproveOptions(target, passes, fix_boundary, feature_angle, slack,
+                                  getattr(_hexhex.PillowMode, mode))
+
+
+def _improvement_of(fields: Any) -> ImproveReport:
+    before, after, values = fields
+    return ImproveReport(_quality_of(before), _quality_of(after), **values)
 
 
 def scaled_jacobian(corners: npt.ArrayLike) -> float:

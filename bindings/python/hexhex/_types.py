@@ -305,7 +305,30 @@ class QuantizeReport:
     median_before: float
     worst_after: float
     median_after: float
-    stages: list[tuple[str, float]]  #: name and seconds
+    stages: list[tuple[str, float]] = dataclasses.field(default_factory=list)
+    #: name and seconds; of a MeshedPart, its own list has them
+
+
+@dataclasses.dataclass(frozen=True)
+class ShapeReport:
+    """How map_from_tets() made a map."""
+
+    method: str  #: "frames" or "polycube"
+    rotation: Floats  #: rows: the axes in space that became those of the map, float64 (3, 3)
+    charts: int  #: of a polycube, as the next eight: its faces
+    corners: int  #: where three charts or more meet
+    bad_loops: int  #: borders of charts with fewer than four corners
+    bad_corners: int  #: of more than three charts
+    opposite_edges: int  #: edges of the mesh between opposite labels
+    turning_points: int  #: where edges of the polycube would run back
+    wrong_turns: int  #: charts whose right angles do not add up
+    deviation: float  #: mean of 1 minus the cosine between a triangle's normal and its label
+    label_moves: int  #: random changes that were tried
+    added_tets: int  #: by splits
+    feature_edges: int  #: of the tets, beyond the angle
+    tagged_edges: int  #: of these: edges of the map
+    worst: float  #: distortion of the map as scaled Jacobian, at most 1
+    median: float
 
 
 @dataclasses.dataclass(frozen=True)
@@ -826,7 +849,6 @@ class Quality:
                 f"{self.minimum:.3f} to mean {self.mean:.3f}, {self.positive} positive everywhere>")
 
 
-
 @dataclasses.dataclass(frozen=True)
 class ImproveReport:
     """What an improvement did. Lengths are in diagonals of the surface's bounding box."""
@@ -858,6 +880,46 @@ class ImproveReport:
     curve_length: float  #: of the object's sharp and tagged edges,
     curves_followed: float  #: and the share of it that edges of the mesh follow
     seconds: float
+
+
+@dataclasses.dataclass(frozen=True)
+class WayReport:
+    """What one way led to, and what its mesh is judged by."""
+
+    method: str  #: "frames" or "polycube"
+    has_mesh: bool
+    refusal: str  #: why there is no mesh; empty if there is one, or none was needed
+    certified: bool  #: all cells are positive
+    minimum: float  #: scaled Jacobian
+    distance: float  #: between the boundaries, in diagonals
+    curves_followed: float  #: share of the length of sharp edges
+    merit: float  #: 0 to 1 for a certified mesh; otherwise -1
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshedPart:
+    """What hexhex.mesh() makes of tets."""
+
+    mesh: Mesh
+    map: Map  #: an integer-grid map, which generators of the mesh refer to
+    shape: ShapeReport
+    quantization: QuantizeReport
+    verification: VerifyReport  #: before vertices moved
+    improvement: ImproveReport
+    ways: list[WayReport]  #: with the method "auto": both
+    why: str  #: with the method "auto": why this mesh was kept
+    tags_released: bool  #: vertices may have left edges with a tag, to make cells positive
+    stages: list[tuple[str, float]]  #: name and seconds
+
+    @property
+    def all_positive(self) -> bool:
+        """Whether all cells are proven to be positive everywhere."""
+        return self.improvement.after.all_positive
+
+    def __repr__(self) -> str:
+        return (f"<hexhex.MeshedPart: {len(self.mesh.cells)} cells by {self.shape.method}, scaled "
+                f"Jacobian at least {self.improvement.after.minimum:.3f}, "
+                f"{len(self.improvement.not_positive)} not positive>")
 
 
 # How to pickle what the library holds: by the arrays that it is made of. Everything else is a plain

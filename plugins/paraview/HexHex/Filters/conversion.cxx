@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include <hexhex/error.hpp>
 
@@ -220,6 +221,13 @@ void fillGrid(vtkUnstructuredGrid& grid, const TetMap& map) {
   putFeatures(grid, kFeatureFaces, map.features.faces);
 }
 
+TetMesh tetsOf(vtkUnstructuredGrid& grid) {
+  TetMesh tets;
+  takePoints(grid, tets.points);
+  takeCells(grid, VTK_TETRA, "tetrahedron", tets.tets);
+  return tets;
+}
+
 TetMap mapOf(vtkUnstructuredGrid& grid, vtkDataArray* parameters) {
   if (parameters == nullptr || parameters->GetNumberOfComponents() != kParameterComponents ||
       parameters->GetNumberOfTuples() != grid.GetNumberOfCells()) {
@@ -227,9 +235,10 @@ TetMap mapOf(vtkUnstructuredGrid& grid, vtkDataArray* parameters) {
                 "The parameters shall be a cell array of 12 components: u, v, w of the four "
                 "corners of each tet. Choose another array.");
   }
+  TetMesh tets = tetsOf(grid);
   TetMap map;
-  takePoints(grid, map.points);
-  takeCells(grid, VTK_TETRA, "tetrahedron", map.tets);
+  map.points = std::move(tets.points);
+  map.tets = std::move(tets.tets);
   map.parameters.resize(map.tets.size());
   for (std::size_t t = 0; t < map.tets.size(); ++t) {
     std::array<double, kParameterComponents> row{};

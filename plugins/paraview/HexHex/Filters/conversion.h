@@ -27,6 +27,10 @@ void fillGrid(vtkUnstructuredGrid& grid, const TetMap& map);
 /// @throws Error InvalidArgument for cells that are no tets, or another number of components
 [[nodiscard]] TetMap mapOf(vtkUnstructuredGrid& grid, vtkDataArray* parameters);
 
+/// The tets of a grid alone.
+/// @throws Error InvalidArgument for other cells; EmptyMesh without cells
+[[nodiscard]] TetMesh tetsOf(vtkUnstructuredGrid& grid);
+
 /// The triangles at which charts differ, with cell arrays `tets` (2 components), `rotation` (9, by
 /// rows) and `translation` (3): u in the chart of the first tet is R u + t in that of the second.
 void fillChartJumps(vtkPolyData& triangles, const TetMap& map, const MapStructure& structure);
