@@ -42,7 +42,11 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
                                 "Add a layer of cells under the boundary. auto: if fewer\n"
                                 "cells stay that are not positive, or the minimum rises by\n"
                                 "0.02 at least")
-              ->option_text("MODE [never]")};
+              ->option_text(options.pillow == PillowMode::Never ? "MODE [never]" : "MODE [auto]"),
+          parser.add_flag("--snap-curves,!--no-snap-curves", options.snapCurves,
+                          "Where edges of the mesh do not follow sharp and tagged\n"
+                          "edges of the object, lay some onto them, with a pillow, if\n"
+                          "the mesh is better so by minimum, distance and curves")};
 }
 
 namespace {
@@ -128,6 +132,10 @@ void printImprovement(const ImproveReport& report) {
                                     "object's curves",
                                     100 * report.curvesFollowed, report.curveLength));
   }
+  if (report.snappedCurves > 0) {
+    printLine("snapped",
+              counted(report.snappedCurves, "piece") + " of curves, onto which edges were laid");
+  }
   if (report.innerDistanceBefore > 0 || report.innerDistanceAfter > 0) {
     printLine("faces inside", fmt::format("at most {:.2g} of the diagonal off; before {:.2g}",
                                           report.innerDistanceAfter, report.innerDistanceBefore));
@@ -182,6 +190,7 @@ Json improvementAsJson(const ImproveReport& report) {
       {"added_cells", report.addedCells},
       {"curve_length", report.curveLength},
       {"curves_followed", report.curvesFollowed},
+      {"snapped_curves", report.snappedCurves},
       {"seconds", report.seconds}};
 }
 

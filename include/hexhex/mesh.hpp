@@ -14,7 +14,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 struct MeshOptions {
   ShapeOptions shape;
   QuantizeOptions quantize;
-  ImproveOptions improve;
+  ImproveOptions improve = {.pillow = PillowMode::Auto, .snapCurves = true};
 };
 
 struct MeshedPart {

@@ -10,6 +10,7 @@
 #include <hexhex/mesh.hpp>
 
 #include <base/stage.hpp>
+#include <improve/moving.hpp>
 
 namespace hexhex {
 
@@ -68,16 +69,6 @@ MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& op
   return part;
 }
 
-/// Of cells and of the boundary: what is certified is at least 0, a perfect mesh has 1.
-double meritOf(const MeshedPart& part) {
-  constexpr double kGood = 0.3;  // what is above needs no better
-  constexpr double kFar = 0.01;  // of the diagonal
-  const ImproveReport& report = part.improvement;
-  if (!report.after.allPositive()) return -1;
-  const double quality = std::min(1.0, report.after.quality.minimum / kGood);
-  return quality * std::max(0.0, 1 - report.distanceAfter.hausdorff() / kFar);
-}
-
 /// What keeps one way from a mesh, and perhaps not another.
 bool isOfTheWay(const Error& error) {
   return error.code() == ErrorCode::NotMeshable || error.code() == ErrorCode::FlippedTet;
@@ -89,7 +80,10 @@ MeshedPart meshByBest(const TetMesh& tets, const MeshOptions& options, Context& 
   for (const ShapeMethod method : {ShapeMethod::Frames, ShapeMethod::Polycube}) {
     try {
       MeshedPart part = meshBy(method, tets, options, context);
-      if (!best || meritOf(part) > meritOf(*best)) best = std::move(part);
+      if (!best ||
+          improvement::meritOf(part.improvement) > improvement::meritOf(best->improvement)) {
+        best = std::move(part);
+      }
     } catch (const Error& error) {
       if (!isOfTheWay(error)) throw;
       problem = error;
