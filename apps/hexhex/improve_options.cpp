@@ -42,7 +42,11 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
                                 "Add a layer of cells under the boundary. auto: if fewer\n"
                                 "cells stay that are not positive, or the minimum rises by\n"
                                 "0.02 at least")
-              ->option_text("MODE [never]")};
+              ->option_text(options.pillow == PillowMode::Never ? "MODE [never]" : "MODE [auto]"),
+          parser.add_flag("--snap-curves,!--no-snap-curves", options.snapCurves,
+                          "Where edges of the mesh do not follow sharp and tagged\n"
+                          "edges of the object, lay some onto them, with a pillow, if\n"
+                          "the mesh is better so by minimum, distance and curves")};
 }
 
 namespace {
@@ -127,6 +131,10 @@ void printImprovement(const ImproveReport& report) {
     printLine("curves", fmt::format("edges of the mesh follow {:.3g} % of {:.3g} diagonals of the "
                                     "object's curves",
                                     100 * report.curvesFollowed, report.curveLength));
+  }
+  if (report.snappedCurves > 0) {
+    printLine("snapped",
+              counted(report.snappedCurves, "piece") + " of curves, onto which edges were laid");
   }
   if (report.innerDistanceBefore > 0 || report.innerDistanceAfter > 0) {
     printLine("faces inside", fmt::format("at most {:.2g} of the diagonal off; before {:.2g}",

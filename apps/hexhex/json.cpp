@@ -191,6 +191,7 @@ Json improvementAsJson(const ImproveReport& report) {
           {"added_cells", report.addedCells},
           {"curve_length", report.curveLength},
           {"curves_followed", report.curvesFollowed},
+          {"snapped_curves", report.snappedCurves},
           {"seconds", report.seconds}};
 }
 

@@ -37,6 +37,10 @@ struct ImproveOptions {
   /// so much, in diagonals of the bounding box. 0 to 0.1.
   double slack = 1e-3;
   PillowMode pillow = PillowMode::Never;  ///< of straight cells only
+  /// Where edges of the mesh do not follow the curves of a map's surface: lays paths of edges of
+  /// the boundary onto them, in a copy with a pillow, which is kept if it is better by its least
+  /// scaled Jacobian, its distance and what it follows together. Straight cells only.
+  bool snapCurves = false;
 };
 
 /// Between the boundaries of the object and of the mesh, in diagonals of the surface's bounding
@@ -85,8 +89,9 @@ struct ImproveReport {
   std::uint64_t addedCells = 0;
   Array<Vec3> addedPoints;  ///< its vertices, where they were put before they moved
   /// Curves of the object: its sharp and its tagged edges.
-  double curveLength = 0;     ///< in diagonals
-  double curvesFollowed = 1;  ///< share of it near which edges of the mesh run along, 0 to 1
+  double curveLength = 0;           ///< in diagonals
+  double curvesFollowed = 1;        ///< share of it near which edges of the mesh run along, 0 to 1
+  std::uint64_t snappedCurves = 0;  ///< pieces between corners that paths of edges were laid onto
 };
 
 /// Moves vertices, and adds a pillow if that is wanted. The surface is that of the map: its

@@ -17,7 +17,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 struct MeshOptions {
   ShapeOptions shape;
   QuantizeOptions quantize;
-  ImproveOptions improve;
+  ImproveOptions improve = {.pillow = PillowMode::Auto, .snapCurves = true};
 };
 
 /// What one way led to, and what its mesh is judged by.

@@ -43,9 +43,8 @@ std::vector<std::array<Index, 2>> edgesOnCurves(const HexMesh& mesh, const Verte
 
 }  // namespace
 
-FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places, double tolerance,
-                              Stage& stage) {
-  const ReferenceSurface& surface = places.surface;
+FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places,
+                              const ReferenceSurface& surface, double tolerance, Stage& stage) {
   if (surface.segmentCount() == 0) return {};
   const std::vector<std::array<Index, 2>> edges = edgesOnCurves(mesh, places);
   std::vector<std::array<Vec3, 3>> ends;

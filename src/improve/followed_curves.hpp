@@ -15,8 +15,10 @@ struct FollowedCurves {
 
 /// A curve is followed where an edge of the mesh is near it, in about its direction, both ends of
 /// which stay on curves.
+/// @param surface    whose curves are meant: vertices may be on others
 /// @param tolerance  near enough, however short the edge
 [[nodiscard]] FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places,
-                                            double tolerance, Stage& stage);
+                                            const ReferenceSurface& surface, double tolerance,
+                                            Stage& stage);
 
 }  // namespace hexhex::improvement

@@ -19,6 +19,7 @@
 #include <improve/followed_curves.hpp>
 #include <improve/moving.hpp>
 #include <improve/pillowed.hpp>
+#include <improve/snapping.hpp>
 #include <improve/sound_input.hpp>
 #include <improve/surface_distance.hpp>
 #include <improve/vertex_places.hpp>
@@ -144,10 +145,12 @@ void reportBefore(const Subject& subject, const Boundary& boundary, const Vertex
   report.farCellsBefore = boundary.cellsBeyond(kSurfaceTolerance, distance, subject.parts()).size();
 }
 
+/// @param object  the surface, with all of its curves
 /// @param before  the points, where they were at first
 void reportAfter(const Subject& subject, const Boundary& boundary, const VertexPlaces& places,
-                 const BoundaryDistance& distance, const Array<Vec3>& before, ImproveReport& report,
-                 Stage& stage) {
+                 const BoundaryDistance& distance, const ReferenceSurface& object,
+                 Array<Vec3> before, ImproveReport& report, Stage& stage) {
+  before.insert(before.end(), report.addedPoints.begin(), report.addedPoints.end());
   for (const Freedom freedom : places.freedom) {
     ++report.vertices[static_cast<std::size_t>(freedom)];
   }
@@ -155,7 +158,7 @@ void reportAfter(const Subject& subject, const Boundary& boundary, const VertexP
   report.innerDistanceAfter = distanceInside(places, subject.mesh, report, stage);
   report.farCells = boundary.cellsBeyond(kSurfaceTolerance, distance, subject.parts());
   const FollowedCurves curves =
-      followedCurves(subject.mesh, places, kSurfaceTolerance * report.diagonal, stage);
+      followedCurves(subject.mesh, places, object, kSurfaceTolerance * report.diagonal, stage);
   report.curveLength = curves.length / report.diagonal;
   report.curvesFollowed = curves.share;
   reportMoves(before, subject.mesh.points, report);
@@ -163,30 +166,54 @@ void reportAfter(const Subject& subject, const Boundary& boundary, const VertexP
   listNotPositive(report);
 }
 
-/// Moves points, and adds a layer where one is wanted and helps.
+void reportAfter(Improved& improved, const ReferenceSurface& object, const Array<Vec3>& before,
+                 Stage& stage) {
+  reportAfter({improved.mesh}, improved.boundary, improved.places, improved.distance, object,
+              before, improved.report, stage);
+}
+
+/// Whether laying edges onto curves could help: some are not followed, or quads with two edges on
+/// one are flat.
+bool couldSnap(const ImproveOptions& options, const ImproveReport& report) {
+  constexpr double kAll = 0.999;  // but for rounding, and short chords
+  return options.snapCurves && report.curveLength > 0 &&
+         (report.curvesFollowed < kAll || !report.after.allPositive() ||
+          report.after.quality.minimum < options.target);
+}
+
+/// Moves points, adds a layer, and lays edges onto curves, where that is wanted and helps.
 void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions& options,
              ImproveReport& report, Context& context, Stage& stage) {
   HexMesh& mesh = subject.mesh;
   const Boundary boundary(mesh, treeOf(places.surface), stage);
   reportBefore(subject, boundary, places, report, stage);
-  Array<Vec3> points = mesh.points;
+  const Array<Vec3> points = mesh.points;
   try {
     const BoundaryDistance distance =
         movePoints(subject, boundary, places, options, points, report, context, stage);
-    std::optional<Improved> pillowed =
+    const ImproveReport moved = report;
+    std::optional<Improved> best =
         improvedWithPillow(mesh, boundary, places, distance, options, report, context, stage);
-    if (!pillowed) {
-      reportAfter(subject, boundary, places, distance, points, report, stage);
+    if (best) {
+      reportAfter(*best, places.surface, points, stage);
+      report = best->report;
     } else {
-      report = std::move(pillowed->report);
-      points.insert(points.end(), report.addedPoints.begin(), report.addedPoints.end());
-      reportAfter({pillowed->mesh}, pillowed->boundary, pillowed->places, pillowed->distance,
-                  points, report, stage);
+      reportAfter(subject, boundary, places, distance, places.surface, points, report, stage);
+    }
+    if (couldSnap(options, report)) {
+      std::optional<Improved> snapped =
+          improvedWithCurves(mesh, boundary, places, options, moved, context, stage);
+      if (snapped) {
+        reportAfter(*snapped, places.surface, points, stage);
+        if (meritOf(snapped->report) > meritOf(report)) {
+          report = snapped->report;
+          best = std::move(snapped);
+        }
+      }
     }
     stage.finish();
-    if (pillowed) mesh = std::move(pillowed->mesh);
+    if (best) mesh = std::move(best->mesh);
   } catch (...) {
-    points.resize(mesh.points.size());
     subject.putBack(points);
     throw;
   }
@@ -246,10 +273,10 @@ ImproveReport improveStraight(HexMesh& mesh, const ImproveOptions& options, Cont
 
 void requireImprovable(const LagrangeMesh& mesh, const ImproveOptions& options) {
   mesh::requireConsistent(mesh);
-  if (options.pillow != PillowMode::Never) {
+  if (options.pillow != PillowMode::Never || options.snapCurves) {
     throw Error(ErrorCode::InvalidArgument,
                 "Layers under the boundary are added to straight cells, not to those of a curved "
-                "mesh. Leave out the pillow.");
+                "mesh, and edges of straight ones are laid onto curves. Leave out both.");
   }
   if (mesh.order <= CurvedCells::kMaxOrder) return;
   throw Error(ErrorCode::InvalidArgument, "Cells of order " + std::to_string(mesh.order) +

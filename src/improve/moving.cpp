@@ -70,6 +70,16 @@ double farthestAllowed(const SurfaceDistance& before) {
   return kSame * std::max(before.hausdorff(), kSurfaceTolerance);
 }
 
+double meritOf(const ImproveReport& report) {
+  constexpr double kGood = 0.3;        // a minimum above needs no better
+  constexpr double kFar = 0.01;        // of the diagonal: that is another object
+  constexpr double kUnfollowed = 0.5;  // of a mesh that follows no curve
+  if (!report.after.allPositive()) return -1;
+  const double quality = std::min(1.0, report.after.quality.minimum / kGood);
+  const double nearness = std::max(0.0, 1 - report.distanceAfter.hausdorff() / kFar);
+  return quality * nearness * (kUnfollowed + (1 - kUnfollowed) * report.curvesFollowed);
+}
+
 BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
                             const ImproveOptions& options, const Array<Vec3>& before,
                             ImproveReport& report, Context& context, Stage& stage) {

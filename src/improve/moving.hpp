@@ -50,6 +50,10 @@ struct Boundary {
   return certificate.refuted + certificate.undecided;
 }
 
+/// How good a mesh is in the end: less than 0 if cells are not positive, 1 if nothing is to be
+/// better. A product, so that nothing pays for another.
+[[nodiscard]] double meritOf(const ImproveReport& report);
+
 /// Moves points and certifies. What did not become better in spite of all is put back.
 /// @param before          where points were, in the beginning
 /// @param[in,out] report  knows `before`, `diagonal` and `distanceBefore`; `after` and `offCreases`

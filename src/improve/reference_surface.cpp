@@ -172,6 +172,19 @@ void ReferenceSurface::findCorners(const SurfaceParts& parts) {
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
+ReferenceSurface ReferenceSurface::withCurves(std::vector<std::array<Index, 2>> sharp, double angle,
+                                              Stage& stage) const {
+  SurfaceParts parts;
+  parts.points = points_;
+  for (const std::array<Index, 3>& vertices : triangles_) parts.triangles.push_back({vertices, 0});
+  parts.boundaryTriangles = boundaryTriangles_;
+  parts.corners = taggedCorners_;
+  parts.angle = angle;
+  std::sort(sharp.begin(), sharp.end());
+  parts.sharp = std::move(sharp);
+  return {std::move(parts), stage};
+}
+
 std::array<Vec3, 3> ReferenceSurface::triangle(Index t) const noexcept {
   const auto& [a, b, c] = triangles_[t];
   return {points_[a], points_[b], points_[c]};

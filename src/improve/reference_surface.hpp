@@ -102,6 +102,15 @@ class ReferenceSurface {
   [[nodiscard]] std::array<Vec3, 3> triangle(Index t) const noexcept;
   [[nodiscard]] std::array<Vec3, 2> segment(Index s) const noexcept;
   [[nodiscard]] std::size_t segmentCount() const noexcept { return segments_.size(); }
+  [[nodiscard]] const std::array<Index, 2>& segmentVertices(Index s) const noexcept {
+    return segments_[s];
+  }
+  [[nodiscard]] std::span<const Index> segmentsAt(Index point) const { return segmentsAt_(point); }
+  /// Triangles of one patch have one number.
+  [[nodiscard]] Index patchOf(Index triangle) const noexcept { return patches_[triangle]; }
+  /// The same triangles, with other edges as curves.
+  [[nodiscard]] ReferenceSurface withCurves(std::vector<std::array<Index, 2>> sharp, double angle,
+                                            Stage& stage) const;
   [[nodiscard]] std::span<const Index> corners() const noexcept { return corners_; }
 
   /// How a vertex may move that lies inside of a simplex with these corners.

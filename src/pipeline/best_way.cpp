@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -14,12 +13,12 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <improve/moving.hpp>
 
 namespace hexhex::pipeline {
 namespace {
 
 constexpr double kGood = 0.3;       // a scaled Jacobian that is above needs no better
-constexpr double kFar = 0.01;       // of the diagonal
 constexpr double kFollowed = 0.99;  // of the length of curves
 
 /// The quicker one first.
@@ -49,9 +48,7 @@ WayReport reportOf(ShapeMethod method, const Outcome& outcome) {
   report.minimum = improved.after.quality.minimum;
   report.distance = improved.distanceAfter.hausdorff();
   report.curvesFollowed = improved.curvesFollowed;
-  if (!report.isCertified) return report;
-  report.merit = std::min(1.0, report.minimum / kGood) * std::max(0.0, 1 - report.distance / kFar) *
-                 report.curvesFollowed;
+  report.merit = improvement::meritOf(improved);
   return report;
 }
 

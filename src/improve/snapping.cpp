@@ -1,0 +1,416 @@
+#include <algorithm>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/vertex_lists.hpp>
+
+#include <base/disjoint_sets.hpp>
+#include <base/vector3.hpp>
+#include <improve/curve_paths.hpp>
+#include <improve/snapping.hpp>
+#include <improve/vertex_energy.hpp>
+#include <mesh/pillow.hpp>
+#include <mesh/set_layers.hpp>
+
+namespace hexhex::improvement {
+
+namespace {
+
+using Edge = std::array<Index, 2>;
+
+/// Vertices within so many edges of those on paths make room for them, in so many rounds.
+constexpr int kRoomRings = 3;
+constexpr int kRoomRounds = 10;
+/// A corner between two edges of one path is flat if it is wider than 120 degrees.
+constexpr double kFlatCorner = -0.5;
+
+/// How far layers reach: beside the paths that need them, or over regions between paths.
+enum class LayerWidth : std::uint8_t { Strips, Regions };
+
+/// The boundary of a mesh in regions between paths.
+class Regions {
+ public:
+  Regions(std::span<const Quad> quads, std::span<const Edge> paths)
+      : quads_(quads), paths_(paths), sets_(quads.size()) {
+    for (Index q = 0; q < quads.size(); ++q) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        sides_.push_back({ascending(quads[q][i], quads[q][(i + 1) % 4]), q});
+      }
+    }
+    std::sort(sides_.begin(), sides_.end());
+    for (std::size_t i = 1; i < sides_.size(); ++i) {
+      if (sides_[i].first != sides_[i - 1].first || isPath(sides_[i].first)) continue;
+      sets_.unite(sides_[i].second, sides_[i - 1].second);
+    }
+  }
+
+  [[nodiscard]] Index of(Index quad) { return sets_.find(quad); }
+  [[nodiscard]] bool isPath(const Edge& edge) const {
+    return std::binary_search(paths_.begin(), paths_.end(), edge);
+  }
+  /// Edges and their quads, ascending.
+  [[nodiscard]] std::span<const std::pair<Edge, Index>> sides() const { return sides_; }
+
+ private:
+  std::span<const Quad> quads_;
+  std::span<const Edge> paths_;
+  std::vector<std::pair<Edge, Index>> sides_;
+  DisjointSets sets_;
+};
+
+class CurveSnapper {
+ public:
+  CurveSnapper(HexMesh mesh, const Boundary& boundary, const VertexPlaces& places, CurvePaths paths,
+               double angle, Stage& stage)
+      : mesh_(std::move(mesh)),
+        boundary_(boundary),
+        places_(places),
+        paths_(std::move(paths)),
+        edges_(edgesOf(paths_)),
+        regions_(boundary.quads, edges_),
+        stage_(stage) {
+    std::vector<Edge> segments;
+    for (const CurvePath& path : paths_.paths) {
+      segments.insert(segments.end(), path.segments.begin(), path.segments.end());
+      ends_.push_back(path.vertices.front());
+      ends_.push_back(path.vertices.back());
+    }
+    std::sort(ends_.begin(), ends_.end());
+    places_.surface = places.surface.withCurves(std::move(segments), angle, stage);
+  }
+
+  /// Puts vertices onto curves, and others of the boundary onto their side of them.
+  void snap() {
+    const Array<Vec3> before = mesh_.points;
+    placeOnPatches();
+    placeOnPaths();
+    makeRoom(before);
+  }
+
+  /// @return nothing if the pillow has an obstacle
+  std::optional<Improved> layered(LayerWidth width, const ImproveReport& report) {
+    mesh::Pillow pillow = mesh::addPillow(mesh_, {}, stage_);
+    if (pillow.obstacle) return std::nullopt;
+    const std::size_t cells = mesh_.cells.size();
+    std::vector<Index> setOf(pillow.mesh.cells.size(), kNone);
+    const std::vector<std::uint8_t> isIn = flatCorners(width);
+    for (Index q = 0; q < isIn.size(); ++q) {
+      if (isIn[q] != 0) setOf[cells + q] = regions_.of(q);
+    }
+    mesh::SetLayers layers = mesh::addSetLayers(pillow.mesh, setOf, stage_);
+    Improved result{std::move(layers.mesh), {}, places_, {}, report};
+    extend(result, pillow.mesh.points.size() - mesh_.points.size(), layers);
+    result.boundary = Boundary(result.mesh, boundary_.surface, stage_);
+    return result;
+  }
+
+ private:
+  static std::vector<Edge> edgesOf(const CurvePaths& paths) {
+    std::vector<Edge> edges;
+    for (const CurvePath& path : paths.paths) {
+      for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+        edges.push_back(ascending(path.vertices[i - 1], path.vertices[i]));
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  }
+
+  /// A region lies on the patch to which most of it is nearest.
+  void findPatches() {
+    std::map<Index, std::map<Index, double>> areas;
+    for (Index q = 0; q < boundary_.quads.size(); ++q) {
+      const Quad& quad = boundary_.quads[q];
+      Vec3 centre{};
+      for (const Index v : quad) centre = plus(centre, times(0.25, mesh_.points[v]));
+      const auto nearest = static_cast<Index>(boundary_.surface.nearest(centre).triangle);
+      areas[regions_.of(q)][places_.surface.patchOf(nearest)] +=
+          length(cross(minus(mesh_.points[quad[2]], mesh_.points[quad[0]]),
+                       minus(mesh_.points[quad[3]], mesh_.points[quad[1]])));
+    }
+    for (const auto& [region, patches] : areas) {
+      patchOf_[region] = std::max_element(patches.begin(), patches.end(), [](auto& a, auto& b) {
+                           return a.second < b.second;
+                         })->first;
+    }
+  }
+
+  /// The nearest place of a region's patch.
+  [[nodiscard]] SurfacePlace placeOf(Index region, const Vec3& point) {
+    Patch& patch = patches_[patchOf_.at(region)];
+    if (!patch.tree) {
+      std::vector<std::array<Vec3, 3>> corners;
+      for (const Index t : patch.triangles) corners.push_back(places_.surface.triangle(t));
+      patch.tree.emplace(corners);
+    }
+    const Index triangle = patch.triangles[patch.tree->nearest(point).triangle];
+    return {nearestOf(places_.surface.triangle(triangle), point), triangle};
+  }
+
+  void placeOnPatches() {
+    findPatches();
+    for (Index t = 0; t < places_.surface.boundaryCount(); ++t) {
+      patches_[places_.surface.patchOf(t)].triangles.push_back(t);
+    }
+    for (Index q = 0; q < boundary_.quads.size(); ++q) {
+      for (const Index v : boundary_.quads[q]) {
+        const SurfacePlace place = placeOf(regions_.of(q), mesh_.points[v]);
+        places_.freedom[v] = Freedom::OnPatch;
+        places_.isLoose[v] = 0;
+        places_.simplex[v] = place.simplex;
+        mesh_.points[v] = place.point;
+      }
+    }
+  }
+
+  void placeOnPaths() {
+    for (const CurvePath& path : paths_.paths) {
+      for (std::size_t i = 0; i < path.vertices.size(); ++i) {
+        const Index v = path.vertices[i];
+        const PlaceOnCurve& place = path.places[i];
+        const bool isPoint = place.segment[0] == place.segment[1];
+        places_.freedom[v] = places_.surface.freedomAt(
+            std::span(place.segment).first(isPoint ? 1 : 2), places_.simplex[v]);
+        mesh_.points[v] = place.point;
+      }
+    }
+  }
+
+  /// Others around go to the middle of their neighbours, on the boundary along it.
+  void makeRoom(const Array<Vec3>& before) {
+    const std::size_t n = mesh_.points.size();
+    std::vector<std::uint8_t> isOuter(n, 0);
+    std::vector<Edge> edges;
+    for (const auto& [edge, quad] : regions_.sides()) {
+      edges.push_back(edge);
+      for (const Index v : edge) isOuter[v] = 1;
+    }
+    for (const Hex& cell : mesh_.cells) {
+      for (const auto& [a, b] : adjacency::kHexEdges) edges.push_back(ascending(cell[a], cell[b]));
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    const adjacency::VertexLists<Index> beside(n, stage_, [&](const auto& add) {
+      for (const auto& [a, b] : edges) {
+        add(a, b);
+        add(b, a);
+      }
+    });
+    std::vector<Index> near;
+    std::vector<std::uint8_t> isNear(n, 0);
+    for (Index v = 0; v < n; ++v) {
+      if (mesh_.points[v] == before[v]) continue;
+      near.push_back(v);
+      isNear[v] = 1;
+    }
+    std::size_t begin = 0;
+    for (int ring = 0; ring < kRoomRings; ++ring) {
+      for (const std::size_t end = near.size(); begin < end; ++begin) {
+        for (const Index v : beside(near[begin])) {
+          if (std::exchange(isNear[v], 1) == 0) near.push_back(v);
+        }
+      }
+    }
+    for (int round = 0; round < kRoomRounds; ++round) {
+      for (const Index v : near) {
+        if (places_.freedom[v] != Freedom::Free && places_.freedom[v] != Freedom::OnPatch) continue;
+        Vec3 sum{};
+        double count = 0;
+        for (const Index other : beside(v)) {
+          if (isOuter[v] != 0 && isOuter[other] == 0) continue;
+          sum = plus(sum, mesh_.points[other]);
+          ++count;
+        }
+        const SurfacePlace place = places_.nearest(v, times(1 / count, sum));
+        mesh_.points[v] = place.point;
+        places_.simplex[v] = place.simplex;
+      }
+    }
+  }
+
+  /// Per quad: 1 if a layer is wanted around its cell. Around each vertex, quads of a region are
+  /// taken so that they are connected.
+  std::vector<std::uint8_t> flatCorners(LayerWidth width) {
+    const Array<Quad>& quads = boundary_.quads;
+    std::vector<std::uint8_t> isIn(quads.size(), 0);
+    for (Index q = 0; q < quads.size(); ++q) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto [last, v, next] =
+            std::array<Index, 3>{quads[q][(i + 3) % 4], quads[q][i], quads[q][(i + 1) % 4]};
+        if (!regions_.isPath(ascending(last, v)) || !regions_.isPath(ascending(v, next))) continue;
+        const Vec3& point = mesh_.points[v];
+        if (cosineBetween(minus(mesh_.points[last], point), minus(mesh_.points[next], point)) <
+            kFlatCorner) {
+          isIn[q] = 1;
+        }
+      }
+    }
+    const adjacency::VertexLists<Index> quadsAt(mesh_.points.size(), stage_, [&](const auto& add) {
+      for (Index q = 0; q < quads.size(); ++q) {
+        for (const Index v : quads[q]) add(v, q);
+      }
+    });
+    widen(quadsAt, width, isIn);
+    while (connect(quadsAt, isIn)) {
+    }
+    return isIn;
+  }
+
+  /// Takes all quads of a region along a path that has a flat corner there, or all of the region,
+  /// but for those at ends of paths, whose corners would be halved: the fewer corners a layer has,
+  /// the better are its cells.
+  void widen(const adjacency::VertexLists<Index>& quadsAt, LayerWidth width,
+             std::vector<std::uint8_t>& isIn) {
+    std::vector<Index> wanted;  // regions
+    const auto take = [&](Index q) {
+      if (std::find(wanted.begin(), wanted.end(), regions_.of(q)) == wanted.end()) return;
+      const Quad& quad = boundary_.quads[q];
+      if (std::none_of(quad.begin(), quad.end(), [&](Index v) { return isEnd(v); })) isIn[q] = 1;
+    };
+    const std::vector<std::uint8_t> isFlat = isIn;
+    for (const CurvePath& path : paths_.paths) {
+      const auto inside = std::span(path.vertices).subspan(1, path.vertices.size() - 2);
+      if (width == LayerWidth::Strips) wanted.clear();
+      for (const Index v : inside) {
+        for (const Index q : quadsAt(v)) {
+          if (isFlat[q] != 0) wanted.push_back(regions_.of(q));
+        }
+      }
+      if (width != LayerWidth::Strips || wanted.empty()) continue;
+      for (const Index v : inside) {
+        for (const Index q : quadsAt(v)) take(q);
+      }
+    }
+    if (width == LayerWidth::Strips) return;
+    for (Index q = 0; q < isIn.size(); ++q) take(q);
+  }
+
+  [[nodiscard]] bool isEnd(Index v) const {
+    return std::binary_search(ends_.begin(), ends_.end(), v);
+  }
+
+  /// How many edges divide the quads of a region at a vertex that are in from others.
+  [[nodiscard]] std::map<std::pair<Index, Index>, int> bordersAt(
+      const std::vector<std::uint8_t>& isIn) {
+    std::map<std::pair<Index, Index>, int> borders;
+    const auto sides = regions_.sides();
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+      if (sides[i].first != sides[i - 1].first) continue;
+      const std::array<Index, 2> both = {sides[i - 1].second, sides[i].second};
+      const bool isSame = regions_.of(both[0]) == regions_.of(both[1]);
+      for (const std::size_t k : {0U, 1U}) {
+        if (isIn[both[k]] == 0 || (isSame && isIn[both[1 - k]] != 0)) continue;
+        for (const Index v : sides[i].first) ++borders[{v, regions_.of(both[k])}];
+      }
+    }
+    return borders;
+  }
+
+  /// @return whether some were added, or taken out
+  bool connect(const adjacency::VertexLists<Index>& quadsAt, std::vector<std::uint8_t>& isIn) {
+    bool isChanged = false;
+    for (const auto& [where, count] : bordersAt(isIn)) {
+      if (count <= 2) continue;
+      bool isAdded = false;
+      for (const Index q : quadsAt(where.first)) {
+        if (regions_.of(q) == where.second && isIn[q] == 0) {
+          isIn[q] = 1;
+          isAdded = true;
+        }
+      }
+      isChanged = true;
+      if (isAdded) continue;
+      // The region touches itself there.
+      for (Index q = 0; q < isIn.size(); ++q) {
+        if (regions_.of(q) == where.second) isIn[q] = 0;
+      }
+    }
+    return isChanged;
+  }
+
+  /// Places of new vertices: copies of those on the boundary are on the patch of their region.
+  void extend(Improved& result, std::size_t underneath, const mesh::SetLayers& layers) {
+    VertexPlaces& places = result.places;
+    places.freedom.resize(mesh_.points.size() + underneath, Freedom::Free);
+    places.simplex.resize(places.freedom.size(), kNone);
+    for (std::size_t i = 0; i < layers.originals.size(); ++i) {
+      const bool isOuter = places.freedom[layers.originals[i]] != Freedom::Free;
+      places.freedom.push_back(isOuter ? Freedom::OnPatch : Freedom::Free);
+      Vec3& point = result.mesh.points[places.simplex.size()];
+      const SurfacePlace place = isOuter ? placeOf(layers.sets[i], point) : SurfacePlace{point};
+      point = place.point;
+      places.simplex.push_back(place.simplex);
+    }
+    places.isLoose.resize(places.freedom.size(), 0);
+  }
+
+  struct Patch {
+    std::vector<Index> triangles;
+    std::optional<TriangleTree> tree;  ///< once it is asked for
+  };
+
+  HexMesh mesh_;
+  const Boundary& boundary_;
+  VertexPlaces places_;
+  CurvePaths paths_;
+  std::vector<Edge> edges_;
+  std::vector<Index> ends_;  ///< of paths, ascending
+  Regions regions_;
+  std::map<Index, Index> patchOf_;  ///< per region
+  std::map<Index, Patch> patches_;
+  Stage& stage_;
+};
+
+/// Moves the points of a mesh with layers.
+/// @param vertices  of the mesh without
+void moveLayered(Improved& improved, std::size_t vertices, const ImproveOptions& options,
+                 Context& context, Stage& stage) {
+  ImproveReport& report = improved.report;
+  const Certificate before = std::move(report.before);
+  const SurfaceDistance distanceBefore = report.distanceBefore;
+  report.addedCells = improved.mesh.cells.size() - before.validity.size();
+  report.addedPoints.assign(improved.mesh.points.begin() + static_cast<std::ptrdiff_t>(vertices),
+                            improved.mesh.points.end());
+  const Subject subject{improved.mesh};
+  report.before = subject.certifyNow(context);
+  const Array<Vec3> points = improved.mesh.points;
+  report.distanceBefore =
+      improved.boundary.distanceTo(improved.places, points, report.diagonal, stage).largest;
+  improved.distance = movePoints(subject, improved.boundary, improved.places, options, points,
+                                 report, context, stage);
+  report.before = before;
+  report.distanceBefore = distanceBefore;
+}
+
+}  // namespace
+
+std::optional<Improved> improvedWithCurves(const HexMesh& mesh, const Boundary& boundary,
+                                           const VertexPlaces& places,
+                                           const ImproveOptions& options,
+                                           const ImproveReport& report, Context& context,
+                                           Stage& stage) {
+  if (!places.innerQuads.empty() || options.fixBoundary) return std::nullopt;
+  CurvePaths paths = pathsAlongCurves(mesh.points, boundary.quads, places.surface, stage);
+  if (paths.paths.empty()) return std::nullopt;
+  const std::size_t snapped = paths.paths.size();
+  CurveSnapper snapper(mesh, boundary, places, std::move(paths), options.featureAngle, stage);
+  snapper.snap();
+  std::optional<Improved> best;
+  for (const LayerWidth width : {LayerWidth::Strips, LayerWidth::Regions}) {
+    std::optional<Improved> result = snapper.layered(width, report);
+    if (!result) break;
+    result->report.snappedCurves = snapped;
+    moveLayered(*result, mesh.points.size(), options, context, stage);
+    const Certificate& after = result->report.after;
+    if (!best || after.quality.minimum > best->report.after.quality.minimum) {
+      best = std::move(result);
+    }
+    if (best->report.after.quality.minimum >= options.target) break;
+  }
+  return best;
+}
+
+}  // namespace hexhex::improvement
