@@ -1,9 +1,9 @@
-"""Fills a body with tets: python3 -c SCRIPT MESHERS INPUT SIZE TETS
+"""Fills a body with tets: python3 -c SCRIPT MESHERS INPUT SIZE TETS THREADS
 
 MESHERS are names with commas between them, best first. The first line of the output names the one
 that is there; exit code 3: none is. INPUT is part.stl, as text, or part.step, beside part.geo, which
 has Gmsh read it. The tets go into part.mesh (MEDIT). SIZE is the length of an edge; 0, for part.step
-alone: so that there are about TETS.
+alone: so that there are about TETS. THREADS 0: as many as there are cores.
 Ends when its standard input does, as that is when who started it has ended.
 """
 
@@ -29,7 +29,7 @@ def write(points, tets):
         out.write("End\n")
 
 
-def tetwild(source, size, tets):
+def tetwild(source, size, tets, threads):
     try:
         importlib.import_module("pyvista")
     except ImportError:  # which the package imports, but which only its other functions need
@@ -41,12 +41,12 @@ def tetwild(source, size, tets):
         corners = [line.split()[1:] for line in lines if line.lstrip().startswith("vertex")]
     points, triangles = numpy.unique(numpy.array(corners, dtype=float), axis=0, return_inverse=True)
     points, cells = pytetwild.tetrahedralize(
-        points, triangles.reshape(-1, 3).astype(numpy.int32), edge_length_abs=size, num_threads=0
+        points, triangles.reshape(-1, 3).astype(numpy.int32), edge_length_abs=size, num_threads=threads
     )[:2]
     write(points.tolist(), cells.tolist())
 
 
-def netgen(source, size, tets):
+def netgen(source, size, tets, threads):
     if source.endswith(".stl"):
         from netgen.stl import STLGeometry
 
@@ -61,7 +61,7 @@ def netgen(source, size, tets):
     write([p.p for p in mesh.Points()], tets)
 
 
-def gmsh(source, size, tets):
+def gmsh(source, size, tets, threads):
     import gmsh as program
 
     program.initialize(["gmsh", "-nopopup"], interruptible=False)
@@ -77,13 +77,13 @@ def end_with_parent():
 
 
 def main():
-    names, source, size, tets = sys.argv[1:]
+    names, source, size, tets, threads = sys.argv[1:]
     threading.Thread(target=end_with_parent, daemon=True).start()
     for name in names.split(","):
         if importlib.util.find_spec(MODULES[name]) is None:
             continue
         print(PACKAGES[name], importlib.metadata.version(PACKAGES[name]), flush=True)
-        return globals()[name](source, float(size), float(tets))
+        return globals()[name](source, float(size), float(tets), int(threads))
     return NOT_THERE
 
 

@@ -103,7 +103,7 @@ std::string asWord(double number) {
 }
 
 /// In the order of preference.
-std::vector<Runner> runnersFor(const Task& task, Mesher mesher) {
+std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const bool isStep = task.surface == nullptr;
   const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
   std::string packages;
@@ -117,7 +117,7 @@ std::vector<Runner> runnersFor(const Task& task, Mesher mesher) {
   if (!packages.empty()) {
     constexpr int kNotThere = 3;  // as the script says
     runners.push_back({{python(), "-c", kScript, packages, isStep ? "part.step" : "part.stl",
-                        asWord(task.tetSize), asWord(task.tets)},
+                        asWord(task.tetSize), asWord(task.tets), std::to_string(threads)},
                        "",
                        kNotThere});
   }
@@ -228,7 +228,7 @@ Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
   }
   writeGeo(task, folder / "part.geo");
   std::string said;
-  for (const Runner& runner : runnersFor(task, mesher)) {
+  for (const Runner& runner : runnersFor(task, mesher, context.threads())) {
     const ProgramEnd end = runProgram(runner.words, folder, context);
     if (end.code == ProgramEnd::kNotFound || end.code == runner.codeIfMissing) {
       said += end.said;
