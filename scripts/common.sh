@@ -57,7 +57,7 @@ install_python_programs() {
   if [[ -n "${HEXHEX_PYTHON:-}" ]]; then return 0; fi
   local python=$PWD/build/python wanted=tests/io/requirements.txt
   if ! cmp -s "$wanted" "$python/installed.txt"; then
-    say "Installing meshio, gmsh, h5py, vtk and mfem from PyPI ..."
+    say "Installing meshio, gmsh, h5py, vtk, mfem and pytetwild from PyPI ..."
     if ! { rm -rf "$python" && python3 -m venv "$python" &&
            "$python/bin/pip" install --quiet --disable-pip-version-check -r "$wanted" &&
            cp "$wanted" "$python/installed.txt"; } >"$logs/python.log" 2>&1; then

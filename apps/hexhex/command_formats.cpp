@@ -22,6 +22,7 @@ std::string notes(const FileFormat& format) {
     if (holds) text += (text.empty() ? "" : ", ") + std::string(note);
   };
   add(format.readsTets, "--tets");
+  add(format.readsSurfaces, "map, mesh");
   add(format.streams, "--stream");
   add(format.compresses, "--compress");
   return text;
@@ -44,7 +45,9 @@ int run() {
   fmt::print(
       "\nOf several formats with one extension, the first is what a file name means; the others "
       "are\n"
-      "written with --format NAME. --tets: its tets are read for --tets and --polycube.\n");
+      "written with --format NAME. --tets: its tets are read for --tets and --polycube, and by "
+      "`hexhex\n"
+      "map` and `hexhex mesh`; map, mesh: these fill the surface with tets.\n");
   return kSuccess;
 }
 

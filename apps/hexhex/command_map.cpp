@@ -1,7 +1,8 @@
-// `hexhex map`: from tets alone to a seamless map.
+// `hexhex map`: from a part, tets or a surface, to a seamless map.
 #include <memory>
 #include <string>
 
+#include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/shape.hpp>
 
@@ -21,6 +22,7 @@ struct MapArguments {
   OutputChoice choice;
   std::string report;
   ShapeOptions options;
+  FillOptions fill;
   RunOptions run;
 };
 
@@ -28,16 +30,19 @@ int run(const MapArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
   requireAllDifferent({arguments.part}, {arguments.output, arguments.report});
-  LongRun longRun(arguments.run, {{"readTetMesh", 0.5}, {"mapFromTets", 20}, {"writeMap", 0.5}});
+  LongRun longRun(arguments.run, {{"readPart", 3}, {"mapFromTets", 20}, {"writeMap", 0.5}});
   Context& context = longRun.context();
   requireWritable(arguments.output);
   Report reportFile(arguments.report);
-  const TetMesh tets = readTetMesh(arguments.part, {}, context);
-  const ShapedMap result = mapFromTets(tets, arguments.options, context);
+  FillOptions fill = arguments.fill;
+  fill.featureAngle = arguments.options.featureAngle;
+  const FilledPart part = readPart(arguments.part, fill, context);
+  const ShapedMap result = mapFromTets(part.tets, arguments.options, context);
   writeMap(result.map, arguments.output, writing, context);
   longRun.finish();
   if (reportFile.isWanted()) {
     Json json = shapeAsJson(result.report);
+    json["part"] = filledAsJson(arguments.part, part);
     for (const StageTime& stage : context.stageTimes()) {
       json["seconds"][stage.stage] = stage.seconds;
     }
@@ -45,6 +50,7 @@ int run(const MapArguments& arguments) {
   }
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
   printFiles(arguments.part, arguments.output);
+  printFill(part);
   printShape(result.report);
   return kSuccess;
 }
@@ -54,7 +60,7 @@ int run(const MapArguments& arguments) {
 Command addMap(CLI::App& app) {
   const auto arguments = std::make_shared<MapArguments>();
   CLI::App* const parser = app.add_subcommand("map", "Make a seamless map of a part that has none");
-  addPart(*parser, arguments->part);
+  addPart(*parser, arguments->part, arguments->fill);
   parser
       ->add_option("-o,--output", arguments->output,
                    "The map to write, " + extensionsThat(&FileFormat::writesMaps))
@@ -71,12 +77,12 @@ Command addMap(CLI::App& app) {
   addReport(*parser, arguments->report, "Write in JSON what was made, and how long each step took");
   addRunOptions(*parser, arguments->run);
   parser->footer(
-      "Exit code 1: no map was found, or the tets are no mesh of a solid; nothing is written.\n"
+      "Exit code 1: no map was found, or the part is no solid; nothing is written.\n"
       "docs/making-maps.md explains what happens.\n\n"
       "Example:\n"
-      "  hexhex map part.msh -o seamless.hexex\n"
+      "  hexhex map part.stl -o seamless.hexex\n"
       "  hexhex quantize seamless.hexex -o integer.hexex --cells 50000\n"
-      "  hexhex mesh part.msh -o mesh.vtu --cells 50000     all in one go");
+      "  hexhex mesh part.stl -o mesh.vtu --cells 50000     all in one go");
   return {parser, [arguments] { return run(*arguments); }};
 }
 

@@ -1,6 +1,5 @@
-// `hexhex mesh`: from tets alone to a hexahedral mesh whose cells are certified.
+// `hexhex mesh`: from a part, tets or a surface, to a hexahedral mesh whose cells are certified.
 #include <array>
-#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 #include <fmt/core.h>
 
 #include <hexhex/error.hpp>
+#include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/mesh.hpp>
 
@@ -34,6 +34,7 @@ struct MeshArguments {
   OutputChoice choice;
   std::string report;
   MeshOptions options;
+  FillOptions fill;
   bool allowBad = false;
   RunOptions run;
 };
@@ -64,14 +65,14 @@ void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& l
                [&] { writePage(part.mesh, arguments.page, arguments.output, options, context); });
 }
 
-Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, std::size_t tets,
+Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, const FilledPart& filled,
                   Context& context) {
   Json seconds = Json::object();
   for (const StageTime& stage : context.stageTimes()) seconds[stage.stage] = 0.0;
   for (const StageTime& stage : context.stageTimes()) {
     seconds[stage.stage] = seconds[stage.stage].get<double>() + stage.seconds;
   }
-  Json json = {{"part", {{"file", arguments.part}, {"tets", tets}}},
+  Json json = {{"part", filledAsJson(arguments.part, filled)},
                {"mesh",
                 {{"file", arguments.output},
                  {"cells", part.mesh.cells.size()},
@@ -82,8 +83,10 @@ Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, std::s
   return json;
 }
 
-void printPart(const MeshArguments& arguments, const MeshedPart& part, const LongRun& run) {
+void printPart(const MeshArguments& arguments, const MeshedPart& part, const FilledPart& filled,
+               const LongRun& run) {
   printFiles(arguments.part, arguments.output);
+  printFill(filled);
   printShape(part.shape);
   if (!part.whyThisWay.empty()) printLine("kept", part.whyThisWay);
   for (const WayReport& way : part.ways) {
@@ -103,7 +106,7 @@ int run(const MeshArguments& arguments) {
   if (!arguments.map.empty()) requireMapFormat(arguments.map, WriteOptions{});
   requireAllDifferent({arguments.part},
                       {arguments.output, arguments.map, arguments.page, arguments.report});
-  LongRun longRun(arguments.run, {{"readTetMesh", 0.5},
+  LongRun longRun(arguments.run, {{"readPart", 5},
                                   {"meshFromTets", 40},
                                   {"writeMap", 0.1},
                                   {"writeHexMesh", 0.3},
@@ -113,20 +116,23 @@ int run(const MeshArguments& arguments) {
   if (!arguments.map.empty()) requireWritable(arguments.map);
   requirePage(arguments.page);
   Report reportFile(arguments.report);
-  const TetMesh tets =
-      longRun.part("reading", [&] { return readTetMesh(arguments.part, {}, context); });
   MeshOptions options = arguments.options;
   options.shape.featureAngle = options.improve.featureAngle;
+  FillOptions fill = arguments.fill;
+  fill.featureAngle = options.improve.featureAngle;
+  fill.cells = options.quantize.cells;
+  const FilledPart filled =
+      longRun.part("reading", [&] { return readPart(arguments.part, fill, context); });
   const MeshedPart part =
-      longRun.part("meshing", [&] { return meshFromTets(tets, options, context); });
+      longRun.part("meshing", [&] { return meshFromTets(filled.tets, options, context); });
   requireCertified(arguments, part.improvement.after);
   writeAll(arguments, part, longRun);
   longRun.finish();
   if (reportFile.isWanted()) {
-    reportFile.write(jsonText(reportAsJson(arguments, part, tets.tets.size(), context)));
+    reportFile.write(jsonText(reportAsJson(arguments, part, filled, context)));
   }
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
-  printPart(arguments, part, longRun);
+  printPart(arguments, part, filled, longRun);
   return kSuccess;
 }
 
@@ -154,7 +160,7 @@ Command addMesh(CLI::App& app) {
   const auto arguments = std::make_shared<MeshArguments>();
   CLI::App* const parser =
       app.add_subcommand("mesh", "Make a hexahedral mesh of a part that has no map");
-  addPart(*parser, arguments->part);
+  addPart(*parser, arguments->part, arguments->fill);
   addOutputs(*parser, *arguments);
   arguments->options.quantize.densify = true;
   addDensity(*parser, arguments->options.quantize);
@@ -166,7 +172,7 @@ Command addMesh(CLI::App& app) {
       "certified to be positive everywhere is not written. Exit code 1: no map was found, or no\n"
       "such mesh. docs/making-maps.md explains what happens.\n\n"
       "Example:\n"
-      "  hexhex mesh part.msh -o mesh.vtu --cells 50000 --view mesh.html");
+      "  hexhex mesh part.stl -o mesh.vtu --cells 50000 --view mesh.html");
   return {parser, [arguments] { return run(*arguments); }};
 }
 

@@ -25,10 +25,32 @@ void printLabels(const ShapeReport& report) {
 
 }  // namespace
 
-void addPart(CLI::App& parser, std::string& part) {
-  parser.add_option("PART", part, "A mesh of tets, " + extensionsThat(&FileFormat::readsTets))
+void addPart(CLI::App& parser, std::string& part, FillOptions& options) {
+  static const std::map<std::string, Mesher> kMeshers = {{"auto", Mesher::Auto},
+                                                         {"tetwild", Mesher::TetWild},
+                                                         {"netgen", Mesher::Netgen},
+                                                         {"gmsh", Mesher::Gmsh},
+                                                         {"tetgen", Mesher::TetGen}};
+  parser
+      .add_option("PART", part,
+                  "A mesh of tets, " + extensionsThat(&FileFormat::readsTets) +
+                      "; or a closed surface, " + extensionsThat(&FileFormat::readsSurfaces) +
+                      ", or .step, which a mesher fills with tets")
       ->required()
       ->option_text("FILE REQUIRED");
+  parser
+      .add_option("--mesher", options.mesher,
+                  "What fills a surface or STEP file: tetwild (pip install\n"
+                  "pytetwild), netgen (netgen-mesher), gmsh, tetgen; auto: the\n"
+                  "first that is installed. HEXHEX_PYTHON names the Python")
+      ->transform(CLI::CheckedTransformer(kMeshers).description(""))
+      ->option_text("NAME [auto]");
+  parser
+      .add_option("--tet-size", options.tetSize,
+                  "Length of the edges of these tets; by default as long as\n"
+                  "those of the cells, with 3,000 to 20,000 tets, about")
+      ->check(CLI::PositiveNumber)
+      ->option_text("LENGTH");
 }
 
 void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
@@ -47,6 +69,15 @@ void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
       ->option_text("INTEGER [1]");
 }
 
+void printFill(const FilledPart& part) {
+  if (!part.report) return;
+  const FillReport& report = *part.report;
+  std::string text = fmt::format("{} by {}", counted(report.tets, "tet"), report.mesher);
+  if (report.bodies > 1) text += fmt::format(", in {} bodies", report.bodies);
+  if (report.voids > 0) text += fmt::format(", around {}", counted(report.voids, "void"));
+  printLine("filled with", text);
+}
+
 void printShape(const ShapeReport& report) {
   printLine("map", "by " + nameOf(report.method));
   if (report.method == ShapeMethod::Polycube) printLabels(report);
@@ -56,6 +87,20 @@ void printShape(const ShapeReport& report) {
     printLine("sharp edges", fmt::format("{} of {} are edges of the map", report.taggedEdges,
                                          report.featureEdges));
   }
+}
+
+Json filledAsJson(const std::string& file, const FilledPart& part) {
+  Json json = {{"file", file}, {"tets", part.tets.tets.size()}};
+  if (!part.report) return json;
+  const FillReport& report = *part.report;
+  json["filled"] = {{"mesher", report.mesher},
+                    {"tet_size", report.tetSize},
+                    {"triangles", report.triangles},
+                    {"bodies", report.bodies},
+                    {"voids", report.voids},
+                    {"volume", report.volume},
+                    {"filled_volume", report.filledVolume}};
+  return json;
 }
 
 }  // namespace hexhex::command

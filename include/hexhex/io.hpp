@@ -223,8 +223,9 @@ struct FileFormat {
   bool readsTets = false;  ///< readTetMesh()
   bool readsHexMeshes = false;
   bool writesHexMeshes = false;
-  bool streams = false;     ///< openMeshSink()
-  bool compresses = false;  ///< WriteOptions::compress
+  bool streams = false;        ///< openMeshSink()
+  bool compresses = false;     ///< WriteOptions::compress
+  bool readsSurfaces = false;  ///< readTriangleMesh(), see <hexhex/fill.hpp>
 };
 
 /// All formats of this build. Of several with one extension, the first that fits is what a file

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include <hexhex/error.hpp>
+#include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 
 #include <base/parallel.hpp>
@@ -14,12 +15,14 @@
 #include <io/core/hdf5_library.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/zlib_blocks.hpp>
+#include <io/surface/surface.hpp>
 
 namespace hexhex::io {
 namespace {
 
 constexpr std::array<WorkStep, 1> kReadMap = {{{"read map", 1}}};
 constexpr std::array<WorkStep, 1> kReadTets = {{{"read tets", 1}}};
+constexpr std::array<WorkStep, 1> kReadTriangles = {{{"read triangles", 1}}};
 constexpr std::array<WorkStep, 1> kReadMesh = {{{"read mesh", 1}}};
 constexpr std::array<WorkStep, 2> kReadAny = {{{"read mesh", 1}, {"read map", 1}}};
 constexpr std::array<WorkStep, 1> kWriteMap = {{{"write map", 1}}};
@@ -157,6 +160,13 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
     mesh.points.assign(tets.points.begin(), tets.points.end());
     mesh.tets.assign(tets.cells.begin(), tets.cells.end());
     return mesh;
+  });
+}
+
+TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& context) {
+  const io::Format& format = io::findFormat(file, {}, io::FileContent::Triangles);
+  return inSteps(context, "readTriangleMesh", io::kReadTriangles, [&] {
+    return io::welded(format.readTriangles(io::openInput(file, context), context));
   });
 }
 

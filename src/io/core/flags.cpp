@@ -13,6 +13,7 @@
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/triangle_labels.hpp>
+#include <io/surface/surface.hpp>
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex::io {
@@ -116,53 +117,6 @@ std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
   return numbers;
 }
 
-/// A corner of a face, "7", "7/2", "7/2/3" or "7//3": the first number is the vertex, counted from
-/// 1, or from the last one before the face, which is -1.
-/// @param points  before the face
-Index readObjVertex(TextScanner& scanner, std::size_t points) {
-  const std::string_view token = scanner.readToken();
-  const std::string_view number = token.substr(0, token.find('/'));
-  const char* const end = number.data() + number.size();
-  std::int64_t vertex = 0;
-  const auto result = std::from_chars(number.data(), end, vertex);
-  const auto count = static_cast<std::int64_t>(points);
-  const std::int64_t place = vertex < 0 ? count + vertex : vertex - 1;
-  if (result.ec == std::errc{} && result.ptr == end && place >= 0 && place < count) {
-    return static_cast<Index>(place);
-  }
-  scanner.fail(ErrorCode::FileSyntax,
-               "a corner of a face is " + quoted(token) + ", which names no vertex before it.");
-}
-
-/// Vertices and triangles of an `.obj` file; other elements are passed over.
-struct ObjSurface {
-  std::vector<Vec3> points;
-  std::vector<SurfaceTriangle> triangles;
-};
-ObjSurface readSurface(const Input& input, Stage& stage) {
-  Array<char> room;
-  TextScanner scanner(input.text(room, stage, "#abcdefghijklmnopqrstuvwxyz"), input.name(),
-                      TextScanner::Comments::Hash);
-  ObjSurface surface;
-  while (scanner.skipSpace()) {
-    const std::string_view keyword = scanner.readToken();
-    if (keyword == "v") {
-      Vec3& p = surface.points.emplace_back();
-      for (double& x : p) x = scanner.number("a coordinate");
-    } else if (keyword == "f") {
-      SurfaceTriangle& triangle = surface.triangles.emplace_back();
-      for (Index& v : triangle) v = readObjVertex(scanner, surface.points.size());
-      // More corners would stand on the same line.
-      if (scanner.takeLine().find_first_not_of(" \t\r") != std::string_view::npos) {
-        scanner.fail(ErrorCode::FileUnsupported, "a face has more than three corners.");
-      }
-      continue;
-    }
-    static_cast<void>(scanner.takeLine());
-  }
-  return surface;
-}
-
 /// Finds boundary vertices by their positions.
 class Positions {
  public:
@@ -218,7 +172,7 @@ class Positions {
 /// A number per triangle of a surface.
 TriangleLabels onSurface(const FlagsFile& flags, std::vector<std::int64_t> labels,
                          const TetMesh& tets, const TetBoundary& boundary, Stage& stage) {
-  const ObjSurface surface = readSurface(flags.surface, stage);
+  const TriangleMesh surface = readObj(flags.surface, stage.context());
   if (labels.size() != surface.triangles.size()) {
     refuseFlags(flags.file, "there are " + std::to_string(labels.size()) + " labels, but " +
                                 std::to_string(surface.triangles.size()) + " triangles in " +

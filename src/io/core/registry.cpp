@@ -20,6 +20,7 @@
 #include <io/ovm/ovm.hpp>
 #include <io/parts/parts.hpp>
 #include <io/solvers/solvers.hpp>
+#include <io/surface/surface.hpp>
 #include <io/vtk/vtk.hpp>
 
 namespace hexhex::io {
@@ -129,6 +130,11 @@ constexpr std::array kFormatTable = {
     Format{.label = {"cgns", ".cgns", "CGNS"}, .meshes = {.write = kWriteCgns}, .overHdf5 = true},
     exodusFormat("exodus", ".exo"),
     exodusFormat("exodus-e", ".e"),
+    Format{.label = {"stl", ".stl", "surface of triangles, text or binary"},
+           .readTriangles = readStl},
+    Format{.label = {"obj", ".obj", "Wavefront surface"}, .readTriangles = readObj},
+    Format{.label = {"off", ".off", "surface of polygons, text"}, .readTriangles = readOff},
+    Format{.label = {"ply", ".ply", "surface of polygons"}, .readTriangles = readPly},
 };
 
 /// Other names for formats.
@@ -169,6 +175,8 @@ constexpr Purpose purposeOf(FileContent content) {
     case FileContent::MapOrHexMesh:
       return {[](const Format& format) { return holdsMaps(format) || holdsMeshes(format); },
               "maps or hexahedral meshes"};
+    case FileContent::Triangles:
+      return {[](const Format& format) { return format.readTriangles != nullptr; }, "surfaces"};
     case FileContent::Tets:
       break;
   }
@@ -258,7 +266,7 @@ std::span<const FileFormat> fileFormats() {
                         format.maps.read != nullptr, format.maps.write != nullptr,
                         format.readTets != nullptr, format.meshes.read != nullptr,
                         format.meshes.write != nullptr, format.pieces.openSink != nullptr,
-                        format.compresses && io::hasZlib()});
+                        format.compresses && io::hasZlib(), format.readTriangles != nullptr});
     }
     return result;
   }();

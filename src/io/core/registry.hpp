@@ -10,6 +10,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
+#include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
@@ -39,6 +40,7 @@ struct Format {
   } maps = {};
   /// Tets without a map, whether there is one or not.
   TetCells (*readTets)(const Input& input, Context& context) = nullptr;
+  TriangleMesh (*readTriangles)(const Input& input, Context& context) = nullptr;
   struct {
     HexMesh (*read)(const Input& input, Context& context) = nullptr;
     void (*write)(const HexMesh& mesh, const std::filesystem::path& file,
@@ -61,7 +63,7 @@ struct Format {
   bool overHdf5 = false;
 };
 
-enum class FileContent : std::uint8_t { Map, HexMesh, MapOrHexMesh, Tets };
+enum class FileContent : std::uint8_t { Map, HexMesh, MapOrHexMesh, Tets, Triangles };
 
 /// The format of a file that holds, or will hold, such content: the one of this name or, if it is
 /// empty, what the extension means. It reads or writes such files, if not both.

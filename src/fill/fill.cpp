@@ -1,0 +1,208 @@
+// Surfaces and STEP files, body by body, into tets.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fill/closed_surface.hpp>
+#include <fill/mesher.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/fill.hpp>
+#include <hexhex/io.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
+
+namespace hexhex {
+
+namespace fill {
+namespace {
+
+constexpr std::array<WorkStep, 2> kFill = {{{"check surface", 1}, {"fill", 10}}};
+constexpr std::array<WorkStep, 3> kReadPart = {
+    {{"readTetMesh", 1}, {"readTriangleMesh", 0.2}, {"fillSurface", 10}}};
+
+void requireInRange(const FillOptions& options) {
+  const auto fits = [](double x) { return x >= 0 && std::isfinite(x); };
+  if (fits(options.tetSize) && fits(options.cells) && options.featureAngle >= 0 &&
+      options.featureAngle <= 180) {
+    return;
+  }
+  throw Error(
+      ErrorCode::InvalidArgument,
+      "The size of tets and the number of cells must not be negative, and the feature angle "
+      "has to be from 0 to 180 degrees.");
+}
+
+/// As many as cells of cubes with edges of that length have, in regular tets.
+double tetsFor(double cells) {
+  constexpr double kPerCell = 8.5;
+  constexpr double kFewest = 3000;  // to have some across most parts
+  constexpr double kMost = 20000;   // of which maps take half a minute
+  return cells == 0 ? kMost : std::clamp(kPerCell * cells, kFewest, kMost);
+}
+
+double sizeFor(double volume, const FillOptions& options) {
+  constexpr double kPerVolume = 8.5;  // edge^3 of a regular tet
+  if (options.tetSize > 0) return options.tetSize;
+  return std::cbrt(kPerVolume * volume / tetsFor(options.cells));
+}
+
+double totalVolume(const TetMesh& mesh) {
+  double sum = 0;
+  for (const Tet& tet : mesh.tets) sum += volumeOf(mesh, tet);
+  return sum;
+}
+
+Vec3 centreOf(const TetMesh& mesh, const Tet& tet) {
+  Vec3 centre{};
+  for (const Index v : tet) {
+    for (std::size_t k = 0; k < 3; ++k) centre[k] += mesh.points[v][k] / 4;
+  }
+  return centre;
+}
+
+/// Some meshers fill cavities, too.
+void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
+  if (body.voidCount == 0) return;
+  constexpr std::size_t kGrain = 16;
+  std::vector<char> isInVoid(mesh.tets.size());
+  parallelFor(stage, mesh.tets.size(), kGrain, [&](std::size_t t) {
+    isInVoid[t] = windings(body.voids, centreOf(mesh, mesh.tets[t])) != 0 ? 1 : 0;
+  });
+  std::size_t t = 0;
+  std::erase_if(mesh.tets, [&](const Tet& /*tet*/) { return isInVoid[t++] != 0; });
+}
+
+/// What is far from filled is no mesh of the body.
+void requireFilled(double volume, double filled, const std::string& mesher) {
+  constexpr double kMostMissing = 0.1;
+  if (std::abs(filled - volume) <= kMostMissing * volume) return;
+  throw Error(ErrorCode::NotMeshable,
+              "The tets of the mesher " + mesher + " have a volume of " + std::to_string(filled) +
+                  ", but the surface is around one of " + std::to_string(volume) +
+                  ". Try another one (--mesher), or a smaller --tet-size.");
+}
+
+void appendTets(TetMesh& all, const TetMesh& more) {
+  const auto first = static_cast<Index>(all.points.size());
+  all.points.insert(all.points.end(), more.points.begin(), more.points.end());
+  for (Tet tet : more.tets) {
+    for (Index& v : tet) v += first;
+    all.tets.push_back(tet);
+  }
+}
+
+FilledPart fillBodies(const std::vector<Body>& bodies, const std::string& name,
+                      const FillOptions& options, Stage& stage) {
+  FilledPart part;
+  FillReport& report = part.report.emplace();
+  report.bodies = bodies.size();
+  for (const Body& body : bodies) report.volume += body.volume;
+  report.tetSize = sizeFor(report.volume, options);
+  for (const Body& body : bodies) {
+    Task task{name,           &body.surface,          {},
+              report.tetSize, tetsFor(options.cells), options.featureAngle};
+    Meshed meshed = runMesher(task, options.mesher, stage.context());
+    emptyVoids(meshed.tets, body, stage);
+    const double filled = totalVolume(meshed.tets);
+    requireFilled(body.volume, filled, meshed.mesher);
+    appendTets(part.tets, meshed.tets);
+    report.filledVolume += filled;
+    report.mesher = meshed.mesher;
+    report.triangles += body.surface.triangles.size();
+    report.voids += body.voidCount;
+  }
+  report.tets = part.tets.tets.size();
+  return part;
+}
+
+FilledPart fillNamed(const TriangleMesh& surface, const std::string& name,
+                     const FillOptions& options, Context& context) {
+  requireInRange(options);
+  return inSteps(context, "fillSurface", kFill, [&] {
+    FilledPart part;
+    withThreads(context.threads(), [&] {
+      std::vector<Body> bodies;
+      {
+        Stage stage(context, "check surface");
+        bodies = bodiesOf(surface, stage);
+      }
+      Stage stage(context, "fill");
+      part = fillBodies(bodies, name, options, stage);
+    });
+    return part;
+  });
+}
+
+FilledPart fillStep(const std::filesystem::path& file, const FillOptions& options,
+                    Context& context) {
+  requireInRange(options);
+  if (options.mesher == Mesher::TetWild || options.mesher == Mesher::TetGen) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        file.string() + ": only Netgen and Gmsh read STEP files (--mesher netgen or gmsh).");
+  }
+  return inSteps(context, "fillSurface", kFill, [&] {
+    Stage stage(context, "fill");
+    const Task task{file.string(),       nullptr, file, options.tetSize, tetsFor(options.cells),
+                    options.featureAngle};
+    Meshed meshed = runMesher(task, options.mesher, context);
+    FilledPart part{std::move(meshed.tets), FillReport{}};
+    part.report->mesher = meshed.mesher;
+    part.report->tetSize = options.tetSize;
+    part.report->tets = part.tets.tets.size();
+    part.report->filledVolume = totalVolume(part.tets);
+    return part;
+  });
+}
+
+bool isSurface(const std::string& extension) {
+  const auto formats = fileFormats();
+  return std::any_of(formats.begin(), formats.end(), [&](const FileFormat& format) {
+    return format.readsSurfaces && format.extension == extension;
+  });
+}
+
+FilledPart read(const std::filesystem::path& file, const FillOptions& options, Context& context) {
+  const std::string extension = io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
+  if (extension == ".step" || extension == ".stp") return fillStep(file, options, context);
+  if (!isSurface(extension)) {
+    FilledPart part{readTetMesh(file, {}, context), {}};
+    if (options.mesher == Mesher::Auto && options.tetSize == 0) return part;
+    throw Error(ErrorCode::InvalidArgument,
+                file.string() +
+                    ": the file holds tets, so no mesher and no --tet-size can be "
+                    "chosen.");
+  }
+  const TriangleMesh surface = readTriangleMesh(file, context);
+  try {
+    return fillNamed(surface, file.string(), options, context);
+  } catch (const Error& error) {
+    const std::string sentence = error.what();
+    if (error.code() == ErrorCode::Cancelled || sentence.starts_with(file.string())) throw;
+    throw Error(error.code(), file.string() + ": " + sentence, error.place());
+  }
+}
+
+}  // namespace
+}  // namespace fill
+
+FilledPart fillSurface(const TriangleMesh& surface, const FillOptions& options, Context& context) {
+  return fill::fillNamed(surface, "The surface", options, context);
+}
+
+FilledPart readPart(const std::filesystem::path& file, const FillOptions& options,
+                    Context& context) {
+  return inSteps(context, "readPart", fill::kReadPart,
+                 [&] { return fill::read(file, options, context); });
+}
+
+}  // namespace hexhex

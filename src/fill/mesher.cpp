@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <locale>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fill/mesher.hpp>
+#include <fill/program.hpp>
+#include <fill_script.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
+
+#include <base/vector3.hpp>
+
+namespace hexhex::fill {
+namespace {
+
+/// Of a regular tet: edge^3 divided by the volume.
+const double kRegularTet = 6 * std::sqrt(2.0);
+
+/// Numbers as C++ and meshers spell them, whatever the language of the user.
+class Text {
+ public:
+  explicit Text(const std::filesystem::path& file) : out_(file) {
+    constexpr int kExact = 17;
+    out_.imbue(std::locale::classic());
+    out_.precision(kExact);
+  }
+  template <class T>
+  Text& operator<<(const T& value) {
+    out_ << value;
+    return *this;
+  }
+  void close(const std::filesystem::path& file) {
+    out_.close();
+    if (!out_) throw Error(ErrorCode::FileWrite, file.string() + ": the file cannot be written.");
+  }
+
+ private:
+  std::ofstream out_;
+};
+
+/// As text, which keeps all digits of coordinates.
+void writeStl(const TriangleMesh& surface, const std::filesystem::path& file) {
+  Text out(file);
+  out << "solid part\n";
+  for (const std::array<Index, 3>& triangle : surface.triangles) {
+    out << "facet normal 0 0 0\nouter loop\n";
+    for (const Index v : triangle) {
+      const Vec3& p = surface.points[v];
+      out << "vertex " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    }
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid part\n";
+  out.close(file);
+}
+
+/// What Gmsh is to do.
+void writeGeo(const Task& task, const std::filesystem::path& file) {
+  Text out(file);
+  if (task.surface != nullptr) {
+    out << "Merge \"part.stl\";\nClassifySurfaces{" << task.featureAngle
+        << "*Pi/180, 1, 1, Pi};\nCreateGeometry;\nSurface Loop(1) = Surface{:};\nVolume(1) = {1};\n"
+        << "size = " << task.tetSize << ";\n";
+  } else {
+    out << "SetFactory(\"OpenCASCADE\");\nMerge \"part.step\";\nsize = " << task.tetSize
+        << ";\nIf (size == 0)\n  all() = Volume{:};\n  volume = 0;\n  For i In {0:#all() - 1}\n"
+        << "    mass() = Mass Volume{all(i)};\n    volume += mass(0);\n  EndFor\n  size = ("
+        << kRegularTet << " * volume / " << task.tets << ")^(1/3);\nEndIf\n";
+  }
+  out << "Mesh.MeshSizeMax = size;\n";
+  out.close(file);
+}
+
+/// A way to run one or more meshers; the first that is there does it.
+struct Runner {
+  std::vector<std::string> words;
+  std::string name;  ///< empty: it tells
+  int codeIfMissing = ProgramEnd::kNotFound;
+  std::string result = "part.mesh";
+};
+
+std::string python() {
+  const char* const named = std::getenv("HEXHEX_PYTHON");
+  if (named == nullptr || *named == '\0') return "python3";
+  const std::string name = named;
+  return name.find('/') == std::string::npos ? name : std::filesystem::absolute(name).string();
+}
+
+std::string asWord(double number) {
+  std::array<char, 32> room{};
+  const auto end = std::to_chars(room.data(), room.data() + room.size(), number);
+  return {room.data(), end.ptr};
+}
+
+/// In the order of preference.
+std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
+  const bool isStep = task.surface == nullptr;
+  const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
+  std::string packages;
+  const auto add = [&packages](bool holds, const char* name) {
+    if (holds) packages += (packages.empty() ? "" : ",") + std::string(name);
+  };
+  add(wanted(Mesher::TetWild) && !isStep, "tetwild");
+  add(wanted(Mesher::Netgen), "netgen");
+  add(wanted(Mesher::Gmsh), "gmsh");
+  std::vector<Runner> runners;
+  if (!packages.empty()) {
+    constexpr int kNotThere = 3;  // as the script says
+    runners.push_back({{python(), "-c", kScript, packages, isStep ? "part.step" : "part.stl",
+                        asWord(task.tetSize), asWord(task.tets), std::to_string(threads)},
+                       "",
+                       kNotThere});
+  }
+  if (wanted(Mesher::Gmsh)) {
+    runners.push_back({{"gmsh", "-nopopup", "-3", "part.geo", "-o", "part.mesh"}, "gmsh"});
+  }
+  if (wanted(Mesher::TetGen) && !isStep) {
+    const double volume = std::pow(task.tetSize, 3) / kRegularTet;
+    runners.push_back({{"tetgen", "-pqgQa" + asWord(volume), "part.stl"}, "tetgen"});
+    runners.back().result = "part.1.mesh";
+  }
+  return runners;
+}
+
+/// The last lines of what a program said, in one.
+std::string lastLines(std::string_view said) {
+  constexpr std::size_t kLines = 12;
+  std::string text;
+  for (std::size_t i = 0; i < kLines && !said.empty(); ++i) {
+    const std::size_t begin = said.find_last_of('\n') + 1;  // or 0
+    const std::string line(said.substr(begin));
+    said = said.substr(0, begin == 0 ? 0 : begin - 1);
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    text = text.empty() ? line : line + " | " + text;
+  }
+  return text.empty() ? "It said nothing." : "It said: " + text;
+}
+
+/// @param said  of programs that could not be started
+[[noreturn]] void failWithoutMesher(const Task& task, Mesher mesher, const std::string& said) {
+  const bool isStep = task.surface == nullptr;
+  const std::array<std::string, 5> advice = {
+      isStep ? "none is installed that reads STEP. Try `pip install netgen-mesher` or `pip install "
+               "gmsh`"
+             : "none is installed. Try `pip install pytetwild`; netgen-mesher, gmsh and the "
+               "program tetgen do, too",
+      "pytetwild is not installed. Try `pip install pytetwild`",
+      "netgen-mesher is not installed. Try `pip install netgen-mesher`",
+      "gmsh is not installed. Try `pip install gmsh`", "the program tetgen is not installed"};
+  throw Error(ErrorCode::FileUnsupported,
+              task.name + ": a mesher has to fill it with tets, and " +
+                  advice[static_cast<std::size_t>(mesher)] +
+                  ". Python packages are looked for with " + python() +
+                  " (the variable HEXHEX_PYTHON names another Python)." +
+                  (said.empty() ? "" : " " + lastLines(said)));
+}
+
+[[noreturn]] void failBy(const std::string& mesher, const Task& task, const std::string& problem,
+                         const std::string& said) {
+  throw Error(ErrorCode::NotMeshable, task.name + ": the mesher " + mesher + " " + problem +
+                                          ". Try another one (--mesher), or another --tet-size. " +
+                                          lastLines(said));
+}
+
+/// Each tet positive, and no point without a tet.
+TetMesh tidied(const TetMesh& read) {
+  TetMesh mesh;
+  std::vector<Index> vertices(read.points.size(), kNone);
+  for (Tet tet : read.tets) {
+    for (Index& v : tet) {
+      if (vertices[v] == kNone) {
+        vertices[v] = static_cast<Index>(mesh.points.size());
+        mesh.points.push_back(read.points[v]);
+      }
+      v = vertices[v];
+    }
+    if (volumeOf(mesh, tet) < 0) std::swap(tet[2], tet[3]);
+    mesh.tets.push_back(tet);
+  }
+  return mesh;
+}
+
+TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& task,
+                   const std::filesystem::path& folder, const ProgramEnd& end, Context& context) {
+  if (end.code != 0) {
+    failBy(mesher, task, "failed with exit code " + std::to_string(end.code), end.said);
+  }
+  const std::filesystem::path result = folder / runner.result;
+  if (!std::filesystem::exists(result)) failBy(mesher, task, "wrote no mesh", end.said);
+  try {
+    TetMesh mesh = tidied(readTetMesh(result, {}, context));
+    if (!mesh.tets.empty()) return mesh;
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;
+    failBy(mesher, task, "wrote a mesh that cannot be read (" + std::string(error.what()) + ")",
+           end.said);
+  }
+  failBy(mesher, task, "made no tets", end.said);
+}
+
+}  // namespace
+
+double volumeOf(const TetMesh& mesh, const Tet& tet) {
+  const Vec3& origin = mesh.points[tet[0]];
+  constexpr double kSix = 6;
+  return tripleProduct(minus(mesh.points[tet[1]], origin), minus(mesh.points[tet[2]], origin),
+                       minus(mesh.points[tet[3]], origin)) /
+         kSix;
+}
+
+Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
+  const TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
+  if (task.surface != nullptr) {
+    writeStl(*task.surface, folder / "part.stl");
+  } else {
+    std::filesystem::copy_file(task.step, folder / "part.step");
+  }
+  writeGeo(task, folder / "part.geo");
+  std::string said;
+  for (const Runner& runner : runnersFor(task, mesher, context.threads())) {
+    const ProgramEnd end = runProgram(runner.words, folder, context);
+    if (end.code == ProgramEnd::kNotFound || end.code == runner.codeIfMissing) {
+      said += end.said;
+      continue;
+    }
+    const std::string name =
+        runner.name.empty() ? end.said.substr(0, end.said.find('\n')) : runner.name;
+    return {readResult(runner, name, task, folder, end, context), name};
+  }
+  failWithoutMesher(task, mesher, said);
+}
+
+}  // namespace hexhex::fill
