@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
 MEASURED = re.compile(r"^ *(time|peak memory) ")
 
 
@@ -48,6 +49,7 @@ def main():
     environment = {**os.environ, "PATH": f"{command.parent}:{os.environ['PATH']}"}
     replaced, wrong, count = [], [], 0
     with tempfile.TemporaryDirectory(prefix="hexhex-samples-") as folder:
+        (pathlib.Path(folder) / "examples").symlink_to(EXAMPLES)
         for text, (begin, end) in samples(lines):
             run = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, check=False,
                                  capture_output=True, text=True)
