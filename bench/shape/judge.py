@@ -28,15 +28,14 @@ class Verdict:
 
 def integers(points):
     """The same points times a power of two, as Python's integers."""
-    _, exponents = np.frexp(points)
-    shift = 53 - int(exponents[points != 0].min(initial=53))
-    # Scaling a mantissa of 53 bits to an integer is exact; what is left of the shift is done to the integer.
-    mantissas = np.ldexp(points, 53 - exponents)
-    return np.vectorize(lambda m, e: int(m) << (int(e) - 53 + shift), otypes=[object])(mantissas, exponents)
+    ratios = [x.as_integer_ratio() for x in points.ravel().tolist()]
+    common = max(below for _, below in ratios)  # all of them are powers of two
+    return np.array([above * (common // below) for above, below in ratios], dtype=object).reshape(points.shape)
 
 
 def determinant(a, b, c):
-    return (a[..., 0] * (b[..., 1] * c[..., 2] - b[..., 2] * c[..., 1]) - a[..., 1] * (b[..., 0] * c[..., 2] - b[..., 2] * c[..., 0])
+    return (a[..., 0] * (b[..., 1] * c[..., 2] - b[..., 2] * c[..., 1])
+            - a[..., 1] * (b[..., 0] * c[..., 2] - b[..., 2] * c[..., 0])
             + a[..., 2] * (b[..., 0] * c[..., 1] - b[..., 1] * c[..., 0]))
 
 
