@@ -3,9 +3,9 @@
 
     PYTHONPATH=bench/improve bench/shape/parts.py HEXHEX FOLDER... [--cells 5000] [--method auto] [--only WORD] [--threads 1]
 
-Prints a row per file: tets, how the map was made, whether there is a certified mesh, its least and mean
-scaled Jacobian, distances between the boundaries in diagonals (both ways, by bench/improve/boundaries.py), the share of
-sharp edges that are edges of the map, and seconds; then how many there are of each. Needs numpy and scipy."""
+Prints a row per file: tets, how the map was made, cells, the least scaled Jacobian, distances between the boundaries in
+diagonals (both ways), the share of sharp edges that the mesh follows, all by bench/shape/judge.py, and seconds; then how many
+there are of each. Needs numpy and scipy."""
 import argparse
 import json
 import subprocess
@@ -14,10 +14,11 @@ import time
 from pathlib import Path
 
 import boundaries
+import judge
 
 FORMATS = {".hexex", ".mesh", ".msh", ".vtu", ".vtk", ".ovm"}
-HEAD = ("| part | tets | by | cells | minimum | mean | to the surface | from the surface | sharp edges | seconds |\n"
-        "|---|---:|---|---:|---:|---:|---:|---:|---:|---:|\n")
+HEAD = ("| part | tets | by | cells | minimum | to the surface | from the surface | sharp edges | seconds |\n"
+        "|---|---:|---|---:|---:|---:|---:|---:|---:|\n")
 
 
 def run(command, *arguments):
@@ -26,29 +27,23 @@ def run(command, *arguments):
     return made.returncode == 0, (made.stderr.strip().splitlines() or [""])[0].removeprefix("hexhex: error: ")
 
 
-def distances(command, folder):
-    run(command, "convert", folder / "mesh.vtu", folder / "mesh.mesh")
-    made = boundaries.hex_boundary(*boundaries.read_medit(folder / "mesh.mesh"))
-    return boundaries.distances(made, boundaries.tet_boundary(*boundaries.read_tets(folder / "map.hexex")))
-
-
 def row_of(file, options, folder):
     """A row, and what was reached: mapped, certified, good."""
     begin = time.monotonic()
-    done, said = run(options.command, "mesh", file, "-o", folder / "mesh.vtu", "--cells", options.cells, "--keep-map",
+    done, said = run(options.command, "mesh", file, "-o", folder / "mesh.mesh", "--cells", options.cells, "--keep-map",
                      folder / "map.hexex", "--report", folder / "report.json", "--threads", options.threads, "--method", options.method)
     seconds = time.monotonic() - begin
     if not done:
         mapped = run(options.command, "map", file, "-o", folder / "map.hexex", "--threads", options.threads, "--method", options.method)[0]
-        return f"| {file.stem} | {'mapped, but ' if mapped else ''}{said[:160]} | | | | | | | | {seconds:.0f} |\n", (mapped, False, False)
+        return f"| {file.stem} | {'mapped, but ' if mapped else ''}{said[:160]} | | | | | | | {seconds:.0f} |\n", (mapped, False, False)
     report = json.loads((folder / "report.json").read_text())
-    shape, quality = report["map"], report["improvement"]["after"]["quality"]
-    away = distances(options.command, folder)
-    sharp = f"{shape['tagged_edges']}/{shape['feature_edges']}"
-    row = (f"| {file.stem} | {report['part']['tets']} | {shape['method']}{'' if shape['labels']['valid'] else ' (labels not quite valid)'} "
-           f"| {report['mesh']['cells']} | {quality['minimum']:.3f} | {quality['mean']:.3f} | {away[0]:.1e} | {away[1]:.1e} "
-           f"| {sharp} | {seconds:.0f} |\n")
-    return row, (True, True, quality["minimum"] >= 0.2 and max(away) <= 5e-3)
+    shape = report["map"]
+    verdict = judge.judge(folder / "mesh.mesh", *boundaries.read_tets(folder / "map.hexex"))
+    by = shape["method"] + ("" if shape["labels"]["valid"] else " (labels not quite valid)")
+    row = (f"| {file.stem} | {report['part']['tets']} | {by} | {verdict.cells} | "
+           f"{f'{verdict.bad} cells not positive' if verdict.bad else f'{verdict.minimum:.3f}'} | {verdict.to_surface:.1e} | "
+           f"{verdict.from_surface:.1e} | {100 * verdict.followed:.0f} % | {seconds:.0f} |\n")
+    return row, (True, verdict.bad == 0, verdict.good())
 
 
 def main():

@@ -1,8 +1,12 @@
-"""A bearing bracket: a plate with two bolt holes, and an eye with a bore on it. Its blocks are those
-that a designer of meshes would draw, and they make an integer-grid map: each block has a chart of its
-own, in which it is a box of integers."""
+#!/usr/bin/env python3
+"""Writes examples/bracket.mesh, the tets of a bearing bracket: a plate with two bolt holes, and an eye with a bore on it.
+
+    docs/images/bracket.py examples/bracket.mesh
+"""
 
 import math
+import sys
+from pathlib import Path
 
 BORE, EYE, HEIGHT = 0.62, 1.15, 1.45  # radii of the eye, and how high its axis is over the plate
 HALF_DEPTH = 0.5  # of the eye
@@ -106,7 +110,7 @@ def through_layers(a, b, layers, along):
 
 
 class Bracket:
-    """Points and tets with parameters."""
+    """Points and tets."""
 
     def __init__(self):
         self.points, self.tets, self.number = [], [], {}
@@ -123,7 +127,7 @@ class Bracket:
     def add_block(self, at, counts):
         """Twelve tets for two by two by two hexahedra: around its centre, two for each face."""
         def corner(i, j, k):
-            return self.vertex(at(i / counts[0], j / counts[1], k / counts[2])), (i, j, k)
+            return self.vertex(at(i / counts[0], j / counts[1], k / counts[2]))
         for i in range(0, counts[0], 2):
             for j in range(0, counts[1], 2):
                 for k in range(0, counts[2], 2):
@@ -136,16 +140,18 @@ class Bracket:
                      (1, 5, 7, 3)):
             quad = [box[i] for i in face]
             # The diagonal from the smallest number is the same for both neighbours.
-            first = min(range(4), key=lambda i: quad[i][0])
+            first = quad.index(min(quad))
             quad = quad[first:] + quad[:first]
-            for triangle in ((quad[0], quad[2], quad[1]), (quad[0], quad[3], quad[2])):
-                corners = [center, *triangle]
-                self.tets.append(([c[0] for c in corners], [c[1] for c in corners]))
+            self.tets += [[center, quad[0], quad[2], quad[1]], [center, quad[0], quad[3], quad[2]]]
 
     def write(self, name):
-        """As a .hexex file."""
-        lines = [str(len(self.points)), *(" ".join(map(repr, p)) for p in self.points),
-                 str(len(self.tets))]
-        lines += [" ".join(map(str, vertices + [x for u in parameters for x in u]))
-                  for vertices, parameters in self.tets]
-        name.write_text("\n".join(lines) + "\n", encoding="ascii")
+        """As Medit's text."""
+        lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(self.points))]
+        lines += [" ".join(f"{x:.6g}" for x in point) + " 0" for point in self.points]
+        lines += ["Tetrahedra", str(len(self.tets))]
+        lines += [" ".join(str(v + 1) for v in tet) + " 0" for tet in self.tets]
+        name.write_text("\n".join([*lines, "End"]) + "\n", encoding="ascii")
+
+
+if __name__ == "__main__":
+    Bracket().write(Path(sys.argv[1]))

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Draws docs/images/overview.svg: a map, its integer grid, and its hexahedra.
+"""Draws docs/images/overview.svg: a part and its hexahedra.
 
     docs/images/draw_overview.py PATH-OF-HEXHEX > docs/images/overview.svg
 
-All three panels show a bearing bracket: its tets, coloured by the parameters of their charts; the
-lines where a parameter is an integer; the cells that hexhex extracts.
+Both panels show examples/bracket.mesh: its tets, and what `hexhex mesh` makes of them.
 """
 import math
 import subprocess
@@ -12,15 +11,16 @@ import sys
 import tempfile
 from pathlib import Path
 
-from bracket import Bracket
-from figure import Figure, boundary_triangles, dot, isolines, minus, read_map, read_mesh
+from figure import Figure, dot, minus, read_medit
 
 PANEL = 320
 HEIGHT = 250
 SIZE = 0.158 * PANEL  # of a unit
 CENTER = (0.0, 0.0, 0.85)
-TITLES = ("a map: tets with parameters", "its integer grid", "the hexahedra")
-TINT = ((228, 87, 86), (84, 162, 75), (76, 120, 168))  # of u, v, w
+TITLES = ("your part, as tets", "its hexahedra")
+PART = Path(__file__).resolve().parents[2] / "examples" / "bracket.mesh"
+TETS, HEXAHEDRA = (222, 226, 232), (180, 198, 218)
+TRIANGLES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
 QUADS = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 
 
@@ -32,6 +32,16 @@ def rotation(turn, tilt):
 
 VIEW = rotation(math.radians(-58), math.radians(24))
 LIGHT = (0.25, 0.55, 0.8)
+
+
+def boundary(points, cells, sides):
+    """Corners of faces of just one cell."""
+    found = {}
+    for cell in cells:
+        for side in sides:
+            vertices = [cell[i] for i in side]
+            found.setdefault(tuple(sorted(vertices)), []).append(vertices)
+    return [[points[v] for v in same[0]] for same in found.values() if len(same) == 1]
 
 
 def middle(points):
@@ -57,75 +67,35 @@ def lit(color, light):
     return "#" + "".join(f"{round(min(255, channel * light)):02x}" for channel in color)
 
 
-def blend(color, share):
-    return tuple(share * channel + (1 - share) * 255 for channel in color)
-
-
-def tint(parameters, scale):
-    """A mixture of the three colours, by the mean of a triangle's parameters."""
-    shares = [min(1.0, abs(sum(u[k] for u in parameters)) / 3 / scale) for k in range(3)]
-    return tuple(255 - sum(share * (255 - TINT[k][i]) for k, share in enumerate(shares)) / 1.4
-                 for i in range(3))
-
-
 def place(panel, point):
     x, y, _ = seen(minus(point, CENTER))
     return (PANEL * (panel + 0.5) + SIZE * x, 0.47 * HEIGHT - SIZE * y)
 
 
 def back_to_front(faces):
-    return sorted(faces, key=lambda face: seen(middle(face[0]))[2])
+    return sorted(faces, key=lambda face: seen(middle(face))[2])
 
 
-def tet_panels(figure, points, tets):
-    triangles = [([points[v] for v in vertices], u) for vertices, u in boundary_triangles(tets)]
-    scale = max(abs(x) for _, u in triangles for corner in u for x in corner)
-    for panel in (0, 1):
-        for corners, u in back_to_front(triangles):
+def draw(figure, panel, faces, color, outline, width):
+    with figure.outlined(outline, width):
+        for corners in back_to_front(faces):
             light = shade(corners)
-            if light is None:
-                continue
-            at = [place(panel, p) for p in corners]
-            color = tint(u, scale) if panel == 0 else (240, 243, 248)
-            edge = "#44546a" if panel == 0 else "#bcc6d4"
-            figure.polygon(at, lit(color, light), edge, 0.5)
-            if panel == 1:
-                for axis in range(3):
-                    for a, b in isolines(corners, u, axis):
-                        figure.line(place(1, a), place(1, b),
-                                    lit(TINT[axis], 0.9), 1.4)
-
-
-def hex_panel(figure, points, cells):
-    quads = {}
-    for cell in cells:
-        for quad in QUADS:
-            vertices = [cell[i] for i in quad]
-            quads.setdefault(tuple(sorted(vertices)), []).append(vertices)
-    outer = [([points[v] for v in same[0]], None) for same in quads.values() if len(same) == 1]
-    for corners, _ in back_to_front(outer):
-        light = shade(corners)
-        if light is not None:
-            figure.polygon([place(2, p) for p in corners],
-                           lit(blend(TINT[2], 0.42), light), "#22344d", 1.0)
+            if light is not None:
+                figure.fill([place(panel, p) for p in corners], lit(color, light))
 
 
 def main():
-    command = sys.argv[1]
     with tempfile.TemporaryDirectory() as folder:
-        map_file, mesh_file = Path(folder) / "map.hexex", Path(folder) / "mesh.mesh"
-        Bracket().write(map_file)
-        subprocess.run([command, "extract", map_file, "-o", mesh_file, "--quiet"], check=True)
-        points, tets = read_map(map_file)
-        hex_points, cells = read_mesh(mesh_file)
-    figure = Figure(3 * PANEL, HEIGHT + 10)
-    tet_panels(figure, points, tets)
-    hex_panel(figure, hex_points, cells)
+        target = Path(folder) / "mesh.mesh"
+        subprocess.run([sys.argv[1], "mesh", PART, "-o", target, "--cells", "2500", "--method", "polycube", "--quiet"], check=True)
+        panels = [boundary(*read_medit(file, kind), sides)
+                  for file, kind, sides in ((PART, "Tetrahedra", TRIANGLES), (target, "Hexahedra", QUADS))]
+    figure = Figure(2 * PANEL, HEIGHT + 10)
+    draw(figure, 0, panels[0], TETS, "#44546a", 0.5)
+    draw(figure, 1, panels[1], HEXAHEDRA, "#22344d", 0.8)
     for panel, title in enumerate(TITLES):
         figure.text((PANEL * (panel + 0.5), HEIGHT), title, 15)
-    for panel in (1, 2):
-        figure.arrow((PANEL * panel - 14, 0.3 * HEIGHT), (PANEL * panel + 14, 0.3 * HEIGHT),
-                     "#22344d", 3)
+    figure.arrow((PANEL - 14, 0.3 * HEIGHT), (PANEL + 14, 0.3 * HEIGHT), "#22344d", 3)
     print(figure.finish())
 
 

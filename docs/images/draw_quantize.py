@@ -12,7 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from figure import Figure, boundary_triangles, isolines, minus, read_map, read_mesh
+from figure import Figure, boundary_triangles, isolines, minus, read_map, read_medit
 
 PANEL = 240
 TITLES = ("a seamless map", "its motorcycle complex", "integers for its arcs", "the mesh")
@@ -117,7 +117,7 @@ def main():
                       ["extract", integer, "-o", mesh]):
             subprocess.run([command, *words, "--quiet"], check=True)
         figure = Figure(4 * PANEL, PANEL + 20)
-        draw(figure, seamless, integer, read_mesh(mesh))
+        draw(figure, seamless, integer, read_medit(mesh, "Hexahedra"))
     for panel, title in enumerate(TITLES):
         figure.text((PANEL * (panel + 0.5), PANEL + 10), title, 14)
     for panel in (1, 2, 3):

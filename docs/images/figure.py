@@ -1,5 +1,6 @@
 """What the scripts that draw figures share: reading maps and meshes, and SVG."""
 
+import contextlib
 import math
 
 
@@ -26,16 +27,16 @@ def read_map(name):
     return points, tets
 
 
-def read_mesh(name):
-    """Points and cells of a .mesh file."""
+def read_medit(name, kind):
+    """Points and cells of a .mesh file; the kind is Tetrahedra or Hexahedra."""
     with open(name, encoding="ascii") as file:
         words = file.read().split()
     at = words.index("Vertices") + 2
     count = int(words[at - 1])
     points = [tuple(map(float, words[at + 4 * i:at + 4 * i + 3])) for i in range(count)]
-    at = words.index("Hexahedra") + 2
+    at, corners = words.index(kind) + 2, 4 if kind == "Tetrahedra" else 8
     count = int(words[at - 1])
-    cells = [[int(word) - 1 for word in words[at + 9 * i:at + 9 * i + 8]] for i in range(count)]
+    cells = [[int(word) - 1 for word in words[at + (corners + 1) * i:at + (corners + 1) * i + corners]] for i in range(count)]
     return points, cells
 
 
@@ -82,6 +83,17 @@ class Figure:
         dashes = f' stroke-dasharray="{dash}"' if dash else ""
         self.lines.append(f'<line x1="{a[0]:.1f}" y1="{a[1]:.1f}" x2="{b[0]:.1f}" '
                           f'y2="{b[1]:.1f}" stroke="{stroke}" stroke-width="{width}"{dashes}/>')
+
+    @contextlib.contextmanager
+    def outlined(self, stroke, width):
+        """What is filled meanwhile has this outline."""
+        self.lines.append(f'<g stroke="{stroke}" stroke-width="{width}">')
+        yield
+        self.lines.append("</g>")
+
+    def fill(self, points, fill):
+        text = "L".join(f"{x:.1f} {y:.1f}" for x, y in points)
+        self.lines.append(f'<path d="M{text}z" fill="{fill}"/>')
 
     def dot(self, at, radius, fill, stroke="white", width=1.0):
         self.lines.append(f'<circle cx="{at[0]:.1f}" cy="{at[1]:.1f}" r="{radius}" fill="{fill}" '
