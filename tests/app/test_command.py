@@ -1497,6 +1497,55 @@ class Interruption(CommandTest):
         self.interrupt("hexhex: read mesh\n", "--scale", "2", "--stream")
 
 
+class Surfaces(CommandTest):
+    """PART as a surface; a shell script stands in for Python with a mesher."""
+
+    TET = "OFF 4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "part.off").write_text(self.TET)
+
+    def mesher(self, script):
+        """The environment in which that is the mesher."""
+        file = self.folder / "python"
+        file.write_text("#!/bin/sh\n" + script)
+        file.chmod(0o755)
+        return {**os.environ, "HEXHEX_PYTHON": str(file)}
+
+    def test_errors(self):
+        result = self.run_command("map", "part.off", "-o", "a.hexex", "--quiet", expect=INVALID_MAP,
+                                  env=self.mesher("echo Fake 1; echo no way; exit 1\n"))
+        self.assertIn("It said: Fake 1 | no way", result.stderr)
+        result = self.run_command("map", "part.off", "-o", "a.hexex", "--mesher", "tetwild",
+                                  expect=FILE_PROBLEM, env=self.mesher("exit 3\n"))
+        self.assertIn("`pip install pytetwild`", result.stderr)
+        (self.folder / "open.off").write_text(self.TET.replace("4 4 6", "4 3 6"))
+        self.assert_fails("mesh", "open.off", "-o", "a.vtu", expect=INVALID_MAP, code="NonManifoldEdge",
+                          words=["open.off: The surface is open: the edge from (1, 0, 0) to (0, 1, 0)"])
+
+    def test_mesher_ends_with_the_command(self):
+        for number in [signal.SIGINT, signal.SIGKILL]:
+            file = self.folder / "id"
+            file.unlink(missing_ok=True)
+            environment = self.mesher(f"echo $$ > '{file}.new'; mv '{file}.new' '{file}'; exec sleep 600\n")
+            with subprocess.Popen([self.command, "map", "part.off", "-o", "a.hexex", "--quiet"],
+                                  cwd=self.folder, env=environment, stderr=subprocess.DEVNULL) as process:
+                while not file.exists() and process.poll() is None:
+                    time.sleep(0.02)
+                process.send_signal(number)
+                process.wait(timeout=60)
+            # Gone, or waiting for somebody to note it.
+            status = pathlib.Path(f"/proc/{int(file.read_text())}/stat")
+            for _ in range(500):
+                if not status.exists() or status.read_text().rsplit(")", 1)[1].split()[0] == "Z":
+                    break
+                time.sleep(0.02)
+            else:
+                self.fail("the mesher runs on")
+            self.assertFalse((self.folder / "a.hexex").exists())
+
+
 class View(CommandTest):
     """The page of `hexhex view`, unpacked here on its own."""
 

@@ -27,6 +27,7 @@
 #include <io/medit/medit.hpp>
 #include <io/ovm/ovm.hpp>
 #include <io/solvers/solvers.hpp>
+#include <io/surface/surface.hpp>
 #include <io/vtk/vtk.hpp>
 
 #include "mutators.hpp"
@@ -89,6 +90,12 @@ void examine(const TetMap& map) {
   }
   for (const FeatureEdge& each : map.features.edges) requireVertices(each.vertices, points);
   for (const FeatureFace& each : map.features.faces) requireVertices(each.vertices, points);
+}
+
+void examine(const TriangleMesh& mesh) {
+  for (const auto& triangle : mesh.triangles) requireVertices(triangle, mesh.points.size());
+  const TriangleMesh joined = welded(mesh);
+  for (const auto& triangle : joined.triangles) requireVertices(triangle, joined.points.size());
 }
 
 void examine(const LagrangeMesh& mesh) {
@@ -161,6 +168,10 @@ constexpr std::array kReaders = {
     Reader{"inp-curved", read<parse<AbaqusFormat::readCurved>>},
     Reader{"exodus", read<parse<ExodusFormat::readMesh>>},
     Reader{"exodus-curved", read<parse<ExodusFormat::readCurved>>},
+    Reader{"stl", read<parse<readStl>>},
+    Reader{"obj", read<parse<readObj>>},
+    Reader{"off", read<parse<readOff>>},
+    Reader{"ply", read<parse<readPly>>},
     Reader{"gzip", read<parseGzip>},
     Reader{"ovm-map", read<parse<readOvmMap>>},
     Reader{"ovm-tets", read<parse<readOvmTets>>},
