@@ -31,8 +31,8 @@ struct MeshedPart {
 /// Calls mapFromTets(), quantize(), extract(), verify() and improve(). Where vertices on tagged
 /// edges keep cells from being positive, it improves the mesh again and takes these edges for
 /// others. With ShapeMethod::Auto it goes both ways, and keeps the mesh that is certified,
-/// and better by its least scaled Jacobian and its distance. Whether cells are positive in the end,
-/// improvement.after says.
+/// and better by its least scaled Jacobian, its distance and the curves that it follows. Whether
+/// cells are positive in the end, improvement.after says.
 /// @throws Error  as these functions; VerificationFailed if the mesh is not that of the map
 [[nodiscard]] MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options,
                                       Context& context);
