@@ -4,8 +4,8 @@
     PYTHONPATH=bench/improve bench/shape/parts.py HEXHEX FOLDER... [--cells 5000] [--method auto] [--only WORD] [--threads 1]
 
 Prints a row per file: tets, how the map was made, whether there is a certified mesh, its least and mean
-scaled Jacobian, distances between the boundaries in diagonals (both ways, by bench/improve/boundaries.py), the share of
-sharp edges that are edges of the map, and seconds; then how many there are of each. Needs numpy and scipy."""
+scaled Jacobian, distances between the boundaries in diagonals (both ways, by bench/improve/boundaries.py), the share of the
+length of sharp edges that edges of the mesh follow, and seconds; then how many there are of each. Needs numpy and scipy."""
 import argparse
 import json
 import subprocess
@@ -44,7 +44,8 @@ def row_of(file, options, folder):
     report = json.loads((folder / "report.json").read_text())
     shape, quality = report["map"], report["improvement"]["after"]["quality"]
     away = distances(options.command, folder)
-    sharp = f"{shape['tagged_edges']}/{shape['feature_edges']}"
+    curves = report["improvement"]
+    sharp = f"{100 * curves['curves_followed']:.1f} %" if curves["curve_length"] > 0 else "none"
     row = (f"| {file.stem} | {report['part']['tets']} | {shape['method']}{'' if shape['labels']['valid'] else ' (labels not quite valid)'} "
            f"| {report['mesh']['cells']} | {quality['minimum']:.3f} | {quality['mean']:.3f} | {away[0]:.1e} | {away[1]:.1e} "
            f"| {sharp} | {seconds:.0f} |\n")
