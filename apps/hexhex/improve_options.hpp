@@ -9,7 +9,7 @@
 
 namespace hexhex::command {
 
-/// Adds --target, --passes, --fix-boundary, --feature-angle, --slack and --pillow.
+/// Adds --target, --passes, --fix-boundary, --feature-angle, --slack, --pillow and --snap-curves.
 /// @return all of them
 std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& options);
 

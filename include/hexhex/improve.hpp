@@ -84,10 +84,10 @@ struct ImproveReport {
   /// Vertices that left creases where nothing else made cells positive. Creases are curves that
   /// have no tag, and on both sides of which the surface goes on.
   std::uint64_t offCreases = 0;
-  /// Of a pillow: they are last in the mesh, and so are their vertices. In `before`, they are
-  /// missing.
+  /// Of a pillow, and of layers beside curves: they are last in the mesh, and so are their
+  /// vertices. In `before`, they are missing.
   std::uint64_t addedCells = 0;
-  Array<Vec3> addedPoints;  ///< its vertices, where they were put before they moved
+  Array<Vec3> addedPoints;  ///< their vertices, where they were put before they moved
   /// Curves of the object: its sharp and its tagged edges.
   double curveLength = 0;           ///< in diagonals
   double curvesFollowed = 1;        ///< share of it near which edges of the mesh run along, 0 to 1
