@@ -7,8 +7,8 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test::vtk_legacy {
 
