@@ -121,6 +121,9 @@ class CellCounts {
   /// "; it holds 1 prism and 8 hexahedra with 27 nodes", to end errors of files without cells of a
   /// kind; empty for a file without any.
   [[nodiscard]] std::string instead() const;
+  /// A sentence, to follow that, for who wants straight hexahedra; empty for a file without
+  /// hexahedra of order 2.
+  [[nodiscard]] std::string adviceOnCurved() const;
 
  private:
   [[nodiscard]] std::string text() const;

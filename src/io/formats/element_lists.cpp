@@ -32,11 +32,11 @@ bool isCurvedHexahedron(const ElementBlock& block) {
          block.type->plural.starts_with("hexahedra");
 }
 
-[[noreturn]] void failWithout(const CellKind& kind, const ElementLists& lists, const Input& input) {
+[[noreturn]] void failWithout(const CellKind& kind, const Input& input) {
   std::string sentence = input.name() + ": the file holds no " + std::string(kind.plural) +
                          " with " + std::to_string(kind.corners) + " nodes" +
                          input.counts()->instead() + ".";
-  if (kind.corners == 8 && areCurved(lists)) sentence += std::string(kHowCurvedCellsAreRead);
+  if (kind.corners == 8) sentence += input.counts()->adviceOnCurved();
   throw Error(ErrorCode::FileUnsupported, sentence);
 }
 
@@ -57,7 +57,7 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
     mesh.regions.insert(mesh.regions.end(), block.regions.begin(), block.regions.end());
     block.nodes = {};  // its memory is free again
   }
-  if (mesh.cells.empty()) failWithout(kKind, lists, input);
+  if (mesh.cells.empty()) failWithout(kKind, input);
   const auto isZero = [](std::int32_t region) { return region == 0; };
   if (std::all_of(mesh.regions.begin(), mesh.regions.end(), isZero)) mesh.regions.clear();
   mesh.points = std::move(lists.points);

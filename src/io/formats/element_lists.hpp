@@ -72,11 +72,6 @@ struct ElementLists {
 void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std::size_t>& cells,
                 const std::string& fileName);
 
-/// The end of errors of those who read straight hexahedra.
-inline constexpr std::string_view kHowCurvedCellsAreRead =
-    " Cells of order 2 are curved: `hexhex view` and `hexhex improve` read them, and `hexhex "
-    "convert` writes them as .vtu, .msh or MFEM .mesh.";
-
 /// Of a mesh whose cells list their nodes in VTK's order: puts them in that of LagrangeMesh, and
 /// vertices in front of other nodes.
 void fromVtkOrder(LagrangeMesh& mesh, Stage& stage);

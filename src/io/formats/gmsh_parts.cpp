@@ -67,6 +67,10 @@ struct PartitionEntity {
   Vec3 high;
 };
 
+/// Numbers of GmshSums::packed(): those of an entity, and others.
+constexpr std::size_t kOfEntity = 10;
+constexpr std::size_t kOthers = 6;
+
 /// How much there is in a file, or of one part.
 struct GmshSums {
   std::uint64_t nodeBlocks = 0;
@@ -78,10 +82,43 @@ struct GmshSums {
   std::vector<PartitionEntity> entities;
 
   /// Those of the next part.
-  void add(const GmshSums& part);
+  void add(const GmshSums& part) {
+    nodeBlocks += part.nodeBlocks;
+    nodes += part.nodes;
+    elementBlocks += part.elementBlocks;
+    elements += part.elements;
+    ghosts += part.ghosts;
+    largestElement = std::max(largestElement, part.largestElement);
+    entities.insert(entities.end(), part.entities.begin(), part.entities.end());
+  }
   /// As numbers, and back from them.
-  [[nodiscard]] std::vector<std::uint64_t> packed() const;
-  static GmshSums unpacked(std::span<const std::uint64_t> numbers);
+  [[nodiscard]] std::vector<std::uint64_t> packed() const {
+    std::vector<std::uint64_t> numbers = {nodeBlocks, nodes,  elementBlocks,
+                                          elements,   ghosts, largestElement};
+    for (const PartitionEntity& entity : entities) {
+      numbers.insert(numbers.end(), {entity.dimension, entity.tag, entity.parent, entity.part});
+      for (const Vec3& point : {entity.low, entity.high}) {
+        for (const double x : point) numbers.push_back(std::bit_cast<std::uint64_t>(x));
+      }
+    }
+    return numbers;
+  }
+  static GmshSums unpacked(std::span<const std::uint64_t> numbers) {
+    GmshSums sums{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], {}};
+    for (std::size_t i = kOthers; i < numbers.size(); i += kOfEntity) {
+      const auto integer = [&](std::size_t k) {
+        return static_cast<std::uint32_t>(numbers[i + k]);
+      };
+      const auto pointAt = [&](std::size_t k) {
+        return Vec3{std::bit_cast<double>(numbers[i + k]),
+                    std::bit_cast<double>(numbers[i + k + 1]),
+                    std::bit_cast<double>(numbers[i + k + 2])};
+      };
+      sums.entities.push_back(
+          {integer(0), integer(1), integer(2), integer(3), pointAt(4), pointAt(7)});
+    }
+    return sums;
+  }
 };
 
 /// What one part adds to a file.
@@ -130,21 +167,10 @@ class GmshNumbers {
   std::uint64_t nextQuad_;
 };
 
-/// @param onlyOwned  whether vertices that another part owns are left out, and ghosts' elements
-[[nodiscard]] PartSections gmshSectionsOf(const MeshPart& part, const MeshGroups& groups,
-                                          GmshNumbers& numbers, bool onlyOwned);
-
-// What is between the sections of parts.
-[[nodiscard]] std::string gmshHead(const GmshNumbers& numbers, const PartsInfo& info,
-                                   const GmshSums& sums);
-[[nodiscard]] std::string gmshElementsHead(const GmshSums& sums);
-[[nodiscard]] std::string gmshGhostsHead(const GmshSums& sums);
-[[nodiscard]] std::string gmshEnd(const GmshSums& sums);
-
 /// Makes the sections of one part.
 class SectionMaker {
  public:
-  /// @param onlyOwned  whether vertices that another part owns are left out
+  /// @param onlyOwned  whether vertices that another part owns are left out, and ghosts' elements
   SectionMaker(const MeshPart& part, const MeshGroups& groups, GmshNumbers& numbers, bool onlyOwned)
       : part_(part), groups_(groups), numbers_(numbers), onlyOwned_(onlyOwned) {}
 
@@ -267,50 +293,7 @@ class SectionMaker {
   PartSections sections_;
 };
 
-/// Numbers of packed(): those of an entity, and others.
-constexpr std::size_t kOfEntity = 10;
-constexpr std::size_t kOthers = 6;
-
-void GmshSums::add(const GmshSums& part) {
-  nodeBlocks += part.nodeBlocks;
-  nodes += part.nodes;
-  elementBlocks += part.elementBlocks;
-  elements += part.elements;
-  ghosts += part.ghosts;
-  largestElement = std::max(largestElement, part.largestElement);
-  entities.insert(entities.end(), part.entities.begin(), part.entities.end());
-}
-
-std::vector<std::uint64_t> GmshSums::packed() const {
-  std::vector<std::uint64_t> numbers = {nodeBlocks, nodes,  elementBlocks,
-                                        elements,   ghosts, largestElement};
-  for (const PartitionEntity& entity : entities) {
-    numbers.insert(numbers.end(), {entity.dimension, entity.tag, entity.parent, entity.part});
-    for (const Vec3& point : {entity.low, entity.high}) {
-      for (const double x : point) numbers.push_back(std::bit_cast<std::uint64_t>(x));
-    }
-  }
-  return numbers;
-}
-
-GmshSums GmshSums::unpacked(std::span<const std::uint64_t> numbers) {
-  GmshSums sums{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], {}};
-  for (std::size_t i = kOthers; i < numbers.size(); i += kOfEntity) {
-    const auto integer = [&](std::size_t k) { return static_cast<std::uint32_t>(numbers[i + k]); };
-    const auto pointAt = [&](std::size_t k) {
-      return Vec3{std::bit_cast<double>(numbers[i + k]), std::bit_cast<double>(numbers[i + k + 1]),
-                  std::bit_cast<double>(numbers[i + k + 2])};
-    };
-    sums.entities.push_back(
-        {integer(0), integer(1), integer(2), integer(3), pointAt(4), pointAt(7)});
-  }
-  return sums;
-}
-
-PartSections gmshSectionsOf(const MeshPart& part, const MeshGroups& groups, GmshNumbers& numbers,
-                            bool onlyOwned) {
-  return SectionMaker(part, groups, numbers, onlyOwned).make();
-}
+// What is between the sections of parts.
 
 std::string gmshHead(const GmshNumbers& numbers, const PartsInfo& info, const GmshSums& sums) {
   GmshBytes bytes;
@@ -415,7 +398,7 @@ class GmshSink : public PartSink {
   [[nodiscard]] PartSections sectionsOf(const MeshPart& part, bool onlyOwned, Stage& stage) {
     const MeshGroups groups = groupPart(part, info_, stage);
     if (team_ != nullptr) passQuadsBefore(groups.quads.elements.size());
-    return gmshSectionsOf(part, groups, *numbers_, onlyOwned);
+    return SectionMaker(part, groups, *numbers_, onlyOwned).make();
   }
   Context& context_;
   ProcessTeam* team_;

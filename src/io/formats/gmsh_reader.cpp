@@ -1,6 +1,8 @@
-// Reads `.msh` files as a whole (see formats.hpp): their sections, in order.
+// Reads `.msh` files (see formats.hpp): their sections, in order; binary ones of version 4.1 also
+// piece by piece.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -16,6 +18,7 @@
 #include <io/core/cell_counts.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/number_source.hpp>
+#include <io/core/plain_mesh.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/gmsh_elements.hpp>
@@ -440,6 +443,172 @@ HexMesh readGmsh(const Input& input, Context& context) {
 
 TetCells readGmshTets(const Input& input, Context& context) {
   return readWith<GmshReader<4>>(input, "read tets", context, input.counts());
+}
+
+namespace {
+
+// Binary `.msh` files of version 4.1 piece by piece.
+
+constexpr RecordShape kTag{.sizes = 1};
+constexpr RecordShape kPoint{.reals = 3};
+
+/// How many nodes elements of a type have: of those that this library writes.
+std::size_t nodesOf(std::int64_t type) {
+  constexpr std::array<std::array<std::int64_t, 2>, 4> kNodes = {
+      {{kGmshPoint, 1}, {kGmshLine, 2}, {kGmshQuad, 4}, {kGmshHexahedron, 8}}};
+  for (const auto& [known, nodes] : kNodes) {
+    if (type == known) return static_cast<std::size_t>(nodes);
+  }
+  return 0;
+}
+
+/// A file with one block of nodes, which are numbered from 1, and one of hexahedra, as this library
+/// writes them.
+class GmshPieces {
+ public:
+  GmshPieces(const InputFile& file, const std::string& name, Context& context)
+      : quiet_(context.threads()),
+        stage_(quiet_, "read"),
+        words_(file, name, context, TextWindow::kWords),
+        bytes_(file, name),
+        source_(bytes_, 0, stage_) {}
+
+  /// @return whether the file is of the form
+  [[nodiscard]] bool look() {
+    if (!lookAtFormat()) return false;
+    for (std::string word = words_.token(); !word.empty(); word = words_.token()) {
+      if (word == "$Nodes") {
+        if (layout.points.position != 0 || !lookInside([this] { return lookAtNodes(); }))
+          return false;
+      } else if (word == "$Elements") {
+        if (layout.cells.position != 0 || !lookInside([this] { return lookAtElements(); }))
+          return false;
+      } else if (word == "$Entities") {
+        if (!lookInside([this] { return skipEntities(); })) return false;
+      } else if (word != "$PhysicalNames") {
+        return false;
+      }
+      const std::string end = "$End" + word.substr(1);
+      for (word = words_.token(); word != end; word = words_.token()) {
+        if (word.empty()) return false;
+      }
+    }
+    return layout.isComplete();
+  }
+
+  PlainLayout layout{.integerBytes = 8, .inFrontOfCell = 1};
+
+ private:
+  /// The section $MeshFormat.
+  [[nodiscard]] bool lookAtFormat() {
+    for (const char* const expected : {"$MeshFormat", "4.1", "1", "8"}) {
+      if (words_.token() != expected) return false;
+    }
+    return lookInside([this] { return source_.integer("the mark of the byte order") == 1; }) &&
+           words_.token() == "$EndMeshFormat";
+  }
+
+  /// Reads what begins on the next line, and goes on behind it.
+  template <class Look>
+  [[nodiscard]] bool lookInside(const Look& look) {
+    if (!words_.skipLineBreak()) return false;
+    source_.moveTo(words_.position());
+    if (!look()) return false;
+    words_.moveTo(source_.position());
+    return true;
+  }
+
+  /// Only groups of whole elements are told by entities, which pieces do not carry.
+  [[nodiscard]] bool skipEntities() {
+    std::array<std::uint64_t, 4> counts{};
+    for (std::uint64_t& count : counts) count = source_.size("the number of entities");
+    for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
+      for (std::uint64_t i = 0; i < counts[dimension]; ++i) {
+        static_cast<void>(source_.integer("the tag of an entity"));
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) {
+          static_cast<void>(source_.real("a coordinate of an entity"));
+        }
+        if (!skipList() || (dimension > 0 && !skipList())) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool skipList() {
+    return skip(source_.size("the length of a list"), {.integers = 1});
+  }
+
+  [[nodiscard]] bool skip(std::uint64_t n, RecordShape shape) {
+    if (n > source_.room(shape)) return false;
+    source_.skip(static_cast<std::size_t>(n), shape);
+    return true;
+  }
+
+  [[nodiscard]] bool lookAtNodes() {
+    const std::uint64_t blocks = source_.size("the number of blocks");
+    const std::uint64_t points = source_.size("the number of nodes");
+    if (blocks != 1 || !skip(2, kTag)) return false;
+    const bool isOfVolume = source_.integer("the dimension of an entity") == 3;
+    static_cast<void>(source_.integer("the tag of an entity"));
+    const bool hasParameters = source_.integer("whether nodes have parameters") != 0;
+    if (!isOfVolume || hasParameters || source_.size("the number of nodes of a block") != points)
+      return false;
+    if (points > source_.room(kTag) || !areNumbered(points)) return false;
+    layout.points = {source_.position(), points};
+    return skip(points, kPoint);
+  }
+
+  /// Whether the tags that come next are 1, 2, 3, ...
+  [[nodiscard]] bool areNumbered(std::uint64_t points) {
+    std::atomic<bool> all{true};
+    for (std::uint64_t first = 0; first < points && all; first += kPieceElements) {
+      source_.records(std::min<std::uint64_t>(kPieceElements, points - first), kTag,
+                      [&](BinaryRecord& record, std::size_t i) {
+                        if (record.size("the tag of a node") != first + i + 1) all = false;
+                      });
+    }
+    return all;
+  }
+
+  [[nodiscard]] bool lookAtElements() {
+    const std::uint64_t blocks = source_.size("the number of blocks");
+    std::uint64_t left = source_.size("the number of elements");
+    if (!skip(2, kTag)) return false;
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+      const std::int64_t dimension = source_.integer("the dimension of an entity");
+      static_cast<void>(source_.integer("the tag of an entity"));
+      const std::int64_t type = source_.integer("the type of elements");
+      const std::uint64_t count = source_.size("the number of elements of a block");
+      const std::size_t nodes = nodesOf(type);
+      if (count > left) return false;
+      left -= count;
+      if (type == kGmshHexahedron) {
+        if (layout.cells.position != 0 || dimension != 3) return false;
+        layout.cells = {source_.position(), count};
+      }
+      if (nodes == 0 || !skip(count, {.sizes = 1 + nodes})) return false;
+    }
+    return left == 0;
+  }
+
+  Context quiet_;
+  Stage stage_;
+  TextWindow words_;
+  ByteFile bytes_;
+  BinarySource source_;
+};
+
+std::optional<PlainLayout> lookAtGmsh(const InputFile& file, const std::string& name,
+                                      Context& context) {
+  GmshPieces pieces(file, name, context);
+  if (!pieces.look()) return {};
+  return pieces.layout;
+}
+
+}  // namespace
+
+void readGmshTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({lookAtGmsh, readGmsh}, sink, input, context);
 }
 
 }  // namespace hexhex::io

@@ -3,8 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,86 +25,54 @@ namespace hexhex::io {
 
 namespace {
 
-/// Writes one file front to back.
+/// Writes what all files have.
 class MfemWriter {
  public:
-  MfemWriter(const std::filesystem::path& file, int threads)
-      : output_(file), lines_(output_, threads), threads_(threads) {}
+  MfemWriter(OutputFile& output, int threads) : output_(output), lines_(output, threads) {}
 
-  /// What all files begin with: cells and quads by their vertices, with attributes.
-  /// @param more  lines that follow
-  void writeElements(const HexMesh& mesh, double patchAngle, std::size_t more, Stage& stage) {
-    QuadGroups quads;
-    withThreads(threads_, [&] { quads = groupQuads(mesh, patchAngle, stage); });
-    const Array<std::uint32_t> attributes = groupNumbers(quads.groups);
-    const Array<std::uint32_t> regions = cellReferences(mesh);  // empty: all are 1
-    progress_.emplace(stage, mesh.cells.size() + quads.elements.size() + more);
-    output_.write("MFEM mesh v1.0\n\ndimension\n3\n\nelements\n");
-    output_.write(mesh.cells.size()).write('\n');
+  /// Cells and quads by their vertices, with attributes.
+  /// @param regions  of the cells; empty: all are 1
+  /// @param progress  may be null
+  void writeElements(std::string_view version, std::span<const Hex> cells,
+                     std::span<const std::uint32_t> regions, const QuadGroups& quads,
+                     LoopProgress* progress) {
+    output_.write("MFEM mesh ").write(version).write("\n\ndimension\n3\n\nelements\n");
+    output_.write(cells.size()).write('\n');
     const auto cell = [&](char* place, std::size_t i) {
       place = put(put(place, regions.empty() ? 1U : regions[i]), " 5 ");  // 5: a cube
-      return put(putNumbers(place, mesh.cells[i]), '\n');
+      return put(putNumbers(place, cells[i]), '\n');
     };
-    lines_.write(mesh.cells.size(), 10 * (kNumberRoom + 1), cell, &*progress_);
+    lines_.write(cells.size(), 10 * (kNumberRoom + 1), cell, progress);
     output_.write("\nboundary\n").write(quads.elements.size()).write('\n');
-    const auto quad = [&](char* place, std::size_t i) {
-      place = put(put(place, attributes[i]), " 3 ");  // 3: a square
-      return put(putNumbers(place, quads.elements[i]), '\n');
-    };
-    lines_.write(quads.elements.size(), 6 * (kNumberRoom + 1), quad, &*progress_);
+    for (const ElementGroup& group : quads.groups) {
+      const auto quad = [&](char* place, std::size_t i) {
+        place = put(put(place, group.number), " 3 ");  // 3: a square
+        return put(putNumbers(place, quads.elements[group.begin + i]), '\n');
+      };
+      lines_.write(group.end - group.begin, 6 * (kNumberRoom + 1), quad, progress);
+    }
+    output_.write("\nvertices\n");
   }
-
-  [[nodiscard]] OutputFile& output() noexcept { return output_; }
-
   /// @param pointAt  of n points
   template <class F>
-  void writePoints(std::size_t n, const F& pointAt) {
+  void writePoints(std::size_t n, const F& pointAt, LoopProgress* progress) {
     const auto point = [&](char* place, std::size_t i) {
       return put(putNumbers(place, pointAt(i)), '\n');
     };
-    lines_.write(n, 3 * (kNumberRoom + 1), point, &*progress_);
-    output_.commit();
+    lines_.write(n, 3 * (kNumberRoom + 1), point, progress);
   }
 
  private:
-  OutputFile output_;
+  OutputFile& output_;
   LineWriter lines_;
-  int threads_;
-  std::optional<LoopProgress> progress_;
 };
 
-}  // namespace
-
-void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-               Context& context) {
-  Stage stage(context, "write mesh");
-  MfemWriter writer(file, context.threads());
-  writer.writeElements(mesh, options.patchAngle, mesh.points.size(), stage);
-  writer.output().write("\nvertices\n").write(mesh.points.size()).write("\n3\n");
-  writer.writePoints(mesh.points.size(),
-                     [&](std::size_t i) -> const Vec3& { return mesh.points[i]; });
+QuadGroups quadsOfWhole(const HexMesh& mesh, const WriteOptions& options, Stage& stage) {
+  QuadGroups quads;
+  withThreads(stage.context().threads(),
+              [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
+  return quads;
 }
-
-void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                       const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  MfemWriter writer(file, context.threads());
-  const HexMesh straight = straightMesh(mesh);
-  writer.writeElements(straight, options.patchAngle, mesh.nodes.size(), stage);
-  // L2_T4: polynomials on each cell, given by their values at equidistant nodes, x first: the order
-  // of LagrangeMesh. Ordering 1: all coordinates of one node together.
-  OutputFile& output = writer.output();
-  output.write("\nvertices\n").write(straight.points.size());
-  output.write("\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: L2_T4_3D_P");
-  output.write(static_cast<unsigned>(mesh.order)).write("\nVDim: 3\nOrdering: 1\n\n");
-  writer.writePoints(mesh.nodes.size(),
-                     [&](std::size_t i) -> const Vec3& { return mesh.points[mesh.nodes[i]]; });
-}
-
-namespace {
-
-// MFEM's parallel mesh files, `NAME.000000` and so on, v1.2: a serial mesh for each part, and the
-// vertices, edges and faces that it shares, by the group of parts that share them.
 
 /// Parts that share something, ascending; at least two.
 using PartGroup = std::vector<std::uint32_t>;
@@ -183,6 +152,8 @@ class SharedByGroup {
   std::map<PartGroup, SharedElements> groups_;
 };
 
+/// A serial mesh for each part, and the vertices, edges and faces that it shares, by the group of
+/// parts that share them.
 class MfemSink final : public PartSink {
  public:
   MfemSink(std::filesystem::path file, Context& context, ProcessTeam* team)
@@ -210,32 +181,15 @@ class MfemSink final : public PartSink {
  private:
   void writeSerial(OutputFile& output, const MeshPart& part, Stage& stage) const {
     const MeshGroups groups = groupPart(part, info_, stage);
-    LineWriter lines(output, context_.threads());
-    std::vector<std::uint32_t> attributes(part.ownCells, 1);
-    for (const ElementGroup& group : groups.cells.groups) {
-      for (std::size_t i = group.begin; i < group.end; ++i) {
-        attributes[groups.cells.at(i)] = group.number;
-      }
-    }
-    output.write("MFEM mesh v1.2\n\ndimension\n3\n\nelements\n").write(part.ownCells).write('\n');
-    const auto cell = [&](char* place, std::size_t i) {
-      place = put(put(place, attributes[i]), " 5 ");  // 5: a cube
-      return put(putNumbers(place, part.mesh.cells[i]), '\n');
-    };
-    lines.write(part.ownCells, 10 * (kNumberRoom + 1), cell, nullptr);
-    output.write("\nboundary\n").write(groups.quads.elements.size()).write('\n');
-    for (const ElementGroup& group : groups.quads.groups) {
-      const auto quad = [&](char* place, std::size_t i) {
-        place = put(put(place, group.number), " 3 ");  // 3: a square
-        return put(putNumbers(place, groups.quads.elements[group.begin + i]), '\n');
-      };
-      lines.write(group.end - group.begin, 6 * (kNumberRoom + 1), quad, nullptr);
-    }
-    output.write("\nvertices\n").write(part.ownPoints).write("\n3\n");
-    const auto point = [&](char* place, std::size_t i) {
-      return put(putNumbers(place, part.mesh.points[i]), '\n');
-    };
-    lines.write(part.ownPoints, 3 * (kNumberRoom + 1), point, nullptr);
+    const Array<std::uint32_t> numbers = groupNumbers(groups.cells.groups);
+    std::vector<std::uint32_t> regions(part.ownCells, 1);
+    for (std::size_t i = 0; i < numbers.size(); ++i) regions[groups.cells.at(i)] = numbers[i];
+    MfemWriter writer(output, context_.threads());
+    writer.writeElements("v1.2", std::span<const Hex>(part.mesh.cells).first(part.ownCells),
+                         regions, groups.quads, nullptr);
+    output.write(part.ownPoints).write("\n3\n");
+    writer.writePoints(
+        part.ownPoints, [&](std::size_t i) -> const Vec3& { return part.mesh.points[i]; }, nullptr);
     output.write("\nmfem_serial_mesh_end\n");
   }
 
@@ -282,6 +236,40 @@ class MfemSink final : public PartSink {
 };
 
 }  // namespace
+
+void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+               Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile output(file);
+  MfemWriter writer(output, context.threads());
+  const QuadGroups quads = quadsOfWhole(mesh, options, stage);
+  LoopProgress progress(stage, mesh.cells.size() + quads.elements.size() + mesh.points.size());
+  writer.writeElements("v1.0", mesh.cells, cellReferences(mesh), quads, &progress);
+  output.write(mesh.points.size()).write("\n3\n");
+  writer.writePoints(
+      mesh.points.size(), [&](std::size_t i) -> const Vec3& { return mesh.points[i]; }, &progress);
+  output.commit();
+}
+
+void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  MfemWriter writer(output, context.threads());
+  const HexMesh straight = straightMesh(mesh);
+  const QuadGroups quads = quadsOfWhole(straight, options, stage);
+  LoopProgress progress(stage, straight.cells.size() + quads.elements.size() + mesh.nodes.size());
+  writer.writeElements("v1.0", straight.cells, cellReferences(straight), quads, &progress);
+  // L2_T4: polynomials on each cell, given by their values at equidistant nodes, x first: the order
+  // of LagrangeMesh. Ordering 1: all coordinates of one node together.
+  output.write(straight.points.size());
+  output.write("\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: L2_T4_3D_P");
+  output.write(static_cast<unsigned>(mesh.order)).write("\nVDim: 3\nOrdering: 1\n\n");
+  writer.writePoints(
+      mesh.nodes.size(), [&](std::size_t i) -> const Vec3& { return mesh.points[mesh.nodes[i]]; },
+      &progress);
+  output.commit();
+}
 
 std::unique_ptr<PartSink> openMfemPartSink(const std::filesystem::path& file,
                                            const WriteOptions& /*options*/, Context& context,

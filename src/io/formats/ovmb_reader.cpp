@@ -45,7 +45,12 @@ struct OvmbSpan {
   std::uint64_t first = 0;
   std::uint64_t count = 0;
 };
-[[nodiscard]] OvmbSpan readOvmbSpan(ByteCursor& cursor);
+OvmbSpan readOvmbSpan(ByteCursor& cursor) {
+  OvmbSpan span;
+  span.first = cursor.read<std::uint64_t>("a span of elements");
+  span.count = cursor.read<std::uint32_t>("a span of elements");
+  return span;
+}
 
 /// Decodes points that are stored as three floats or doubles each.
 /// @return the first that is not finite, or their number
@@ -61,11 +66,6 @@ std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& st
       },
       std::size_t{1} << 14);
 }
-
-/// Decodes all VERT and TOPO chunks: any encoding of numbers, handles and valences, any number of
-/// spans. Handles are in range afterwards; nothing else about the topology is checked.
-/// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
-void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage);
 
 // Vertices, edges, faces and cells of an `.ovmb` file (see ovmb_reader.hpp).
 
@@ -319,13 +319,9 @@ class ElementReader {
   Array<std::uint32_t> valences_;  ///< if they vary
 };
 
-OvmbSpan readOvmbSpan(ByteCursor& cursor) {
-  OvmbSpan span;
-  span.first = cursor.read<std::uint64_t>("a span of elements");
-  span.count = cursor.read<std::uint32_t>("a span of elements");
-  return span;
-}
-
+/// Decodes all VERT and TOPO chunks: any encoding of numbers, handles and valences, any number of
+/// spans. Handles are in range afterwards; nothing else about the topology is checked.
+/// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
 void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage) {
   ElementReader reader(frame, mesh, stage);
   for (const OvmbChunk& chunk : frame.chunks) {

@@ -149,6 +149,12 @@ void forEachBlock(Stage& stage, std::size_t n, const F& f) {
     f(begin, std::min(begin + kVtkReaderGrain, n), begin / kVtkReaderGrain);  // throws again
 }
 
+/// Voxels are hexahedra that list the corners of both layers row by row instead of all around.
+constexpr std::int64_t kVtkVoxel = 11;
+bool isOfKind(std::int64_t type, const CellKind& kind) {
+  return type == kind.vtkType || (type == kVtkVoxel && kind.vtkType == kCellKind<8>.vtkType);
+}
+
 /// Types of consecutive cells, and where their corners are.
 class CellTable {
  public:
@@ -170,7 +176,8 @@ class CellTable {
     source.copy(source.offsets, first - before, count + before, places_.data() + 1 - before);
   }
 
-  [[nodiscard]] bool isWanted(std::size_t i) const { return types_[i] == wanted_.vtkType; }
+  [[nodiscard]] bool isWanted(std::size_t i) const { return isOfKind(types_[i], wanted_); }
+  [[nodiscard]] bool isVoxel(std::size_t i) const { return types_[i] == kVtkVoxel; }
   [[nodiscard]] std::uint64_t begin(std::size_t i) const {
     return static_cast<std::uint64_t>(places_[i]) + source_.gap;
   }
@@ -222,12 +229,12 @@ bool copyVertices(const VtkSource& source, std::size_t corners, std::uint64_t be
   if (source.gap == 0) {
     source.copy(source.connectivity, begin, vertices.size(), vertices.data());
   } else {
-    constexpr std::size_t kCells = 512;  // whose numbers stay in the cache
+    constexpr std::size_t kCellsAtOnce = 512;  // whose numbers stay in the cache
     const std::size_t each = corners + source.gap;
-    Array<Index> numbers(each * kCells);
+    Array<Index> numbers(each * kCellsAtOnce);
     Index* to = vertices.data();
     for (std::size_t left = vertices.size() / corners; left > 0;) {
-      const std::size_t cells = std::min(kCells, left);
+      const std::size_t cells = std::min(kCellsAtOnce, left);
       source.copy(source.connectivity, begin, each * cells - source.gap, numbers.data());
       for (std::size_t cell = 0; cell < cells; ++cell) {
         const Index* const from = numbers.data() + each * cell;
@@ -384,7 +391,8 @@ std::size_t countVtkCells(const VtkSource& source, const CellKind& cells, std::u
                           std::size_t count) {
   Array<std::int64_t> types(count);
   source.copy(source.types, first, count, types.data());
-  return static_cast<std::size_t>(std::count(types.begin(), types.end(), cells.vtkType));
+  return static_cast<std::size_t>(std::count_if(
+      types.begin(), types.end(), [&cells](std::int64_t type) { return isOfKind(type, cells); }));
 }
 
 template <class Vertex>
@@ -400,7 +408,11 @@ void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
     const std::size_t size = cells.corners * (end - i);
     if (end > i)
       readRun(source, cells.corners, first + i, table.begin(i), std::span(vertices, size));
-    vertices += size;
+    for (std::size_t k = i; k < end; ++k, vertices += cells.corners) {
+      if (!table.isVoxel(k)) continue;
+      std::swap(vertices[2], vertices[3]);
+      std::swap(vertices[6], vertices[7]);
+    }
     for (std::size_t k = i; numbers != nullptr && k < end; ++k) *numbers++ = first + k;
     i = std::max(end, i + 1);
   }
@@ -441,22 +453,18 @@ void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
     for (std::size_t i = 0; i < types.size();) {
       std::size_t end = i + 1;
       while (end < types.size() && types[end] == types[i]) ++end;
-      source.counts->addVtk(types[i], end - i);
+      source.counts->addVtk(isOfKind(types[i], cells) ? cells.vtkType : types[i], end - i);
       i = end;
     }
   }
 }
 
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
-  const std::string instead = source.counts->instead();
-  const bool curved =
-      cells.corners == 8 && (instead.find("hexahedra with 2") != std::string::npos ||
-                             instead.find("hexahedron with 2") != std::string::npos);
-  const std::string_view advice = curved ? kHowCurvedCellsAreRead : std::string_view();
   source.fail(ErrorCode::FileUnsupported,
               "the file holds no " + std::string(cells.plural) + ": none of its " +
                   std::to_string(source.cells) + " cells has the type " +
-                  std::to_string(cells.vtkType) + instead + "." + std::string(advice));
+                  std::to_string(cells.vtkType) + source.counts->instead() + "." +
+                  (cells.corners == 8 ? source.counts->adviceOnCurved() : ""));
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
@@ -547,11 +555,11 @@ std::optional<VtkColumn> findGenerators(const VtkSource& source, std::string_vie
 /// Calls f(i, number) for all numbers of an array, which must fit into 32 bits.
 template <class F>
 void forEachNumber(const VtkSource& source, const VtkSourceArray& array, const F& f) {
-  constexpr std::size_t kSlice = std::size_t{1} << 16;  // half a megabyte at a time
+  constexpr std::size_t kNumbersAtOnce = std::size_t{1} << 16;  // half a megabyte at a time
   const VtkColumn column = source.load(array);
   Array<std::int64_t> numbers;
-  for (std::uint64_t begin = 0; begin < column.count; begin += kSlice) {
-    numbers.resize(std::min<std::uint64_t>(kSlice, column.count - begin));
+  for (std::uint64_t begin = 0; begin < column.count; begin += kNumbersAtOnce) {
+    numbers.resize(std::min<std::uint64_t>(kNumbersAtOnce, column.count - begin));
     source.copy(column, begin, numbers.size(), numbers.data());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (!std::in_range<std::int32_t>(numbers[i])) {

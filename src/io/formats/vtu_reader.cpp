@@ -37,13 +37,6 @@ struct VtuEncoding {
   std::size_t lengthBytes = 4;  ///< of the numbers in front of the data
 };
 
-/// The bytes of an array.
-/// @param text  from the array's first byte on; what follows the array is ignored
-/// @param fail  throws an error about the array with this sentence
-[[nodiscard]] Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding,
-                                         Stage& stage,
-                                         const std::function<void(const char* sentence)>& fail);
-
 constexpr std::uint8_t kNoDigit = 255;
 constexpr std::uint8_t kPadding = 64;
 
@@ -165,6 +158,9 @@ constexpr const char* kIncomplete = "the data of this array are incomplete.";
 constexpr const char* kIncompleteOrNoBase64 =
     "the data of this array are incomplete, or no base64.";
 
+/// The bytes of an array.
+/// @param text  from the array's first byte on; what follows the array is ignored
+/// @param fail  throws an error about the array with this sentence
 Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, Stage& stage,
                            const std::function<void(const char* sentence)>& fail) {
   EncodedBytes source(text, encoding.base64);

@@ -1,14 +1,17 @@
-// Reads legacy `.vtk` files: their sections, in any order, and where the numbers are; up to version
-// 4 also piece by piece.
+// Legacy `.vtk` files (see formats.hpp): reads their sections, in any order, and up to version 4
+// piece by piece; and writes them, a mesh or map in memory like a mesh of one piece.
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,10 +20,13 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/cell_counts.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/output_file.hpp>
 #include <io/core/plain_mesh.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/text_window.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/vtk_source.hpp>
 
@@ -433,20 +439,38 @@ namespace {
 
 // Legacy `.vtk` files up to version 4 piece by piece.
 
-constexpr std::size_t kNumbers = 1 + 8;  // of a cell: how many corners it has, and these
-
-constexpr std::size_t kVtkLegacyStreamGrain = 4096;
-
-/// What stands where in a file with the sections POINTS, CELLS and CELL_TYPES, in this order, and
-/// nothing but hexahedra. Arrays may follow.
-class VtkSections : public PlainMesh {
+/// Looks for the sections POINTS, CELLS and CELL_TYPES, in this order, and nothing but hexahedra.
+/// Arrays may follow.
+class VtkPieces {
  public:
-  VtkSections(const InputFile& file, const std::string& name, Context& context, std::size_t window)
-      : text_(file, name, context, window) {}
+  VtkPieces(const InputFile& file, const std::string& name, Context& context, bool isText)
+      : file_(file),
+        context_(context),
+        text_(file, name, context, isText ? TextWindow::kText : TextWindow::kWords) {
+    layout.isText = isText;
+  }
 
- protected:
+  /// @return whether the file is of the form
+  [[nodiscard]] bool look() {
+    constexpr std::uint64_t kNumbers = 1 + 8;  // of a cell: how many corners it has, and these
+    if (!lookAtHead() || !isNext("points") || !takeCount(layout.points.count)) return false;
+    const std::string type = lowerCase(text_.token());
+    if (type != "float" && type != "double") return false;
+    layout.coordinateBytes = type == "float" ? 4 : 8;
+    if (!skip(layout.points, 3, layout.coordinateBytes) || !isNext("cells") ||
+        !takeCount(layout.cells.count) || text_.count() != kNumbers * layout.cells.count) {
+      return false;
+    }
+    return skip(layout.cells, kNumbers, 4) && isNext("cell_types") &&
+           text_.count() == layout.cells.count && areHexahedra();
+  }
+
+  PlainLayout layout{
+      .isBigEndian = true, .firstVertex = 0, .inFrontOfCell = 1, .tellsCorners = true};
+
+ private:
   /// Reads everything up to the first section.
-  [[nodiscard]] bool lookAtHead(std::string_view encoding) {
+  [[nodiscard]] bool lookAtHead() {
     const std::string magic = text_.takeLine();
     constexpr std::string_view kMagic = "# vtk DataFile Version ";
     // From version 5 on, cells are stored in another way.
@@ -455,199 +479,279 @@ class VtkSections : public PlainMesh {
       return false;
     }
     static_cast<void>(text_.takeLine());  // a title, which may be anything
-    return lowerCase(text_.token()) == encoding && lowerCase(text_.token()) == "dataset" &&
-           lowerCase(text_.token()) == "unstructured_grid";
+    return isNext(layout.isText ? "ascii" : "binary") && isNext("dataset") &&
+           isNext("unstructured_grid");
   }
-  /// "POINTS n double".
-  [[nodiscard]] bool lookAtPoints() {
-    if (lowerCase(text_.token()) != "points" || !takeCount(points)) return false;
-    const std::string type = lowerCase(text_.token());
-    isFloat_ = type == "float";
-    return isFloat_ || type == "double";
+  [[nodiscard]] bool isNext(std::string_view keyword) {
+    return lowerCase(text_.token()) == keyword;
   }
-  /// "CELLS n 9n".
-  [[nodiscard]] bool lookAtCells() {
-    return lowerCase(text_.token()) == "cells" && takeCount(cells) &&
-           text_.count() == kNumbers * cells;
-  }
-  /// "CELL_TYPES n".
-  [[nodiscard]] bool lookAtTypes() {
-    return lowerCase(text_.token()) == "cell_types" && text_.count() == cells;
-  }
-
-  TextWindow text_;
-  std::uint64_t positionOfPoints_ = 0;
-  std::uint64_t positionOfCells_ = 0;
-  bool isFloat_ = false;
-
- private:
   [[nodiscard]] bool takeCount(std::uint64_t& to) {
     const std::optional<std::uint64_t> found = text_.count();
     to = found.value_or(0);
     return found.has_value();
   }
-};
-
-std::uint64_t vertexAt(std::int64_t number, std::uint64_t points) {
-  const auto vertex = static_cast<std::uint64_t>(number);
-  if (vertex < points) return vertex;
-  throw Error(ErrorCode::IndexOutOfRange, "A cell names point " + std::to_string(number) + " of " +
-                                              std::to_string(points) + ".");
-}
-
-void requireCorners(std::int64_t number) {
-  if (number == 8) return;
-  throw Error(ErrorCode::FileSyntax,
-              "A hexahedron has " + std::to_string(number) + " corners instead of 8.");
-}
-
-class VtkTextPieces final : public VtkSections {
- public:
-  VtkTextPieces(const InputFile& file, const std::string& name, Context& context)
-      : VtkSections(file, name, context, TextWindow::kText) {}
-
-  [[nodiscard]] bool look() {
-    if (!lookAtHead("ascii") || !lookAtPoints()) return false;
-    positionOfPoints_ = text_.position();
-    if (!text_.skip(3 * points) || !lookAtCells()) return false;
-    positionOfCells_ = text_.position();
-    return text_.skip(kNumbers * cells) && lookAtTypes() && areHexahedra();
+  /// Goes behind a run, of which each element has so many numbers. Bytes begin on the next line.
+  [[nodiscard]] bool skip(PlainRun& run, std::uint64_t numbersEach, std::uint64_t bytesEach) {
+    const std::uint64_t numbers = numbersEach * run.count;
+    if (!layout.isText && !text_.skipLineBreak()) return false;
+    run.position = text_.position();
+    if (layout.isText) return text_.skip(numbers);
+    if (numbers > (file_.size() - run.position) / bytesEach) return false;
+    text_.moveTo(run.position + numbers * bytesEach);
+    return true;
   }
 
-  void beginPoints() override { text_.moveTo(positionOfPoints_); }
-  void read(std::span<Vec3> to) override {
-    text_.elements(to.size(), 3, [&](TextScanner& scanner, std::size_t i) {
-      for (double& x : to[i]) x = scanner.number("a coordinate of a point");
-    });
-  }
-  void beginCells() override { text_.moveTo(positionOfCells_); }
-  void read(std::span<Hex64> to) override {
-    text_.elements(to.size(), kNumbers, [&](TextScanner& scanner, std::size_t i) {
-      requireCorners(scanner.integer("a number of corners"));
-      for (std::uint64_t& vertex : to[i]) {
-        vertex = vertexAt(scanner.integer("a corner of a cell"), points);
-      }
-    });
-  }
-
- private:
   [[nodiscard]] bool areHexahedra() {
+    PlainRun types{0, layout.cells.count};
+    if (!layout.isText && !skip(types, 1, 4)) return false;
     std::atomic<bool> all{true};
-    for (std::uint64_t first = 0; first < cells && all; first += kPieceElements) {
-      text_.elements(std::min<std::uint64_t>(kPieceElements, cells - first), 1,
-                     [&](TextScanner& scanner, std::size_t) {
-                       if (scanner.integer("the type of a cell") != kCellKind<8>.vtkType)
-                         all = false;
-                     });
+    Array<char> bytes;
+    for (std::uint64_t first = 0; first < types.count && all; first += kPieceElements) {
+      const std::size_t count = std::min<std::uint64_t>(kPieceElements, types.count - first);
+      if (layout.isText) {
+        text_.elements(count, 1, [&](TextScanner& scanner, std::size_t) {
+          if (scanner.integer("the type of a cell") != kCellKind<8>.vtkType) all = false;
+        });
+        continue;
+      }
+      context_.throwIfCancelled();
+      bytes.resize(4 * count);
+      file_.readAt(types.position + 4 * first, bytes.data(), bytes.size());
+      for (std::size_t i = 0; i < count; ++i) {
+        if (loadBig<std::int32_t>(bytes.data() + 4 * i) != kCellKind<8>.vtkType) return false;
+      }
     }
     return all;
   }
-};
-
-class VtkBytePieces final : public VtkSections {
- public:
-  VtkBytePieces(const InputFile& file, const std::string& name, Context& context)
-      : VtkSections(file, name, context, TextWindow::kWords),
-        file_(file),
-        quiet_(context.threads()) {}
-
-  [[nodiscard]] bool look() {
-    if (!lookAtHead("binary") || !lookAtPoints()) return false;
-    return skipBytes(3 * points, isFloat_ ? 4 : 8, positionOfPoints_) && lookAtCells() &&
-           skipBytes(kNumbers * cells, 4, positionOfCells_) && lookAtTypes() && areHexahedra();
-  }
-
-  void beginPoints() override { next_ = positionOfPoints_; }
-  void read(std::span<Vec3> to) override {
-    if (isFloat_) return readPoints<float>(to);
-    readPoints<double>(to);
-  }
-  void beginCells() override { next_ = positionOfCells_; }
-  void read(std::span<Hex64> to) override {
-    const char* const bytes = take(to.size() * kNumbers * 4);
-    forEach(to.size(), [&](std::size_t i) {
-      const char* place = bytes + i * kNumbers * 4;
-      requireCorners(loadBig<std::int32_t>(place));
-      for (std::uint64_t& vertex : to[i]) {
-        vertex = vertexAt(loadBig<std::int32_t>(place += 4), points);
-      }
-    });
-  }
-
- private:
-  /// Numbers begin on the next line.
-  [[nodiscard]] bool skipBytes(std::uint64_t numbers, std::uint64_t bytesEach,
-                               std::uint64_t& position) {
-    if (!text_.skipLineBreak()) return false;
-    position = text_.position();
-    if (numbers > (file_.size() - position) / bytesEach) return false;
-    text_.moveTo(position + numbers * bytesEach);
-    return true;
-  }
-
-  [[nodiscard]] bool areHexahedra() {
-    if (!text_.skipLineBreak() || cells > (file_.size() - text_.position()) / 4) return false;
-    next_ = text_.position();
-    for (std::uint64_t first = 0; first < cells; first += kPieceElements) {
-      const std::size_t count = std::min<std::uint64_t>(kPieceElements, cells - first);
-      const char* const bytes = take(4 * count);
-      for (std::size_t i = 0; i < count; ++i) {
-        if (loadBig<std::int32_t>(bytes + 4 * i) != kCellKind<8>.vtkType) return false;
-      }
-    }
-    return true;
-  }
-
-  template <class T>
-  void readPoints(std::span<Vec3> to) {
-    const char* const bytes = take(to.size() * 3 * sizeof(T));
-    forEach(to.size(), [&](std::size_t i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        to[i][axis] = loadBig<T>(bytes + (3 * i + axis) * sizeof(T));
-        if (!std::isfinite(to[i][axis])) {
-          throw Error(ErrorCode::NotFinite, "A coordinate is not finite.");
-        }
-      }
-    });
-  }
-
-  /// The next bytes.
-  [[nodiscard]] const char* take(std::size_t size) {
-    bytes_.resize(size);
-    file_.readAt(next_, bytes_.data(), size);
-    next_ += size;
-    return bytes_.data();
-  }
-
-  template <class F>
-  void forEach(std::size_t n, const F& f) {
-    Stage stage(quiet_, "read");
-    parallelFor(stage, n, kVtkLegacyStreamGrain, f);
-  }
 
   const InputFile& file_;
-  Context quiet_;
-  std::uint64_t next_ = 0;  ///< position in the file
-  Array<char> bytes_;
+  Context& context_;
+  TextWindow text_;
 };
 
-template <class Mesh>
-std::unique_ptr<PlainMesh> openVtkAs(const InputFile& file, const std::string& name,
+std::optional<PlainLayout> lookAtVtk(const InputFile& file, const std::string& name,
                                      Context& context) {
-  auto mesh = std::make_unique<Mesh>(file, name, context);
-  return mesh->look() ? std::move(mesh) : nullptr;
-}
-
-std::unique_ptr<PlainMesh> openVtkPieces(const InputFile& file, const std::string& name,
-                                         Context& context) {
-  std::unique_ptr<PlainMesh> bytes = openVtkAs<VtkBytePieces>(file, name, context);
-  return bytes ? std::move(bytes) : openVtkAs<VtkTextPieces>(file, name, context);
+  for (const bool isText : {false, true}) {
+    VtkPieces pieces(file, name, context, isText);
+    if (pieces.look()) return pieces.layout;
+  }
+  return {};
 }
 
 }  // namespace
 
 void readVtkLegacyTo(MeshSink& sink, const Input& input, Context& context) {
-  readPlainMesh({openVtkPieces, readVtkLegacy}, sink, input, context);
+  readPlainMesh({lookAtVtk, readVtkLegacy}, sink, input, context);
+}
+
+namespace {
+
+// Legacy `.vtk` files: a mesh or map in memory is written like a mesh of one piece.
+
+/// Numbers as text: in the form of version 2.0, which every program reads.
+struct VtkText {
+  static constexpr std::string_view kEncoding = "ASCII";
+  static constexpr std::string_view kEndOfSection = {};
+  static constexpr std::size_t kRoom = kNumberRoom + 1;  ///< for a number
+
+  template <class T, std::size_t n>
+  static char* numbers(char* place, const std::array<T, n>& numbers) {
+    return put(putNumbers(place, numbers), '\n');
+  }
+  template <class Vertex, std::size_t corners>
+  static char* cell(char* place, const std::array<Vertex, corners>& cell) {
+    return numbers(put(put(place, corners), ' '), cell);
+  }
+};
+
+/// Numbers as bytes, the largest first.
+struct VtkBigBytes {
+  static constexpr std::string_view kEncoding = "BINARY";
+  static constexpr std::string_view kEndOfSection = "\n";
+  static constexpr std::size_t kRoom = 8;
+
+  template <class T>
+  static char* number(char* place, T number) {
+    return putBigBytes(place, number);
+  }
+  template <class T, std::size_t n>
+  static char* numbers(char* place, const std::array<T, n>& numbers) {
+    for (const T value : numbers) place = number(place, value);
+    return place;
+  }
+  template <class Vertex, std::size_t corners>
+  static char* cell(char* place, const std::array<Vertex, corners>& cell) {
+    place = number(place, static_cast<std::uint32_t>(corners));
+    for (const Vertex vertex : cell) place = number(place, static_cast<std::uint32_t>(vertex));
+    return place;
+  }
+};
+
+/// Writes the sections of a file, in order: of hexahedra, which may come in pieces, or of the tets
+/// of a map.
+template <class Numbers, std::size_t corners = 8>
+class LegacyWriter {
+ public:
+  LegacyWriter(const std::filesystem::path& file, int threads)
+      : name_(file.string()), output_(file), lines_(output_, threads) {}
+
+  /// Everything up to the points.
+  /// @throws Error TooLarge for points that 32-bit indices cannot number
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
+      throw Error(ErrorCode::TooLarge,
+                  name_ +
+                      ": legacy binary .vtk files have vertex numbers of 31 bits, which do not "
+                      "suffice for " +
+                      std::to_string(points) + " points; write .vtu.");
+    }
+    cellCount_ = cells;
+    output_.write("# vtk DataFile Version 2.0\n");
+    output_.write(corners == 8 ? "hexahedral mesh by hexhex\n" : "integer-grid map by hexhex\n");
+    output_.write(Numbers::kEncoding).write("\nDATASET UNSTRUCTURED_GRID\n");
+    output_.write("POINTS ").write(points).write(" double\n");
+  }
+  void points(const PointPiece& piece) {
+    rows(piece.points.size(), [&](std::size_t i) -> const Vec3& { return piece.points[i]; });
+  }
+  void beginCells() {
+    output_.write(Numbers::kEndOfSection);
+    output_.write("CELLS ").write(cellCount_);
+    output_.write(' ').write((corners + 1) * cellCount_).write('\n');
+  }
+  template <class Vertex>
+  void cells(std::uint64_t /*first*/, std::span<const std::array<Vertex, corners>> cells) {
+    lines_.write(
+        cells.size(), (corners + 1) * Numbers::kRoom,
+        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress_);
+  }
+  void types() {
+    output_.write(Numbers::kEndOfSection);
+    output_.write("CELL_TYPES ").write(cellCount_).write('\n');
+    constexpr auto kType = static_cast<std::uint32_t>(kCellKind<corners>.vtkType);
+    rows(cellCount_, [](std::size_t) { return std::array{kType}; });
+    output_.write(Numbers::kEndOfSection);
+  }
+  /// An array of cells.
+  /// @param head  what follows their number
+  template <class Row>
+  void cellData(std::string_view head, const Row& row) {
+    output_.write("CELL_DATA ").write(cellCount_).write(head);
+    rows(cellCount_, row);
+    output_.write(Numbers::kEndOfSection);
+  }
+  void commit() { output_.commit(); }
+  void end() {
+    types();
+    commit();
+  }
+
+  /// Everything up to the types of cells. What is written from now on advances the progress.
+  void write(std::span<const Vec3> allPoints, std::span<const std::array<Index, corners>> allCells,
+             LoopProgress& progress) {
+    progress_ = &progress;
+    begin(allPoints.size(), allCells.size());
+    points({0, allPoints, {}, {}});
+    beginCells();
+    cells(0, allCells);
+    types();
+  }
+
+ private:
+  /// n rows: row(i) is an array of numbers.
+  template <class Row>
+  void rows(std::size_t n, const Row& row) {
+    constexpr std::size_t kColumns = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
+    lines_.write(
+        n, kColumns * Numbers::kRoom,
+        [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress_);
+  }
+
+  std::string name_;
+  OutputFile output_;
+  LineWriter lines_;
+  std::uint64_t cellCount_ = 0;
+  LoopProgress* progress_ = nullptr;
+};
+
+template <class Numbers>
+void writeMesh(const HexMesh& mesh, const std::filesystem::path& file,
+               const WriteOptions& /*options*/, Context& context) {
+  Stage stage(context, "write mesh");
+  LegacyWriter<Numbers> writer(file, context.threads());
+  LoopProgress progress(stage, mesh.points.size() + 2 * mesh.cells.size() + mesh.regions.size());
+  writer.write(mesh.points, mesh.cells, progress);
+  if (!mesh.regions.empty()) {
+    writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
+                    [&mesh](std::size_t c) { return std::array{mesh.regions[c]}; });
+  }
+  writer.commit();
+}
+
+/// Names of arrays are tokens: other characters are written as "%20", as VTK does it.
+std::string encodedName(std::string_view name) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  if (name.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "The name of the map's array is empty.");
+  }
+  std::string token;
+  for (const char c : name) {
+    if (c > ' ' && c <= '~' && c != '%' && c != '"') {
+      token += c;
+      continue;
+    }
+    const auto code = static_cast<unsigned char>(c);
+    token += {'%', kDigits[code / 16U], kDigits[code % 16U]};
+  }
+  return token;
+}
+
+template <class Numbers>
+void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
+              Context& context) {
+  Stage stage(context, "write map");
+  const std::string name = encodedName(options.mapArray);
+  LegacyWriter<Numbers, 4> writer(file, context.threads());
+  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+  const std::size_t tets = map.tets.size();
+  LoopProgress progress(stage, map.points.size() + 3 * tets);
+  writer.write(map.points, map.tets, progress);
+  writer.cellData(
+      "\nFIELD FieldData 1\n" + name + " 12 " + std::to_string(tets) + " double\n",
+      [&map](std::size_t t) { return std::bit_cast<std::array<double, 12>>(map.parameters[t]); });
+  writer.commit();
+}
+
+}  // namespace
+
+void writeVtkLegacy(const HexMesh& mesh, const std::filesystem::path& file,
+                    const WriteOptions& options, Context& context) {
+  writeMesh<VtkText>(mesh, file, options, context);
+}
+
+void writeVtkLegacyBinary(const HexMesh& mesh, const std::filesystem::path& file,
+                          const WriteOptions& options, Context& context) {
+  writeMesh<VtkBigBytes>(mesh, file, options, context);
+}
+
+void writeVtkLegacyMap(const TetMap& map, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  writeMap<VtkText>(map, file, options, context);
+}
+
+void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& file,
+                             const WriteOptions& options, Context& context) {
+  writeMap<VtkBigBytes>(map, file, options, context);
+}
+
+std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {
+  return openWriterSink<LegacyWriter<VtkText>>(file, context);
+}
+
+std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
+                                                  Context& context) {
+  return openWriterSink<LegacyWriter<VtkBigBytes>>(file, context);
 }
 
 }  // namespace hexhex::io
