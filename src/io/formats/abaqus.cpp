@@ -30,7 +30,7 @@ namespace {
 /// Abaqus' numbers of the faces of kHexFaces.
 constexpr std::array<char, 6> kAbaqusFaces = {'6', '4', '3', '5', '1', '2'};
 
-// The reading half of `.inp` files: keywords in lines that begin with '*', and lines of data below.
+// Reading.
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);

@@ -238,7 +238,7 @@ class ExodusFile {
   ExodusList nodes_;
 };
 
-// The reading half of Exodus files.
+// Reading.
 
 /// VTK's place k is this place of Exodus, which lists the edges along z before those of the top,
 /// and the node inside before those of the faces.
@@ -729,7 +729,7 @@ std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file,
   return std::make_unique<ExodusSink>(file, context, team);
 }
 
-// Exodus II: what all files of it have is in exodus_file.hpp.
+// Whole meshes.
 
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context, std::uint64_t mostBytes) {

@@ -319,7 +319,7 @@ class Msh41Writer {
   std::uint64_t boxPosition_ = 0;
 };
 
-// The writing half of gmsh.hpp.
+// Whole meshes and meshes in pieces.
 
 template <std::size_t n>
 constexpr std::integral_constant<std::size_t, n> kNodes;

@@ -110,7 +110,7 @@ std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
   return tags;
 }
 
-// The reading half of medit.hpp: one reader of sections over two encodings of numbers.
+// Reading: one reader of sections over two encodings of numbers.
 
 constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
 constexpr CellKind kMeditQuads = {

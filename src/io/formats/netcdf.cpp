@@ -1,4 +1,4 @@
-
+// Writes and reads NetCDF's classic format.
 #include <algorithm>
 #include <array>
 #include <string_view>

@@ -6,7 +6,7 @@
 //
 // A text has the sections Vertices, Edges, Faces, Polyhedra, each with a count and one element per
 // line; then properties: a line `HFProp vec3d "name"`, and a value per element. Binary files are a
-// header and chunks (ovmb_reader.hpp).
+// header and chunks (ovmb_reader.cpp).
 #pragma once
 
 #include <array>

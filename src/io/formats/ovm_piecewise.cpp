@@ -1,4 +1,4 @@
-// Arcs and patches as polyhedral meshes (see ovm.hpp).
+// Arcs and patches as polyhedral meshes (see formats.hpp).
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -67,7 +67,7 @@ std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& st
       std::size_t{1} << 14);
 }
 
-// Vertices, edges, faces and cells of an `.ovmb` file (see ovmb_reader.hpp).
+// Vertices, edges, faces and cells of an `.ovmb` file.
 
 // Numbers of the four kinds of elements, in file headers and TOPO chunks.
 constexpr std::size_t kEdges = 1;
@@ -332,7 +332,7 @@ void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage) {
   mesh.topology.vertexCount = mesh.points.size();
 }
 
-// Cuts an `.ovmb` file into its chunks, and decodes its properties (see ovmb_reader.hpp).
+// Cuts an `.ovmb` file into its chunks, and decodes its properties.
 
 constexpr std::uint8_t kMandatory = 1;
 

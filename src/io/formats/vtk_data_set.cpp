@@ -1,4 +1,4 @@
-
+// Data sets of VTK, to be written: of meshes, and of parts.
 #include <algorithm>
 #include <limits>
 #include <string>

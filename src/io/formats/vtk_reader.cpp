@@ -1,4 +1,5 @@
-
+// Reads data sets of VTK, whatever the file: numbers of columns; points and cells, a range at a
+// time, checked; meshes and maps of them; and what writers of this library add.
 #include <algorithm>
 #include <array>
 #include <type_traits>
@@ -673,7 +674,7 @@ Array<std::int32_t> readVtkRegions(const VtkSource& source, std::span<const std:
 
 namespace {
 
-// The reading half of vtk.hpp: files as a whole, or piece by piece.
+// Files as a whole, or piece by piece.
 
 // Points or cells of a piece: a few megabytes.
 constexpr std::size_t kPiece = std::size_t{1} << 16;

@@ -1,5 +1,5 @@
 // A data set of VTK as those who read one see it: points, cells and named arrays, wherever their
-// numbers are and however they are stored. Formats fill it in; vtk_reader.hpp makes meshes of it.
+// numbers are and however they are stored. Formats fill it in; vtk_reader.cpp makes meshes of it.
 #pragma once
 
 #include <array>
