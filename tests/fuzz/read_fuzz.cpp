@@ -18,17 +18,11 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
-#include <io/core/cell_mesh.hpp>
+#include <io/core/cell_counts.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/zlib_blocks.hpp>
-#include <io/curved/lagrange_files.hpp>
-#include <io/gmsh/gmsh.hpp>
-#include <io/hexex/hexex.hpp>
-#include <io/medit/medit.hpp>
-#include <io/ovm/ovm.hpp>
-#include <io/solvers/solvers.hpp>
+#include <io/formats/formats.hpp>
 #include <io/surface/surface.hpp>
-#include <io/vtk/vtk.hpp>
 
 #include "mutators.hpp"
 

@@ -18,11 +18,9 @@
 #include <hexhex/survey.hpp>
 
 #include <io/core/zlib_blocks.hpp>
-#include <io/gmsh/gmsh.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/netcdf.hpp>
 #include <io/io_test_support.hpp>
-#include <io/solvers/exodus_file.hpp>
-#include <io/solvers/netcdf.hpp>
-#include <io/solvers/solvers.hpp>
 
 namespace hexhex::test::foreign_files {
 

@@ -12,8 +12,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/patches.hpp>
 
-#include <io/gmsh/gmsh.hpp>
-#include <io/gmsh/gmsh_tags.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/gmsh_elements.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

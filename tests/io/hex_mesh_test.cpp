@@ -9,9 +9,8 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit/medit.hpp>
-#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test::hex_mesh {
 

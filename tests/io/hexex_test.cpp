@@ -6,7 +6,7 @@
 
 #include <hexhex/io.hpp>
 
-#include <io/hexex/hexex.hpp>
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test::hexex {

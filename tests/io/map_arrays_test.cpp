@@ -11,8 +11,8 @@
 #include <hexhex/samples.hpp>
 
 #include <io/core/zlib_blocks.hpp>
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test::map_arrays {
 

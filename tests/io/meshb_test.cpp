@@ -7,8 +7,8 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit/medit.hpp>
 
 namespace hexhex::test::meshb {
 

@@ -11,11 +11,8 @@
 #include <hexhex/io.hpp>
 
 #include <io/core/zlib_blocks.hpp>
-#include <io/gmsh/gmsh.hpp>
-#include <io/hexex/hexex.hpp>
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit/medit.hpp>
-#include <io/vtk/vtk.hpp>
 
 namespace {
 std::atomic<std::size_t> largestAllocation{0};

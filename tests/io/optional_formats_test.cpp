@@ -17,9 +17,9 @@
 #include <hexhex/io.hpp>
 
 #include <io/file_size_limit.hpp>
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
-#include <io/solvers/solvers.hpp>
 
 namespace hexhex::test::optional_formats {
 

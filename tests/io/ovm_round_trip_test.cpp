@@ -13,7 +13,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 
-#include <io/ovm/ovm.hpp>
+#include <io/formats/formats.hpp>
 
 #include "ovm_test_support.hpp"
 #include "support/error_of.hpp"

@@ -7,7 +7,7 @@
 
 #include <hexhex/io.hpp>
 
-#include <io/ovm/ovm.hpp>
+#include <io/formats/formats.hpp>
 
 #include "io_test_support.hpp"
 #include "ovm_test_support.hpp"

@@ -9,8 +9,8 @@
 #include <hexhex/samples.hpp>
 
 #include <base/parallel.hpp>
+#include <io/formats/ovm_cells.hpp>
 #include <io/io_test_support.hpp>
-#include <io/ovm/ovm_cells.hpp>
 
 namespace hexhex::test {
 

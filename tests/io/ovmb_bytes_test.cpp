@@ -10,7 +10,7 @@
 
 #include <hexhex/io.hpp>
 
-#include <io/ovm/ovm.hpp>
+#include <io/formats/formats.hpp>
 
 #include "ovm_test_support.hpp"
 

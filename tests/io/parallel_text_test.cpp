@@ -8,9 +8,8 @@
 
 #include <base/stage.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/hexex/hexex.hpp>
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit/medit.hpp>
 
 namespace hexhex::test {
 

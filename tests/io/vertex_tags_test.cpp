@@ -9,8 +9,8 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/medit/medit.hpp>
 
 #include "mesh/grid_meshes.hpp"
 

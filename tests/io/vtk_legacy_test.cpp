@@ -7,8 +7,8 @@
 
 #include <hexhex/io.hpp>
 
+#include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
-#include <io/vtk/vtk.hpp>
 
 namespace hexhex::test::vtk_legacy {
 
@@ -50,6 +50,25 @@ template <class T>
 std::string binaryPoints(const std::string& type) {
   return "POINTS 8 " + type + "\n" +
          big<T>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1}) + "\n";
+}
+
+TEST(VtkLegacyReader, VoxelsAreHexahedra) {
+  const HexMesh mesh = parse(kHead + kPoints +
+                             "CELLS 3 27\n8 0 1 3 2 4 5 7 6\n8 0 1 2 3 4 5 6 7\n"
+                             "8 0 1 3 2 4 5 7 6\nCELL_TYPES 3\n11 12 11\n");
+  EXPECT_EQ(mesh.cells, (Array<Hex>{kCubeCell, kCubeCell, kCubeCell}));
+}
+
+TEST(VtkLegacyReader, WhatIsAdvisedOnCurvedCellsFits) {
+  const std::string hex = "27 0 1 2 3 4 5 6 7 0 1 2 3 4 5 6 7 0 1 2 3 4 5 6 7 0 1 2\n";
+  const std::string alone =
+      failure(kHead + kPoints + "CELLS 1 28\n" + hex + "CELL_TYPES 1\n29\n").sentence;
+  EXPECT_NE(alone.find("`hexhex view`"), std::string::npos) << alone;
+  const std::string mixed = failure(kHead + kPoints + "CELLS 2 39\n" + hex +
+                                    "10 0 1 2 3 4 5 6 7 0 1\nCELL_TYPES 2\n29 24\n")
+                                .sentence;
+  EXPECT_EQ(mixed.find("`hexhex view`"), std::string::npos) << mixed;
+  EXPECT_NE(mixed.find("Give the others a file of their own."), std::string::npos) << mixed;
 }
 
 TEST(VtkLegacyReader, OtherCellsAndArraysAreIgnored) {

@@ -11,7 +11,7 @@
 
 #include <hexhex/hexhex.hpp>
 
-#include <io/hexex/hexex.hpp>
+#include <io/formats/formats.hpp>
 
 #include "quantize/real_maps.hpp"
 #include "support/published_map.hpp"

@@ -80,6 +80,22 @@ std::string CellCounts::instead() const {
   return held.empty() ? held : "; it holds " + held;
 }
 
+std::string CellCounts::adviceOnCurved() const {
+  bool hasCurved = false;
+  bool hasOthers = !unknown_.empty();
+  for (const auto& [plural, count] : counts_) {
+    const bool curved = plural == "hexahedra with 20 nodes" || plural == "hexahedra with 27 nodes";
+    if (count > 0) (curved ? hasCurved : hasOthers) = true;
+  }
+  if (!hasCurved) return {};
+  if (hasOthers) {
+    return " Hexahedra of order 2 are curved, and read where there are no other cells. Give the "
+           "others a file of their own.";
+  }
+  return " Cells of order 2 are curved: `hexhex view` and `hexhex improve` read them, and `hexhex "
+         "convert` writes them as .vtu, .msh or MFEM .mesh.";
+}
+
 void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,
                              std::string_view advice) const {
   const std::vector<CellCount> all = list();

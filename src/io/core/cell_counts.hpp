@@ -1,5 +1,4 @@
-// The volume cells of a file, by type. A mesh without some of them has holes: readers count, and
-// files.cpp decides.
+// Points, and cells of one kind: what readers take from files that may hold other cells, too.
 #pragma once
 
 #include <array>
@@ -8,13 +7,55 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
+#include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
-
-#include <io/core/cell_mesh.hpp>
+#include <hexhex/types.hpp>
 
 namespace hexhex::io {
+
+/// Tetrahedra with their points. Corners are in the order of VTK.
+struct TetCells {
+  Array<Vec3> points;
+  Array<Tet> cells;
+  // Readers leave them empty: features and regions are read of hexahedra only.
+  HexFeatures features = {};
+  Array<std::int32_t> regions = {};
+};
+
+/// What readers make of hexahedra (8 corners) or tetrahedra (4).
+template <std::size_t corners>
+using CellMesh = std::conditional_t<corners == 8, HexMesh, TetCells>;
+
+/// What formats and sentences call a kind of elements.
+struct CellKind {
+  std::size_t corners = 0;
+  std::string_view singular;
+  std::string_view plural;
+  std::string_view meditKeyword = {};
+  std::uint32_t meshbKeyword = 0;
+  std::int64_t gmshType = 0;
+  std::int64_t vtkType = 0;
+  PlaceKind place = PlaceKind::None;
+};
+
+template <std::size_t corners>
+inline constexpr CellKind kCellKind = {};
+template <>
+inline constexpr CellKind kCellKind<4> = {4,  "tetrahedron", "tetrahedra", "Tetrahedra", 8, 4,
+                                          10, PlaceKind::Tet};
+template <>
+inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
+                                          5, 12,           PlaceKind::Cell};
+
+/// Triangles, which carry labels.
+inline constexpr CellKind kTriangleKind = {
+    .corners = 3, .singular = "triangle", .plural = "triangles", .vtkType = 5};
+
+// The volume cells of a file, by type. A mesh without some of them has holes: readers count, and
+// files.cpp decides.
 
 /// A type of volume cells, and what formats call it; 0 where they do not know it.
 struct VolumeCells {
@@ -80,6 +121,9 @@ class CellCounts {
   /// "; it holds 1 prism and 8 hexahedra with 27 nodes", to end errors of files without cells of a
   /// kind; empty for a file without any.
   [[nodiscard]] std::string instead() const;
+  /// A sentence, to follow that, for who wants straight hexahedra; empty for a file without
+  /// hexahedra of order 2.
+  [[nodiscard]] std::string adviceOnCurved() const;
 
  private:
   [[nodiscard]] std::string text() const;

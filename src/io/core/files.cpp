@@ -1,21 +1,27 @@
-// Reads and writes files of any format, after a look at whether the format can do what is wanted.
+// Reads and writes files of any format, after a look at whether the format can do what is wanted:
+// the functions of <hexhex/io.hpp>, and those of other headers that open files.
 #include <array>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/parts.hpp>
+#include <hexhex/team.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/hdf5_library.hpp>
+#include <io/core/output_folder.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/surface/surface.hpp>
+#include <mesh/lagrange_check.hpp>
 
 namespace hexhex::io {
 namespace {
@@ -28,6 +34,9 @@ constexpr std::array<WorkStep, 2> kReadAny = {{{"read mesh", 1}, {"read map", 1}
 constexpr std::array<WorkStep, 1> kWriteMap = {{{"write map", 1}}};
 /// Its indices are looked at first.
 constexpr std::array<WorkStep, 2> kWriteMesh = {{{"write mesh", 0.02}, {"write mesh", 1}}};
+constexpr std::array<WorkStep, 1> kWriteCurved = {{{"write mesh", 1}}};
+constexpr std::array<WorkStep, 1> kWriteArcs = {{{"write arcs", 1}}};
+constexpr std::array<WorkStep, 1> kWritePatches = {{{"write patches", 1}}};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& sentence) {
   throw Error(ErrorCode::FileUnsupported, file.string() + ": " + sentence);
@@ -125,6 +134,43 @@ class SettledSink final : public MeshSink {
   const Input& input_;
   const ReadOptions& options_;
 };
+
+/// The format of a file that may hold cells of higher order; null if there is none.
+const Format* curvedFormat(const std::filesystem::path& file) {
+  try {
+    const Format& format = findFormat(file, {}, FileContent::HexMesh);
+    return format.curved.read == nullptr ? nullptr : &format;
+  } catch (const Error&) {  // no mesh at all
+    return nullptr;
+  }
+}
+
+/// @param map  null: not known
+void writeAllArcs(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                  const std::filesystem::path& file, Context& context) {
+  const Format& format = findFormat(file, {}, FileContent::Arcs);
+  inSteps(context, "writeArcs", kWriteArcs, [&] { format.writeArcs(mesh, map, file, context); });
+}
+void writeAllPatches(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                     const std::filesystem::path& file, Context& context) {
+  const Format& format = findFormat(file, {}, FileContent::Patches);
+  inSteps(context, "writePatches", kWritePatches,
+          [&] { format.writePatches(mesh, map, file, context); });
+}
+
+void requireForTeams(const std::filesystem::path& file, const Format& format) {
+  if (format.parts.byTeams) return;
+  refuse(file, "several processes cannot write \"" + std::string(format.label.name) +
+                   "\" together. They can write: " + teamFormats() + '.');
+}
+
+/// Files of other names, or in other formats, are no set that can be read.
+void requireSameOutput(ProcessTeam& team, const std::filesystem::path& file,
+                       const WriteOptions& options) {
+  team.requireSame(file.string(), "name of the file to write");
+  team.requireSame(std::string(options.format), "format to write");
+  team.requireSame(std::to_string(options.patchAngle), "patch angle");
+}
 
 }  // namespace
 
@@ -291,6 +337,85 @@ void requireHexMeshFormat(const std::filesystem::path& file, std::string_view fo
 
 void requireMapFormat(const std::filesystem::path& file, const WriteOptions& options) {
   static_cast<void>(io::writableFormat(file, options, io::FileContent::Map));
+}
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+               Context& context) {
+  io::writeAllArcs(mesh, nullptr, file, context);
+}
+
+void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+               const std::filesystem::path& file, Context& context) {
+  io::writeAllArcs(mesh, &map, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
+                  Context& context) {
+  io::writeAllPatches(mesh, nullptr, file, context);
+}
+
+void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
+                  const std::filesystem::path& file, Context& context) {
+  io::writeAllPatches(mesh, &map, file, context);
+}
+
+void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  const io::Format& format = io::findFormat(file, {}, io::FileContent::CurvedCells);
+  mesh::requireConsistent(mesh);
+  if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "There are " + std::to_string(options.scaledJacobians.size()) +
+                    " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
+                    " cells. Give one for each, or none.");
+  }
+  inSteps(context, "writeLagrangeMesh", io::kWriteCurved,
+          [&] { format.curved.write(mesh, file, options, context); });
+}
+
+bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
+  const io::Format* const format = io::curvedFormat(file);
+  return format != nullptr && format->curved.isIn(io::openInput(file, context), context);
+}
+
+LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
+  const io::Format* const format = io::curvedFormat(file);
+  if (format == nullptr) {
+    io::refuse(file,
+               "cells of higher order are read from .vtu, .vtk, .inp, .exo and .e files only.");
+  }
+  return inSteps(context, "readLagrangeMesh", io::kReadMesh,
+                 [&] { return format->curved.read(io::openInput(file, context), context); });
+}
+
+void requireArcFormat(const std::filesystem::path& file) {
+  static_cast<void>(io::findFormat(file, {}, io::FileContent::Arcs));
+}
+
+void requirePatchFormat(const std::filesystem::path& file) {
+  static_cast<void>(io::findFormat(file, {}, io::FileContent::Patches));
+}
+
+void requireLagrangeFormat(const std::filesystem::path& file) {
+  static_cast<void>(io::findFormat(file, {}, io::FileContent::CurvedCells));
+}
+
+std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
+                                       const WriteOptions& options, Context& context,
+                                       ProcessTeam* team) {
+  const io::Format& format = io::findFormat(file, options.format, io::FileContent::Parts);
+  if (team != nullptr) {
+    io::requireForTeams(file, format);
+    io::requireSameOutput(*team, file, options);
+  }
+  if (format.overHdf5 && io::isFirst(team)) io::requireHdf5(file);
+  return format.parts.open(file, options, context, team);
+}
+
+void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,
+                       bool byTeam) {
+  const io::Format& format = io::findFormat(file, options.format, io::FileContent::Parts);
+  if (byTeam) io::requireForTeams(file, format);
 }
 
 }  // namespace hexhex

@@ -12,7 +12,7 @@
 
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/triangle_labels.hpp>
+#include <io/formats/formats.hpp>
 #include <io/surface/surface.hpp>
 #include <lattice/tet_geometry.hpp>
 

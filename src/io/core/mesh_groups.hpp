@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/parts.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -148,5 +149,12 @@ enum class Untagged : std::uint8_t { Numbered, Zero };
 /// The number of the group of each element.
 [[nodiscard]] Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups,
                                                 Untagged untagged = Untagged::Numbered);
+
+// The groups of a part's elements: the same in all parts, some of them empty.
+
+/// Boundary quads are those of the whole mesh; quads between parts are in groups if they are
+/// tagged. Groups of boundary quads are "surface_TAG" and "boundary", as in a whole mesh with a
+/// patch angle of 0. Cells are own cells.
+[[nodiscard]] MeshGroups groupPart(const MeshPart& part, const PartsInfo& info, Stage& stage);
 
 }  // namespace hexhex::io

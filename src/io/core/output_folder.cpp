@@ -4,11 +4,14 @@
 #include <string>
 #include <system_error>
 
+#include <hexhex/error.hpp>
+
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/system_call.hpp>
 
 namespace hexhex::io {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,6 +150,52 @@ void OutputFolder::takeBack() noexcept {
     static_cast<void>(exchange(temporary_, target_, aside_));
   } else {
     static_cast<void>(system_call::rename(target_, temporary_));
+  }
+}
+
+void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>& change) {
+  agree(team_);  // all are written
+  std::size_t done = 0;
+  try {
+    for (; done < files_.size(); ++done) {
+      OutputFile& output = *files_[done].output;
+      output.resume();
+      if (change) change(done, output);
+      output.commit();
+    }
+    agree(team_);
+  } catch (...) {
+    std::error_code unknown;
+    if (done < files_.size() && files_[done].output->isNamed()) ++done;
+    while (done-- > 0) std::filesystem::remove(files_[done].path, unknown);
+    throw;
+  }
+}
+
+std::string padded(std::uint32_t part, std::uint32_t parts) {
+  std::string number = std::to_string(part);
+  const std::size_t digits = std::to_string(parts - 1).size();
+  return number.insert(0, digits - number.size(), '0');
+}
+
+void refuseGhosts(std::uint32_t layers, const std::string& what) {
+  if (layers == 0) return;
+  throw Error(ErrorCode::FileUnsupported, what + " hold no ghost cells. Leave out --ghosts.");
+}
+
+void PartFolder::commit(std::uint32_t parts) {
+  folder_->commit();
+  try {
+    // From now on nothing names them.
+    std::error_code error;
+    for (std::uint32_t part = parts;
+         std::filesystem::remove_all(target_ / name_(part), error) > 0;) {
+      if (error) break;
+      ++part;
+    }
+  } catch (...) {  // no memory for a name
+    takeBack();
+    throw;
   }
 }
 

@@ -2,10 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <hexhex/error.hpp>
+#include <hexhex/team.hpp>
+
+#include <io/core/output_file.hpp>
 
 namespace hexhex::io {
 
@@ -54,6 +60,119 @@ class OutputFolder {
   std::vector<std::filesystem::path> parents_;  ///< that were missing, innermost first
   bool replaces_ = false;                       ///< there was a folder before
   bool committed_ = false;
+};
+
+// Files that get their names together, few of which are open at a time.
+
+// Sinks work in one process, without a team, or in each process of one.
+[[nodiscard]] inline bool isFirst(const ProcessTeam* team) {
+  return team == nullptr || team->rank() == 0;
+}
+inline void agree(ProcessTeam* team) {
+  if (team != nullptr) team->agree();
+}
+
+/// One file for each part, side by side; in a team, those of all processes get names, or none.
+class FileSet {
+ public:
+  explicit FileSet(ProcessTeam* team) : team_(team) {}
+
+  /// Begins the file of the next part.
+  OutputFile& add(const std::filesystem::path& file) {
+    files_.push_back({file, std::make_unique<OutputFile>(file, OutputFile::Target::Regular)});
+    return *files_.back().output;
+  }
+  /// Puts the last file aside.
+  void finishLast() { files_.back().output->suspend(); }
+
+  [[nodiscard]] std::size_t size() const noexcept { return files_.size(); }
+
+  /// Calls change(file) for each file, by writeBytesAt(), and names all. If one cannot be named,
+  /// those before it vanish.
+  void commit(const std::function<void(std::size_t i, OutputFile& file)>& change = nullptr);
+
+ private:
+  struct File {
+    std::filesystem::path path;
+    std::unique_ptr<OutputFile> output;
+  };
+  ProcessTeam* team_;
+  std::vector<File> files_;
+};
+
+/// The number of a part with as many digits as the last one has.
+[[nodiscard]] std::string padded(std::uint32_t part, std::uint32_t parts);
+
+/// @param what  "OpenFOAM's decomposed cases"
+/// @throws Error FileUnsupported if ghosts are asked for
+void refuseGhosts(std::uint32_t layers, const std::string& what);
+
+// A folder with a file for each part, for formats that have one.
+
+/// Files appear with the folder. Those of earlier runs with more parts are removed; what else is in
+/// the folder stays. In a team of processes, the folder is the first one's, and all write into it.
+class PartFolder {
+ public:
+  /// The name of the file of a part, in the folder.
+  using FileName = std::function<std::string(std::uint32_t part)>;
+
+  PartFolder(std::filesystem::path folder, FileName name, ProcessTeam* team)
+      : target_(std::move(folder)), name_(std::move(name)) {
+    if (isFirst(team)) temporary_ = folder_.emplace(target_).temporary();
+    if (team != nullptr) temporary_ = team->shareText(temporary_.string());
+  }
+
+  /// Where the file of a part is to be written.
+  [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
+    return temporary_ / name_(part);
+  }
+  /// Runs write(), whose errors name the target instead of the temporary folder.
+  template <class Write>
+  void run(const Write& write) const {
+    try {
+      write();
+    } catch (const Error& error) {
+      throw inTermsOf(target_, temporary_, error);
+    }
+  }
+  /// Of the first process, as takeBack().
+  /// @param parts  that there are
+  void commit(std::uint32_t parts);
+  void takeBack() noexcept { folder_->takeBack(); }
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  std::optional<OutputFolder> folder_;  ///< of the first process
+  FileName name_;
+};
+
+// One file that the processes of a team write together: each its own bytes.
+
+/// The file is the first process's, and others open its temporary. Without a team, the one of this
+/// process. All processes make it, and commit it, together.
+class SharedFile {
+ public:
+  SharedFile(const std::filesystem::path& file, ProcessTeam* team) : team_(team) {
+    if (isFirst(team)) output_.emplace(file, OutputFile::Target::Regular);
+    if (team == nullptr) return;
+    const std::string temporary = team->shareText(output_ ? output_->temporary().string() : "");
+    if (!output_) output_.emplace(file, temporary);
+  }
+
+  /// In a team, to be written by FilePart.
+  [[nodiscard]] OutputFile& output() noexcept { return *output_; }
+
+  void commit() {
+    if (!isFirst(team_)) output_->handOver();
+    agree(team_);  // all is written
+    if (isFirst(team_)) output_->commit();
+    agree(team_);
+  }
+
+ private:
+  ProcessTeam* team_;
+  std::optional<OutputFile> output_;
 };
 
 }  // namespace hexhex::io

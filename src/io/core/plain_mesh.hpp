@@ -3,51 +3,63 @@
 // files: they know all forms, and what is to be said of a mistake.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <span>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
 
 namespace hexhex::io {
-
-/// An open file of that form. Its calls come in order; each throws an Error for what is wrong.
-class PlainMesh {
- public:
-  PlainMesh() = default;
-  virtual ~PlainMesh() = default;
-  PlainMesh(const PlainMesh&) = delete;
-  PlainMesh& operator=(const PlainMesh&) = delete;
-
-  /// Goes to the first vertex.
-  virtual void beginPoints() = 0;
-  /// Reads the next vertices.
-  virtual void read(std::span<Vec3> to) = 0;
-  /// Goes to the first hexahedron.
-  virtual void beginCells() = 0;
-  /// Reads the next hexahedra.
-  virtual void read(std::span<Hex64> to) = 0;
-
-  std::uint64_t points = 0;
-  std::uint64_t cells = 0;
-};
 
 /// Points or cells of a piece: a few megabytes.
 inline constexpr std::size_t kPieceElements = std::size_t{1} << 16;
 
+/// Equal records, one after the other.
+struct PlainRun {
+  std::uint64_t position = 0;  ///< of the first, in the file; 0: there is no such run
+  std::uint64_t count = 0;
+};
+
+/// Where a file has its vertices and hexahedra, and what their records are.
+struct PlainLayout {
+  PlainRun points = {};
+  PlainRun cells = {};
+  bool isText = false;              ///< numbers between white space; otherwise bytes
+  bool isBigEndian = false;         ///< of bytes
+  std::size_t coordinateBytes = 8;  ///< 4: of single precision
+  std::size_t integerBytes = 4;
+  std::uint64_t firstVertex = 1;  ///< how the first vertex is numbered
+  std::size_t behindPoint = 0;    ///< integers behind the coordinates of a point
+  std::size_t inFrontOfCell = 0;  ///< integers in front of the corners of a cell
+  std::size_t behindCell = 0;     ///< ... and behind them
+  bool tellsCorners = false;      ///< whether those in front say how many corners there are
+
+  [[nodiscard]] std::size_t pointBytes() const {
+    return 3 * coordinateBytes + behindPoint * integerBytes;
+  }
+  [[nodiscard]] std::size_t cellBytes() const {
+    return (inFrontOfCell + 8 + behindCell) * integerBytes;
+  }
+  /// Whether both are there, in this order.
+  [[nodiscard]] bool isComplete() const {
+    return 0 < points.position && points.position < cells.position;
+  }
+};
+
 /// How one format is read in pieces.
 struct PlainFormat {
-  /// Looks through a regular file; null, or an Error, if it is not of the form. The file outlives
-  /// the result.
-  std::unique_ptr<PlainMesh> (*open)(const InputFile& file, const std::string& name,
+  /// Looks through a regular file; nothing, or an Error, if it is not of the form.
+  std::optional<PlainLayout> (*look)(const InputFile& file, const std::string& name,
                                      Context& context);
   HexMesh (*readWhole)(const Input& input, Context& context);
 };
@@ -56,7 +68,68 @@ struct PlainFormat {
 /// @throws Error  as the reader of whole files; what the sink throws
 void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input, Context& context);
 
-/// What a file numbers from 1. @throws Error IndexOutOfRange
-[[nodiscard]] std::uint64_t vertexOfNumber(std::uint64_t number, std::uint64_t points);
+/// A text that is read from front to back, with some megabytes of it in memory.
+class TextWindow {
+ public:
+  /// @param file     a regular file; outlives this
+  /// @param context  ends reading where it is cancelled
+  /// @param size     how much is in memory: for files of bytes, the words between them need little
+  TextWindow(const InputFile& file, std::string name, Context& context, std::size_t size = kText);
+  static constexpr std::size_t kText = std::size_t{1} << 23;
+  static constexpr std::size_t kWords = std::size_t{1} << 16;
+
+  /// Goes to a byte of the file.
+  void moveTo(std::uint64_t position);
+  /// The byte that comes next.
+  [[nodiscard]] std::uint64_t position() const { return begin_ + scanner_->position(); }
+
+  /// The rest of a line at the beginning of the file; it is in memory.
+  [[nodiscard]] std::string takeLine() { return std::string(scanner_->takeLine()); }
+  /// The next token; empty at the end of the file.
+  [[nodiscard]] std::string token();
+  /// The next token as a number from 0; nothing if it is none.
+  [[nodiscard]] std::optional<std::uint64_t> count();
+  /// Skips so many tokens. @return whether there were as many
+  [[nodiscard]] bool skip(std::uint64_t tokens);
+  /// Goes behind a line break. @return whether there is one
+  [[nodiscard]] bool skipLineBreak();
+
+  /// Calls read(scanner, i), which reads element i or throws an Error, for the next n elements,
+  /// from several threads.
+  template <class Read>
+  void elements(std::size_t n, std::size_t tokensEach, const Read& read) {
+    for (std::size_t done = 0; done < n;) {
+      const std::size_t complete = std::min(n - done, tokensLeft() / tokensEach);
+      if (complete == 0 && !fill()) {
+        throw Error(ErrorCode::FileSyntax, name_ + ": the file is incomplete.");
+      }
+      readElements(*scanner_, &*index_, stage_, complete, tokensEach,
+                   [&](TextScanner& scanner, std::size_t i) { read(scanner, done + i); });
+      done += complete;
+    }
+  }
+
+  /// Whether there were marks of comments in what was in memory so far.
+  [[nodiscard]] bool sawComments() const noexcept { return sawComments_; }
+
+ private:
+  [[nodiscard]] std::size_t tokensLeft() const {
+    return index_->count() - index_->countBefore(scanner_->position());
+  }
+  /// Drops what is behind and reads on. @return whether there was more
+  bool fill();
+
+  const InputFile& file_;
+  std::string name_;
+  Context& context_;
+  Context quiet_;  ///< many short loops, which report no progress
+  Stage stage_;
+  Array<char> bytes_;
+  std::uint64_t begin_ = 0;  ///< in the file, of the bytes
+  std::size_t size_ = 0;     ///< how many there are
+  std::optional<TextScanner> scanner_;
+  std::optional<TokenIndex> index_;
+  bool sawComments_ = false;
+};
 
 }  // namespace hexhex::io

@@ -13,25 +13,17 @@
 #include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
-#include <io/curved/lagrange_files.hpp>
-#include <io/gmsh/gmsh.hpp>
-#include <io/hexex/hexex.hpp>
-#include <io/medit/medit.hpp>
-#include <io/ovm/ovm.hpp>
-#include <io/parts/parts.hpp>
-#include <io/solvers/solvers.hpp>
 #include <io/surface/surface.hpp>
-#include <io/vtk/vtk.hpp>
 
 namespace hexhex::io {
 namespace {
 
 // Of formats whose maps need no options.
-template <auto read>
+template <ReadPlainMap& read>
 TetMap readPlain(const Input& input, const ReadOptions& /*options*/, Context& context) {
   return read(input, context);
 }
-template <auto write>
+template <WritePlainMap& write>
 void writePlain(const TetMap& map, const std::filesystem::path& file,
                 const WriteOptions& /*options*/, Context& context) {
   write(map, file, context);
@@ -47,11 +39,15 @@ TetCells readHexexTets(const Input& input, Context& context) {
 
 // Formats over HDF5, which not every build has.
 #if defined(HEXHEX_HAS_HDF5)
-constexpr auto kWriteVtkHdf = writeVtkHdf;
-constexpr auto kWriteCgns = writeCgns;
+constexpr WriteMesh* kWriteVtkHdf = writeVtkHdf;
+constexpr WriteMesh* kWriteCgns = writeCgns;
+constexpr OpenPartSink* kOpenVtkHdf = openVtkHdfPartSink;
+constexpr OpenPartSink* kOpenCgns = openCgnsPartSink;
 #else
-constexpr decltype(&writeVtkHdf) kWriteVtkHdf = nullptr;
-constexpr decltype(&writeCgns) kWriteCgns = nullptr;
+constexpr WriteMesh* kWriteVtkHdf = nullptr;
+constexpr WriteMesh* kWriteCgns = nullptr;
+constexpr OpenPartSink* kOpenVtkHdf = nullptr;
+constexpr OpenPartSink* kOpenCgns = nullptr;
 #endif
 
 void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
@@ -59,11 +55,13 @@ void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
   writeExodus(mesh, file, options, context);
 }
 
-constexpr Format exodusFormat(std::string_view name, std::string_view extension) {
+constexpr Format exodusFormat(std::string_view name, std::string_view extension,
+                              std::string_view parts) {
   return {.label = {name, extension, "Exodus II"},
           .readTets = ExodusFormat::readTets,
           .meshes = {ExodusFormat::readMesh, writeExodusFile},
-          .curved = {ExodusFormat::holdsCurved, ExodusFormat::readCurved}};
+          .curved = {ExodusFormat::holdsCurved, ExodusFormat::readCurved},
+          .parts = {openExodusPartSink, parts}};
 }
 
 constexpr std::array kFormatTable = {
@@ -82,11 +80,15 @@ constexpr std::array kFormatTable = {
            .maps = {readVtuMap, writeVtuMap},
            .readTets = readVtuTets,
            .meshes = {readVtu, writeVtu},
-           .curved = {holdsLagrangeVtu, readLagrangeVtu},
+           .curved = {holdsLagrangeVtu, readLagrangeVtu, writeLagrangeVtu},
            .pieces = {openVtuSink, readVtuTo},
+           .writeArcs = writeArcsVtk,
+           .writePatches = writePatchesVtk,
            .compresses = true},
+    Format{.label = {"vtp", ".vtp"}, .writeArcs = writeArcsVtk, .writePatches = writePatchesVtk},
     Format{.label = {"pvtu", ".pvtu", "VTK XML in pieces (extract --parts)"},
-           .meshes = {.read = readPvtu}},
+           .meshes = {.read = readPvtu},
+           .parts = {openPvtuSink, "VTK XML: NAME.pvtu, and pieces in the folder NAME"}},
     Format{.label = {"vtk", ".vtk", "legacy VTK 2.0, text"},
            .maps = {readVtkLegacyMap, writeVtkLegacyMap},
            .readTets = readVtkLegacyTets,
@@ -106,11 +108,17 @@ constexpr std::array kFormatTable = {
     Format{.label = {"ovmb", ".ovmb", "OpenVolumeMesh, binary"},
            .maps = {readPlain<readOvmbMap>, writePlain<writeOvmbMap>},
            .readTets = readOvmbTets,
-           .meshes = {readOvmbHexMesh, writeOvmbHexMesh}},
+           .meshes = {readOvmbHexMesh, writeOvmbHexMesh},
+           .writeArcs = writeArcsOvmb,
+           .writePatches = writePatchesOvmb},
     Format{.label = {"msh", ".msh", "Gmsh 4.1, binary"},
            .readTets = readGmshTets,
            .meshes = {readGmsh, writeGmsh41Binary},
-           .pieces = {openGmsh41BinarySink, readGmshTo}},
+           .curved = {.write = writeLagrangeGmsh},
+           .pieces = {openGmsh41BinarySink, readGmshTo},
+           .parts = {openGmshPartSink, "Gmsh 4.1, binary: one file with partitioned entities"}},
+    Format{.label = {"msh-split", ""},
+           .parts = {openSplitGmshPartSink, "Gmsh 4.1, binary: NAME_K.msh, K from 1 on"}},
     Format{.label = {"msh41-ascii", ".msh", "Gmsh 4.1, text"},
            .readTets = readGmshTets,
            .meshes = {readGmsh, writeGmsh41Text}},
@@ -121,15 +129,24 @@ constexpr std::array kFormatTable = {
            .readTets = AbaqusFormat::readTets,
            .meshes = {AbaqusFormat::readMesh, writeAbaqus},
            .curved = {AbaqusFormat::holdsCurved, AbaqusFormat::readCurved}},
-    Format{.label = {"mfem", "", "MFEM mesh v1.0, text"}, .meshes = {.write = writeMfem}},
-    Format{.label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
-           .meshes = {.write = writeOpenFoam}},
+    Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
+           .meshes = {.write = writeMfem},
+           .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
+           .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
+    Format{
+        .label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
+        .meshes = {.write = writeOpenFoam},
+        .parts = {openOpenFoamPartSink, "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"}},
     Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
            .meshes = {.write = kWriteVtkHdf},
+           .parts = {kOpenVtkHdf, "VTKHDF: one file"},
            .overHdf5 = true},
-    Format{.label = {"cgns", ".cgns", "CGNS"}, .meshes = {.write = kWriteCgns}, .overHdf5 = true},
-    exodusFormat("exodus", ".exo"),
-    exodusFormat("exodus-e", ".e"),
+    Format{.label = {"cgns", ".cgns", "CGNS"},
+           .meshes = {.write = kWriteCgns},
+           .parts = {kOpenCgns, "CGNS: one file with a zone for each part", false},
+           .overHdf5 = true},
+    exodusFormat("exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"),
+    exodusFormat("exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K"),
     Format{.label = {"stl", ".stl", "surface of triangles, text or binary"},
            .readTriangles = readStl},
     Format{.label = {"obj", ".obj", "Wavefront surface"}, .readTriangles = readObj},
@@ -166,68 +183,80 @@ struct Purpose {
   const char* what;
 };
 
-constexpr Purpose purposeOf(FileContent content) {
-  switch (content) {
-    case FileContent::Map:
-      return {holdsMaps, "maps"};
-    case FileContent::HexMesh:
-      return {holdsMeshes, "hexahedral meshes"};
-    case FileContent::MapOrHexMesh:
-      return {[](const Format& format) { return holdsMaps(format) || holdsMeshes(format); },
-              "maps or hexahedral meshes"};
-    case FileContent::Triangles:
-      return {[](const Format& format) { return format.readTriangles != nullptr; }, "surfaces"};
-    case FileContent::Tets:
-      break;
-  }
-  return {[](const Format& format) { return format.readTets != nullptr; }, "tetrahedral meshes"};
+/// Entry i: that of the FileContent with the number i.
+constexpr std::array<Purpose, 9> kPurposes = {
+    {{holdsMaps, "maps"},
+     {holdsMeshes, "hexahedral meshes"},
+     {[](const Format& format) { return holdsMaps(format) || holdsMeshes(format); },
+      "maps or hexahedral meshes"},
+     {[](const Format& format) { return format.readTets != nullptr; }, "tetrahedral meshes"},
+     {[](const Format& format) { return format.readTriangles != nullptr; }, "surfaces"},
+     {[](const Format& format) { return !format.parts.description.empty(); }, "meshes in parts"},
+     {[](const Format& format) { return format.curved.write != nullptr; }, "cells of higher order"},
+     {[](const Format& format) { return format.writeArcs != nullptr; }, "arcs"},
+     {[](const Format& format) { return format.writePatches != nullptr; }, "patches"}}};
+
+constexpr const Purpose& purposeOf(FileContent content) {
+  return kPurposes[static_cast<std::size_t>(content)];
 }
 
+/// What a format is called where its name is, or where its extension is.
+std::string_view nameOf(const Format& format, FileContent /*content*/) { return format.label.name; }
+std::string_view extensionOf(const Format& format, FileContent content) {
+  const bool own = content == FileContent::CurvedCells && !format.curved.extension.empty();
+  return own ? format.curved.extension : format.label.extension;
+}
+using Word = std::string_view (*)(const Format& format, FileContent content);
+
 /// ".mesh, .vtu": the names or extensions of the formats that fit.
-std::string listed(bool (*fits)(const Format&), std::string_view FormatLabel::*what) {
+std::string listed(bool (*fits)(const Format&), Word wordOf,
+                   FileContent content = FileContent::HexMesh) {
   std::string list;
   std::string_view last;
   for (const Format& format : kFormatTable) {
-    const std::string_view word = format.label.*what;
+    const std::string_view word = wordOf(format, content);
     if (!fits(format) || word.empty() || word == last) continue;
     last = word;
     list += (list.empty() ? "" : ", ") + std::string(word);
   }
   return list;
 }
+std::string listed(FileContent content, Word wordOf) {
+  return listed(purposeOf(content).fits, wordOf, content);
+}
 
-/// @param key  the format's name or its extension, as `member` says; null if there is no such one
-const Format* formatWith(std::string_view key, std::string_view FormatLabel::*member,
-                         bool (*fits)(const Format&)) {
+/// @param key  the format's name or its extension; null if there is no such one
+const Format* formatWith(std::string_view key, Word wordOf, FileContent content) {
   const auto found =
       std::find_if(kFormatTable.begin(), kFormatTable.end(), [&](const Format& format) {
-        return !key.empty() && format.label.*member == key && fits(format);
+        return !key.empty() && wordOf(format, content) == key && purposeOf(content).fits(format);
       });
   return found == kFormatTable.end() ? nullptr : &*found;
 }
 
-[[noreturn]] void failToName(const std::filesystem::path& file, std::string_view name,
-                             const Purpose& purpose) {
-  throw Error(ErrorCode::FileUnsupported,
-              file.string() + ": \"" + std::string(name) + "\" is no format of " + purpose.what +
-                  ". Formats: " + listed(purpose.fits, &FormatLabel::name) + ".");
+[[noreturn]] void failToFind(const std::filesystem::path& file, const std::string& problem,
+                             FileContent content, const std::string& known) {
+  throw Error(ErrorCode::FileUnsupported, file.string() + ": " + problem + " is no format of " +
+                                              purposeOf(content).what + ". Formats: " + known +
+                                              ".");
 }
 
 [[noreturn]] void failToExtend(const std::filesystem::path& file, const std::string& extension,
                                FileContent content) {
+  const std::string named = "the extension \"" + extension + '"';
+  if (content == FileContent::Parts) failToFind(file, named, content, listed(content, nameOf));
+  if (content > FileContent::Parts) failToFind(file, named, content, listed(content, extensionOf));
   std::error_code unknown;
   const std::string problem =
       extension.empty()
           ? (std::filesystem::is_directory(file, unknown) ? "it is a folder"
                                                           : "the file name has no extension")
-          : "the extension \"" + extension + "\" is no format of " + purposeOf(content).what;
-  const bool tetsOnly =
-      content == FileContent::Map &&
-      formatWith(extension, &FormatLabel::extension, purposeOf(FileContent::Tets).fits) != nullptr;
+          : named + " is no format of " + purposeOf(content).what;
+  const bool tetsOnly = content == FileContent::Map &&
+                        formatWith(extension, extensionOf, FileContent::Tets) != nullptr;
   throw Error(ErrorCode::FileUnsupported,
-              file.string() + ": " + problem +
-                  ". Maps: " + listed(holdsMaps, &FormatLabel::extension) +
-                  "; hexahedral meshes: " + listed(holdsMeshes, &FormatLabel::extension) + "." +
+              file.string() + ": " + problem + ". Maps: " + listed(FileContent::Map, extensionOf) +
+                  "; hexahedral meshes: " + listed(FileContent::HexMesh, extensionOf) + "." +
                   (tetsOnly ? " Tets without a map need a second mesh with their parameters "
                               "(--tets, --polycube)."
                             : ""));
@@ -237,20 +266,27 @@ const Format* formatWith(std::string_view key, std::string_view FormatLabel::*me
 
 const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                          FileContent content) {
-  const Purpose purpose = purposeOf(content);
   const std::string_view usual = usualName(name);
   const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
-  const Format* const format = usual.empty()
-                                   ? formatWith(extension, &FormatLabel::extension, purpose.fits)
-                                   : formatWith(usual, &FormatLabel::name, purpose.fits);
-  if (format == nullptr && !usual.empty()) failToName(file, usual, purpose);
+  const Format* const format = usual.empty() ? formatWith(extension, extensionOf, content)
+                                             : formatWith(usual, nameOf, content);
+  if (format == nullptr && !usual.empty()) {
+    failToFind(file, '"' + std::string(usual) + '"', content, listed(content, nameOf));
+  }
   if (format == nullptr) failToExtend(file, extension, content);
   return *format;
 }
 
 std::string streamingFormats() {
-  return listed([](const Format& format) { return format.pieces.openSink != nullptr; },
-                &FormatLabel::name);
+  return listed([](const Format& format) { return format.pieces.openSink != nullptr; }, nameOf);
+}
+
+std::string teamFormats() {
+  return listed(
+      [](const Format& format) {
+        return purposeOf(FileContent::Parts).fits(format) && format.parts.byTeams;
+      },
+      nameOf);
 }
 
 }  // namespace hexhex::io
@@ -261,12 +297,35 @@ std::span<const FileFormat> fileFormats() {
   static const std::vector<FileFormat> list = [] {
     std::vector<FileFormat> result;
     for (const io::Format& format : io::kFormatTable) {
-      if (format.overHdf5 && format.meshes.write == nullptr) continue;  // not in this build
-      result.push_back({format.label.name, format.label.extension, format.label.description,
-                        format.maps.read != nullptr, format.maps.write != nullptr,
-                        format.readTets != nullptr, format.meshes.read != nullptr,
-                        format.meshes.write != nullptr, format.pieces.openSink != nullptr,
-                        format.compresses && io::hasZlib(), format.readTriangles != nullptr});
+      const FileFormat row = {format.label.name,
+                              format.label.extension,
+                              format.label.description,
+                              format.maps.read != nullptr,
+                              format.maps.write != nullptr,
+                              format.readTets != nullptr,
+                              format.meshes.read != nullptr,
+                              format.meshes.write != nullptr,
+                              format.pieces.openSink != nullptr,
+                              format.compresses && io::hasZlib(),
+                              format.readTriangles != nullptr};
+      // Not in this build, or for parts, arcs and patches alone.
+      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes ||
+          row.readsTriangles) {
+        result.push_back(row);
+      }
+    }
+    return result;
+  }();
+  return list;
+}
+
+std::span<const PartFormat> partFormats() noexcept {
+  static const std::vector<PartFormat> list = [] {
+    std::vector<PartFormat> result;
+    for (const io::Format& format : io::kFormatTable) {
+      if (format.parts.description.empty()) continue;
+      result.push_back({format.label.name, format.label.extension, format.parts.description,
+                        format.parts.byTeams});
     }
     return result;
   }();

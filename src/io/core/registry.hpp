@@ -1,22 +1,17 @@
-// The table of file formats. A new format is one file beside this folder's and one entry in
-// registry.cpp; whatever lists formats reads the table.
+// The table of file formats: all that a format can do is in its row. A new format is a file in
+// formats/, its functions in formats.hpp, and a row in registry.cpp; whatever lists formats reads
+// the table.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 
-#include <hexhex/context.hpp>
-#include <hexhex/curved.hpp>
 #include <hexhex/fill.hpp>
-#include <hexhex/io.hpp>
-#include <hexhex/stream.hpp>
-#include <hexhex/types.hpp>
 
-#include <io/core/cell_mesh.hpp>
 #include <io/core/input_file.hpp>
+#include <io/formats/formats.hpp>
 
 namespace hexhex::io {
 
@@ -26,7 +21,7 @@ struct FormatLabel {
   /// In lower case, with the dot. Of several formats with one extension, the first that can do what
   /// is asked for is what a file name means; empty if the format has to be asked for by name.
   std::string_view extension;
-  std::string_view description;
+  std::string_view description = {};
 };
 
 /// A format and what is done with it; functions are null where nothing is.
@@ -34,36 +29,53 @@ struct Format {
   FormatLabel label;
 
   struct {
-    TetMap (*read)(const Input& input, const ReadOptions& options, Context& context) = nullptr;
-    void (*write)(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
-                  Context& context) = nullptr;
+    ReadMap* read = nullptr;
+    WriteMap* write = nullptr;
   } maps = {};
   /// Tets without a map, whether there is one or not.
-  TetCells (*readTets)(const Input& input, Context& context) = nullptr;
+  ReadTets* readTets = nullptr;
   TriangleMesh (*readTriangles)(const Input& input, Context& context) = nullptr;
   struct {
-    HexMesh (*read)(const Input& input, Context& context) = nullptr;
-    void (*write)(const HexMesh& mesh, const std::filesystem::path& file,
-                  const WriteOptions& options, Context& context) = nullptr;
+    ReadMesh* read = nullptr;
+    WriteMesh* write = nullptr;
   } meshes = {};
   /// Cells of higher order, which are looked for first where meshes may have them.
   struct {
-    bool (*isIn)(const Input& input, Context& context) = nullptr;
-    LagrangeMesh (*read)(const Input& input, Context& context) = nullptr;
+    HoldsCurved* isIn = nullptr;
+    ReadCurved* read = nullptr;
+    WriteCurved* write = nullptr;
+    std::string_view extension = {};  ///< of what is written, if it is not the label's
   } curved = {};
-  /// Meshes in pieces.
+  /// Meshes piece by piece.
   struct {
-    std::unique_ptr<MeshSink> (*openSink)(const std::filesystem::path& file,
-                                          Context& context) = nullptr;
-    void (*read)(MeshSink& sink, const Input& input, Context& context) = nullptr;
+    OpenSink* openSink = nullptr;
+    ReadPieces* read = nullptr;
   } pieces = {};
+  /// Meshes in parts.
+  struct {
+    OpenPartSink* open = nullptr;
+    std::string_view description = {};  ///< which files there are; empty: the format has no parts
+    bool byTeams = true;                ///< whether processes can write it together
+  } parts = {};
+  WritePiecewise* writeArcs = nullptr;
+  WritePiecewise* writePatches = nullptr;
 
   bool compresses = false;  ///< heeds WriteOptions::compress
   /// Writing takes requireHdf5(); in builds without HDF5 all functions are null.
   bool overHdf5 = false;
 };
 
-enum class FileContent : std::uint8_t { Map, HexMesh, MapOrHexMesh, Tets, Triangles };
+enum class FileContent : std::uint8_t {
+  Map,
+  HexMesh,
+  MapOrHexMesh,
+  Tets,
+  Triangles,
+  Parts,
+  CurvedCells,  ///< to be written
+  Arcs,
+  Patches
+};
 
 /// The format of a file that holds, or will hold, such content: the one of this name or, if it is
 /// empty, what the extension means. It reads or writes such files, if not both.
@@ -73,5 +85,7 @@ enum class FileContent : std::uint8_t { Map, HexMesh, MapOrHexMesh, Tets, Triang
 
 /// "vtu, mesh": the names of all formats that take meshes in pieces.
 [[nodiscard]] std::string streamingFormats();
+/// The names of all formats of parts that processes can write together.
+[[nodiscard]] std::string teamFormats();
 
 }  // namespace hexhex::io

@@ -1,5 +1,12 @@
 #include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <span>
+#include <system_error>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -7,6 +14,219 @@
 #include <io/core/text_scanner.hpp>
 
 namespace hexhex::io {
+
+namespace {
+
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+/// Removes a leading sign and tells whether it was a minus.
+bool takeSign(std::string_view& token) {
+  if (token.empty() || (token.front() != '-' && token.front() != '+')) return false;
+  const bool negative = token.front() == '-';
+  token.remove_prefix(1);
+  return negative;
+}
+
+bool allDigits(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), isDigit);
+}
+
+NumberProblem parseRational(std::string_view numerator, std::string_view denominator,
+                            double& value) {
+  const bool negative = takeSign(denominator);
+  if (!allDigits(numerator) || !allDigits(denominator)) return NumberProblem::NotANumber;
+  if (std::max(numerator.size(), denominator.size()) > kMaxRationalDigits) {
+    return NumberProblem::TooLong;
+  }
+  if (denominator.find_first_not_of('0') == std::string_view::npos) {
+    return NumberProblem::ZeroDenominator;
+  }
+  const double quotient = nearestQuotient(numerator, denominator);
+  if (std::isinf(quotient)) return NumberProblem::Overflow;
+  value = negative ? -quotient : quotient;
+  return NumberProblem::None;
+}
+
+/// Whether a decimal number, known to be outside of the range of doubles, is too large (not too
+/// small): decided by the decimal exponent of its first digit that is not 0.
+bool isTooLarge(std::string_view decimal) {
+  const std::size_t mantissaEnd = std::min(decimal.find_first_of("eE"), decimal.size());
+  const std::string_view mantissa = decimal.substr(0, mantissaEnd);
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  const std::size_t first = mantissa.find_first_not_of("0.");
+  if (first == std::string_view::npos) return false;
+  std::int64_t exponent = 0;
+  if (mantissaEnd < decimal.size()) {
+    std::string_view digits = decimal.substr(mantissaEnd + 1);
+    const bool negative = takeSign(digits);
+    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
+    if (result.ec == std::errc::result_out_of_range) return !negative;
+    if (negative) exponent = -exponent;
+  }
+  // Half the range, so that adding the length of the mantissa cannot overflow.
+  constexpr std::int64_t kLimit = std::numeric_limits<std::int64_t>::max() / 2;
+  exponent = std::clamp(exponent, -kLimit, kLimit);
+  return exponent + static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first) > 0;
+}
+
+NumberProblem parseDecimal(std::string_view decimal, double& value) {
+  if (decimal.empty()) return NumberProblem::NotANumber;
+  double parsed = 0;
+  const char* const end = decimal.data() + decimal.size();
+  const auto result = doubleFromChars(decimal.data(), end, parsed);
+  if (result.ec == std::errc::invalid_argument || result.ptr != end) {
+    return NumberProblem::NotANumber;
+  }
+  const bool spelledOut = !isDigit(decimal.front()) && decimal.front() != '.';
+  if (spelledOut) return NumberProblem::NotFinite;
+  if (result.ec == std::errc::result_out_of_range || std::isinf(parsed)) {
+    if (isTooLarge(decimal)) return NumberProblem::Overflow;
+    parsed = 0;
+  }
+  value = parsed;
+  return NumberProblem::None;
+}
+
+}  // namespace
+
+NumberProblem parseNumber(std::string_view token, double& value) {
+  const bool negative = takeSign(token);
+  if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
+    return NumberProblem::NotANumber;
+  }
+  const std::size_t slash = token.find('/');
+  double magnitude = 0;
+  const NumberProblem problem =
+      slash == std::string_view::npos
+          ? parseDecimal(token, magnitude)
+          : parseRational(token.substr(0, slash), token.substr(slash + 1), magnitude);
+  if (problem == NumberProblem::None) value = negative ? -magnitude : magnitude;
+  return problem;
+}
+
+namespace {
+
+/// A natural number: base 2^32, least significant limb first, no leading zeros (0 has no limbs).
+using Natural = std::vector<std::uint32_t>;
+
+constexpr std::size_t kLimbBits = 32;
+
+/// value = value * factor + addend
+void multiplyAdd(Natural& value, std::uint32_t factor, std::uint32_t addend) {
+  std::uint64_t carry = addend;
+  for (std::uint32_t& limb : value) {
+    carry += std::uint64_t{limb} * factor;
+    limb = static_cast<std::uint32_t>(carry);
+    carry >>= kLimbBits;
+  }
+  if (carry != 0) value.push_back(static_cast<std::uint32_t>(carry));
+}
+
+Natural fromDecimal(std::string_view digits) {
+  // Nine digits are the most whose power of ten fits in a limb.
+  constexpr std::size_t kChunk = 9;
+  Natural value;
+  value.reserve(digits.size() / kChunk + 1);
+  for (std::size_t begin = 0; begin < digits.size();) {
+    const std::size_t end = std::min(begin + kChunk, digits.size());
+    std::uint32_t chunk = 0;
+    std::uint32_t power = 1;
+    for (; begin < end; ++begin) {
+      chunk = chunk * 10 + static_cast<std::uint32_t>(digits[begin] - '0');
+      power *= 10;
+    }
+    multiplyAdd(value, power, chunk);
+  }
+  return value;
+}
+
+/// Position of the highest set bit plus one. The value is not 0.
+std::int64_t bitLength(const Natural& value) {
+  return static_cast<std::int64_t>(kLimbBits * (value.size() - 1) +
+                                   static_cast<std::size_t>(std::bit_width(value.back())));
+}
+
+Natural shiftedLeft(const Natural& value, std::int64_t bits) {
+  const auto limbs = static_cast<std::size_t>(bits) / kLimbBits;
+  const auto factor = std::uint32_t{1} << (static_cast<std::size_t>(bits) % kLimbBits);
+  Natural result(limbs, 0);
+  result.insert(result.end(), value.begin(), value.end());
+  // The low limbs are 0, so that multiplying everything shifts the value alone.
+  multiplyAdd(result, factor, 0);
+  return result;
+}
+
+bool lessThan(const Natural& a, const Natural& b) {
+  if (a.size() != b.size()) return a.size() < b.size();
+  return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend());
+}
+
+/// a = a - b, where a >= b
+void subtract(Natural& a, const Natural& b) {
+  std::uint64_t borrow = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::uint64_t difference = std::uint64_t{a[i]} - (i < b.size() ? b[i] : 0) - borrow;
+    a[i] = static_cast<std::uint32_t>(difference);
+    borrow = (difference >> kLimbBits) & 1U;
+  }
+  while (!a.empty() && a.back() == 0) a.pop_back();
+}
+
+/// The double nearest to quotient * 2^exponent, ties to even. The lowest bit of the quotient stands
+/// for everything below it; the quotient has at least 55 bits.
+double roundToNearest(std::uint64_t quotient, std::int64_t exponent) {
+  constexpr std::int64_t kSmallestExponent = -1074;  // of a subnormal double
+  constexpr std::int64_t kMantissaBits = 53;
+  const auto length = static_cast<std::int64_t>(std::bit_width(quotient));
+  const std::int64_t lowest = std::max(exponent + length - kMantissaBits, kSmallestExponent);
+  const std::int64_t dropped = lowest - exponent;
+  if (dropped > length) return 0.0;  // below half the smallest double
+  std::uint64_t kept = quotient >> dropped;
+  const std::uint64_t rest = quotient & ((std::uint64_t{1} << dropped) - 1);
+  const std::uint64_t half = std::uint64_t{1} << (dropped - 1);
+  if (rest > half || (rest == half && kept % 2 == 1)) ++kept;
+  // Beyond this the result is infinite anyway, and the exponent would not fit an int.
+  constexpr std::int64_t kHugeExponent = 2000;
+  return std::ldexp(static_cast<double>(kept), static_cast<int>(std::min(lowest, kHugeExponent)));
+}
+
+/// Any quotient, by long division bit by bit.
+double divideExactly(const Natural& numerator, const Natural& denominator) {
+  // Both are brought to the same length, so that their quotient lies between 1/2 and 2; 56 bits of
+  // it are at least 55 significant ones: 53 for the double, one for rounding, one for the rest.
+  constexpr int kQuotientBits = 56;
+  const std::int64_t excess = bitLength(numerator) - bitLength(denominator);
+  Natural remainder = excess < 0 ? shiftedLeft(numerator, -excess) : numerator;
+  const Natural divisor = excess > 0 ? shiftedLeft(denominator, excess) : denominator;
+  std::uint64_t quotient = 0;
+  for (int i = 0; i < kQuotientBits; ++i) {
+    quotient <<= 1U;
+    if (!lessThan(remainder, divisor)) {
+      subtract(remainder, divisor);
+      quotient |= 1U;
+    }
+    multiplyAdd(remainder, 2, 0);
+  }
+  if (!remainder.empty()) quotient |= 1U;
+  return roundToNearest(quotient, excess - (kQuotientBits - 1));
+}
+
+}  // namespace
+
+double nearestQuotient(std::string_view numerator, std::string_view denominator) {
+  // Integers of at most 15 digits are exact doubles, and IEEE division rounds correctly.
+  constexpr std::size_t kExactDigits = 15;
+  if (numerator.size() <= kExactDigits && denominator.size() <= kExactDigits) {
+    std::uint64_t p = 0;
+    std::uint64_t q = 1;
+    std::from_chars(numerator.data(), numerator.data() + numerator.size(), p);
+    std::from_chars(denominator.data(), denominator.data() + denominator.size(), q);
+    return static_cast<double>(p) / static_cast<double>(q);
+  }
+  const Natural p = fromDecimal(numerator);
+  if (p.empty()) return 0.0;
+  return divideExactly(p, fromDecimal(denominator));
+}
 
 std::string lowerCase(std::string_view word) {
   std::string result(word);

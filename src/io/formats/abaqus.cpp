@@ -1,0 +1,625 @@
+// `.inp` files (see formats.hpp): keywords in lines that begin with '*', and lines of data below.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/gmsh_elements.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// Abaqus' numbers of the faces of kHexFaces.
+constexpr std::array<char, 6> kAbaqusFaces = {'6', '4', '3', '5', '1', '2'};
+
+// Reading.
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// The next word of a line, up to a comma; the line goes on behind it.
+std::string_view takeField(std::string_view& line) {
+  const std::size_t comma = std::min(line.find(','), line.size());
+  const std::string_view word = trimmed(line.substr(0, comma));
+  line.remove_prefix(std::min(comma + 1, line.size()));
+  return word;
+}
+
+/// "*Element, type=C3D8": all in lower case; the value of a parameter without one is empty.
+struct AbaqusKeyword {
+  std::string name;
+  std::map<std::string, std::string> parameters;
+
+  [[nodiscard]] bool has(const std::string& parameter) const {
+    return parameters.contains(parameter);
+  }
+  [[nodiscard]] std::string value(const std::string& parameter) const {
+    const auto found = parameters.find(parameter);
+    return found == parameters.end() ? std::string() : found->second;
+  }
+};
+
+/// What an element type is: of the names that end in "C3D" and a number of nodes, and letters for
+/// the formulation.
+struct AbaqusType {
+  const VolumeCells* cells = nullptr;  ///< null if it is no volume
+  std::size_t nodes = 0;
+};
+
+AbaqusType abaqusType(std::string_view name) {
+  const std::size_t place = name.find("c3d");
+  const bool shell = name.starts_with("sc8");  // a continuum shell is a hexahedron
+  if (shell) return {volumeCells("hexahedra"), 8};
+  if (place == std::string_view::npos) return {};
+  AbaqusType type;
+  std::from_chars(name.data() + place + 3, name.data() + name.size(), type.nodes);
+  for (const std::string_view noun : {"hexahedra", "tetrahedra", "prisms", "pyramids"}) {
+    if (type.cells == nullptr) type.cells = volumeCells(noun, type.nodes);
+  }
+  return type;
+}
+
+/// Reads a file and those that it includes.
+class AbaqusReader {
+ public:
+  AbaqusReader(const Input& input, ElementParts parts, Stage& stage)
+      : input_(input), parts_(parts), stage_(stage) {}
+
+  ElementLists read() {
+    Array<char> room;
+    readFile(input_.text(room, stage_, "*"), input_.name(), input_.path());
+    if (parts_ == ElementParts::All) finish();
+    return std::move(lists_);
+  }
+
+ private:
+  struct Set {
+    std::vector<std::uint64_t> items;
+  };
+  struct Surface {
+    std::string name;
+    std::vector<ElementSide> sides;
+  };
+  using Sets = std::map<std::string, Set>;
+
+  static constexpr std::uint64_t kItemsPerByte = 2;  // of a text: 16 times its size
+  static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
+
+  void readFile(std::string_view text, const std::string& name, const std::filesystem::path& path) {
+    itemsLeft_ += kItemsPerByte * text.size();
+    TextScanner scanner(text, name);
+    TextScanner* const outer = std::exchange(scanner_, &scanner);
+    while (nextLine()) {
+      if (!line_.starts_with("*")) {
+        failIfFirst();
+        continue;  // data of a keyword that is not needed
+      }
+      const AbaqusKeyword keyword = readKeyword();
+      if (keyword.name == "*include") {
+        include(keyword, path);
+      } else {
+        readBlock(keyword);
+      }
+    }
+    scanner_ = outer;
+  }
+
+  /// Goes to the next line that is no comment. @return false at the end of the file
+  bool nextLine() {
+    while (scanner_->position() < scanner_->text().size()) {
+      line_ = scanner_->takeLine();
+      if (!line_.starts_with("**") && !trimmed(line_).empty()) return true;
+    }
+    return false;
+  }
+  /// The same for a line of data; stays before a keyword.
+  bool nextData() {
+    const std::size_t before = scanner_->position();
+    if (nextLine() && !line_.starts_with("*")) return true;
+    scanner_->moveTo(std::min(before, scanner_->text().size()));
+    return false;
+  }
+
+  AbaqusKeyword readKeyword() {
+    begun_ = true;
+    std::string text(trimmed(line_));
+    while (text.ends_with(',') && nextLine()) text += trimmed(line_);
+    std::string_view rest = text;
+    AbaqusKeyword keyword{lowerCase(takeField(rest)), {}};
+    while (!rest.empty()) {
+      const std::string_view word = takeField(rest);
+      const std::size_t equals = std::min(word.find('='), word.size());
+      std::string_view value = trimmed(word.substr(std::min(equals + 1, word.size())));
+      if (value.size() > 1 && value.starts_with('"') && value.ends_with('"')) {
+        value = value.substr(1, value.size() - 2);
+      }
+      const std::string name = lowerCase(trimmed(word.substr(0, equals)));
+      // The case of file names means something.
+      keyword.parameters[name] = name == "input" ? std::string(value) : lowerCase(value);
+    }
+    return keyword;
+  }
+
+  void readBlock(const AbaqusKeyword& keyword) {
+    if (parts_ == ElementParts::Types && keyword.name != "*element") return;
+    if (keyword.name == "*node") {
+      readNodes(keyword);
+    } else if (keyword.name == "*element") {
+      readElements(keyword);
+    } else if (keyword.name == "*nset") {
+      readSet(keyword, keyword.value("nset"), nodeSets_);
+    } else if (keyword.name == "*elset") {
+      readSet(keyword, keyword.value("elset"), elementSets_);
+    } else if (keyword.name == "*surface") {
+      readSurface(keyword);
+    } else if (keyword.name == "*solid section") {
+      sections_.push_back(keyword.value("elset"));
+    } else if (keyword.name == "*instance") {
+      if (++instances_ > 1) failAssembly();
+    } else {
+      refuse(keyword.name);
+    }
+  }
+
+  /// Keywords that would change the mesh.
+  void refuse(const std::string& keyword) const {
+    constexpr std::array<std::string_view, 8> kMakers = {
+        "*ngen",  "*nfill",  "*ncopy",  "*nmap",
+        "*elgen", "*elcopy", "*system", "*symmetric model generation"};
+    if (std::find(kMakers.begin(), kMakers.end(), keyword) == kMakers.end()) return;
+    fail("the keyword " + quoted(std::string_view(keyword)) +
+             " makes or moves nodes or elements, which is not supported. Let the program that "
+             "made the file write all nodes and elements",
+         ErrorCode::FileUnsupported);
+  }
+  [[noreturn]] void failAssembly() const {
+    fail(
+        "the file is an assembly of several instances of parts. Export it as one mesh, without "
+        "parts",
+        ErrorCode::FileUnsupported);
+  }
+
+  void include(const AbaqusKeyword& keyword, const std::filesystem::path& path) {
+    const std::string name = keyword.value("input");
+    if (name.empty()) fail("*INCLUDE needs the name of a file: INPUT=...");
+    if (path.empty()) fail("a text in memory cannot include files", ErrorCode::FileUnsupported);
+    constexpr int kDeepest = 32;
+    constexpr int kMost = 1000;
+    if (depth_ == kDeepest || ++includes_ > kMost) fail("files include each other without end");
+    const std::filesystem::path file = path.parent_path() / name;
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(file, unknown)) {
+      fail("there is no file " + quoted(std::string_view(file.string())) + " to include",
+           ErrorCode::FileNotFound);
+    }
+    const Array<char> bytes = readWholeFile(file, stage_);
+    ++depth_;
+    readFile(withoutByteOrderMark(asText(bytes)), file.string(), file);
+    --depth_;
+  }
+
+  void readNodes(const AbaqusKeyword& keyword) {
+    if (keyword.has("system") && keyword.value("system") != "r") {
+      fail("nodes in cylindrical or spherical coordinates are not supported",
+           ErrorCode::FileUnsupported);
+    }
+    const std::string set = keyword.value("nset");
+    std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set].items;
+    while (nextData()) {
+      std::string_view rest = line_;
+      nodeNumbers_.push_back(integer(takeField(rest), "the number of a node"));
+      Vec3 point{};
+      for (double& coordinate : point) {
+        if (rest.empty()) break;  // those that are left out are 0
+        const std::string_view word = takeField(rest);
+        if (!word.empty()) coordinate = real(word);
+      }
+      lists_.points.push_back(point);
+      if (items != nullptr) items->push_back(nodeNumbers_.back());
+    }
+    if (lists_.points.size() > kNone) fail("the file has too many nodes", ErrorCode::TooLarge);
+  }
+
+  void readElements(const AbaqusKeyword& keyword) {
+    const std::string name = keyword.value("type");
+    if (name.empty()) fail("*ELEMENT needs a type: TYPE=C3D8");
+    const AbaqusType type = abaqusType(name);
+    ElementBlock& block = lists_.blocks.emplace_back();
+    block.type = type.cells;
+    block.nodesEach = type.nodes;
+    std::vector<std::uint64_t>& places = blockNodes_.emplace_back();
+    const std::string set = keyword.value("elset");
+    if (!set.empty()) blockSets_.push_back(set);
+    while (nextData()) {
+      std::string_view rest = line_;
+      const std::uint64_t number = integer(takeField(rest), "the number of an element");
+      if (type.cells == nullptr && name.find("c3d") == std::string::npos) continue;
+      if (type.cells == nullptr) {
+        fail("elements of the type " + quoted(std::string_view(name)) + " are not known",
+             ErrorCode::FileUnsupported);
+      }
+      block.numbers.push_back(number);
+      if (parts_ == ElementParts::Types) return;
+      if (!set.empty()) elementSets_[set].items.push_back(number);
+      for (std::size_t k = 0; k < type.nodes; ++k) {
+        if (trimmed(rest).empty()) {
+          if (!nextData()) fail("the nodes of element " + std::to_string(number) + " are missing");
+          rest = line_;
+        }
+        places.push_back(integer(takeField(rest), "a node of an element"));
+      }
+    }
+  }
+
+  void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
+    if (name.empty()) fail("the set has no name");
+    Set& set = sets[name];
+    while (nextData()) {
+      std::string_view rest = line_;
+      if (keyword.has("generate")) {
+        addRange(rest, set);
+        continue;
+      }
+      while (!trimmed(rest).empty()) {
+        const std::string_view word = takeField(rest);
+        if (word.empty()) continue;
+        std::uint64_t number = 0;
+        const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
+        if (result.ec == std::errc{} && result.ptr == word.data() + word.size()) {
+          set.items.push_back(number);
+          continue;
+        }
+        const auto other = sets.find(lowerCase(unquoted(word)));
+        if (other == sets.end()) {
+          fail("the set names " + quoted(word) + ", which is no number, and no set above");
+        }
+        const std::vector<std::uint64_t> items = other->second.items;
+        takeRoom(items.size());
+        set.items.insert(set.items.end(), items.begin(), items.end());
+      }
+    }
+  }
+  static std::string_view unquoted(std::string_view word) {
+    const bool quotes = word.size() > 1 && word.front() == '"' && word.back() == '"';
+    return quotes ? word.substr(1, word.size() - 2) : word;
+  }
+
+  /// "first, last, step"
+  void addRange(std::string_view rest, Set& set) {
+    const std::uint64_t first = integer(takeField(rest), "the first of a range");
+    const std::uint64_t last = integer(takeField(rest), "the last of a range");
+    const std::string_view word = takeField(rest);
+    const std::uint64_t step = word.empty() ? 1 : integer(word, "the step of a range");
+    if (step == 0 || last < first) fail("a range is \"first, last, step\", upwards");
+    takeRoom((last - first) / step + 1);
+    for (std::uint64_t i = first;; i += step) {
+      set.items.push_back(i);
+      if (last - i < step) break;
+    }
+  }
+  /// Sets that few lines make must not take far more memory than the file.
+  void takeRoom(std::uint64_t items) {
+    if (items > itemsLeft_) {
+      fail("the sets have far more members than the file has nodes and elements",
+           ErrorCode::TooLarge);
+    }
+    itemsLeft_ -= items;
+  }
+
+  void readSurface(const AbaqusKeyword& keyword) {
+    const std::string type = keyword.value("type");
+    Surface& surface = surfaces_.emplace_back(Surface{keyword.value("name"), {}});
+    while (nextData()) {
+      if (!type.empty() && type != "element") continue;
+      std::string_view rest = line_;
+      const std::string_view elements = takeField(rest);
+      const std::string face = lowerCase(takeField(rest));
+      const auto* const found = face.size() == 2 && face[0] == 's'
+                                    ? std::find(kAbaqusFaces.begin(), kAbaqusFaces.end(), face[1])
+                                    : kAbaqusFaces.end();
+      if (found == kAbaqusFaces.end()) continue;  // the whole surface, or sides of shells
+      const auto row = static_cast<std::size_t>(found - kAbaqusFaces.begin());
+      const auto set = elementSets_.find(lowerCase(unquoted(elements)));
+      if (set == elementSets_.end()) {
+        surface.sides.push_back({integer(elements, "an element or a set of them"), row, 0});
+      } else {
+        takeRoom(kItemsPerSide * set->second.items.size());
+        for (const std::uint64_t element : set->second.items) {
+          surface.sides.push_back({element, row, 0});
+        }
+      }
+    }
+  }
+
+  /// Names become nodes; names of groups become tags.
+  void finish() {
+    if (nodeNumbers_.empty()) {
+      throw Error(ErrorCode::FileUnsupported, input_.name() + ": the file has no *NODE section.");
+    }
+    const NodeTags nodes(nodeNumbers_);
+    if (const Index repeated = nodes.repeated(); repeated != kNone) {
+      throw Error(ErrorCode::FileSyntax,
+                  input_.name() + ": two nodes have the number " +
+                      std::to_string(nodeNumbers_[repeated]) +
+                      ". If the file has several parts, export it as one mesh, without parts.");
+    }
+    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) resolve(lists_.blocks[b], b, nodes);
+    tagRegions();
+    tagSurfaces();
+    for (auto& [name, set] : nodeSets_) {
+      NodeSet& added = lists_.nodeSets.emplace_back(
+          NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
+      for (const std::uint64_t number : set.items) {
+        const Index node = nodes.find(number);
+        if (node != kNone) added.nodes.push_back(node);
+      }
+      set.items = {};
+    }
+  }
+
+  void resolve(ElementBlock& block, std::size_t b, const NodeTags& nodes) {
+    std::vector<std::uint64_t>& numbers = blockNodes_[b];
+    block.nodes.resize(numbers.size());
+    block.regions.assign(block.count(), 0);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      block.nodes[i] = nodes.find(numbers[i]);
+      if (block.nodes[i] != kNone) continue;
+      throw Error(ErrorCode::IndexOutOfRange,
+                  input_.name() + ": element " +
+                      std::to_string(block.numbers[i / block.nodesEach]) + " names node " +
+                      std::to_string(numbers[i]) + ", which is in no *NODE section.");
+    }
+    numbers = {};
+  }
+
+  /// Without the letter and '_' that the writer puts in front.
+  static std::string ownName(const std::string& name) {
+    const bool prefixed = name.size() > 2 && name[1] == '_' &&
+                          std::string_view("ens").find(name[0]) != std::string_view::npos;
+    return prefixed && tagInGroupName(name.substr(2)) ? name.substr(2) : name;
+  }
+
+  /// Regions are the sets that *ELEMENT and *SOLID SECTION name, numbered from 1 in their order,
+  /// and those that the writer makes.
+  void tagRegions() {
+    std::vector<std::string>& names = blockSets_;
+    names.insert(names.end(), sections_.begin(), sections_.end());
+    for (const auto& [name, set] : elementSets_) {
+      if (ownName(name) != name) names.push_back(name);
+    }
+    std::map<std::string, std::int64_t> numbers;
+    std::vector<std::pair<std::uint64_t, std::int32_t>> regions;
+    for (const std::string& name : names) {
+      const auto set = elementSets_.find(name);
+      if (set == elementSets_.end()) continue;
+      const auto [known, isNew] =
+          numbers.emplace(name, static_cast<std::int64_t>(numbers.size()) + 1);
+      if (!isNew) continue;
+      const std::int32_t tag = tagOfGroup(ownName(name), known->second);
+      for (const std::uint64_t element : set->second.items) regions.emplace_back(element, tag);
+    }
+    // Of several sets with one element, the last one counts.
+    std::stable_sort(regions.begin(), regions.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (ElementBlock& block : lists_.blocks) {
+      for (std::size_t i = 0; i < block.count(); ++i) {
+        const auto behind = std::upper_bound(
+            regions.begin(), regions.end(), block.numbers[i],
+            [](std::uint64_t number, const auto& entry) { return number < entry.first; });
+        if (behind == regions.begin() || std::prev(behind)->first != block.numbers[i]) continue;
+        block.regions[i] = std::prev(behind)->second;
+      }
+    }
+  }
+
+  void tagSurfaces() {
+    std::int64_t number = 0;
+    for (Surface& surface : surfaces_) {
+      const std::int32_t tag = tagOfGroup(ownName(surface.name), ++number);
+      for (ElementSide side : surface.sides) {
+        side.tag = tag;
+        lists_.sides.push_back(side);
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint64_t integer(std::string_view word, const char* what) const {
+    std::uint64_t number = 0;
+    const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (result.ec == std::errc{} && result.ptr == word.data() + word.size() && !word.empty()) {
+      return number;
+    }
+    fail("expected " + std::string(what) + ", found " + quoted(word));
+  }
+  /// Exponents may be spelled as in Fortran: 1.5D+01.
+  [[nodiscard]] double real(std::string_view word) const {
+    std::string spelled = lowerCase(word);
+    std::replace(spelled.begin(), spelled.end(), 'd', 'e');
+    double value = 0;
+    const NumberProblem problem = parseNumber(spelled, value);
+    if (problem == NumberProblem::None) return value;
+    const bool infinite = problem == NumberProblem::NotFinite || problem == NumberProblem::Overflow;
+    fail("expected a coordinate of a node, found " + quoted(word),
+         infinite ? ErrorCode::NotFinite : ErrorCode::FileSyntax);
+  }
+
+  void failIfFirst() const {
+    if (!begun_) fail("a file of Abaqus begins with a keyword like *NODE, found " + quoted(line_));
+  }
+  /// About the line that was read last.
+  [[noreturn]] void fail(const std::string& sentence,
+                         ErrorCode code = ErrorCode::FileSyntax) const {
+    TextScanner at = *scanner_;
+    at.moveTo(static_cast<std::size_t>(line_.data() - at.text().data()));
+    at.fail(code, sentence + ".");
+  }
+
+  const Input& input_;
+  ElementParts parts_;
+  Stage& stage_;
+  TextScanner* scanner_ = nullptr;
+  std::string_view line_;
+  bool begun_ = false;
+  int depth_ = 0;  ///< of files in files
+  int includes_ = 0;
+  int instances_ = 0;
+  std::uint64_t itemsLeft_ = 1024;  ///< how many members sets may have yet
+  ElementLists lists_;
+  Array<std::uint64_t> nodeNumbers_;
+  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block, by their numbers
+  Sets nodeSets_;
+  Sets elementSets_;
+  std::vector<std::string> blockSets_;  ///< names of sets that are regions: those of *ELEMENT,
+  std::vector<std::string> sections_;   ///< and of *SOLID SECTION
+  std::vector<Surface> surfaces_;
+};
+
+}  // namespace
+
+ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage) {
+  return AbaqusReader(input, parts, stage).read();
+}
+
+namespace {
+
+constexpr std::size_t kLongestNumber = 20;
+constexpr std::size_t kNamesPerLine = 16;
+
+/// Puts a number of at most 20 characters.
+char* putShort(char* place, double number) {
+  char* end = put(place, number);
+  // 13 digits always fit: sign, digit, point, 12 digits, and an exponent like "e-308".
+  for (int digits = 16; static_cast<std::size_t>(end - place) > kLongestNumber; --digits) {
+    end = std::to_chars(place, place + kNumberRoom, number, std::chars_format::general, digits).ptr;
+  }
+  return end;
+}
+
+std::string upperCase(std::string name) {
+  for (char& c : name) {
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+  return name;
+}
+
+class AbaqusWriter {
+ public:
+  AbaqusWriter(OutputFile& output, const HexMesh& mesh, Stage& stage, int threads)
+      : output_(output), lines_(output, threads), mesh_(mesh), stage_(stage) {}
+
+  void write(const MeshGroups& groups) {
+    output_.write("*HEADING\nhexahedral mesh by hexhex\n");
+    writeNodes();
+    writeElements();
+    // The set of all elements is there in any case.
+    for (const ElementGroup& group : groups.cells.groups) {
+      if (group.name == "hexahedra") continue;
+      writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,
+               [&](std::size_t i) { return groups.cells.at(group.begin + i); });
+    }
+    writeNodeSets(groups.quads);
+    writeNodeSets(groups.edges);
+    writeNodeSets(groups.vertices);
+    for (const ElementGroup& group : groups.quads.groups) writeSurface(groups.quads, group);
+  }
+
+ private:
+  void writeNodes() {
+    LoopProgress progress(stage_, mesh_.points.size());
+    output_.write("*NODE\n");
+    const auto node = [this](char* place, std::size_t i) {
+      place = put(place, std::uint64_t{i} + 1);
+      for (const double coordinate : mesh_.points[i]) {
+        place = putShort(put(place, ", "), coordinate);
+      }
+      return put(place, '\n');
+    };
+    lines_.write(mesh_.points.size(), 4 * (kNumberRoom + 2), node, &progress);
+  }
+
+  void writeElements() {
+    LoopProgress progress(stage_, mesh_.cells.size());
+    output_.write("*ELEMENT, TYPE=C3D8, ELSET=HEXAHEDRA\n");
+    const auto cell = [this](char* place, std::size_t i) {
+      place = put(place, std::uint64_t{i} + 1);
+      for (const Index vertex : mesh_.cells[i]) {
+        place = put(put(place, ", "), std::uint64_t{vertex} + 1);
+      }
+      return put(place, '\n');
+    };
+    lines_.write(mesh_.cells.size(), 9 * (kNumberRoom + 2), cell, &progress);
+  }
+
+  template <class Groups>
+  void writeNodeSets(const Groups& groups) {
+    for (const ElementGroup& group : groups.groups) {
+      const Array<Index> vertices = verticesOf(groups, group);
+      writeSet("*NSET, NSET=N_", group, vertices.size(),
+               [&](std::size_t i) { return vertices[i]; });
+    }
+  }
+
+  /// @param indexAt  of the i-th of n members
+  template <class F>
+  void writeSet(std::string_view keyword, const ElementGroup& group, std::size_t n,
+                const F& indexAt) {
+    output_.write(keyword).write(upperCase(group.name)).write('\n');
+    const auto entry = [&](char* place, std::size_t i) {
+      const bool ends = i + 1 == n || (i + 1) % kNamesPerLine == 0;
+      return put(put(place, std::uint64_t{indexAt(i)} + 1), ends ? "\n" : ", ");
+    };
+    lines_.write(n, kNumberRoom + 2, entry, nullptr);
+  }
+
+  /// Quads inside the mesh are on no surface.
+  void writeSurface(const QuadGroups& quads, const ElementGroup& group) {
+    const std::size_t count = quads.boundaryEnd(group) - group.begin;
+    if (count == 0) return;
+    output_.write("*SURFACE, TYPE=ELEMENT, NAME=S_").write(upperCase(group.name)).write('\n');
+    const auto face = [&quads, &group](char* place, std::size_t i) {
+      const std::uint64_t side = quads.places[group.begin + i];
+      place = put(put(place, side / 8 + 1), ", S");
+      return put(put(place, kAbaqusFaces[side % 8]), '\n');
+    };
+    lines_.write(count, kNumberRoom + 5, face, nullptr);
+  }
+
+  OutputFile& output_;
+  LineWriter lines_;
+  const HexMesh& mesh_;
+  Stage& stage_;
+};
+
+}  // namespace
+
+void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
+                 const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  const MeshGroups groups(mesh, options.patchAngle, stage);
+  AbaqusWriter(output, mesh, stage, context.threads()).write(groups);
+  output.commit();
+}
+
+}  // namespace hexhex::io

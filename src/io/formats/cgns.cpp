@@ -1,0 +1,360 @@
+// The tree of nodes that a CGNS file is, as the standard maps it to HDF5 ("SIDS-to-HDF"): a node is
+// a group with its name, its label, the type of its data, and the data.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <deque>
+#include <hdf5.h>
+#include <initializer_list>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/hdf_file.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/output_folder.hpp>
+#include <io/formats/formats.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// The standard's numbers of elements with so many corners.
+constexpr int elementType(std::size_t corners) {
+  return corners == 8 ? 17 : corners == 4 ? 7 : corners == 2 ? 3 : 2;
+}
+
+/// Numbers of nodes; "MT" of those without.
+struct CgnsData {
+  const char* type = "MT";
+  hid_t ofHdf = -1;
+  const void* values = nullptr;
+  std::initializer_list<hsize_t> shape = {};  ///< the last index runs fastest
+
+  CgnsData() = default;
+  CgnsData(std::string_view text, std::initializer_list<hsize_t> size)
+      : type("C1"), ofHdf(HDF5(H5T_NATIVE_SCHAR_g)), values(text.data()), shape(size) {}
+  template <class T>
+  CgnsData(const T* numbers, std::initializer_list<hsize_t> size) : values(numbers), shape(size) {
+    if constexpr (std::same_as<T, double>) {
+      type = "R8", ofHdf = HDF5(H5T_NATIVE_DOUBLE_g);
+    } else if constexpr (std::same_as<T, float>) {
+      type = "R4", ofHdf = HDF5(H5T_NATIVE_FLOAT_g);
+    } else if constexpr (std::same_as<T, std::int64_t>) {
+      type = "I8", ofHdf = HDF5(H5T_NATIVE_INT64_g);
+    } else {
+      static_assert(std::same_as<T, std::int32_t>);
+      type = "I4", ofHdf = HDF5(H5T_NATIVE_INT32_g);
+    }
+  }
+};
+
+/// A file of nodes.
+class CgnsFile {
+ public:
+  explicit CgnsFile(const OutputFile& output) : file_(output, HdfFile::Order::OfCreation) {
+    describe(file_.root(), "HDF5 MotherNode", "Root Node of HDF5 File", "MT");
+    const std::string_view format =
+        std::endian::native == std::endian::little ? "IEEE_LITTLE_32" : "IEEE_BIG_32";
+    writeSet(file_.root(), " format", {format, {format.size() + 1}});
+    std::array<unsigned, 3> version{};
+    HDF5(H5get_libversion)(&version[0], &version[1], &version[2]);
+    std::string text = "HDF5 Version " + std::to_string(version[0]) + "." +
+                       std::to_string(version[1]) + "." + std::to_string(version[2]);
+    text.resize(kTextBytes);
+    writeSet(file_.root(), " hdf5version", {text, {kTextBytes}});
+  }
+
+  [[nodiscard]] hid_t root() const noexcept { return file_.root(); }
+
+  /// @param name  at most 32 characters, as the label
+  HdfObject add(hid_t parent, const std::string& name, const char* label,
+                const CgnsData& data = {}) const {
+    constexpr std::int32_t kFlags = 1;
+    HdfObject node = file_.group(parent, name);
+    describe(node.id(), name, label, data.type);
+    file_.writeAttribute(node.id(), "flags", HDF5(H5T_NATIVE_INT32_g), file_.space({1}), &kFlags);
+    if (data.values != nullptr) writeSet(node.id(), " data", data);
+    return node;
+  }
+  HdfObject addText(hid_t parent, const char* name, const char* label,
+                    std::string_view text) const {
+    return add(parent, name, label, {text, {text.size()}});
+  }
+
+  void close() { file_.close(); }
+
+ private:
+  static constexpr std::size_t kTextBytes = 33;
+
+  void describe(hid_t node, std::string name, std::string label, std::string type) const {
+    constexpr std::size_t kTypeBytes = 3;
+    const auto write = [&](const char* attribute, std::string& text, std::size_t bytes) {
+      text.resize(bytes);
+      file_.writeAttribute(node, attribute, file_.text(bytes, H5T_STR_NULLTERM).id(),
+                           file_.space({}), text.data());
+    };
+    write("name", name, kTextBytes);
+    write("label", label, kTextBytes);
+    write("type", type, kTypeBytes);
+  }
+
+  void writeSet(hid_t node, const char* name, const CgnsData& data) const {
+    const HdfObject set = file_.dataset(node, name, data.ofHdf, file_.space(data.shape));
+    set.require(HDF5(H5Dwrite)(set.id(), data.ofHdf, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.values));
+  }
+
+  HdfFile file_;
+};
+
+/// Begins the tree. @return  the base, in which zones are
+HdfObject addBase(const CgnsFile& file) {
+  constexpr float kVersion = 3.4F;
+  constexpr std::array<std::int32_t, 2> kDimensions = {3, 3};
+  static_cast<void>(
+      file.add(file.root(), "CGNSLibraryVersion", "CGNSLibraryVersion_t", {&kVersion, {1}}));
+  return file.add(file.root(), "Base", "CGNSBase_t", {kDimensions.data(), {2}});
+}
+
+/// @tparam Number  numbers all vertices and elements from 1 on
+template <class Number>
+class CgnsWriter {
+ public:
+  CgnsWriter(const CgnsFile& file, const HexMesh& mesh, Stage& stage)
+      : file_(file), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
+
+  /// @param name  of the zone
+  HdfObject writeZone(hid_t base, const std::string& name, const MeshGroups& groups) {
+    const std::array<Number, 3> size = {static_cast<Number>(mesh_.points.size()),
+                                        static_cast<Number>(groups.cells.groups.back().end), 0};
+    HdfObject zone = file_.add(base, name, "Zone_t", {size.data(), {3, 1}});
+    static_cast<void>(file_.addText(zone.id(), "ZoneType", "ZoneType_t", "Unstructured"));
+    writePoints(zone.id());
+    for (const ElementGroup& group : groups.cells.groups) {
+      writeSection(zone.id(), group,
+                   [&](std::size_t i) -> const Hex& { return mesh_.cells[groups.cells.at(i)]; });
+    }
+    progress_.advance(mesh_.cells.size());
+    const Number firstQuad = next_;
+    const auto writeAll = [&](const auto& ofKind) {
+      for (const ElementGroup& group : ofKind.groups) {
+        writeSection(
+            zone.id(), group, [&](std::size_t i) -> const auto& { return ofKind.elements[i]; });
+      }
+    };
+    writeAll(groups.quads);
+    writeBoundary(zone.id(), groups.quads, firstQuad);
+    writeAll(groups.edges);
+    writeAll(groups.vertices);
+    return zone;
+  }
+
+ private:
+  void writePoints(hid_t zone) {
+    const HdfObject points = file_.add(zone, "GridCoordinates", "GridCoordinates_t");
+    Array<double> values(mesh_.points.size());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = mesh_.points[i][axis];
+      static_cast<void>(file_.add(points.id(), std::string("Coordinate") + "XYZ"[axis],
+                                  "DataArray_t", {values.data(), {values.size()}}));
+    }
+    progress_.advance(mesh_.points.size());
+  }
+
+  /// @param elementAt  the element at a place of the sorted list
+  template <class F>
+  void writeSection(hid_t zone, const ElementGroup& group, const F& elementAt) {
+    if (group.begin == group.end) return;
+    const std::size_t corners = elementAt(group.begin).size();
+    Array<Number> vertices((group.end - group.begin) * corners);
+    Number* place = vertices.data();
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      for (const Index vertex : elementAt(i)) *place++ = static_cast<Number>(vertex) + 1;
+    }
+    const auto end = static_cast<Number>(next_ + static_cast<Number>(group.end - group.begin));
+    const std::array<Number, 2> range = {next_, static_cast<Number>(end - 1)};
+    next_ = end;
+    const std::array<std::int32_t, 2> kind = {elementType(corners), 0};
+    const HdfObject section =
+        file_.add(zone, group.name, "Elements_t", {kind.data(), {kind.size()}});
+    static_cast<void>(
+        file_.add(section.id(), "ElementRange", "IndexRange_t", {range.data(), {range.size()}}));
+    static_cast<void>(file_.add(section.id(), "ElementConnectivity", "DataArray_t",
+                                {vertices.data(), {vertices.size()}}));
+  }
+
+  /// A condition of each group, with a family of its name. Quads inside the mesh are no boundary.
+  void writeBoundary(hid_t zone, const QuadGroups& quads, Number firstQuad) {
+    const HdfObject conditions = file_.add(zone, "ZoneBC", "ZoneBC_t");
+    for (const ElementGroup& group : quads.groups) {
+      const std::size_t count = quads.boundaryEnd(group) - group.begin;
+      if (count == 0) continue;
+      const auto first = static_cast<Number>(firstQuad + static_cast<Number>(group.begin));
+      const std::array<Number, 2> range = {
+          first, static_cast<Number>(first + static_cast<Number>(count) - 1)};
+      const HdfObject condition =
+          file_.addText(conditions.id(), group.name.c_str(), "BC_t", "FamilySpecified");
+      static_cast<void>(
+          file_.add(condition.id(), "PointRange", "IndexRange_t", {range.data(), {2, 1}}));
+      static_cast<void>(
+          file_.addText(condition.id(), "GridLocation", "GridLocation_t", "FaceCenter"));
+      static_cast<void>(file_.addText(condition.id(), "FamilyName", "FamilyName_t", group.name));
+    }
+  }
+
+  const CgnsFile& file_;
+  const HexMesh& mesh_;
+  LoopProgress progress_;
+  Number next_ = 1;  ///< number of the next element
+};
+
+/// Whether libraries, which count the numbers of a section with the same integers, need wide ones.
+bool needsWide(const HexMesh& mesh, const MeshGroups& groups) {
+  const auto largest =
+      std::max<std::uint64_t>({mesh.points.size(), groups.elementCount(), 8 * mesh.cells.size()});
+  return largest > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
+}
+
+/// A zone for each part. Which vertices are the same in two zones is said when both are there.
+class CgnsPartSink final : public PartSink {
+ public:
+  CgnsPartSink(const std::filesystem::path& path, Context& context)
+      : context_(context), target_(path, OutputFile::Target::Regular) {}
+
+  void begin(const PartsInfo& info) override {
+    info_ = info;
+    refuseGhosts(info.ghostLayers, "Zones of CGNS files");
+    file_.emplace(target_);
+    base_.emplace(addBase(*file_));
+    std::vector<ElementGroup> families;
+    addMissingGroups(families, info.quadTags, true, "surface", "boundary");
+    for (const ElementGroup& family : families) {
+      static_cast<void>(file_->add(base_->id(), family.name, "Family_t"));
+    }
+  }
+
+  void part(MeshPart&& part) override {
+    Stage stage(context_, "write mesh");
+    std::optional<HdfObject>& zone = zones_.emplace_back();
+    shared_.emplace_back();
+    if (part.ownCells == 0) return;
+    const MeshGroups groups = groupPart(part, info_, stage);
+    if (needsWide(part.mesh, groups)) {
+      throw Error(ErrorCode::TooLarge,
+                  "A part is too large for a zone of a CGNS file. Ask for more parts.");
+    }
+    zone.emplace(CgnsWriter<std::int32_t>(*file_, part.mesh, stage)
+                     .writeZone(base_->id(), nameOf(part.part), groups));
+    for (const PartNeighbour& neighbour : part.neighbours) {
+      std::vector<std::int32_t>& list = shared_.back()[neighbour.part];
+      for (const Index v : neighbour.vertices) list.push_back(static_cast<std::int32_t>(v) + 1);
+    }
+    addGlobal(zone->id(), "GlobalNodeNumber", "Vertex", part.globalPoints,
+              [](std::size_t i) { return i; });
+    addGlobal(zone->id(), "GlobalCellNumber", "CellCenter", part.globalCells,
+              [&groups](std::size_t i) { return groups.cells.at(i); });
+  }
+
+  void end() override {
+    Stage stage(context_, "write mesh");
+    for (std::uint32_t p = 0; p < zones_.size(); ++p) {
+      if (!shared_[p].empty()) connect(p);
+    }
+    zones_.clear();
+    base_->close();
+    file_->close();
+    target_.commit();
+  }
+
+ private:
+  [[nodiscard]] std::string nameOf(std::uint32_t part) const {
+    return "Part_" + padded(part, info_.parts);
+  }
+  /// Numbers in the mesh, from 1 on, as a solution of the zone's vertices or cells.
+  template <class At>
+  void addGlobal(hid_t zone, const char* name, const char* location,
+                 const Array<std::uint64_t>& numbers, const At& at) const {
+    std::vector<std::int64_t> values;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      values.push_back(static_cast<std::int64_t>(numbers[at(i)]) + 1);
+    }
+    const HdfObject solution = file_->add(zone, name, "FlowSolution_t");
+    static_cast<void>(file_->addText(solution.id(), "GridLocation", "GridLocation_t", location));
+    static_cast<void>(
+        file_->add(solution.id(), name, "DataArray_t", {values.data(), {values.size()}}));
+  }
+  void connect(std::uint32_t part) const {
+    const HdfObject all =
+        file_->add(zones_[part]->id(), "ZoneGridConnectivity", "ZoneGridConnectivity_t");
+    for (const auto& [other, vertices] : shared_[part]) {
+      const std::string donor = nameOf(other);
+      const HdfObject to =
+          file_->add(all.id(), "to_" + donor, "GridConnectivity_t", {donor, {donor.size()}});
+      static_cast<void>(file_->addText(to.id(), "GridConnectivityType", "GridConnectivityType_t",
+                                       "Abutting1to1"));
+      static_cast<void>(file_->addText(to.id(), "GridLocation", "GridLocation_t", "Vertex"));
+      const std::vector<std::int32_t>& there = shared_[other].at(part);
+      static_cast<void>(file_->add(to.id(), "PointList", "IndexArray_t",
+                                   {vertices.data(), {vertices.size(), 1}}));
+      static_cast<void>(
+          file_->add(to.id(), "PointListDonor", "IndexArray_t", {there.data(), {there.size(), 1}}));
+    }
+  }
+
+  Context& context_;
+  OutputFile target_;
+  PartsInfo info_;
+  std::optional<CgnsFile> file_;
+  std::optional<HdfObject> base_;
+  std::deque<std::optional<HdfObject>> zones_;                              ///< none if empty
+  std::vector<std::map<std::uint32_t, std::vector<std::int32_t>>> shared_;  ///< by neighbour
+};
+
+}  // namespace
+
+void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+               Context& context) {
+  Stage stage(context, "write mesh");
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file, OutputFile::Target::Regular);
+  if (mesh.points.empty() || mesh.cells.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
+  }
+  const MeshGroups groups(mesh, options.patchAngle, stage);
+  CgnsFile tree(target);
+  {
+    const HdfObject base = addBase(tree);
+    for (const ElementGroup& group : groups.quads.groups) {
+      if (groups.quads.boundaryEnd(group) == group.begin) continue;
+      static_cast<void>(tree.add(base.id(), group.name, "Family_t"));
+    }
+    if (needsWide(mesh, groups)) {
+      static_cast<void>(
+          CgnsWriter<std::int64_t>(tree, mesh, stage).writeZone(base.id(), "Zone", groups));
+    } else {
+      static_cast<void>(
+          CgnsWriter<std::int32_t>(tree, mesh, stage).writeZone(base.id(), "Zone", groups));
+    }
+  }
+  tree.close();
+  target.commit();
+}
+
+std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file,
+                                           const WriteOptions& /*options*/, Context& context,
+                                           ProcessTeam* /*team*/) {
+  return std::make_unique<CgnsPartSink>(file, context);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,288 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <adjacency/cell_faces.hpp>
+
+#include <hexhex/error.hpp>
+
+#include <io/formats/element_lists.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/gmsh_elements.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+constexpr std::size_t kNodesOfQuadratic = 27;
+
+void count(const ElementLists& lists, const Input& input) {
+  for (const ElementBlock& block : lists.blocks) {
+    if (block.type != nullptr) input.counts()->add(*block.type, block.count());
+  }
+}
+
+bool isCurvedHexahedron(const ElementBlock& block) {
+  return block.type != nullptr && (block.nodesEach == 20 || block.nodesEach == 27) &&
+         block.type->plural.starts_with("hexahedra");
+}
+
+[[noreturn]] void failWithout(const CellKind& kind, const Input& input) {
+  std::string sentence = input.name() + ": the file holds no " + std::string(kind.plural) +
+                         " with " + std::to_string(kind.corners) + " nodes" +
+                         input.counts()->instead() + ".";
+  if (kind.corners == 8) sentence += input.counts()->adviceOnCurved();
+  throw Error(ErrorCode::FileUnsupported, sentence);
+}
+
+/// The cells of one kind, with their regions, and their numbers in the file.
+template <std::size_t corners>
+Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh<corners>& mesh) {
+  count(lists, input);
+  Array<std::uint64_t> numbers;
+  constexpr CellKind kKind = kCellKind<corners>;
+  for (ElementBlock& block : lists.blocks) {
+    if (block.type == nullptr || block.type->vtkType != kKind.vtkType) continue;
+    const std::size_t before = mesh.cells.size();
+    mesh.cells.resize(before + block.count());
+    if (block.count() > 0) {
+      std::copy(block.nodes.begin(), block.nodes.end(), mesh.cells[before].begin());
+    }
+    numbers.insert(numbers.end(), block.numbers.begin(), block.numbers.end());
+    mesh.regions.insert(mesh.regions.end(), block.regions.begin(), block.regions.end());
+    block.nodes = {};  // its memory is free again
+  }
+  if (mesh.cells.empty()) failWithout(kKind, input);
+  const auto isZero = [](std::int32_t region) { return region == 0; };
+  if (std::all_of(mesh.regions.begin(), mesh.regions.end(), isZero)) mesh.regions.clear();
+  mesh.points = std::move(lists.points);
+  return numbers;
+}
+
+/// Tagged quads.
+/// @param cellAt  the corners of the cell with an index
+template <class CellAt>
+std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
+                                 const CellAt& cellAt) {
+  std::vector<FeatureQuad> quads;
+  const NodeTags cells(numbers);
+  for (const ElementSide& side : lists.sides) {
+    const Index cell = cells.find(side.element);
+    if (cell == kNone || side.tag == 0) continue;  // of an element that is no hexahedron
+    FeatureQuad& quad = quads.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      quad.vertices[k] = cellAt(cell, adjacency::kHexFaces[side.face][k]);
+    }
+    quad.tag = side.tag;
+  }
+  return quads;
+}
+
+std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
+  std::vector<FeatureVertex> vertices;
+  for (const NodeSet& set : lists.nodeSets) {
+    if (set.nodes.size() != 1 && !set.name.starts_with("point_")) continue;
+    const std::int32_t tag = tagOfGroup(set.name, set.number);
+    if (tag == 0 || set.name.starts_with("curve_")) continue;
+    for (const Index node : set.nodes) vertices.push_back({node, tag});
+  }
+  return vertices;
+}
+
+/// The edges of cells between the nodes of sets that name curves.
+template <class CellAt>
+std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
+                                 const CellAt& cellAt) {
+  std::vector<std::pair<Index, std::int32_t>> members;  // nodes, and tags of their curves
+  for (const NodeSet& set : lists.nodeSets) {
+    const std::int32_t tag = set.name.starts_with("curve_") ? tagOfGroup(set.name, 0) : 0;
+    if (tag == 0) continue;
+    for (const Index node : set.nodes) members.emplace_back(node, tag);
+  }
+  std::sort(members.begin(), members.end());
+  members.erase(std::unique(members.begin(), members.end()), members.end());
+  const auto curvesAt = [&members](Index node) {
+    return std::lower_bound(members.begin(), members.end(),
+                            std::pair(node, std::numeric_limits<std::int32_t>::min()));
+  };
+  std::vector<std::pair<std::int32_t, std::array<Index, 2>>> found;
+  for (std::size_t c = 0; c < (members.empty() ? 0 : cells); ++c) {
+    for (const auto& [from, to] : adjacency::kHexEdges) {
+      const Index a = std::min(cellAt(c, from), cellAt(c, to));
+      const Index b = std::max(cellAt(c, from), cellAt(c, to));
+      for (auto at = curvesAt(a); at != members.end() && at->first == a; ++at) {
+        if (std::binary_search(members.begin(), members.end(), std::pair(b, at->second))) {
+          found.push_back({at->second, {a, b}});
+        }
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::vector<FeatureEdge> features;
+  features.reserve(found.size());
+  for (const auto& [tag, edge] : found) features.push_back({edge, tag});
+  return features;
+}
+
+/// A face without a node of its own: its corners, sorted, and where it is.
+struct NodelessFace {
+  Quad corners{};
+  std::size_t cell = 0;
+  std::size_t face = 0;
+
+  friend bool operator<(const NodelessFace& a, const NodelessFace& b) {
+    return std::pair(a.corners, a.cell) < std::pair(b.corners, b.cell);
+  }
+};
+
+/// The number of the edge between two corners, in VTK's order of cells with 20 nodes.
+std::size_t edgeBetween(std::size_t a, std::size_t b) {
+  constexpr std::array<std::size_t, 12> kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 10};
+  for (std::size_t e = 0; e < kPlaces.size(); ++e) {
+    const auto& [from, to] = adjacency::kHexEdges[e];
+    if ((from == a && to == b) || (from == b && to == a)) return kPlaces[e];
+  }
+  return 0;  // corners of a face that follow each other always have one
+}
+
+/// Where the shape functions of 20 nodes place the middle of a face.
+Vec3 middleOf(const Array<Vec3>& points, const Index* nodes, std::size_t face) {
+  Vec3 middle{};
+  const auto& corners = adjacency::kHexFaces[face];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3& corner = points[nodes[corners[k]]];
+    const Vec3& edge = points[nodes[8 + edgeBetween(corners[k], corners[(k + 1) % 4])]];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      middle[axis] += edge[axis] / 2 - corner[axis] / 4;
+    }
+  }
+  return middle;
+}
+
+/// The same of the middle of a cell.
+Vec3 middleOf(const Array<Vec3>& points, const Index* nodes) {
+  Vec3 middle{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < 8; ++k) middle[axis] -= points[nodes[k]][axis] / 4;
+    for (std::size_t k = 8; k < 20; ++k) middle[axis] += points[nodes[k]][axis] / 4;
+  }
+  return middle;
+}
+
+void requireIndexable(std::size_t points, const std::string& fileName) {
+  if (points <= kNone) return;
+  throw Error(ErrorCode::TooLarge, fileName + ": the mesh has more nodes than are supported.");
+}
+
+}  // namespace
+
+void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std::size_t>& cells,
+                const std::string& fileName) {
+  std::vector<NodelessFace> faces;
+  for (const std::size_t cell : cells) {
+    const Index* const row = nodes.data() + kNodesOfQuadratic * cell;
+    for (std::size_t face = 0; face < 6; ++face) {
+      NodelessFace& added = faces.emplace_back(NodelessFace{{}, cell, face});
+      for (std::size_t k = 0; k < 4; ++k) added.corners[k] = row[adjacency::kHexFaces[face][k]];
+      std::sort(added.corners.begin(), added.corners.end());
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  requireIndexable(points.size() + faces.size() + cells.size(), fileName);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    Index* const row = nodes.data() + kNodesOfQuadratic * faces[i].cell;
+    if (i == 0 || faces[i].corners != faces[i - 1].corners) {
+      points.push_back(middleOf(points, row, faces[i].face));
+    }
+    row[20 + faces[i].face] = static_cast<Index>(points.size() - 1);
+  }
+  for (const std::size_t cell : cells) {
+    Index* const row = nodes.data() + kNodesOfQuadratic * cell;
+    points.push_back(middleOf(points, row));
+    row[kNodesOfQuadratic - 1] = static_cast<Index>(points.size() - 1);
+  }
+}
+
+const VolumeCells* volumeCells(std::string_view plural) {
+  const auto* const found =
+      std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
+                   [&](const VolumeCells& type) { return type.plural == plural; });
+  return found == kVolumeCells.end() ? nullptr : found;
+}
+
+const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes) {
+  constexpr std::array<std::pair<std::string_view, std::size_t>, 4> kStraight = {
+      {{"hexahedra", 8}, {"tetrahedra", 4}, {"prisms", 6}, {"pyramids", 5}}};
+  const bool straight =
+      std::find(kStraight.begin(), kStraight.end(), std::pair(noun, nodes)) != kStraight.end();
+  return straight ? volumeCells(noun)
+                  : volumeCells(std::string(noun) + " with " + std::to_string(nodes) + " nodes");
+}
+
+std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {
+  const auto tag = tagInGroupName(name);
+  if (tag) return *tag;
+  return std::in_range<std::int32_t>(number) ? static_cast<std::int32_t>(number) : 0;
+}
+
+HexMesh hexMeshOf(ElementLists&& lists, const Input& input) {
+  HexMesh mesh;
+  const Array<std::uint64_t> numbers = takeCells<8>(lists, input, mesh);
+  const auto cellAt = [&mesh](std::size_t cell, std::size_t k) { return mesh.cells[cell][k]; };
+  mesh.features = {verticesOf(lists), edgesOf(lists, mesh.cells.size(), cellAt),
+                   quadsOf(lists, numbers, cellAt)};
+  return mesh;
+}
+
+TetCells tetsOf(ElementLists&& lists, const Input& input) {
+  TetCells tets;
+  takeCells<4>(lists, input, tets);
+  tets.regions.clear();
+  return tets;
+}
+
+bool areCurved(const ElementLists& lists) {
+  return std::any_of(lists.blocks.begin(), lists.blocks.end(), [](const ElementBlock& block) {
+    return isCurvedHexahedron(block) && block.count() > 0;
+  });
+}
+
+LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage) {
+  count(lists, input);
+  LagrangeMesh mesh;
+  mesh.order = 2;
+  mesh.points = std::move(lists.points);
+  Array<std::uint64_t> numbers;
+  std::vector<std::size_t> lacking;  // cells with 20 nodes
+  for (const ElementBlock& block : lists.blocks) {
+    if (block.type != nullptr && !isCurvedHexahedron(block) && block.count() > 0) {
+      throw Error(ErrorCode::FileUnsupported,
+                  input.name() + ": cells of order 2 must be hexahedra with 20 or 27 nodes" +
+                      input.counts()->instead() + ". Give the others a file of their own.");
+    }
+    if (block.type == nullptr) continue;
+    for (std::size_t i = 0; i < block.count(); ++i) {
+      if (block.nodesEach == 20) lacking.push_back(numbers.size());
+      numbers.push_back(block.numbers[i]);
+      mesh.regions.push_back(block.regions[i]);
+      mesh.nodes.resize(kNodesOfQuadratic * numbers.size());
+      std::copy_n(block.nodes.begin() + static_cast<std::ptrdiff_t>(block.nodesEach * i),
+                  block.nodesEach, mesh.nodes.end() - kNodesOfQuadratic);
+    }
+  }
+  addMiddles(mesh.points, mesh.nodes, lacking, input.name());
+  const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
+    return mesh.nodes[kNodesOfQuadratic * cell + k];
+  };
+  mesh.features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt),
+                   quadsOf(lists, numbers, cellAt)};
+  fromVtkOrder(mesh, stage);
+  return mesh;
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,746 @@
+// Exodus II (see formats.hpp): dimensions, attributes and variables of a NetCDF file that have the
+// names by which its library knows them; of whole meshes, and of parts with Nemesis' maps.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hexhex/error.hpp>
+#include <hexhex/version.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/output_folder.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/netcdf.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// Exodus' numbers of the faces of kHexFaces.
+constexpr std::array<std::int32_t, 6> kExodusSides = {4, 2, 1, 3, 5, 6};
+
+/// Bytes of a name; the last one is 0.
+constexpr std::size_t kExodusNameBytes = 33;
+constexpr std::size_t kExodusLineBytes = 81;
+
+/// Exodus counts from 1 on.
+constexpr std::int32_t fromOne(std::size_t i) { return static_cast<std::int32_t>(i) + 1; }
+
+/// Where each cell stands in the order of the blocks; empty: as they are.
+Array<Index> placesOf(const CellGroups& cells) {
+  Array<Index> places(cells.order.size());
+  for (std::size_t i = 0; i < places.size(); ++i) places[cells.at(i)] = static_cast<Index>(i);
+  return places;
+}
+
+/// What is said of all blocks, or all sets of a kind.
+struct ExodusList {
+  std::vector<std::int32_t> numbers;
+  std::vector<std::string> names;
+  std::vector<std::uint64_t> counts;  ///< of elements; without any it has no variables
+
+  /// @return  the end of the names of its variables
+  std::string add(std::int32_t number, const std::string& name, std::uint64_t count) {
+    numbers.push_back(number);
+    names.push_back(name);
+    counts.push_back(count);
+    return std::to_string(names.size());
+  }
+};
+
+class ExodusFile {
+ public:
+  /// @param allGroups  whether there are sets for groups without elements, too
+  ExodusFile(const HexMesh& mesh, const MeshGroups& groups, Stage& stage, bool allGroups = false)
+      : mesh_(mesh),
+        groups_(groups),
+        allGroups_(allGroups),
+        progress_(stage, 3 * mesh.points.size() + mesh.cells.size()) {
+    describe();
+    if (!mesh.points.empty()) addPoints();
+    if (groups.cells.groups.back().end > 0 || allGroups) addBlocks();
+    addSideSets();
+    addNodeSets();
+    addVariable("time_whole", NetcdfType::Double, {addDimension("time_step", 0)}, {});
+  }
+
+  void write(OutputFile& output, int threads, std::uint64_t mostBytes) const {
+    file_.write(output, threads, mostBytes);
+  }
+
+ protected:
+  using Write = std::function<void(LineWriter&)>;
+
+  /// The place of a dimension that there is.
+  [[nodiscard]] std::uint32_t dimensionOf(const std::string& name) const {
+    const auto found =
+        std::find_if(file_.dimensions.begin(), file_.dimensions.end(),
+                     [&name](const NetcdfDimension& dimension) { return dimension.name == name; });
+    return static_cast<std::uint32_t>(found - file_.dimensions.begin());
+  }
+  /// @return  its place
+  std::uint32_t addDimension(const std::string& name, std::size_t length) {
+    file_.dimensions.push_back({name, length});
+    return static_cast<std::uint32_t>(file_.dimensions.size() - 1);
+  }
+  /// @param text  of an attribute, if there is one
+  void addVariable(const std::string& name, NetcdfType type, std::vector<std::uint32_t> dimensions,
+                   Write write, const char* attribute = nullptr, const std::string& text = {}) {
+    file_.variables.push_back({name, type, std::move(dimensions), {}, std::move(write)});
+    if (attribute == nullptr) return;
+    file_.variables.back().attributes.push_back({attribute, text + '\0'});
+  }
+  void addNumbers(const std::string& name, std::uint32_t dimension,
+                  std::vector<std::int32_t> numbers, const char* attribute = nullptr) {
+    const Write write = [numbers = std::move(numbers)](LineWriter& values) {
+      const auto put = [&](char* place, std::size_t i) { return putBigBytes(place, numbers[i]); };
+      values.write(numbers.size(), sizeof(std::int32_t), put, nullptr);
+    };
+    addVariable(name, NetcdfType::Int, {dimension}, write, attribute, "ID");
+  }
+  void addTexts(const std::string& name, std::uint32_t dimension, std::uint32_t ofBytes,
+                std::size_t bytes, std::vector<std::string> texts) {
+    for (std::string& text : texts) text.resize(bytes);
+    const Write write = [texts = std::move(texts), bytes](LineWriter& values) {
+      const auto copy = [&](char* place, std::size_t i) { return put(place, texts[i]); };
+      values.write(texts.size(), bytes, copy, nullptr);
+    };
+    addVariable(name, NetcdfType::Char, {dimension, ofBytes}, write);
+  }
+  /// @param prefix  of the variables' names
+  void addList(const std::string& prefix, const char* dimension, const ExodusList& list) {
+    if (list.names.empty()) return;
+    const std::uint32_t length = addDimension(dimension, list.names.size());
+    std::vector<std::int32_t> isThere;
+    for (const std::uint64_t count : list.counts) isThere.push_back(count > 0 ? 1 : 0);
+    addNumbers(prefix + "_status", length, std::move(isThere));
+    addNumbers(prefix + "_prop1", length, list.numbers, "name");
+    addTexts(prefix + "_names", length, ofNames_, kExodusNameBytes, list.names);
+  }
+
+  void describe() {
+    constexpr float kVersion = 6.02F;
+    file_.attributes = {{"api_version", kVersion},
+                        {"version", kVersion},
+                        {"floating_point_word_size", std::int32_t{sizeof(double)}},
+                        {"file_size", std::int32_t{1}},  // each axis is a variable
+                        {"maximum_name_length", std::int32_t{kExodusNameBytes - 1}},
+                        {"int64_status", std::int32_t{0}},  // integers have 32 bits
+                        {"title", std::string("hexahedral mesh by hexhex") + '\0'}};
+    ofNames_ = addDimension("len_name", kExodusNameBytes);
+    addTexts("coor_names", addDimension("num_dim", 3), ofNames_, kExodusNameBytes, {"x", "y", "z"});
+    addTexts("info_records", addDimension("num_info", 1),
+             addDimension("len_line", kExodusLineBytes), kExodusLineBytes,
+             {std::string("by hexhex ") + version()});
+  }
+
+  void addPoints() {
+    const std::uint32_t length = addDimension("num_nodes", mesh_.points.size());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Write write = [this, axis](LineWriter& values) {
+        const auto put = [&](char* place, std::size_t i) {
+          return putBigBytes(place, mesh_.points[i][axis]);
+        };
+        values.write(mesh_.points.size(), sizeof(double), put, &progress_);
+      };
+      addVariable(
+          std::string("coord") + "xyz" [axis], NetcdfType::Double, { length }, write);
+    }
+  }
+
+  void addBlocks() {
+    if (const std::size_t all = groups_.cells.groups.back().end; all > 0) {
+      addDimension("num_elem", all);
+    }
+    ExodusList& blocks = blocks_;
+    for (const ElementGroup& group : groups_.cells.groups) {
+      const std::size_t count = group.end - group.begin;
+      const std::string n = blocks.add(static_cast<std::int32_t>(group.number), group.name, count);
+      if (count == 0) continue;
+      const Write write = [this, &group, count](LineWriter& values) {
+        const auto put = [&](char* place, std::size_t i) {
+          for (const Index vertex : mesh_.cells[groups_.cells.at(group.begin + i)]) {
+            place = putBigBytes(place, fromOne(vertex));
+          }
+          return place;
+        };
+        values.write(count, 8 * sizeof(std::int32_t), put, &progress_);
+      };
+      const std::uint32_t length = addDimension("num_el_in_blk" + n, count);
+      addVariable("connect" + n, NetcdfType::Int, {length, addDimension("num_nod_per_el" + n, 8)},
+                  write, "elem_type", "HEX8");
+    }
+    addList("eb", "num_el_blk", blocks);
+  }
+
+  /// The sides of each group of boundary quads.
+  void addSideSets() {
+    const Array<Index> places = placesOf(groups_.cells);
+    ExodusList& sets = sides_;
+    for (const ElementGroup& group : groups_.quads.groups) {
+      std::vector<std::int32_t> cells;
+      std::vector<std::int32_t> sides;
+      const std::size_t end = groups_.quads.boundaryEnd(group);  // behind it, quads inside the mesh
+      for (std::size_t i = group.begin; i < end; ++i) {
+        const std::size_t cell = groups_.quads.places[i] / 8;
+        cells.push_back(fromOne(places.empty() ? cell : places[cell]));
+        sides.push_back(kExodusSides[groups_.quads.places[i] % 8]);
+      }
+      if (cells.empty() && !allGroups_) continue;
+      const std::string n =
+          sets.add(static_cast<std::int32_t>(group.number), group.name, cells.size());
+      if (cells.empty()) continue;
+      const std::uint32_t length = addDimension("num_side_ss" + n, cells.size());
+      addNumbers("elem_ss" + n, length, std::move(cells));
+      addNumbers("side_ss" + n, length, std::move(sides));
+    }
+    addList("ss", "num_side_sets", sets);
+  }
+
+  /// The vertices of each group of edges and of vertices.
+  void addNodeSets() {
+    ExodusList& sets = nodes_;
+    const auto add = [&](const auto& ofKind) {
+      for (const ElementGroup& group : ofKind.groups) {
+        std::vector<std::int32_t> vertices;
+        for (const Index vertex : verticesOf(ofKind, group)) vertices.push_back(fromOne(vertex));
+        const std::string n = sets.add(fromOne(sets.names.size()), group.name, vertices.size());
+        if (vertices.empty()) continue;
+        const std::uint32_t length = addDimension("num_nod_ns" + n, vertices.size());
+        addNumbers("node_ns" + n, length, std::move(vertices));
+      }
+    };
+    add(groups_.edges);
+    add(groups_.vertices);
+    addList("ns", "num_node_sets", sets);
+  }
+
+  const HexMesh& mesh_;
+  const MeshGroups& groups_;
+  bool allGroups_;
+  mutable LoopProgress progress_;
+  NetcdfFile file_;
+  std::uint32_t ofNames_ = 0;  ///< the dimension of their bytes
+  ExodusList blocks_;
+  ExodusList sides_;
+  ExodusList nodes_;
+};
+
+// Reading.
+
+/// VTK's place k is this place of Exodus, which lists the edges along z before those of the top,
+/// and the node inside before those of the faces.
+constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                        9,  10, 11, 16, 17, 18, 19, 12, 13,
+                                                        14, 15, 23, 24, 25, 26, 21, 22, 20};
+
+class ExodusReader {
+ public:
+  ExodusReader(std::string_view bytes, const std::string& name, ElementParts parts)
+      : file_(bytes, name), name_(name), parts_(parts) {}
+
+  ElementLists read() {
+    if (parts_ == ElementParts::Types) {
+      readBlocks();
+      return std::move(lists_);
+    }
+    readPoints();
+    readBlocks();
+    readSides();
+    readNodeSets();
+    return std::move(lists_);
+  }
+
+ private:
+  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
+    throw Error(code, name_ + ": " + sentence);
+  }
+
+  void readPoints() {
+    const NetcdfValues* const together = file_.find("coord");  // all axes, in older files
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string name = std::string("coord") + "xyz"[axis];
+      const NetcdfValues* const values = together != nullptr ? together : file_.find(name);
+      if (values == nullptr) {
+        fail(ErrorCode::FileUnsupported,
+             "the file lacks the variable \"" + name + "\": it has no nodes in space.");
+      }
+      std::vector<double> numbers = file_.reals(*values);
+      if (together != nullptr) {
+        if (values->lengths.size() != 2 || values->lengths[0] != 3) {
+          fail(ErrorCode::FileUnsupported, "the file has no nodes in space.");
+        }
+        const auto each = static_cast<std::ptrdiff_t>(numbers.size() / 3);
+        const auto begin = numbers.begin() + each * static_cast<std::ptrdiff_t>(axis);
+        numbers = std::vector<double>(begin, begin + each);
+      }
+      if (axis == 0) lists_.points.resize(numbers.size());
+      if (numbers.size() != lists_.points.size() || numbers.size() > kNone) {
+        fail(ErrorCode::FileSyntax, "the axes have different numbers of coordinates.");
+      }
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        lists_.points[i][axis] = numbers[i];
+        if (std::isfinite(numbers[i])) continue;
+        throw Error(ErrorCode::NotFinite,
+                    name_ + ": a coordinate of node " + std::to_string(i + 1) + " is not finite.",
+                    Place{PlaceKind::Vertex, i});
+      }
+    }
+  }
+
+  /// The numbers and names of all blocks, or of all sets of a kind.
+  struct Groups {
+    std::vector<std::int64_t> numbers;
+    std::vector<std::string> names;
+
+    [[nodiscard]] std::int64_t numberOf(std::size_t i) const {
+      return i < numbers.size() ? numbers[i] : static_cast<std::int64_t>(i) + 1;
+    }
+    [[nodiscard]] std::string nameOf(std::size_t i) const {
+      return i < names.size() ? names[i] : std::string();
+    }
+    [[nodiscard]] std::int32_t tagOf(std::size_t i) const {
+      return tagOfGroup(nameOf(i), numberOf(i));
+    }
+    [[nodiscard]] std::size_t size() const { return std::max(numbers.size(), names.size()); }
+  };
+  Groups groupsOf(const std::string& prefix) const {
+    Groups groups;
+    const NetcdfValues* const status = file_.find(prefix + "_status");
+    const NetcdfValues* const numbers = file_.find(prefix + "_prop1");
+    const NetcdfValues* const names = file_.find(prefix + "_names");
+    if (numbers != nullptr) groups.numbers = file_.integers(*numbers);
+    if (names != nullptr) groups.names = file_.texts(*names);
+    if (numbers == nullptr && status != nullptr) {
+      for (std::uint64_t i = 0; i < status->count; ++i) {
+        groups.numbers.push_back(static_cast<std::int64_t>(i) + 1);
+      }
+    }
+    return groups;
+  }
+
+  void readBlocks() {
+    const Groups groups = groupsOf("eb");
+    std::uint64_t next = 1;
+    for (std::size_t b = 0; b < groups.size(); ++b) {
+      // Blocks without elements have no variable.
+      const NetcdfValues* const values = file_.find("connect" + std::to_string(b + 1));
+      if (values != nullptr) readBlock(*values, groups.tagOf(b), next);
+    }
+    if (lists_.blocks.empty()) fail(ErrorCode::FileUnsupported, "the file has no elements.");
+  }
+
+  void readBlock(const NetcdfValues& values, std::int32_t region, std::uint64_t& next) {
+    const std::string type = lowerCase(values.elementType);
+    if (type == "nsided" || type == "nfaced" || values.lengths.size() != 2) {
+      fail(ErrorCode::FileUnsupported, "elements of the type \"" + values.elementType +
+                                           "\" are not supported. Leave their block out.");
+    }
+    ElementBlock& block = lists_.blocks.emplace_back();
+    const auto each = static_cast<std::size_t>(values.lengths[1]);
+    block.type = typeOf(type, each);
+    const auto count = static_cast<std::size_t>(values.lengths[0]);
+    next += count;
+    if (block.type == nullptr) return;
+    const bool isRead =
+        block.type->plural.starts_with("hexahedra") || block.type->plural.starts_with("tetrahedra");
+    block.nodesEach = isRead ? each : 0;
+    block.numbers.resize(count);
+    for (std::size_t i = 0; i < count; ++i) block.numbers[i] = next - count + i;
+    block.regions.assign(count, region);
+    if (!isRead || parts_ == ElementParts::Types) return;  // others are only counted
+    const std::vector<std::int64_t> nodes = file_.integers(values);
+    block.nodes.resize(nodes.size());
+    const bool isCurved = each == 20 || each == kExodusPlaces.size();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::size_t k = i % each;
+      block.nodes[i] = nodeOf(nodes[isCurved ? i - k + kExodusPlaces[k] : i], values.name);
+    }
+  }
+
+  /// @param name  in lower case; often without the number of nodes
+  [[nodiscard]] const VolumeCells* typeOf(const std::string& name, std::size_t nodes) const {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kNouns = {
+        {{"hex", "hexahedra"}, {"tet", "tetrahedra"}, {"wedge", "prisms"}, {"pyr", "pyramids"}}};
+    for (const auto& [word, noun] : kNouns) {
+      if (!name.starts_with(word)) continue;
+      const VolumeCells* const type = volumeCells(noun, nodes);
+      if (type != nullptr) return type;
+      fail(ErrorCode::FileUnsupported, std::string(noun) + " with " + std::to_string(nodes) +
+                                           " nodes are not known. Leave their block out.");
+    }
+    if (name.starts_with("bex_hex")) return volumeCells("Bezier hexahedra");
+    constexpr std::array<std::string_view, 9> kFlat = {"shell", "quad", "tri",    "bar",   "beam",
+                                                       "truss", "edge", "sphere", "circle"};
+    const auto begins = [&name](std::string_view word) { return name.starts_with(word); };
+    if (std::any_of(kFlat.begin(), kFlat.end(), begins)) return nullptr;
+    fail(ErrorCode::FileUnsupported, "elements of the type " + quoted(std::string_view(name)) +
+                                         " are not supported. Leave their block out.");
+  }
+
+  [[nodiscard]] Index nodeOf(std::int64_t number, const std::string& variable) const {
+    if (number >= 1 && static_cast<std::uint64_t>(number) <= lists_.points.size()) {
+      return static_cast<Index>(number - 1);
+    }
+    fail(ErrorCode::IndexOutOfRange,
+         "the variable \"" + variable + "\" names node " + std::to_string(number) + ", but the " +
+             std::to_string(lists_.points.size()) + " nodes are numbered from 1.");
+  }
+
+  void readSides() {
+    const Groups groups = groupsOf("ss");
+    for (std::size_t s = 0; s < groups.size(); ++s) {
+      const std::string end = "_ss" + std::to_string(s + 1);
+      const NetcdfValues* const found = file_.find("elem" + end);
+      if (found == nullptr) continue;
+      const std::vector<std::int64_t> elements = file_.integers(*found);
+      const std::vector<std::int64_t> sides = file_.integers(file_.get("side" + end));
+      if (elements.size() != sides.size()) {
+        fail(ErrorCode::FileSyntax,
+             "side set " + std::to_string(s + 1) + " has not as many sides as elements.");
+      }
+      const std::int32_t tag = groups.tagOf(s);
+      for (std::size_t i = 0; i < sides.size(); ++i) {
+        const auto* const face = std::find(kExodusSides.begin(), kExodusSides.end(), sides[i]);
+        if (face == kExodusSides.end() || elements[i] < 1) continue;  // of no hexahedron
+        lists_.sides.push_back({static_cast<std::uint64_t>(elements[i]),
+                                static_cast<std::size_t>(face - kExodusSides.begin()), tag});
+      }
+    }
+  }
+
+  void readNodeSets() {
+    const Groups groups = groupsOf("ns");
+    for (std::size_t s = 0; s < groups.size(); ++s) {
+      const NetcdfValues* const found = file_.find("node_ns" + std::to_string(s + 1));
+      if (found == nullptr) continue;
+      NodeSet& set = lists_.nodeSets.emplace_back(NodeSet{groups.nameOf(s), groups.tagOf(s), {}});
+      for (const std::int64_t node : file_.integers(*found)) {
+        set.nodes.push_back(nodeOf(node, found->name));
+      }
+    }
+  }
+
+  NetcdfReader file_;
+  const std::string& name_;
+  ElementParts parts_;
+  ElementLists lists_;
+};
+
+/// What is no such file at all is refused before it is read as a whole.
+void requireExodus(const Input& input) {
+  if (input.bytes()) return;
+  const InputFile file(input.path());
+  if (!file.isRegular()) return;  // a pipe can be opened but once
+  std::array<char, 8> head{};
+  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), head.size()));
+  file.readAt(0, head.data(), size);
+  requireNetcdf({head.data(), size}, input.name());
+}
+
+}  // namespace
+
+ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
+  requireExodus(input);
+  Array<char> room;
+  return ExodusReader(input.text(room, stage, ""), input.name(), parts).read();
+}
+
+namespace {
+
+// Exodus files of parts with Nemesis' maps, `NAME.e.N.K`: which nodes and cells are shared, and
+// what the whole mesh has.
+
+std::vector<std::int32_t> fromOneAll(const Array<std::uint64_t>& numbers, std::size_t count) {
+  std::vector<std::int32_t> result;
+  result.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) result.push_back(fromOne(numbers[i]));
+  return result;
+}
+
+/// Numbers in a file that are sums over all parts.
+struct GlobalCounts {
+  std::uint64_t position;
+  std::vector<std::uint64_t> ofPart;
+};
+
+class NemesisFile final : public ExodusFile {
+ public:
+  NemesisFile(const MeshPart& part, const PartsInfo& info, const MeshGroups& groups, Stage& stage)
+      : ExodusFile(part.mesh, groups, stage, true), part_(part), groups_(groups) {
+    addScalar("nem_ftype", 0);  // one file for each part
+    addDimension("num_processors", info.parts);
+    inFile_ = addDimension("num_procs_file", 1);
+    addDimension("num_nodes_global", info.pointCount);
+    addDimension("num_elems_global", info.cellCount);
+    addGlobalSets();
+    addMaps();
+    addNodes();
+    addCells();
+  }
+
+  /// Where the sizes of the mesh's blocks and sets stand, and what this part has of them; each
+  /// node of a set counts where it is owned.
+  [[nodiscard]] std::vector<GlobalCounts> globalCounts(std::uint64_t mostBytes) const {
+    std::vector<GlobalCounts> counts;
+    if (!blocks_.numbers.empty()) {
+      counts.push_back({file_.positionOf("el_blk_cnt_global", mostBytes), blocks_.counts});
+    }
+    if (!sides_.numbers.empty()) {
+      counts.push_back({file_.positionOf("ss_side_cnt_global", mostBytes), sides_.counts});
+    }
+    if (!nodes_.numbers.empty()) {
+      counts.push_back({file_.positionOf("ns_node_cnt_global", mostBytes), ownedNodes()});
+    }
+    return counts;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::uint64_t> ownedNodes() const {
+    std::vector<std::uint64_t> counts;
+    const auto add = [&](const auto& ofKind) {
+      for (const ElementGroup& group : ofKind.groups) {
+        const Array<Index> vertices = verticesOf(ofKind, group);
+        counts.push_back(static_cast<std::uint64_t>(
+            std::count_if(vertices.begin(), vertices.end(),
+                          [this](Index v) { return part_.pointOwners[v] == part_.part; })));
+      }
+    };
+    add(groups_.edges);
+    add(groups_.vertices);
+    return counts;
+  }
+
+  void addScalar(const std::string& name, std::int32_t number) {
+    const Write write = [number](LineWriter& values) {
+      const auto put = [number](char* place, std::size_t) { return putBigBytes(place, number); };
+      values.write(1, sizeof(number), put, nullptr);
+    };
+    addVariable(name, NetcdfType::Int, {}, write);
+  }
+  /// A list, and its length as a dimension; nothing if it is empty, which is how NetCDF says that.
+  void addListOf(const std::string& name, const std::string& dimension,
+                 std::vector<std::int32_t> numbers) {
+    if (numbers.empty()) return;
+    const std::uint32_t length = addDimension(dimension, numbers.size());
+    addNumbers(name, length, std::move(numbers));
+  }
+  void addStatus(const std::string& name, bool isThere) {
+    addNumbers(name, inFile_, {isThere ? 1 : 0});
+  }
+
+  /// Blocks and sets of the whole mesh. How many elements they have is known when all parts are.
+  void addGlobalSets() {
+    addCounted("el_blk", "num_el_blk_global", blocks_, {"el_blk_cnt_global"});
+    addCounted("ss", "num_ss_global", sides_, {"ss_side_cnt_global", "ss_df_cnt_global"});
+    addCounted("ns", "num_ns_global", nodes_, {"ns_node_cnt_global", "ns_df_cnt_global"});
+  }
+  void addCounted(const std::string& prefix, const std::string& dimension, const ExodusList& list,
+                  const std::vector<std::string>& counts) {
+    if (list.numbers.empty()) return;
+    const std::uint32_t length = addDimension(dimension, list.numbers.size());
+    addNumbers(prefix + "_ids_global", length, list.numbers);
+    for (const std::string& name : counts) {
+      addNumbers(name, length, std::vector<std::int32_t>(list.numbers.size(), 0));
+    }
+  }
+
+  /// Global numbers of nodes, and of cells in the order of the blocks.
+  void addMaps() {
+    if (part_.ownCells == 0) return;
+    addNumbers("node_num_map", dimensionOf("num_nodes"),
+               fromOneAll(part_.globalPoints, part_.ownPoints));
+    std::vector<std::int32_t> cells;
+    for (std::size_t i = 0; i < part_.ownCells; ++i) {
+      cells.push_back(fromOne(part_.globalCells[groups_.cells.at(i)]));
+    }
+    addNumbers("elem_num_map", dimensionOf("num_elem"), std::move(cells));
+  }
+
+  /// Inner and shared nodes, and with whom each is shared.
+  void addNodes() {
+    std::vector<bool> shared(part_.ownPoints, false);
+    std::vector<std::int32_t> ids;
+    std::vector<std::int32_t> ends;
+    std::vector<std::int32_t> nodes;
+    std::vector<std::int32_t> parts;
+    for (const PartNeighbour& neighbour : part_.neighbours) {
+      ids.push_back(fromOne(ids.size()));
+      for (const Index v : neighbour.vertices) {
+        shared[v] = true;
+        nodes.push_back(fromOne(v));
+        parts.push_back(static_cast<std::int32_t>(neighbour.part));
+      }
+      ends.push_back(static_cast<std::int32_t>(nodes.size()));
+    }
+    std::vector<std::int32_t> inner;
+    std::vector<std::int32_t> border;
+    for (std::size_t v = 0; v < part_.ownPoints; ++v) {
+      (shared[v] ? border : inner).push_back(fromOne(v));
+    }
+    addStatus("int_n_stat", !inner.empty());
+    addStatus("bor_n_stat", !border.empty());
+    addStatus("ext_n_stat", false);
+    addListOf("node_mapi", "num_int_node", std::move(inner));
+    addListOf("node_mapb", "num_bor_node", std::move(border));
+    if (ids.empty()) return;
+    const std::uint32_t maps = addDimension("num_n_cmaps", ids.size());
+    const std::uint32_t all = addDimension("ncnt_cmap", nodes.size());
+    addNumbers("n_comm_ids", maps, std::move(ids));
+    addNumbers("n_comm_stat", maps, std::vector<std::int32_t>(part_.neighbours.size(), 1));
+    addNumbers("n_comm_data_idx", maps, std::move(ends));
+    addNumbers("n_comm_nids", all, std::move(nodes));
+    addNumbers("n_comm_proc", all, std::move(parts));
+  }
+
+  /// Cells with and without a face to another part, and these faces.
+  void addCells() {
+    const Array<Index> places = placesOf(groups_.cells);
+    std::vector<bool> atBorder(part_.ownCells, false);
+    std::vector<std::int32_t> ids;
+    std::vector<std::int32_t> ends;
+    std::vector<std::int32_t> cells;
+    std::vector<std::int32_t> sides;
+    std::vector<std::int32_t> parts;
+    for (const PartNeighbour& neighbour : part_.neighbours) {
+      if (neighbour.faces.empty()) continue;
+      ids.push_back(fromOne(ids.size()));
+      for (const PartFace& face : neighbour.faces) {
+        const std::size_t place = places.empty() ? face.cell : places[face.cell];
+        atBorder[place] = true;
+        cells.push_back(fromOne(place));
+        sides.push_back(kExodusSides[face.side]);
+        parts.push_back(static_cast<std::int32_t>(neighbour.part));
+      }
+      ends.push_back(static_cast<std::int32_t>(cells.size()));
+    }
+    std::vector<std::int32_t> inner;
+    std::vector<std::int32_t> border;
+    for (std::size_t c = 0; c < part_.ownCells; ++c) {
+      (atBorder[c] ? border : inner).push_back(fromOne(c));
+    }
+    addStatus("int_e_stat", !inner.empty());
+    addStatus("bor_e_stat", !border.empty());
+    addListOf("elem_mapi", "num_int_elem", std::move(inner));
+    addListOf("elem_mapb", "num_bor_elem", std::move(border));
+    if (ids.empty()) return;
+    const std::size_t count = ids.size();
+    const std::uint32_t maps = addDimension("num_e_cmaps", count);
+    const std::uint32_t all = addDimension("ecnt_cmap", cells.size());
+    addNumbers("e_comm_ids", maps, std::move(ids));
+    addNumbers("e_comm_stat", maps, std::vector<std::int32_t>(count, 1));
+    addNumbers("e_comm_data_idx", maps, std::move(ends));
+    addNumbers("e_comm_eids", all, std::move(cells));
+    addNumbers("e_comm_proc", all, std::move(parts));
+    addNumbers("e_comm_sids", all, std::move(sides));
+  }
+
+  const MeshPart& part_;
+  const MeshGroups& groups_;
+  std::uint32_t inFile_ = 0;
+};
+
+class ExodusSink final : public PartSink {
+ public:
+  ExodusSink(std::filesystem::path file, Context& context, ProcessTeam* team)
+      : context_(context), file_(std::move(file)), team_(team), files_(team) {}
+
+  void begin(const PartsInfo& info) override {
+    info_ = info;
+    refuseGhosts(info.ghostLayers, "Exodus files");
+    requireInt32(info.pointCount, "Exodus numbers vertices");
+    requireInt32(info.cellCount, "Exodus numbers cells");
+  }
+
+  void part(MeshPart&& part) override {
+    Stage stage(context_, "write mesh");
+    const MeshGroups groups = groupPart(part, info_, stage);
+    const NemesisFile file(part, info_, groups, stage);
+    file.write(files_.add(fileOf(part.part)), context_.threads(), kMostExodusBytes);
+    files_.finishLast();
+    counts_.push_back(file.globalCounts(kMostExodusBytes));
+    for (std::size_t i = 0; i < counts_.back().size(); ++i) {
+      const std::vector<std::uint64_t>& ofPart = counts_.back()[i].ofPart;
+      if (sums_.size() <= i) sums_.emplace_back(ofPart.size(), 0);
+      for (std::size_t k = 0; k < ofPart.size(); ++k) sums_[i][k] += ofPart[k];
+    }
+  }
+
+  void end() override {
+    Stage stage(context_, "write mesh");
+    if (team_ != nullptr) addUp();
+    files_.commit([&](std::size_t p, OutputFile& file) {
+      for (std::size_t i = 0; i < counts_[p].size(); ++i) {
+        std::string bytes(sizeof(std::int32_t) * sums_[i].size(), '\0');
+        char* place = bytes.data();
+        for (const std::uint64_t sum : sums_[i]) {
+          place = putBigBytes(place, static_cast<std::int32_t>(sum));
+        }
+        file.writeBytesAt(counts_[p][i].position, bytes.data(), bytes.size());
+      }
+    });
+  }
+
+ private:
+  /// Sums of all processes; their lists have the same lengths.
+  void addUp() {
+    std::vector<std::uint64_t> mine;
+    for (const auto& sums : sums_) mine.insert(mine.end(), sums.begin(), sums.end());
+    const GatheredNumbers all = team_->gather(mine);
+    std::size_t next = 0;
+    for (auto& sums : sums_) {
+      for (std::uint64_t& sum : sums) {
+        sum = 0;
+        for (std::uint32_t r = 0; r < team_->size(); ++r) sum += all.of(r)[next];
+        ++next;
+      }
+    }
+  }
+  [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
+    return file_.string() + '.' + std::to_string(info_.parts) + '.' + padded(part, info_.parts);
+  }
+
+  Context& context_;
+  std::filesystem::path file_;
+  ProcessTeam* team_;
+  PartsInfo info_;
+  FileSet files_;
+  std::vector<std::vector<GlobalCounts>> counts_;  ///< per part
+  std::vector<std::vector<std::uint64_t>> sums_;   ///< of all parts
+};
+
+}  // namespace
+
+std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file,
+                                             const WriteOptions& /*options*/, Context& context,
+                                             ProcessTeam* team) {
+  return std::make_unique<ExodusSink>(file, context, team);
+}
+
+// Whole meshes.
+
+void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
+                 const WriteOptions& options, Context& context, std::uint64_t mostBytes) {
+  Stage stage(context, "write mesh");
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file);
+  requireInt32(mesh.points.size(), "An Exodus file numbers vertices");
+  requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
+  const MeshGroups groups(mesh, options.patchAngle, stage);
+  ExodusFile(mesh, groups, stage).write(target, context.threads(), mostBytes);
+  target.commit();
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,614 @@
+// Reads `.msh` files (see formats.hpp): their sections, in order; binary ones of version 4.1 also
+// piece by piece.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/number_source.hpp>
+#include <io/core/plain_mesh.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/gmsh_elements.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// The frame of a file: its version and encoding, and its sections one after the other.
+class GmshFile {
+ public:
+  /// Reads the section $MeshFormat, which version 1 lacks, and what stands before it.
+  /// @param text  must outlive this, and so must the others
+  /// @throws Error FileSyntax, FileUnsupported
+  GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
+      : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
+    skipComments();
+    const std::string_view first = scanner_.peekToken();
+    if (first == "$NOD" || first == "$PARA") {
+      index_.emplace(text_, stage_);
+      return;
+    }
+    if (scanner_.readToken() != "$MeshFormat") {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "a .msh file begins with \"$MeshFormat\", or \"$NOD\" in version 1, found " +
+                        quoted(scanner_.currentToken()) + ".");
+    }
+    readVersion();
+    readEncoding();
+    endSection("MeshFormat");
+  }
+
+  [[nodiscard]] GmshVersion version() const noexcept { return version_; }
+
+  /// Goes to the next section and returns its name, without '$'; nothing at the end of the file.
+  [[nodiscard]] std::optional<std::string_view> nextSection() {
+    if (!scanner_.skipSpace()) return {};
+    const std::string_view token = scanner_.readToken();
+    if (token.front() != '$') {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "a section begins with '$' and its name, found " + quoted(token) + ".");
+    }
+    return token.substr(1);
+  }
+
+  /// Reads the end of a section.
+  void endSection(std::string_view name) {
+    const std::string end = endOf(name);
+    if (scanner_.readToken() != end) scanner_.failToken('"' + end + '"');
+  }
+
+  /// Skips the rest of a section, and returns what that is, with the end.
+  std::string_view skipSection(std::string_view name) {
+    const std::string end = endOf(name);
+    const std::size_t begin = scanner_.position();
+    const std::size_t place = text_.find(end, begin);
+    if (place == std::string_view::npos) {
+      scanner_.fail(ErrorCode::FileSyntax, "the section has no " + quoted(std::string_view(end)) +
+                                               ": the file is incomplete.");
+    }
+    scanner_.moveTo(place + end.size());
+    return text_.substr(begin, place + end.size() - begin);
+  }
+
+  [[nodiscard]] Stage& stage() const noexcept { return stage_; }
+  /// Stands where the file is read, and moves on with it.
+  [[nodiscard]] TextScanner& scanner() noexcept { return scanner_; }
+  /// Calls f(source) with a source of numbers that stands at the scanner's place (if they are
+  /// bytes, on the next line), and goes on behind what it read.
+  template <class F>
+  void withSource(const F& f) {
+    if (binary_) {
+      scanner_.skipLineBreak();
+      BinarySource source(bytes_, scanner_.position(), stage_);
+      f(source);
+      scanner_.moveTo(source.position());
+    } else {
+      TextSource source(scanner_, &*index_, stage_);
+      f(source);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::string endOf(std::string_view name) const {
+    return (version_ == GmshVersion::V1 ? "$END" : "$End") + std::string(name);
+  }
+
+  /// Passes over lines of comment and sections $Comments.
+  void skipComments() {
+    for (std::string_view token = scanner_.peekToken(); !token.empty();
+         token = scanner_.peekToken()) {
+      if (token.starts_with("#") || token.starts_with("//")) {
+        static_cast<void>(scanner_.takeLine());
+      } else if (token == "$Comments") {
+        static_cast<void>(scanner_.readToken());
+        version_ = GmshVersion::V2;  // has this way to end sections
+        skipSection("Comments");
+      } else {
+        break;
+      }
+    }
+    version_ = GmshVersion::V1;
+  }
+
+  void readVersion() {
+    using Named = std::pair<std::string_view, GmshVersion>;
+    constexpr std::array<Named, 7> kVersions = {{{"4.1", GmshVersion::V41},
+                                                 {"4", GmshVersion::V40},
+                                                 {"4.0", GmshVersion::V40},
+                                                 {"2.2", GmshVersion::V2},
+                                                 {"2.1", GmshVersion::V2},
+                                                 {"2", GmshVersion::V2},
+                                                 {"2.0", GmshVersion::V2}}};
+    const std::string_view version = scanner_.readToken();
+    for (const auto& [name, value] : kVersions) {
+      if (name != version) continue;
+      version_ = value;
+      return;
+    }
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "version " + quoted(version) +
+                      " of the format is not supported; save the mesh as version 4.1 or 2.2.");
+  }
+
+  void readEncoding() {
+    TextSource numbers(scanner_, nullptr, stage_);
+    const std::int64_t type = numbers.integer("the file type");
+    if (type != 0 && type != 1) {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "the file type is 0 (text) or 1 (binary), found " + std::to_string(type) + ".");
+    }
+    binary_ = type == 1;
+    const std::int64_t size = numbers.integer("the size of numbers");
+    if (size != 8) {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "numbers of " + std::to_string(size) + " bytes are not supported, only 8.");
+    }
+    if (!binary_) {
+      index_.emplace(text_, stage_);
+      return;
+    }
+    withSource([](auto& source) {
+      if (source.integer("the mark of the byte order") == 1) return;
+      source.fail(ErrorCode::FileUnsupported,
+                  "the bytes of numbers come in the order of another kind of computers; save the "
+                  "mesh as text.");
+    });
+  }
+
+  std::string_view text_;
+  ByteFile bytes_;
+  TextScanner scanner_;
+  Stage& stage_;
+  std::optional<TokenIndex> index_;  ///< only of text
+  bool binary_ = false;
+  GmshVersion version_ = GmshVersion::V1;
+};
+
+/// Takes the names of groups from the section $PhysicalNames: lines "dimension number name", as
+/// text in binary files, too. Lines of another form are passed over.
+void readNames(std::string_view section, GmshTags& tags) {
+  while (!section.empty()) {
+    const std::size_t length = std::min(section.find('\n'), section.size());
+    const std::string_view line = section.substr(0, length);
+    section.remove_prefix(std::min(length + 1, section.size()));
+    GmshGroup group;
+    const char* const end = line.data() + line.size();
+    const auto dimension = std::from_chars(line.data(), end, group.first);
+    if (dimension.ec != std::errc{} || dimension.ptr == end || *dimension.ptr != ' ') continue;
+    const auto number = std::from_chars(dimension.ptr + 1, end, group.second);
+    const std::size_t quote = line.find('"');
+    if (number.ec != std::errc{} || quote == std::string_view::npos) continue;
+    const std::string_view name = line.substr(quote + 1);
+    tags.addName(group, name.substr(0, std::min(name.find('"'), name.size())));
+  }
+}
+
+/// The first number of a list, which begins with its length; 0 if it is empty.
+template <class Source>
+std::int64_t firstOfGmshList(Source& source, const char* what) {
+  const std::uint64_t count = source.size("the length of a list");
+  requireRoom(source, count, {.integers = 1}, "numbers");
+  const std::int64_t first = count > 0 ? source.integer(what) : 0;
+  if (count > 1) source.skip(static_cast<std::size_t>(count - 1), {.integers = 1});
+  return first;
+}
+
+/// Entities of one dimension: their tags, where they are, their groups and bounding entities.
+template <class Source>
+void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, std::uint64_t count,
+                    GmshTags& tags) {
+  const std::size_t reals = dimension == 0 && version == GmshVersion::V41 ? 3 : 6;
+  requireRoom(source, count, {.integers = 1, .reals = reals}, "entities");
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::int64_t entity = source.integer("the tag of an entity");
+    for (std::size_t k = 0; k < reals; ++k) {
+      static_cast<void>(source.real("a coordinate of an entity"));
+    }
+    const std::int64_t physical = firstOfGmshList(source, "the tag of a physical group");
+    if (dimension > 0) firstOfGmshList(source, "the tag of a bounding entity");
+    tags.addEntity({static_cast<std::int64_t>(dimension), entity}, withoutSign(physical));
+  }
+}
+
+/// Reads the groups of entities in the section $Entities of version 4.
+template <class Source>
+void readEntities(Source& source, GmshVersion version, GmshTags& tags) {
+  std::array<std::uint64_t, 4> counts{};
+  for (std::uint64_t& count : counts) count = source.size("the number of entities");
+  for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
+    readEntitiesOf(source, version, dimension, counts[dimension], tags);
+  }
+}
+
+/// Points, and the tag of each.
+class GmshNodes {
+ public:
+  template <class Source>
+  void read4(Source& source, GmshVersion version) {
+    const std::uint64_t blocks = source.size("the number of blocks of nodes");
+    const std::uint64_t total = source.size("the number of nodes");
+    if (version == GmshVersion::V41) {
+      static_cast<void>(source.size("the smallest tag of a node"));
+      static_cast<void>(source.size("the largest tag of a node"));
+    }
+    requireRoom(source, total, nodeShape(version, 3), "nodes");
+    requireIndexable(source, total, "nodes");
+    points_.resize(total);
+    tags_.resize(total);
+    std::size_t done = 0;
+    for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, version, done);
+    if (done == total) return;
+    source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
+                                           std::to_string(total) + " nodes of the section.");
+  }
+
+  template <class Source>
+  void read22(Source& source, std::size_t count) {
+    const RecordShape shape{.integers = 1, .reals = 3};
+    requireRoom(source, count, shape, "nodes");
+    points_.resize(count);
+    tags_.resize(count);
+    source.records(count, shape, [&](auto& record, std::size_t i) {
+      tags_[i] = static_cast<std::uint64_t>(record.integer("the number of a node"));
+      readPoint(record, i);
+    });
+  }
+
+  [[nodiscard]] Array<Vec3>& points() noexcept { return points_; }
+
+  /// @throws Error FileSyntax for two nodes with one tag
+  [[nodiscard]] NodeTags index(const TextScanner& scanner) const {
+    NodeTags index(tags_);
+    const Index repeated = index.repeated();
+    if (repeated == kNone) return index;
+    scanner.fail(ErrorCode::FileSyntax,
+                 "two nodes have the tag " + std::to_string(tags_[repeated]) + ".");
+  }
+
+ private:
+  /// A node with its tag.
+  [[nodiscard]] static RecordShape nodeShape(GmshVersion version, std::size_t reals) {
+    if (version == GmshVersion::V41) return {.sizes = 1, .reals = reals};
+    return {.integers = 1, .reals = reals};
+  }
+
+  /// Nodes of one entity: in version 4.1 all tags, then all points.
+  /// @param done  nodes before them
+  /// @return how many they are
+  template <class Source>
+  std::size_t readBlock(Source& source, GmshVersion version, std::size_t done) {
+    const std::int64_t dimension = readGmshEntity(source, version).first;
+    const bool parametric = source.integer("whether nodes have parameters") != 0;
+    const std::uint64_t count = source.size("the number of nodes of a block");
+    if (dimension < 0 || dimension > 3) {
+      source.fail(ErrorCode::FileSyntax,
+                  "an entity has the dimension " + std::to_string(dimension) + ".");
+    }
+    if (count > points_.size() - done) {
+      source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
+                                             std::to_string(points_.size()) + " of the section.");
+    }
+    const bool tagsFirst = version == GmshVersion::V41;
+    const auto readTag = [&](auto& record, std::size_t i) {
+      tags_[done + i] = readGmshTag(record, version, "the tag of a node");
+    };
+    if (tagsFirst) {
+      requireRoom(source, count, {.sizes = 1}, "nodes");
+      source.records(count, {.sizes = 1}, readTag);
+    }
+    const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
+    const RecordShape shape = tagsFirst ? RecordShape{.reals = reals} : nodeShape(version, reals);
+    requireRoom(source, count, shape, "nodes");
+    source.records(count, shape, [&](auto& record, std::size_t i) {
+      if (!tagsFirst) readTag(record, i);
+      readPoint(record, done + i);
+      for (std::size_t k = 3; k < reals; ++k) {
+        static_cast<void>(record.real("a parameter of a node"));
+      }
+    });
+    return count;
+  }
+
+  template <class Record>
+  void readPoint(Record& record, std::size_t node) {
+    for (double& coordinate : points_[node]) coordinate = record.real("a coordinate of a node");
+  }
+
+  Array<Vec3> points_;
+  Array<std::uint64_t> tags_;
+};
+
+/// Reads the sections of one file from top to bottom.
+template <std::size_t corners>
+class GmshReader {
+ public:
+  static constexpr std::string_view kFirst = "$#/";
+
+  GmshReader(std::string_view text, const std::string& fileName, Stage& stage,
+             const std::shared_ptr<CellCounts>& counts)
+      : file_(text, fileName, stage), fileName_(fileName), counts_(*counts) {}
+
+  CellMesh<corners> read() {
+    while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
+    requireCells();
+    return std::move(mesh_);
+  }
+
+ private:
+  static constexpr CellKind kKind = kCellKind<corners>;
+
+  void readSection(std::string_view name) {
+    if (name == "PhysicalNames") return readNames(file_.skipSection(name), tags_);
+    const bool version1 = file_.version() == GmshVersion::V1;
+    if (name == "Entities" && hasEntities(file_.version())) {
+      file_.withSource([this](auto& source) { readEntities(source, file_.version(), tags_); });
+    } else if (name == (version1 ? "NOD" : "Nodes")) {
+      readNodes(name);
+    } else if (name == (version1 ? "ELM" : "Elements")) {
+      readElements(name);
+    } else {
+      file_.skipSection(name);
+      return;
+    }
+    file_.endSection(name);
+  }
+
+  void readNodes(std::string_view name) {
+    file_.scanner().failIfRepeated(hasNodes_, "$" + std::string(name));
+    hasNodes_ = true;
+    GmshNodes nodes;
+    if (hasEntities(file_.version())) {
+      file_.withSource([&](auto& source) { nodes.read4(source, file_.version()); });
+    } else {
+      const std::size_t count = file_.scanner().readCount("nodes", 8);
+      file_.withSource([&](auto& source) { nodes.read22(source, count); });
+    }
+    nodes_ = nodes.index(file_.scanner());
+    mesh_.points = std::move(nodes.points());
+  }
+
+  void readElements(std::string_view name) {
+    file_.scanner().failIfRepeated(hasElements_, "$" + std::string(name));
+    hasElements_ = true;
+    if (!hasNodes_) {
+      file_.scanner().fail(
+          ErrorCode::FileUnsupported,
+          "the section $" + std::string(name) + " stands before the nodes; exchange them.");
+    }
+    GmshElements<corners> elements(tags_, nodes_, mesh_, counts_, file_.stage());
+    if (hasEntities(file_.version())) {
+      file_.withSource([&](auto& source) { elements.read4(source, file_.version()); });
+    } else {
+      const std::size_t count = file_.scanner().readCount("elements", 8);
+      file_.withSource([&](auto& source) {
+        if constexpr (std::is_same_v<decltype(source), TextSource&>) {
+          elements.readText(source, file_.version(), count);
+        } else {
+          elements.read22(source, count);
+        }
+      });
+    }
+    hasOtherElements_ = elements.hasOthers();
+  }
+
+  void requireCells() const {
+    if (!hasElements_) {
+      throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
+                                                  std::string(kKind.plural) +
+                                                  ": it has no section $Elements.");
+    }
+    if (mesh_.cells.empty() && hasOtherElements_) {
+      throw Error(ErrorCode::FileUnsupported,
+                  fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
+                      std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
+                      "), but " + otherElements() + ".");
+    }
+  }
+
+  [[nodiscard]] std::string otherElements() const {
+    const std::string volume = counts_.instead();
+    return volume.empty() ? "points, lines, triangles or quads only: a surface, not a volume"
+                          : "other elements only" + volume;
+  }
+
+  GmshFile file_;
+  const std::string& fileName_;
+  CellCounts& counts_;
+  GmshTags tags_;
+  NodeTags nodes_;
+  bool hasNodes_ = false;
+  bool hasElements_ = false;
+  bool hasOtherElements_ = false;
+  CellMesh<corners> mesh_;
+};
+
+}  // namespace
+
+HexMesh readGmsh(const Input& input, Context& context) {
+  return readWith<GmshReader<8>>(input, "read mesh", context, input.counts());
+}
+
+TetCells readGmshTets(const Input& input, Context& context) {
+  return readWith<GmshReader<4>>(input, "read tets", context, input.counts());
+}
+
+namespace {
+
+// Binary `.msh` files of version 4.1 piece by piece.
+
+constexpr RecordShape kTag{.sizes = 1};
+constexpr RecordShape kPoint{.reals = 3};
+
+/// How many nodes elements of a type have: of those that this library writes.
+std::size_t nodesOf(std::int64_t type) {
+  constexpr std::array<std::array<std::int64_t, 2>, 4> kNodes = {
+      {{kGmshPoint, 1}, {kGmshLine, 2}, {kGmshQuad, 4}, {kGmshHexahedron, 8}}};
+  for (const auto& [known, nodes] : kNodes) {
+    if (type == known) return static_cast<std::size_t>(nodes);
+  }
+  return 0;
+}
+
+/// A file with one block of nodes, which are numbered from 1, and one of hexahedra, as this library
+/// writes them.
+class GmshPieces {
+ public:
+  GmshPieces(const InputFile& file, const std::string& name, Context& context)
+      : quiet_(context.threads()),
+        stage_(quiet_, "read"),
+        words_(file, name, context, TextWindow::kWords),
+        bytes_(file, name),
+        source_(bytes_, 0, stage_) {}
+
+  /// @return whether the file is of the form
+  [[nodiscard]] bool look() {
+    if (!lookAtFormat()) return false;
+    for (std::string word = words_.token(); !word.empty(); word = words_.token()) {
+      if (word == "$Nodes") {
+        if (layout.points.position != 0 || !lookInside([this] { return lookAtNodes(); }))
+          return false;
+      } else if (word == "$Elements") {
+        if (layout.cells.position != 0 || !lookInside([this] { return lookAtElements(); }))
+          return false;
+      } else if (word == "$Entities") {
+        if (!lookInside([this] { return skipEntities(); })) return false;
+      } else if (word != "$PhysicalNames") {
+        return false;
+      }
+      const std::string end = "$End" + word.substr(1);
+      for (word = words_.token(); word != end; word = words_.token()) {
+        if (word.empty()) return false;
+      }
+    }
+    return layout.isComplete();
+  }
+
+  PlainLayout layout{.integerBytes = 8, .inFrontOfCell = 1};
+
+ private:
+  /// The section $MeshFormat.
+  [[nodiscard]] bool lookAtFormat() {
+    for (const char* const expected : {"$MeshFormat", "4.1", "1", "8"}) {
+      if (words_.token() != expected) return false;
+    }
+    return lookInside([this] { return source_.integer("the mark of the byte order") == 1; }) &&
+           words_.token() == "$EndMeshFormat";
+  }
+
+  /// Reads what begins on the next line, and goes on behind it.
+  template <class Look>
+  [[nodiscard]] bool lookInside(const Look& look) {
+    if (!words_.skipLineBreak()) return false;
+    source_.moveTo(words_.position());
+    if (!look()) return false;
+    words_.moveTo(source_.position());
+    return true;
+  }
+
+  /// Only groups of whole elements are told by entities, which pieces do not carry.
+  [[nodiscard]] bool skipEntities() {
+    std::array<std::uint64_t, 4> counts{};
+    for (std::uint64_t& count : counts) count = source_.size("the number of entities");
+    for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
+      for (std::uint64_t i = 0; i < counts[dimension]; ++i) {
+        static_cast<void>(source_.integer("the tag of an entity"));
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) {
+          static_cast<void>(source_.real("a coordinate of an entity"));
+        }
+        if (!skipList() || (dimension > 0 && !skipList())) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool skipList() {
+    return skip(source_.size("the length of a list"), {.integers = 1});
+  }
+
+  [[nodiscard]] bool skip(std::uint64_t n, RecordShape shape) {
+    if (n > source_.room(shape)) return false;
+    source_.skip(static_cast<std::size_t>(n), shape);
+    return true;
+  }
+
+  [[nodiscard]] bool lookAtNodes() {
+    const std::uint64_t blocks = source_.size("the number of blocks");
+    const std::uint64_t points = source_.size("the number of nodes");
+    if (blocks != 1 || !skip(2, kTag)) return false;
+    const bool isOfVolume = source_.integer("the dimension of an entity") == 3;
+    static_cast<void>(source_.integer("the tag of an entity"));
+    const bool hasParameters = source_.integer("whether nodes have parameters") != 0;
+    if (!isOfVolume || hasParameters || source_.size("the number of nodes of a block") != points)
+      return false;
+    if (points > source_.room(kTag) || !areNumbered(points)) return false;
+    layout.points = {source_.position(), points};
+    return skip(points, kPoint);
+  }
+
+  /// Whether the tags that come next are 1, 2, 3, ...
+  [[nodiscard]] bool areNumbered(std::uint64_t points) {
+    std::atomic<bool> all{true};
+    for (std::uint64_t first = 0; first < points && all; first += kPieceElements) {
+      source_.records(std::min<std::uint64_t>(kPieceElements, points - first), kTag,
+                      [&](BinaryRecord& record, std::size_t i) {
+                        if (record.size("the tag of a node") != first + i + 1) all = false;
+                      });
+    }
+    return all;
+  }
+
+  [[nodiscard]] bool lookAtElements() {
+    const std::uint64_t blocks = source_.size("the number of blocks");
+    std::uint64_t left = source_.size("the number of elements");
+    if (!skip(2, kTag)) return false;
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+      const std::int64_t dimension = source_.integer("the dimension of an entity");
+      static_cast<void>(source_.integer("the tag of an entity"));
+      const std::int64_t type = source_.integer("the type of elements");
+      const std::uint64_t count = source_.size("the number of elements of a block");
+      const std::size_t nodes = nodesOf(type);
+      if (count > left) return false;
+      left -= count;
+      if (type == kGmshHexahedron) {
+        if (layout.cells.position != 0 || dimension != 3) return false;
+        layout.cells = {source_.position(), count};
+      }
+      if (nodes == 0 || !skip(count, {.sizes = 1 + nodes})) return false;
+    }
+    return left == 0;
+  }
+
+  Context quiet_;
+  Stage stage_;
+  TextWindow words_;
+  ByteFile bytes_;
+  BinarySource source_;
+};
+
+std::optional<PlainLayout> lookAtGmsh(const InputFile& file, const std::string& name,
+                                      Context& context) {
+  GmshPieces pieces(file, name, context);
+  if (!pieces.look()) return {};
+  return pieces.layout;
+}
+
+}  // namespace
+
+void readGmshTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({lookAtGmsh, readGmsh}, sink, input, context);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,648 @@
+// Writes `.msh` files (see formats.hpp): MSH 4.1 as text and as bytes, where what differs is how a
+// number looks, of whole meshes, in pieces, and of higher order; and MSH 2.2.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/gmsh_elements.hpp>
+#include <io/formats/lagrange_nodes.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// Elements of one kind that belong together.
+struct GmshEntity {
+  std::uint32_t tag;
+  std::uint32_t physical;  ///< number of the physical group
+  std::size_t begin;
+  std::size_t end;
+
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+};
+
+/// What the elements of a file are sorted into.
+struct GmshGroups : MeshGroups {
+  std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
+
+  explicit GmshGroups(MeshGroups groups) : MeshGroups(std::move(groups)) {
+    // A point entity is one point: each vertex of a group is an entity of its own.
+    for (const ElementGroup& group : vertices.groups) {
+      for (std::size_t i = group.begin; i < group.end; ++i) {
+        entities[0].push_back({static_cast<std::uint32_t>(i + 1), group.number, i, i + 1});
+      }
+    }
+    for (std::size_t dimension = 1; dimension < 4; ++dimension) {
+      for (const ElementGroup& group : *byDimension()[dimension]) {
+        entities[dimension].push_back({group.number, group.number, group.begin, group.end});
+      }
+    }
+  }
+
+  [[nodiscard]] std::array<const std::vector<ElementGroup>*, 4> byDimension() const {
+    return {&vertices.groups, &edges.groups, &quads.groups, &cells.groups};
+  }
+};
+
+/// The elements of one dimension.
+/// @tparam Count  a number, or a constant
+/// @tparam At     at(i)[k] is node k of element i
+template <class Count, class At>
+struct GmshKind {
+  unsigned dimension;
+  unsigned type;  ///< Gmsh's
+  Count nodes;    ///< of each element
+  At at;
+};
+template <class Count, class At>
+GmshKind(unsigned, unsigned, Count, At) -> GmshKind<Count, At>;
+
+void writePhysicalNames(OutputFile& output, const GmshGroups& groups) {
+  std::size_t count = 0;
+  for (const auto* const kind : groups.byDimension()) count += kind->size();
+  output.write("$PhysicalNames\n").write(count).write('\n');
+  for (unsigned dimension = 0; dimension < 4; ++dimension) {
+    for (const ElementGroup& group : *groups.byDimension()[dimension]) {
+      output.write(dimension).write(' ').write(group.number).write(" \"").write(group.name);
+      output.write("\"\n");
+    }
+  }
+  output.write("$EndPhysicalNames\n");
+}
+
+/// Numbers of MSH 4.1 as text: with a space or a line break behind each.
+class TextNumbers {
+ public:
+  static constexpr bool kIsBinary = false;
+  static constexpr std::size_t kRoom = kNumberRoom + 1;
+
+  static char* size(char* place, std::uint64_t number) { return put(put(place, number), ' '); }
+  static char* point(char* place, const Vec3& point) { return putNumbers(place, point); }
+  static char* endLine(char* place) { return put(place, '\n'); }
+  template <class Number>
+  static void write(OutputFile& output, Number number) {
+    output.write(number).write(' ');
+  }
+};
+
+/// Numbers of MSH 4.1 as bytes.
+class BinaryNumbers {
+ public:
+  static constexpr bool kIsBinary = true;
+  static constexpr std::size_t kRoom = 8;
+
+  static char* size(char* place, std::uint64_t number) { return putBytes(place, number); }
+  static char* point(char* place, const Vec3& point) { return putBytes(place, point); }
+  static char* endLine(char* place) { return place; }
+  template <class Number>
+  static void write(OutputFile& output, Number number) {
+    writeBytesOf(output, number);
+  }
+};
+
+/// Writes one file front to back.
+template <class Numbers>
+class Msh41Writer {
+ public:
+  Msh41Writer(const std::filesystem::path& file, int threads)
+      : output_(file), lines_(output_, threads) {}
+
+  /// A whole mesh.
+  /// @param forEachKind  calls its argument with the GmshKind of each dimension, 0 to 3
+  template <class ForEachKind>
+  void write(std::span<const Vec3> points, const GmshGroups& groups, const ForEachKind& forEachKind,
+             Stage& stage) {
+    LoopProgress progress(stage, 2 * points.size() + groups.elementCount());
+    progress_ = &progress;
+    Box boxOfAll;
+    for (const Vec3& point : points) boxOfAll.add(point);
+    beginEntities(groups);
+    forEachKind([&](const auto& kind) {
+      for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+        // A volume has all points, each of which is looked at once then.
+        const Box box = kind.dimension == 3 ? boxOfAll : boxOf(kind, entity, points);
+        this->writeEntity(kind.dimension, entity, box);
+      }
+    });
+    beginNodes(groups, points.size());
+    writePoints(points);
+    beginElements(groups);
+    std::uint64_t tag = 1;
+    forEachKind([&](const auto& kind) {
+      for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+        this->beginBlock(kind.dimension, entity, kind.type);
+        this->writeElements(tag, entity.size(), kind.nodes, [&](std::size_t i) -> decltype(auto) {
+          return kind.at(entity.begin + i);
+        });
+        tag += entity.size();
+      }
+    });
+    end();
+  }
+
+ protected:
+  /// The smallest box around points; around none, all of it is 0.
+  class Box {
+   public:
+    void add(const Vec3& point) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        lower_[axis] = std::min(lower_[axis], point[axis]);
+        upper_[axis] = std::max(upper_[axis], point[axis]);
+      }
+    }
+    [[nodiscard]] std::array<Vec3, 2> corners() const {
+      if (lower_[0] > upper_[0]) return {};
+      return {lower_, upper_};
+    }
+
+   private:
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+    Vec3 lower_ = {kFar, kFar, kFar};
+    Vec3 upper_ = {-kFar, -kFar, -kFar};
+  };
+
+  // The parts of a file, in their order. Each ends the section before it.
+
+  /// All before the entities.
+  void beginEntities(const GmshGroups& groups) {
+    output_.write("$MeshFormat\n4.1 ").write(Numbers::kIsBinary ? '1' : '0').write(" 8\n");
+    if (Numbers::kIsBinary) {
+      writeBytesOf(output_, std::uint32_t{1});
+      output_.write('\n');
+    }
+    output_.write("$EndMeshFormat\n");
+    writePhysicalNames(output_, groups);
+    output_.write("$Entities\n");
+    for (const auto& ofDimension : groups.entities) sizes({ofDimension.size()});
+    endLine();
+  }
+
+  void writeEntity(unsigned dimension, const GmshEntity& entity, const Box& box) {
+    integers({entity.tag});
+    boxPosition_ = output_.position();
+    const std::array<Vec3, 2> corners = box.corners();
+    // A point has a position instead of a box.
+    for (std::size_t corner = 0; corner < (dimension == 0 ? 1U : 2U); ++corner) {
+      for (const double coordinate : corners[corner]) Numbers::write(output_, coordinate);
+    }
+    sizes({1});
+    integers({entity.physical});
+    // What bounds an entity is left open: patches of features need not be whole boundaries.
+    if (dimension > 0) sizes({0});
+    endLine();
+  }
+  /// Replaces the box of the last entity, in a file of bytes.
+  void rewriteBox(const Box& box) {
+    output_.flush();
+    std::array<char, sizeof(Vec3) * 2> bytes;  // NOLINT(*-member-init): filled at once
+    char* place = bytes.data();
+    for (const Vec3& corner : box.corners()) place = putBytes(place, corner);
+    output_.writeBytesAt(boxPosition_, bytes.data(), bytes.size());
+  }
+
+  /// All before the points.
+  void beginNodes(const GmshGroups& groups, std::size_t count) {
+    endSection("$EndEntities\n");
+    output_.write("$Nodes\n");
+    const std::size_t blocks = std::min<std::size_t>(count, 1);
+    sizes({blocks, count, blocks, count});
+    endLine();
+    if (count == 0) return;
+    integers({3, groups.entities[3].front().tag, 0});
+    sizes({count});
+    endLine();
+    const auto tag = [](char* place, std::size_t i) {
+      return Numbers::endLine(Numbers::size(place, i + 1));
+    };
+    lines_.write(count, Numbers::kRoom + 1, tag, progress_);
+  }
+
+  void writePoints(std::span<const Vec3> points) {
+    const auto point = [points](char* place, std::size_t i) {
+      return Numbers::endLine(Numbers::point(place, points[i]));
+    };
+    lines_.write(points.size(), 3 * Numbers::kRoom + 1, point, progress_);
+  }
+
+  void beginElements(const GmshGroups& groups) {
+    endSection("$EndNodes\n");
+    output_.write("$Elements\n");
+    const std::size_t count = groups.elementCount();
+    std::size_t blocks = 0;
+    for (const auto& ofDimension : groups.entities) {
+      for (const GmshEntity& entity : ofDimension) blocks += entity.size() > 0 ? 1 : 0;
+    }
+    sizes({blocks, count, std::min<std::size_t>(count, 1), count});
+    endLine();
+  }
+
+  /// The elements of an entity have a block, if there are any.
+  void beginBlock(unsigned dimension, const GmshEntity& entity, unsigned type) {
+    if (entity.size() == 0) return;
+    integers({dimension, entity.tag, type});
+    sizes({entity.size()});
+    endLine();
+  }
+
+  /// @param nodes, at  as in GmshKind
+  template <class Count, class At>
+  void writeElements(std::uint64_t firstTag, std::size_t count, Count nodes, const At& at) {
+    const auto element = [&](char* place, std::size_t i) {
+      place = Numbers::size(place, firstTag + i);
+      const auto& ofElement = at(i);
+      for (std::size_t k = 0; k < nodes; ++k) {
+        place = Numbers::size(place, std::uint64_t{ofElement[k]} + 1);
+      }
+      return Numbers::endLine(place);
+    };
+    lines_.write(count, (nodes + 1) * Numbers::kRoom + 1, element, progress_);
+  }
+
+  void end() {
+    endSection("$EndElements\n");
+    output_.commit();
+  }
+
+  [[nodiscard]] const OutputFile& output() const noexcept { return output_; }
+
+ private:
+  template <class Kind>
+  [[nodiscard]] static Box boxOf(const Kind& kind, const GmshEntity& entity,
+                                 std::span<const Vec3> points) {
+    Box box;
+    for (std::size_t i = entity.begin; i < entity.end; ++i) {
+      const auto& element = kind.at(i);
+      for (std::size_t k = 0; k < kind.nodes; ++k) box.add(points[element[k]]);
+    }
+    return box;
+  }
+
+  void integers(std::initializer_list<std::uint32_t> numbers) {
+    for (const std::uint32_t number : numbers) Numbers::write(output_, number);
+  }
+  void sizes(std::initializer_list<std::uint64_t> numbers) {
+    for (const std::uint64_t number : numbers) Numbers::write(output_, number);
+  }
+  void endLine() {
+    if (!Numbers::kIsBinary) output_.write('\n');
+  }
+  void endSection(std::string_view end) {
+    // Behind bytes the end has to begin a line.
+    if (Numbers::kIsBinary) output_.write('\n');
+    output_.write(end);
+  }
+
+  OutputFile output_;
+  LineWriter lines_;
+  LoopProgress* progress_ = nullptr;
+  std::uint64_t boxPosition_ = 0;
+};
+
+// Whole meshes and meshes in pieces.
+
+template <std::size_t n>
+constexpr std::integral_constant<std::size_t, n> kNodes;
+
+/// Calls f(kind) for the elements of each dimension, in the order of the file.
+template <class F>
+void forEachKind(const HexMesh& mesh, const GmshGroups& groups, const F& f) {
+  const auto of = [](const auto& elements) {
+    return [&elements](std::size_t i) -> const auto& { return elements[i]; };
+  };
+  f(GmshKind{0U, kGmshPoint, kNodes<1>, of(groups.vertices.elements)});
+  f(GmshKind{1U, kGmshLine, kNodes<2>, of(groups.edges.elements)});
+  f(GmshKind{2U, kGmshQuad, kNodes<4>, of(groups.quads.elements)});
+  f(GmshKind{3U, kGmshHexahedron, kNodes<8>,
+             [&](std::size_t i) -> const Hex& { return mesh.cells[groups.cells.at(i)]; }});
+}
+
+template <class Numbers>
+void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) {
+  Stage stage(context, "write mesh");
+  // First, so that a folder that is not writable shows at once.
+  Msh41Writer<Numbers> writer(file, context.threads());
+  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
+  writer.write(
+      mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
+}
+
+/// A mesh in pieces: one volume. Its box stands in front of the nodes but is known only behind
+/// them, and is written to its place in the end.
+class GmshStream : private Msh41Writer<BinaryNumbers> {
+ public:
+  GmshStream(const std::filesystem::path& file, int threads) : Msh41Writer(file, threads) {
+    output().requirePositions("to which a .msh file cannot be written in pieces");
+  }
+
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    groups_ = GmshGroups(MeshGroups(cells));
+    beginEntities(groups_);
+    writeEntity(3, volume(), box_);
+    beginNodes(groups_, points);
+  }
+  void points(const PointPiece& piece) {
+    for (const Vec3& point : piece.points) box_.add(point);
+    writePoints(piece.points);
+  }
+  void beginCells() {
+    beginElements(groups_);
+    beginBlock(3, volume(), kGmshHexahedron);
+  }
+  template <class Cell>
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
+    writeElements(first + 1, cells.size(), kNodes<8>,
+                  [cells](std::size_t i) -> const Cell& { return cells[i]; });
+  }
+  void end() {
+    rewriteBox(box_);
+    Msh41Writer::end();
+  }
+
+ private:
+  [[nodiscard]] const GmshEntity& volume() const { return groups_.entities[3].front(); }
+
+  GmshGroups groups_{MeshGroups(0)};
+  Box box_;
+};
+
+}  // namespace
+
+void writeGmsh41Binary(const HexMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  writeMsh41<BinaryNumbers>(mesh, file, options, context);
+}
+
+void writeGmsh41Text(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& options, Context& context) {
+  writeMsh41<TextNumbers>(mesh, file, options, context);
+}
+
+void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile output(file);
+  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
+  requireInt32(mesh.points.size(), "MSH 2.2 numbers nodes", "write MSH 4.1");
+  requireInt32(groups.elementCount(), "MSH 2.2 numbers elements", "write MSH 4.1");
+  LineWriter lines(output, context.threads());
+  LoopProgress progress(stage, mesh.points.size() + groups.elementCount());
+  output.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+  writePhysicalNames(output, groups);
+  output.write("$Nodes\n").write(mesh.points.size()).write('\n');
+  const auto node = [&mesh](char* place, std::size_t i) {
+    place = put(put(place, std::uint64_t{i} + 1), ' ');
+    return put(putNumbers(place, mesh.points[i]), '\n');
+  };
+  lines.write(mesh.points.size(), 4 * (kNumberRoom + 1), node, &progress);
+  output.write("$EndNodes\n$Elements\n").write(groups.elementCount()).write('\n');
+  std::uint64_t tag = 1;
+  forEachKind(mesh, groups, [&](const auto& kind) {
+    for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+      const auto element = [&](char* place, std::size_t i) {
+        const std::array<std::uint64_t, 5> head = {tag + i, kind.type, 2, entity.physical,
+                                                   entity.tag};
+        place = putNumbers(place, head);
+        const auto& nodes = kind.at(entity.begin + i);
+        for (std::size_t k = 0; k < kind.nodes; ++k) {
+          place = put(put(place, ' '), std::uint64_t{nodes[k]} + 1);
+        }
+        return put(place, '\n');
+      };
+      lines.write(entity.size(), (kind.nodes + 5) * (kNumberRoom + 1), element, &progress);
+      tag += entity.size();
+    }
+  });
+  output.write("$EndElements\n");
+  output.commit();
+}
+
+std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file,
+                                               Context& context) {
+  return openWriterSink<GmshStream>(file, context);
+}
+
+namespace {
+
+// Gmsh's files of Lagrange cells.
+
+// Gmsh's types of elements of order 1 to 9.
+constexpr std::array<unsigned, kMaxOrder> kLines = {1, 8, 26, 27, 28, 62, 63, 64, 65};
+constexpr std::array<unsigned, kMaxOrder> kQuads = {3, 10, 36, 37, 38, 47, 48, 49, 50};
+constexpr std::array<unsigned, kMaxOrder> kHexahedra = {5, 12, 92, 93, 94, 95, 96, 97, 98};
+
+/// The nodes of a cell in the order of a file.
+struct NodesInOrder {
+  const Index* nodes;
+  const std::uint32_t* order;
+
+  Index operator[](std::size_t k) const { return nodes[order[k]]; }
+};
+
+/// A quadrangle: its corners, sides, and what is inside, which is a smaller one.
+void appendGmshQuad(std::vector<Node>& nodes, std::array<Node, 4> corners, int order) {
+  if (order < 0) return;
+  if (order == 0) {
+    nodes.push_back(corners[0]);
+    return;
+  }
+  nodes.insert(nodes.end(), corners.begin(), corners.end());
+  for (std::size_t i = 0; i < 4; ++i) {
+    append(nodes, between(corners[i], corners[(i + 1) % 4], order - 1));
+  }
+  std::array<Node, 4> inner{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    // One step towards the opposite corner.
+    const Node& opposite = corners[(i + 2) % 4];
+    inner[i] = between(corners[i], opposite, 1)[0];
+  }
+  appendGmshQuad(nodes, inner, order - 2);
+}
+
+void appendGmshHex(std::vector<Node>& nodes, int low, int high) {
+  constexpr std::array<std::array<std::size_t, 4>, 6> kFaces = {
+      {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}}};
+  if (low > high) return;
+  if (low == high) {
+    nodes.push_back(corner(0, low, high));
+    return;
+  }
+  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, low, high));
+  auto edges = adjacency::kHexEdges;  // ascending, from the smaller corner to the larger one
+  for (auto& edge : edges) edge = {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
+  std::sort(edges.begin(), edges.end());
+  for (const auto& [a, b] : edges) {
+    append(nodes, between(corner(a, low, high), corner(b, low, high), high - low - 1));
+  }
+  for (const auto& face : kFaces) {
+    std::array<Node, 4> inner{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Node from = corner(face[i], low, high);
+      inner[i] = between(from, corner(face[(i + 2) % 4], low, high), 1)[0];
+    }
+    appendGmshQuad(nodes, inner, high - low - 2);
+  }
+  appendGmshHex(nodes, low + 1, high - 1);
+}
+
+/// A cell, and which of its edges or faces an element is.
+struct ElementPlace {
+  std::uint64_t cell;
+  std::size_t slot;
+};
+
+/// Finds elements, which are few, in the cells that have them.
+class ElementFinder {
+ public:
+  ElementFinder(const HexMesh& mesh, Stage& stage) : mesh_(mesh), stage_(stage) {}
+
+  /// The first place of an element.
+  /// @param corners  of such elements of a cell, by slot
+  /// @param what  for the message
+  /// @throws Error InvalidArgument for an element that is none of a cell
+  template <std::size_t n, std::size_t slots>
+  ElementPlace find(const std::array<Index, n>& element,
+                    const std::array<std::array<std::uint8_t, n>, slots>& corners,
+                    const char* what) {
+    if (around_.empty()) around_ = adjacency::cellsAroundVertices(mesh_, stage_);
+    for (const Index cell : around_(element[0])) {
+      for (std::size_t slot = 0; slot < slots; ++slot) {
+        std::array<Index, n> vertices{};
+        for (std::size_t i = 0; i < n; ++i) vertices[i] = mesh_.cells[cell][corners[slot][i]];
+        if (std::is_permutation(vertices.begin(), vertices.end(), element.begin())) {
+          return {cell, slot};
+        }
+      }
+    }
+    std::string text = std::string("The tagged ") + what;
+    for (const Index vertex : element) text.append(1, ' ').append(std::to_string(vertex));
+    throw Error(ErrorCode::InvalidArgument, text + " belongs to no cell of the mesh.");
+  }
+
+ private:
+  const HexMesh& mesh_;
+  Stage& stage_;
+  adjacency::VertexCells around_;  ///< found when it is needed
+};
+
+/// Appends the nodes from + i * stepI + j * stepJ of a cell, where (i, j, 0) are the nodes of a
+/// list. Steps lead from one corner towards two others.
+/// @param corners  the one and the two others
+void appendNodes(const LagrangeMesh& mesh, std::uint64_t cell,
+                 const std::array<std::size_t, 3>& corners, const std::vector<Node>& list,
+                 Array<Index>& nodes) {
+  const Index* const ofCell = mesh.nodes.data() + cell * mesh.nodesPerCell();
+  const std::ptrdiff_t row = mesh.order + 1;
+  const auto placeOf = [row](const Node& n) { return n[0] + row * (n[1] + row * n[2]); };
+  const std::ptrdiff_t from = placeOf(corner(corners[0], 0, mesh.order));
+  const auto stepTo = [&](std::size_t other) {
+    return (placeOf(corner(other, 0, mesh.order)) - from) / mesh.order;
+  };
+  const std::ptrdiff_t stepI = stepTo(corners[1]);
+  const std::ptrdiff_t stepJ = stepTo(corners[2]);
+  for (const Node& n : list) nodes.push_back(ofCell[from + n[0] * stepI + n[1] * stepJ]);
+}
+
+/// Entry k: the place of the node that Gmsh lists at place k.
+std::vector<std::uint32_t> gmshNodeOrder(int order) {
+  std::vector<Node> nodes;
+  appendGmshHex(nodes, 0, order);
+  return placesOf(nodes, order);
+}
+
+/// The nodes of tagged edges, order + 1 each, in Gmsh's order.
+/// @param straight  what straightMesh() returns
+Array<Index> gmshEdgeNodes(const LagrangeMesh& mesh, const HexMesh& straight,
+                           const EdgeGroups& edges, ElementFinder& finder) {
+  std::vector<Node> list = {{0, 0, 0}, {mesh.order, 0, 0}};
+  append(list, between(list[0], list[1], mesh.order - 1));
+  Array<Index> nodes;
+  nodes.reserve(edges.elements.size() * list.size());
+  for (const std::array<Index, 2>& edge : edges.elements) {
+    const auto [cell, slot] = finder.find(edge, adjacency::kHexEdges, "edge");
+    auto [a, b] = adjacency::kHexEdges[slot];
+    if (straight.cells[cell][a] != edge[0]) std::swap(a, b);
+    appendNodes(mesh, cell, {a, b, b}, list, nodes);
+  }
+  return nodes;
+}
+
+/// The nodes of quads, (order + 1)^2 each, in Gmsh's order; those of the boundary run
+/// counter-clockwise seen from outside, those inside the mesh so seen from outside of the first
+/// cell that they belong to.
+Array<Index> gmshQuadNodes(const LagrangeMesh& mesh, const QuadGroups& quads,
+                           ElementFinder& finder) {
+  const int p = mesh.order;
+  std::vector<Node> list;
+  appendGmshQuad(list, {{{0, 0, 0}, {p, 0, 0}, {p, p, 0}, {0, p, 0}}}, p);
+  Array<Index> nodes;
+  nodes.reserve(quads.elements.size() * list.size());
+  for (std::size_t i = 0; i < quads.elements.size(); ++i) {
+    const std::uint64_t place = quads.places[i];
+    const auto [cell, face] = place == kNoPlace
+                                  ? finder.find(quads.elements[i], adjacency::kHexFaces, "quad")
+                                  : ElementPlace{place / 8, static_cast<std::size_t>(place % 8)};
+    const auto& corners = adjacency::kHexFaces[face];
+    appendNodes(mesh, cell, {corners[0], corners[1], corners[3]}, list, nodes);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  // First, so that a folder that is not writable shows at once.
+  Msh41Writer<TextNumbers> writer(file, context.threads());
+  HexMesh straight = straightMesh(mesh);
+  const GmshGroups groups(MeshGroups(straight, options.patchAngle, stage));
+  Array<Index> lines;
+  Array<Index> quads;
+  withThreads(context.threads(), [&] {
+    ElementFinder finder(straight, stage);
+    lines = gmshEdgeNodes(mesh, straight, groups.edges, finder);
+    quads = gmshQuadNodes(mesh, groups.quads, finder);
+  });
+  straight = {};
+
+  const std::vector<std::uint32_t> order = gmshNodeOrder(mesh.order);
+  const std::size_t perEdge = static_cast<std::size_t>(mesh.order) + 1;
+  const std::size_t perQuad = perEdge * perEdge;
+  const std::size_t type = perEdge - 2;
+  const auto forEachKind = [&](const auto& f) {
+    f(GmshKind{0U, kGmshPoint, 1U, [&](std::size_t i) { return groups.vertices.elements[i]; }});
+    f(GmshKind{1U, kLines[type], perEdge,
+               [&](std::size_t i) { return lines.data() + i * perEdge; }});
+    f(GmshKind{2U, kQuads[type], perQuad,
+               [&](std::size_t i) { return quads.data() + i * perQuad; }});
+    f(GmshKind{
+        3U, kHexahedra[type], order.size(), [&](std::size_t i) {
+          return NodesInOrder{mesh.nodes.data() + groups.cells.at(i) * order.size(), order.data()};
+        }});
+  };
+  writer.write(mesh.points, groups, forEachKind, stage);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,863 @@
+// `.mesh` and `.meshb` files (see formats.hpp): one reader and one writer of sections over two
+// encodings of numbers, for whole files and piece by piece.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <adjacency/cell_faces.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/number_source.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/plain_mesh.hpp>
+#include <io/formats/formats.hpp>
+
+namespace hexhex::io {
+namespace {
+
+/// Sections, and their codes in binary files.
+enum class MeditSection : std::uint32_t {
+  Dimension = 3,
+  Vertices = 4,
+  Edges = 5,
+  Quadrilaterals = 7,
+  Tetrahedra = 8,
+  Hexahedra = 10,
+  Corners = 13,
+  RequiredVertices = 15,
+  End = 54
+};
+
+/// What sections are called in text.
+constexpr std::array<std::pair<MeditSection, std::string_view>, 9> kMeditKeywords = {
+    {{MeditSection::Dimension, "Dimension"},
+     {MeditSection::Vertices, "Vertices"},
+     {MeditSection::Edges, "Edges"},
+     {MeditSection::Quadrilaterals, "Quadrilaterals"},
+     {MeditSection::Tetrahedra, "Tetrahedra"},
+     {MeditSection::Hexahedra, "Hexahedra"},
+     {MeditSection::Corners, "Corners"},
+     {MeditSection::RequiredVertices, "RequiredVertices"},
+     {MeditSection::End, "End"}}};
+
+/// References of which a vertex has two neighbours along edges of cells, ascending.
+std::vector<std::int32_t> crowdedReferences(const Array<std::int32_t>& references,
+                                            const Array<Hex>& cells) {
+  Array<Index> neighbours(references.size(), kNone);  // with the same reference; itself: several
+  const auto note = [&](Index vertex, Index other) {
+    Index& known = neighbours[vertex];
+    known = known == kNone || known == other ? other : vertex;
+  };
+  for (const Hex& cell : cells) {
+    for (const auto& edge : adjacency::kHexEdges) {
+      const Index a = cell[edge[0]];
+      const Index b = cell[edge[1]];
+      if (references[a] == 0 || references[a] != references[b]) continue;
+      note(a, b);
+      note(b, a);
+    }
+  }
+  std::vector<std::int32_t> crowded;
+  for (std::size_t v = 0; v < neighbours.size(); ++v) {
+    if (neighbours[v] == v) crowded.push_back(references[v]);
+  }
+  std::sort(crowded.begin(), crowded.end());
+  crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
+  return crowded;
+}
+
+bool allShareOne(const Array<std::int32_t>& references) {
+  return std::all_of(references.begin(), references.end(),
+                     [&](std::int32_t reference) { return reference == references[0]; });
+}
+
+std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
+                                      const Array<std::int32_t>& references,
+                                      const Array<Hex>& cells) {
+  std::vector<FeatureVertex> tags;
+  if (!corners.empty()) {
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    for (const Index v : corners) {
+      const bool hasReference = !references.empty() && references[v] != 0;
+      tags.push_back({v, hasReference ? references[v] : 1});
+    }
+    return tags;
+  }
+  if (allShareOne(references)) return tags;
+  const std::vector<std::int32_t> crowded = crowdedReferences(references, cells);
+  for (std::size_t v = 0; v < references.size(); ++v) {
+    const std::int32_t reference = references[v];
+    if (reference == 0 || std::binary_search(crowded.begin(), crowded.end(), reference)) continue;
+    tags.push_back({static_cast<Index>(v), reference});
+  }
+  return tags;
+}
+
+// Reading: one reader of sections over two encodings of numbers.
+
+constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
+constexpr CellKind kMeditQuads = {
+    .corners = 4, .singular = "quadrilateral", .plural = "quadrilaterals"};
+constexpr CellKind kMeditCorners = {.corners = 1, .singular = "corner", .plural = "corners"};
+
+/// `.mesh`: keywords and numbers between white space.
+class MeditText {
+ public:
+  static constexpr bool kIsText = true;
+  static constexpr std::string_view kFirst = "M#";
+
+  MeditText(std::string_view text, const std::string& fileName, Stage& stage)
+      : scanner_(text, fileName, TextScanner::Comments::Hash) {
+    if (text.find('#') == std::string_view::npos) index_.emplace(text, stage);
+    source_.emplace(scanner_, index_ ? &*index_ : nullptr, stage);
+  }
+
+  [[nodiscard]] TextSource& source() { return *source_; }
+
+  void readHead() {
+    if (scanner_.readToken() != "MeshVersionFormatted") {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "a MEDIT file begins with \"MeshVersionFormatted\", found " +
+                        quoted(scanner_.currentToken()) + ".");
+    }
+    static_cast<void>(source_->integer("the version of the format"));
+  }
+
+  /// What is between known keywords is passed over.
+  std::optional<MeditSection> nextSection() {
+    while (scanner_.skipSpace()) {
+      const std::string_view keyword = scanner_.readToken();
+      for (const auto& [section, name] : kMeditKeywords) {
+        if (keyword != name) continue;
+        if (section == MeditSection::End) return {};
+        return section;
+      }
+      for (const VolumeCells& type : kVolumeCells) {
+        if (keyword == type.meditKeyword) return static_cast<MeditSection>(type.meditCode);
+      }
+    }
+    return {};
+  }
+
+  void requireDimension() const {}
+
+  [[nodiscard]] static RecordShape shape(std::size_t integers, std::size_t reals = 0) {
+    return {.integers = integers, .reals = reals};
+  }
+  [[nodiscard]] std::size_t readCount(std::string_view what, RecordShape shape) {
+    return scanner_.readCount(what, 2 * shape.tokens());  // a digit and a separator each
+  }
+
+  static void beginElement(TextSource& record, std::size_t i, std::size_t count,
+                           std::string_view what) {
+    record.failIfAtEnd(i, count, what);
+  }
+  [[nodiscard]] static double coordinate(TextSource& record, std::size_t i) {
+    return record.real({"a coordinate of ", "vertex", i + 1});
+  }
+  /// A negative one becomes large.
+  [[nodiscard]] static std::uint64_t vertex(TextSource& record, const NumberName& name) {
+    return static_cast<std::uint64_t>(record.integer(name));
+  }
+  [[nodiscard]] static std::int64_t reference(TextSource& record, const char* what) {
+    const std::int64_t reference = record.integer(what);
+    if (std::in_range<std::int32_t>(reference)) return reference;
+    record.fail(ErrorCode::FileUnsupported, std::string(what) + " is " + std::to_string(reference) +
+                                                ", which does not fit into 32 bits.");
+  }
+
+ private:
+  TextScanner scanner_;
+  std::optional<TokenIndex> index_;  ///< only for a text without comments
+  std::optional<TextSource> source_;
+};
+
+/// `.meshb`: each section says where the next one begins.
+class MeditBytes {
+ public:
+  static constexpr bool kIsText = false;
+  static constexpr std::string_view kFirst = {};  // its head says more
+
+  /// @param file  the bytes of the file, or the open file, a regular one
+  template <class File>
+  MeditBytes(const File& file, const std::string& fileName, Stage& stage)
+      : bytes_(file, fileName), source_(bytes_, 0, stage) {}
+
+  [[nodiscard]] BinarySource& source() { return source_; }
+
+  void readHead() {
+    constexpr std::int64_t kSwappedOne = std::int64_t{1} << 24U;
+    const std::int64_t one = source_.integer("the mark of the byte order");
+    if (one == kSwappedOne) {
+      source_.fail(ErrorCode::FileUnsupported,
+                   "the bytes of numbers come in the order of another kind of computers; convert "
+                   "the file to .mesh.");
+    }
+    if (one != 1) {
+      source_.fail(ErrorCode::FileSyntax,
+                   "a .meshb file begins with the number 1, found " + std::to_string(one) + ".");
+    }
+    version_ = source_.integer("the version of the format");
+    if (version_ < 1 || version_ > 4) {
+      source_.fail(ErrorCode::FileUnsupported, "version " + std::to_string(version_) +
+                                                   " of the format is not known, only 1 to 4.");
+    }
+    next_ = source_.position();
+  }
+
+  std::optional<MeditSection> nextSection() {
+    if (next_ == 0) return {};  // how some programs mark the last section
+    const std::uint64_t begin = next_;
+    source_.moveTo(static_cast<std::size_t>(begin));
+    const auto section = static_cast<MeditSection>(source_.integer("the keyword of a section"));
+    if (section == MeditSection::End) return {};
+    const char* const what = "the position of the next section";
+    next_ = version_ >= 3 ? source_.size(what) : static_cast<std::uint64_t>(source_.integer(what));
+    // Only forwards, so that reading ends.
+    if (next_ != 0 && (next_ <= begin || next_ > bytes_.size())) {
+      source_.fail(ErrorCode::FileSyntax,
+                   "the section that begins at byte " + std::to_string(begin) +
+                       " says that the next one begins at byte " + std::to_string(next_) + " of " +
+                       std::to_string(bytes_.size()) +
+                       ": either the number is wrong or the file is incomplete.");
+    }
+    if (section == MeditSection::Dimension) hasDimension_ = true;
+    return section;
+  }
+
+  /// Nothing in version 1, whose coordinates have single precision.
+  [[nodiscard]] std::optional<std::size_t> integerBytes() const {
+    if (version_ == 1) return {};
+    return version_ >= 4 ? 8 : 4;
+  }
+
+  void requireDimension() const {
+    if (hasDimension_) return;
+    source_.fail(ErrorCode::FileSyntax,
+                 "the section Dimension has to stand before the other sections.");
+  }
+
+  /// Integers have 64 bits from version 4 on, coordinates in version 1 single precision.
+  [[nodiscard]] RecordShape shape(std::size_t integers, std::size_t reals = 0) const {
+    RecordShape shape;
+    (version_ >= 4 ? shape.sizes : shape.integers) = integers;
+    (version_ == 1 ? shape.integers : shape.reals) += reals;
+    return shape;
+  }
+  [[nodiscard]] std::size_t readCount(std::string_view what, RecordShape shape) {
+    const std::uint64_t count = vertex(source_, {"the number of ", what});
+    requireRoom(source_, count, shape, what);
+    if (count > kNone) source_.fail(ErrorCode::TooLarge, exceedsLimit(count, what, kNone));
+    return static_cast<std::size_t>(count);
+  }
+
+  static void beginElement(BinaryRecord& /*record*/, std::size_t /*i*/, std::size_t /*count*/,
+                           std::string_view /*what*/) {}
+  [[nodiscard]] double coordinate(BinaryRecord& record, std::size_t /*i*/) const {
+    const char* const what = "a coordinate of a vertex";
+    return version_ == 1 ? record.shortReal(what) : record.real(what);
+  }
+  template <class Source>
+  [[nodiscard]] std::uint64_t vertex(Source& record, const NumberName& name) const {
+    return version_ >= 4 ? record.size(name) : static_cast<std::uint32_t>(record.integer(name));
+  }
+  [[nodiscard]] std::int64_t reference(BinaryRecord& record, const char* what) const {
+    return version_ >= 4 ? static_cast<std::int64_t>(record.size(what)) : record.integer(what);
+  }
+
+ private:
+  ByteFile bytes_;
+  BinarySource source_;
+  std::int64_t version_ = 0;
+  std::uint64_t next_ = 0;  ///< where the next section begins; 0: there is none
+  bool hasDimension_ = false;
+};
+
+/// Whether references say anything, looked at by several threads: not if all are 0, or all are 1.
+class SeenReferences {
+ public:
+  void add(std::int64_t reference) noexcept {
+    const unsigned kind = reference == 0 ? kZero : (reference == 1 ? kOne : kOther);
+    // Threads share one number, but change it three times at most.
+    if ((seen_.load(std::memory_order_relaxed) & kind) == 0) {
+      seen_.fetch_or(kind, std::memory_order_relaxed);
+    }
+  }
+  [[nodiscard]] bool saySomething() const noexcept {
+    const unsigned seen = seen_.load(std::memory_order_relaxed);
+    return seen != 0 && seen != kZero && seen != kOne;
+  }
+
+ private:
+  static constexpr unsigned kZero = 1;
+  static constexpr unsigned kOne = 2;
+  static constexpr unsigned kOther = 4;
+  std::atomic<unsigned> seen_{0};
+};
+
+/// Reads one file from top to bottom.
+template <class Encoding, std::size_t corners>
+class MeditReader {
+ public:
+  static constexpr std::string_view kFirst = Encoding::kFirst;
+
+  template <class File>
+  requires std::is_constructible_v<Encoding, const File&, const std::string&, Stage&> MeditReader(
+      const File& file, const std::string& fileName, Stage& stage,
+      const std::shared_ptr<CellCounts>& counts)
+      : encoding_(file, fileName, stage), fileName_(fileName), counts_(*counts) {}
+
+  CellMesh<corners> read() {
+    encoding_.readHead();
+    while (const auto section = encoding_.nextSection()) readSection(*section);
+    if constexpr (corners == 8) {
+      mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
+    }
+    if (hasCells_) return std::move(mesh_);
+    throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
+                                                std::string(kKind.plural) + ": it has no section " +
+                                                std::string(kKind.meditKeyword) +
+                                                counts_.instead() + ".");
+  }
+
+ private:
+  static constexpr CellKind kKind = kCellKind<corners>;
+
+  void readSection(MeditSection section) {
+    if (section == MeditSection::Dimension) readDimension();
+    if (section == MeditSection::Vertices) readVertices();
+    if (section == static_cast<MeditSection>(kKind.meshbKeyword)) return readCells();
+    for (const VolumeCells& type : kVolumeCells) {
+      if (type.meditVertices > 0 && section == static_cast<MeditSection>(type.meditCode)) {
+        return countCells(type);
+      }
+    }
+    // What stands before the vertices cannot be checked, and no known program writes it there.
+    if (corners != 8 || !hasVertices_) return;
+    if (section == MeditSection::Edges) {
+      static_cast<void>(readFeatures(mesh_.features.edges, kMeditEdges));
+    } else if (section == MeditSection::Quadrilaterals) {
+      // Those of a boundary without tags are no features.
+      if (!readFeatures(mesh_.features.quads, kMeditQuads)) mesh_.features.quads.clear();
+    } else if (section == MeditSection::Corners || section == MeditSection::RequiredVertices) {
+      readCorners();
+    }
+  }
+
+  void readDimension() {
+    const std::int64_t dimension = encoding_.source().integer("the dimension");
+    if (dimension == 3) return;
+    encoding_.source().fail(ErrorCode::FileUnsupported,
+                            "the dimension must be 3, found " + std::to_string(dimension) + ".");
+  }
+
+  void readVertices() {
+    failIfRepeated(hasVertices_, "Vertices");
+    encoding_.requireDimension();
+    hasVertices_ = true;
+    mesh_.points.resize(encoding_.readCount("vertices", encoding_.shape(1, 3)));
+    const auto read = [&](auto& record, std::size_t i) {
+      encoding_.beginElement(record, i, mesh_.points.size(), "vertices");
+      for (double& coordinate : mesh_.points[i]) coordinate = encoding_.coordinate(record, i);
+    };
+    references_ = readReferenced(mesh_.points.size(), 0, 3, "the reference of a vertex", read);
+  }
+
+  void readCorners() {
+    const std::size_t known = corners_.size();
+    const RecordShape shape = encoding_.shape(1);
+    corners_.resize(known + encoding_.readCount(kMeditCorners.plural, shape));
+    encoding_.source().records(corners_.size() - known, shape, [&](auto& record, std::size_t i) {
+      const std::size_t begin = record.position();
+      encoding_.beginElement(record, i, corners_.size() - known, kMeditCorners.plural);
+      corners_[known + i] = readVertex(record, kMeditCorners, i, begin);
+    });
+  }
+
+  /// Counts those of a section, and leaves them where they are.
+  void countCells(const VolumeCells& type) {
+    counts_.add(type, encoding_.readCount(type.plural, encoding_.shape(type.meditVertices + 1)));
+  }
+
+  void readCells() {
+    failIfRepeated(hasCells_, kKind.meditKeyword);
+    if (!hasVertices_) {
+      encoding_.source().fail(ErrorCode::FileUnsupported,
+                              "the section " + std::string(kKind.meditKeyword) +
+                                  " stands before the section Vertices; exchange them.");
+    }
+    hasCells_ = true;
+    mesh_.cells.resize(encoding_.readCount(kKind.plural, encoding_.shape(corners + 1)));
+    counts_.add(kKind, mesh_.cells.size());
+    const auto read = [&](auto& record, std::size_t i) {
+      encoding_.beginElement(record, i, mesh_.cells.size(), kKind.plural);
+      for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kKind, i, 0);
+    };
+    mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, "the reference of a cell", read);
+  }
+
+  /// Edges or quads, with their references as tags; without those of reference 0.
+  /// @return whether references say anything
+  template <class Feature>
+  [[nodiscard]] bool readFeatures(std::vector<Feature>& features, const CellKind& elements) {
+    const RecordShape shape = encoding_.shape(elements.corners + 1);
+    features.assign(encoding_.readCount(elements.plural, shape), {});
+    SeenReferences seen;
+    encoding_.source().records(features.size(), shape, [&](auto& record, std::size_t i) {
+      const std::size_t begin = record.position();
+      encoding_.beginElement(record, i, features.size(), elements.singular);
+      for (Index& vertex : features[i].vertices) vertex = readVertex(record, elements, i, begin);
+      const std::int64_t reference = encoding_.reference(record, "a reference");
+      if (!std::in_range<std::int32_t>(reference)) failFeature(record, elements, i, begin);
+      features[i].tag = static_cast<std::int32_t>(reference);
+      seen.add(reference);
+    });
+    std::erase_if(features, [](const Feature& feature) { return feature.tag == 0; });
+    return seen.saySomething();
+  }
+
+  /// Reads elements: what stands in front of the reference of each, and the references.
+  /// @param integers, reals  how many numbers stand in front
+  /// @return the references; nothing if they say nothing
+  template <class F>
+  [[nodiscard]] Array<std::int32_t> readReferenced(std::size_t count, std::size_t integers,
+                                                   std::size_t reals, const char* what,
+                                                   const F& read) {
+    auto& source = encoding_.source();
+    const RecordShape shape = encoding_.shape(integers + 1, reals);
+    const std::size_t begin = source.position();
+    Array<std::int32_t> references(Encoding::kIsText ? count : 0);
+    SeenReferences seen;
+    source.records(count, shape, [&](auto& record, std::size_t i) {
+      read(record, i);
+      const std::int64_t reference = encoding_.reference(record, what);
+      seen.add(reference);
+      if (Encoding::kIsText) references[i] = static_cast<std::int32_t>(reference);
+    });
+    if (corners != 8 || !seen.saySomething()) return {};
+    if constexpr (!Encoding::kIsText) {
+      // Only now, so that the usual file takes no memory for references.
+      references.resize(count);
+      source.moveTo(begin);
+      source.records(count, shape, [&](auto& record, std::size_t i) {
+        const std::size_t place = record.position();
+        record.skip(1, encoding_.shape(integers, reals));
+        const std::int64_t reference = encoding_.reference(record, what);
+        references[i] = static_cast<std::int32_t>(reference);
+        if (std::in_range<std::int32_t>(reference)) return;
+        record.moveTo(place);
+        record.fail(ErrorCode::FileUnsupported, "the reference of number " + std::to_string(i + 1) +
+                                                    " of this section does not fit into 32 bits.");
+      });
+    }
+    return references;
+  }
+
+  /// One vertex of an element.
+  /// @param begin  where the element stands
+  template <class Record>
+  [[nodiscard]] Index readVertex(Record& record, const CellKind& elements, std::size_t i,
+                                 std::size_t begin) const {
+    const std::uint64_t vertex =
+        encoding_.vertex(record, {"a vertex of ", elements.singular, i + 1});
+    // 0, which is too small, becomes a large number.
+    if (vertex - 1 < mesh_.points.size()) return static_cast<Index>(vertex - 1);
+    failVertex(record, vertex, elements, i, begin);
+  }
+
+  // Apart, with records by value, so that what is read stays in registers.
+  template <class Record>
+  [[noreturn]] void failVertex(Record record, std::uint64_t vertex, const CellKind& elements,
+                               std::size_t i, std::size_t begin) const {
+    const bool isCell = elements.place != PlaceKind::None;
+    if (!Encoding::kIsText && !isCell) failFeature(record, elements, i, begin);
+    record.fail(ErrorCode::IndexOutOfRange,
+                NumberName("", elements.singular, i + 1).text() + " names vertex " +
+                    record.spelling(vertex) + ", but the " + std::to_string(mesh_.points.size()) +
+                    " vertices are numbered from 1.",
+                isCell ? Place{elements.place, i} : Place{});
+  }
+
+  template <class Record>
+  [[noreturn]] void failFeature(Record record, const CellKind& elements, std::size_t i,
+                                std::size_t begin) const {
+    record.moveTo(begin);
+    record.fail(ErrorCode::IndexOutOfRange,
+                "number " + std::to_string(i + 1) + " of the " + std::string(elements.plural) +
+                    " names a vertex that does not exist, or a reference that does not fit into 32 "
+                    "bits; the " +
+                    std::to_string(mesh_.points.size()) + " vertices are numbered from 1.");
+  }
+
+  void failIfRepeated(bool present, std::string_view section) {
+    if (!present) return;
+    encoding_.source().fail(ErrorCode::FileSyntax,
+                            "the section " + std::string(section) + " occurs a second time.");
+  }
+
+  Encoding encoding_;
+  const std::string& fileName_;
+  CellCounts& counts_;
+  bool hasVertices_ = false;
+  bool hasCells_ = false;
+  std::vector<Index> corners_;           ///< of the sections Corners and RequiredVertices
+  Array<std::int32_t> references_ = {};  ///< of vertices, if they say something
+  CellMesh<corners> mesh_;
+};
+
+}  // namespace
+
+HexMesh readMedit(const Input& input, Context& context) {
+  return readWith<MeditReader<MeditText, 8>>(input, "read mesh", context, input.counts());
+}
+
+HexMesh readMeshb(const Input& input, Context& context) {
+  return readWith<MeditReader<MeditBytes, 8>>(input, "read mesh", context, input.counts());
+}
+
+TetCells readMeditTets(const Input& input, Context& context) {
+  return readWith<MeditReader<MeditText, 4>>(input, "read tets", context, input.counts());
+}
+
+TetCells readMeshbTets(const Input& input, Context& context) {
+  return readWith<MeditReader<MeditBytes, 4>>(input, "read tets", context, input.counts());
+}
+
+namespace {
+
+// `.mesh` and `.meshb` piece by piece.
+
+/// Whether a section of cells that are no hexahedra is meant.
+template <class Fits>
+bool isOtherCells(const Fits& fits) {
+  return std::any_of(kVolumeCells.begin(), kVolumeCells.end(), [&](const VolumeCells& type) {
+    return type.meditVertices > 0 && type.meditKeyword != kCellKind<8>.meditKeyword && fits(type);
+  });
+}
+
+/// A text with one section of vertices, and one of hexahedra behind it.
+std::optional<PlainLayout> lookAtText(const InputFile& file, const std::string& name,
+                                      Context& context) {
+  TextWindow text(file, name, context);
+  PlainLayout layout{.isText = true, .behindPoint = 1, .behindCell = 1};
+  if (text.token() != "MeshVersionFormatted" || !text.count()) return {};
+  const auto skip = [&text](PlainRun& run, std::uint64_t tokensEach) {
+    const std::optional<std::uint64_t> count = text.count();
+    if (!count || run.position != 0) return false;
+    run = {text.position(), *count};
+    return text.skip(tokensEach * *count);
+  };
+  for (std::string word = text.token(); !word.empty() && word != "End"; word = text.token()) {
+    if (word == "Vertices" && !skip(layout.points, 4)) return {};
+    if (word == "Hexahedra" && !skip(layout.cells, 9)) return {};
+    if (isOtherCells([&](const VolumeCells& type) { return word == type.meditKeyword; })) return {};
+    if (word == "Dimension" && text.count() != 3) return {};
+  }
+  if (!layout.isComplete() || text.sawComments()) return {};
+  return layout;
+}
+
+/// The same as bytes, of version 2 or later.
+std::optional<PlainLayout> lookAtBytes(const InputFile& file, const std::string& name,
+                                       Context& context) {
+  Context quiet(context.threads());
+  Stage stage(quiet, "read");
+  MeditBytes bytes(file, name, stage);
+  PlainLayout layout{.behindPoint = 1, .behindCell = 1};
+  bytes.readHead();
+  const std::optional<std::size_t> integerBytes = bytes.integerBytes();
+  if (!integerBytes) return {};
+  layout.integerBytes = *integerBytes;
+  const auto look = [&bytes](PlainRun& run, RecordShape shape) {
+    if (run.position != 0) return false;
+    run.count = bytes.vertex(bytes.source(), "the number of elements");
+    run.position = bytes.source().position();
+    return run.count <= bytes.source().room(shape);
+  };
+  while (const auto section = bytes.nextSection()) {
+    if (section == MeditSection::Dimension && bytes.source().integer("the dimension") != 3) {
+      return {};
+    }
+    if (section == MeditSection::Vertices) {
+      bytes.requireDimension();
+      if (!look(layout.points, bytes.shape(1, 3))) return {};
+    }
+    if (isOtherCells([&](const VolumeCells& type) {
+          return *section == static_cast<MeditSection>(type.meditCode);
+        })) {
+      return {};
+    }
+    if (section == MeditSection::Hexahedra && !look(layout.cells, bytes.shape(9))) return {};
+  }
+  if (!layout.isComplete()) return {};
+  return layout;
+}
+
+}  // namespace
+
+void readMeditTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({lookAtText, readMedit}, sink, input, context);
+}
+
+void readMeshbTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({lookAtBytes, readMeshb}, sink, input, context);
+}
+
+namespace {
+
+// Writes `.mesh` and `.meshb` files (see formats.hpp): one writer of sections over two encodings of
+// numbers. A mesh in memory is one piece of a stream, with groups.
+
+struct MeditCounts {
+  std::uint64_t vertices = 0;
+  std::uint64_t edges = 0;
+  std::uint64_t quads = 0;
+  std::uint64_t hexahedra = 0;
+};
+
+/// What stands beside vertices and cells.
+struct MeditGroups {
+  Array<std::uint32_t> vertexReferences;  ///< empty: all are 0
+  EdgeGroups edges;
+  Array<std::uint32_t> edgeReferences;
+  QuadGroups quads;
+  Array<std::uint32_t> quadReferences;
+  Array<std::uint32_t> cellReferences;  ///< empty: all are 1
+
+  MeditGroups(const HexMesh& mesh, bool withEdges, double patchAngle, Stage& stage)
+      : vertexReferences(io::vertexReferences(mesh, groupVertices(mesh))),
+        cellReferences(io::cellReferences(mesh, Untagged::Zero)) {
+    if (withEdges) edges = groupEdges(mesh);
+    edgeReferences = groupNumbers(edges.groups);
+    withThreads(stage.context().threads(), [&] { quads = groupQuads(mesh, patchAngle, stage); });
+    quadReferences = groupNumbers(quads.groups, Untagged::Zero);
+  }
+};
+
+/// `.mesh`: a line for each element. Tagged edges stay out: viewers that read no more than what
+/// they show stumble over the section.
+class MeditLines {
+ public:
+  static constexpr bool kHoldsEdges = false;
+  static constexpr std::size_t kRoom = kNumberRoom + 1;  // of a number
+
+  explicit MeditLines(OutputFile& output) : output_(output) {}
+
+  void begin(const MeditCounts& /*counts*/, std::uint32_t /*version*/) {
+    output_.write("MeshVersionFormatted 2\nDimension 3\n");
+  }
+  void beginSection(MeditSection section, std::uint64_t count, std::uint64_t /*integers*/,
+                    std::uint64_t /*reals*/ = 0) {
+    const auto isIt = [section](const auto& keyword) { return keyword.first == section; };
+    const auto keyword = std::find_if(kMeditKeywords.begin(), kMeditKeywords.end(), isIt);
+    output_.write(keyword->second).write('\n').write(count).write('\n');
+  }
+  void end() { output_.write("End\n"); }
+
+  static char* point(char* place, const Vec3& point) { return put(putNumbers(place, point), ' '); }
+  static char* vertex(char* place, std::uint64_t number) { return put(put(place, number), ' '); }
+  static char* reference(char* place, std::uint32_t number) {
+    // Nearly all are 0 or 1, which cost a tenth of the writing otherwise.
+    place = number < 10 ? put(place, static_cast<char>('0' + number)) : put(place, number);
+    return put(place, '\n');
+  }
+
+ private:
+  OutputFile& output_;
+};
+
+/// `.meshb`: each section says where the next one begins.
+class MeditRecords {
+ public:
+  static constexpr bool kHoldsEdges = true;
+  static constexpr std::size_t kRoom = 8;
+
+  explicit MeditRecords(OutputFile& output) : output_(output) {}
+
+  /// @param version  0: the smallest that holds such a mesh
+  void begin(const MeditCounts& counts, std::uint32_t version) {
+    setVersion(version == 0 ? versionFor(counts) : version);
+    writeBytesOf(output_, std::uint32_t{1});  // tells the byte order
+    writeBytesOf(output_, version_);
+    position_ = 8;
+    beginSection(MeditSection::Dimension, 4 + positionBytes() + 4);
+    writeBytesOf(output_, std::uint32_t{3});
+  }
+  void beginSection(MeditSection section, std::uint64_t count, std::uint64_t integers,
+                    std::uint64_t reals = 0) {
+    beginSection(section, bytesOf(count, integers, reals));
+    writeInteger(count, integerBytes());
+  }
+  void end() {
+    writeBytesOf(output_, MeditSection::End);
+    writeInteger(0, positionBytes());
+  }
+
+  static char* point(char* place, const Vec3& point) { return putBytes(place, point); }
+  char* vertex(char* place, std::uint64_t number) const {
+    return version_ >= 4 ? putBytes(place, number)
+                         : putBytes(place, static_cast<std::uint32_t>(number));
+  }
+  char* reference(char* place, std::uint32_t number) const { return vertex(place, number); }
+
+ private:
+  [[nodiscard]] std::uint64_t positionBytes() const { return version_ >= 3 ? 8 : 4; }
+  [[nodiscard]] std::uint64_t integerBytes() const { return version_ >= 4 ? 8 : 4; }
+  /// Of a section, with its head.
+  [[nodiscard]] std::uint64_t bytesOf(std::uint64_t count, std::uint64_t integers,
+                                      std::uint64_t reals) const {
+    return 4 + positionBytes() + integerBytes() + count * (integers * integerBytes() + 8 * reals);
+  }
+
+  void setVersion(std::uint32_t version) { version_ = version; }
+  std::uint32_t versionFor(const MeditCounts& counts) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    if (std::max({counts.vertices, counts.quads, counts.hexahedra}) > kMost) return 4;
+    setVersion(2);
+    const std::uint64_t bytes = 64 + bytesOf(counts.vertices, 1, 3) + bytesOf(counts.edges, 3, 0) +
+                                bytesOf(counts.quads, 5, 0) + bytesOf(counts.hexahedra, 9, 0);
+    return bytes > kMost ? 3 : 2;
+  }
+
+  void beginSection(MeditSection section, std::uint64_t bytes) {
+    position_ += bytes;
+    writeBytesOf(output_, section);
+    writeInteger(position_, positionBytes());
+  }
+  void writeInteger(std::uint64_t number, std::uint64_t bytes) {
+    writeBytesOf(output_, static_cast<std::uint32_t>(number));
+    if (bytes == 8) writeBytesOf(output_, static_cast<std::uint32_t>(number >> 32U));
+  }
+
+  OutputFile& output_;
+  std::uint32_t version_ = 0;
+  std::uint64_t position_ = 0;
+};
+
+/// Writes one file front to back.
+template <class Encoding>
+class MeditWriter {
+ public:
+  MeditWriter(const std::filesystem::path& file, int threads)
+      : output_(file), lines_(output_, threads), encoding_(output_) {}
+
+  /// A whole mesh.
+  void write(const HexMesh& mesh, const MeditGroups& groups, std::uint32_t version, Stage& stage) {
+    const MeditCounts counts = {mesh.points.size(), groups.edges.elements.size(),
+                                groups.quads.elements.size(), mesh.cells.size()};
+    LoopProgress progress(stage, counts.vertices + counts.edges + counts.quads + counts.hexahedra);
+    encoding_.begin(counts, version);
+    encoding_.beginSection(MeditSection::Vertices, counts.vertices, 1, 3);
+    writeVertices(mesh.points, groups.vertexReferences, &progress);
+    if (counts.edges > 0) {
+      encoding_.beginSection(MeditSection::Edges, counts.edges, 3);
+      writeElements(std::span(groups.edges.elements), groups.edgeReferences, &progress);
+    }
+    encoding_.beginSection(MeditSection::Quadrilaterals, counts.quads, 5);
+    writeElements(std::span(groups.quads.elements), groups.quadReferences, &progress);
+    encoding_.beginSection(MeditSection::Hexahedra, counts.hexahedra, 9);
+    writeElements(std::span(mesh.cells), groups.cellReferences, &progress);
+    end();
+  }
+
+  // A mesh in pieces.
+  void begin(std::uint64_t vertices, std::uint64_t cells) {
+    cells_ = cells;
+    encoding_.begin({.vertices = vertices, .hexahedra = cells}, 0);
+    encoding_.beginSection(MeditSection::Vertices, vertices, 1, 3);
+  }
+  void points(const PointPiece& piece) { writeVertices(piece.points, {}, nullptr); }
+  void beginCells() { encoding_.beginSection(MeditSection::Hexahedra, cells_, 9); }
+  template <class Cell>
+  void cells(std::uint64_t /*first*/, std::span<const Cell> cells) {
+    writeElements(cells, {}, nullptr);
+  }
+  void end() {
+    encoding_.end();
+    output_.commit();
+  }
+
+ private:
+  /// @param references  empty: all are 0
+  void writeVertices(std::span<const Vec3> points, std::span<const std::uint32_t> references,
+                     LoopProgress* progress) {
+    const auto vertex = [&](char* place, std::size_t i) {
+      place = encoding_.point(place, points[i]);
+      return encoding_.reference(place, references.empty() ? 0 : references[i]);
+    };
+    lines_.write(points.size(), 4 * Encoding::kRoom, vertex, progress);
+  }
+
+  /// @param references  empty: all are 1
+  template <class Vertex, std::size_t n>
+  void writeElements(std::span<const std::array<Vertex, n>> elements,
+                     std::span<const std::uint32_t> references, LoopProgress* progress) {
+    const auto element = [&](char* place, std::size_t i) {
+      // 64 bits: 32 would wrap for the last vertex of the largest mesh.
+      for (const Vertex vertex : elements[i]) {
+        place = encoding_.vertex(place, std::uint64_t{vertex} + 1);
+      }
+      return encoding_.reference(place, references.empty() ? 1 : references[i]);
+    };
+    lines_.write(elements.size(), (n + 1) * Encoding::kRoom, element, progress);
+  }
+
+  OutputFile output_;
+  LineWriter lines_;
+  Encoding encoding_;
+  std::uint64_t cells_ = 0;
+};
+
+template <class Encoding>
+void writeWhole(const HexMesh& mesh, const std::filesystem::path& file, std::uint32_t version,
+                const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  // First, so that a folder that is not writable shows at once.
+  MeditWriter<Encoding> writer(file, context.threads());
+  const MeditGroups groups(mesh, Encoding::kHoldsEdges, options.patchAngle, stage);
+  writer.write(mesh, groups, version, stage);
+}
+
+}  // namespace
+
+void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) {
+  writeWhole<MeditLines>(mesh, file, 0, options, context);
+}
+
+void writeMeshb(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+                Context& context) {
+  writeWhole<MeditRecords>(mesh, file, 0, options, context);
+}
+
+void writeMeshbVersion(const HexMesh& mesh, const std::filesystem::path& file,
+                       std::uint32_t version, Context& context) {
+  writeWhole<MeditRecords>(mesh, file, version, {}, context);
+}
+
+std::unique_ptr<MeshSink> openMeditSink(const std::filesystem::path& file, Context& context) {
+  return openWriterSink<MeditWriter<MeditLines>>(file, context);
+}
+
+std::unique_ptr<MeshSink> openMeshbSink(const std::filesystem::path& file, Context& context) {
+  return openWriterSink<MeditWriter<MeditRecords>>(file, context);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,693 @@
+// OpenFOAM's polyMesh (see formats.hpp): of a whole mesh, and of a decomposed case.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/error.hpp>
+#include <hexhex/team.hpp>
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/mesh_groups.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/output_folder.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/formats.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// Faces as OpenFOAM lists them; quads look out of their owners.
+struct PolyMesh {
+  struct Patch {
+    std::string name;
+    std::size_t begin;
+    std::size_t end;
+    /// Of a patch between two parts: lines of its dictionary, the type among them.
+    std::string entries;
+  };
+  Array<Quad> faces;
+  Array<Index> owners;      ///< per face
+  Array<Index> neighbours;  ///< per inner face
+  std::vector<Patch> patches;
+};
+
+/// Writes the files of a mesh; commit() gives them their names.
+class PolyMeshWriter {
+ public:
+  PolyMeshWriter(std::filesystem::path folder, int threads)
+      : folder_(std::move(folder)), threads_(threads) {}
+
+  void write(const HexMesh& mesh, const PolyMesh& poly, Stage& stage) {
+    LoopProgress progress(stage, mesh.points.size() + 3 * poly.faces.size());
+    list("vectorField", "points", mesh.points.size(), 3 * (kNumberRoom + 1) + 3, "", progress,
+         [&](char* place, std::size_t i) {
+           return put(putNumbers(put(place, '('), mesh.points[i]), ")\n");
+         });
+    list("faceList", "faces", poly.faces.size(), 4 * (kNumberRoom + 1) + 4, "", progress,
+         [&](char* place, std::size_t i) {
+           return put(putNumbers(put(place, "4("), poly.faces[i]), ")\n");
+         });
+    // A note with which OpenFOAM's tools know the sizes without reading everything.
+    const std::string note = "    note        \"nPoints:" + std::to_string(mesh.points.size()) +
+                             "  nCells:" + std::to_string(mesh.cells.size()) +
+                             "  nFaces:" + std::to_string(poly.faces.size()) +
+                             "  nInternalFaces:" + std::to_string(poly.neighbours.size()) + "\";\n";
+    const auto label = [](const Array<Index>& labels) {
+      return [&labels](char* place, std::size_t i) { return put(put(place, labels[i]), '\n'); };
+    };
+    list("labelList", "owner", poly.owners.size(), kNumberRoom + 1, note, progress,
+         label(poly.owners));
+    list("labelList", "neighbour", poly.neighbours.size(), kNumberRoom + 1, note, progress,
+         label(poly.neighbours));
+  }
+  void writeZones(const CellGroups& cells) {
+    OutputFile& output = begin("regIOobject", "cellZones", "");
+    output.write(cells.groups.size()).write("\n(\n");
+    LineWriter lines(output, threads_);
+    for (const ElementGroup& group : cells.groups) {
+      output.write(group.name).write("\n{\n    type cellZone;\ncellLabels      List<label>\n");
+      output.write(group.end - group.begin).write("\n(\n");
+      lines.write(
+          group.end - group.begin, kNumberRoom + 1,
+          [&](char* place, std::size_t i) {
+            return put(put(place, std::uint64_t{cells.at(group.begin + i)}), '\n');
+          },
+          nullptr);
+      output.write(")\n;\n}\n");
+    }
+    output.write(")\n");
+  }
+  /// A file that is a list of labels.
+  /// @param labelOf  of (place with room for a number, index): puts a label, returns the end
+  void writeLabels(std::string_view object, std::size_t n, Stage& stage,
+                   const std::function<char*(char*, std::size_t)>& labelOf) {
+    LoopProgress progress(stage, n);
+    list("labelList", object, n, kNumberRoom + 1, "", progress,
+         [&](char* place, std::size_t i) { return put(labelOf(place, i), '\n'); });
+  }
+  void writeBoundary(const std::vector<PolyMesh::Patch>& patches) {
+    OutputFile& output = begin("polyBoundaryMesh", "boundary", "");
+    output.write(patches.size()).write("\n(\n");
+    for (const PolyMesh::Patch& patch : patches) {
+      output.write("    ").write(patch.name).write("\n    {\n");
+      output.write(patch.entries.empty() ? "        type            patch;\n" : patch.entries);
+      output.write("        nFaces          ").write(patch.end - patch.begin).write(";\n");
+      output.write("        startFace       ").write(patch.begin).write(";\n    }\n");
+    }
+    output.write(")\n");
+  }
+
+  void commit() {
+    for (const std::unique_ptr<OutputFile>& file : files_) file->commit();
+    files_.clear();
+  }
+
+ private:
+  OutputFile& begin(std::string_view kind, std::string_view object, std::string_view note) {
+    files_.push_back(std::make_unique<OutputFile>(folder_ / object));
+    OutputFile& output = *files_.back();
+    output.write("FoamFile\n{\n    version     2.0;\n    format      ascii;\n    class       ");
+    output.write(kind).write(";\n").write(note).write("    location    \"constant/polyMesh\";\n");
+    output.write("    object      ").write(object).write(";\n}\n\n");
+    return output;
+  }
+
+  template <class Format>
+  void list(std::string_view kind, std::string_view object, std::size_t n, std::size_t room,
+            std::string_view note, LoopProgress& progress, const Format& format) {
+    OutputFile& output = begin(kind, object, note);
+    output.write(n).write("\n(\n");
+    LineWriter(output, threads_).write(n, room, format, &progress);
+    output.write(")\n");
+  }
+
+  std::filesystem::path folder_;
+  int threads_;
+  std::vector<std::unique_ptr<OutputFile>> files_;
+};
+
+// The numbers that faces of parts have in the mesh in one piece, from the parts alone.
+
+/// Faces of a part, in the order that they have in the mesh in one piece. They follow one another
+/// there, too, as long as their cells do, which are a run then: there are about as many runs as
+/// tets, however many cells.
+class FaceRuns {
+ public:
+  struct Run {
+    std::uint64_t cell;    ///< its first one
+    std::uint64_t before;  ///< faces of the part
+  };
+
+  /// Adds a face. @param run  the first cell of that of its cell
+  void add(std::uint64_t run) {
+    if (runs_.empty() || runs_.back().cell != run) runs_.push_back({run, count_});
+    ++count_;
+  }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] const std::vector<Run>& runs() const noexcept { return runs_; }
+  /// Where a run ends, by faces of the part.
+  [[nodiscard]] std::uint64_t endOf(std::size_t run) const {
+    return run + 1 < runs_.size() ? runs_[run + 1].before : count_;
+  }
+
+ private:
+  std::vector<Run> runs_;
+  std::uint64_t count_ = 0;
+};
+
+/// The numbers of faces of one kind in the mesh in one piece, as writeOpenFoam() lists them: inner
+/// ones by the smaller of their cells, then by the larger; boundary ones of a tag by cell and side.
+class FaceNumbers {
+ public:
+  void add(const FaceRuns& faces) {
+    for (std::size_t i = 0; i < faces.runs().size(); ++i) {
+      const FaceRuns::Run& run = faces.runs()[i];
+      table_.insert(table_.end(), {run.cell, faces.endOf(i) - run.before});
+    }
+  }
+  /// When all are there. @param first  the number of the first. @return  that behind the last
+  std::uint64_t finish(std::uint64_t first, ProcessTeam* team) {
+    if (team != nullptr) table_ = team->gather(table_).numbers;
+    begins_.resize(table_.size() / 2);
+    for (std::size_t i = 0; i < begins_.size(); ++i) {
+      begins_[i] = {table_[2 * i], table_[2 * i + 1]};
+    }
+    std::vector<std::uint64_t>().swap(table_);
+    std::sort(begins_.begin(), begins_.end());
+    std::uint64_t next = first;
+    for (auto& [cell, number] : begins_) {
+      const std::uint64_t faces = number;
+      number = next;
+      next += faces;
+    }
+    return next;
+  }
+  [[nodiscard]] bool empty() const noexcept { return begins_.empty(); }
+
+  /// Calls use(number) for all faces of a part, in order.
+  template <class Use>
+  void forEach(const FaceRuns& faces, const Use& use) const {
+    for (std::size_t i = 0; i < faces.runs().size(); ++i) {
+      const FaceRuns::Run& run = faces.runs()[i];
+      const std::uint64_t first = beginOf(run.cell);
+      for (std::uint64_t f = run.before; f < faces.endOf(i); ++f) use(first + f - run.before);
+    }
+  }
+  /// That of one face of a part.
+  [[nodiscard]] std::uint64_t of(const FaceRuns& faces, std::uint64_t face) const {
+    const auto run = std::prev(std::upper_bound(
+        faces.runs().begin(), faces.runs().end(), face,
+        [](std::uint64_t f, const FaceRuns::Run& each) { return f < each.before; }));
+    return beginOf(run->cell) + face - run->before;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t beginOf(std::uint64_t run) const {
+    return std::lower_bound(begins_.begin(), begins_.end(), std::pair(run, std::uint64_t{0}))
+        ->second;
+  }
+
+  std::vector<std::uint64_t> table_;                             ///< cells and numbers of faces
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> begins_;  ///< per run, by its first cell
+};
+
+constexpr std::size_t kOpenfoamGrain = 4096;
+
+/// Inner faces: those of each cell with larger neighbours, in order of the neighbours.
+void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
+  const adjacency::FaceNeighbours neighbours = adjacency::findFaceNeighbours(mesh, stage);
+  const auto isOwned = [&neighbours](std::size_t cell, std::size_t face) {
+    const Index other = neighbours[cell][face];
+    return other != kNone && other > cell;
+  };
+  Array<std::uint64_t> begin(mesh.cells.size() + 1);
+  begin[mesh.cells.size()] = 0;
+  parallelFor(stage, mesh.cells.size(), kOpenfoamGrain, [&](std::size_t c) {
+    begin[c] = 0;
+    for (std::size_t face = 0; face < 6; ++face) begin[c] += isOwned(c, face) ? 1 : 0;
+  });
+  const std::uint64_t count = exclusiveScan(std::span(begin));
+  poly.faces.resize(count);
+  poly.owners.resize(count);
+  poly.neighbours.resize(count);
+  parallelFor(stage, mesh.cells.size(), kOpenfoamGrain, [&](std::size_t c) {
+    std::array<std::pair<Index, std::size_t>, 6> owned{};  // neighbours and faces, ascending
+    std::size_t size = 0;
+    for (std::size_t face = 0; face < 6; ++face) {
+      if (isOwned(c, face)) owned[size++] = {neighbours[c][face], face};
+    }
+    std::sort(owned.begin(), owned.begin() + size);
+    for (std::size_t i = 0; i < size; ++i) {
+      poly.faces[begin[c] + i] = adjacency::faceVertices(mesh.cells[c], owned[i].second);
+      poly.owners[begin[c] + i] = static_cast<Index>(c);
+      poly.neighbours[begin[c] + i] = owned[i].first;
+    }
+  });
+}
+
+/// Boundary faces, group by group.
+void addPatches(const QuadGroups& quads, PolyMesh& poly) {
+  for (const ElementGroup& group : quads.groups) {
+    const std::size_t begin = poly.faces.size();
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      if (quads.places[i] == kNoPlace) continue;
+      poly.faces.push_back(quads.elements[i]);
+      poly.owners.push_back(static_cast<Index>(quads.places[i] / 8));
+    }
+    if (poly.faces.size() > begin)
+      poly.patches.push_back({group.name, begin, poly.faces.size(), {}});
+  }
+}
+
+bool isMarker(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".foam"; }
+
+}  // namespace
+
+void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
+                   const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  // First, so that what is not writable shows at once.
+  OutputFolder folder(isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file);
+  std::optional<OutputFile> marker;
+  if (isMarker(file)) marker.emplace(file);
+  QuadGroups quads;
+  PolyMesh poly;
+  withThreads(context.threads(), [&] {
+    quads = groupQuads(mesh, options.patchAngle, stage);
+    addInnerFaces(mesh, poly, stage);
+  });
+  addPatches(quads, poly);
+  requireInt32(mesh.points.size(), "OpenFOAM numbers vertices");
+  requireInt32(poly.faces.size(), "OpenFOAM numbers faces");
+  try {
+    PolyMeshWriter writer(folder.temporary(), context.threads());
+    writer.write(mesh, poly, stage);
+    writer.writeBoundary(poly.patches);
+    // Without regions there are no zones, which has to be said where an earlier mesh had some.
+    writer.writeZones(mesh.regions.empty() ? CellGroups{} : groupCells(mesh));
+    writer.commit();
+  } catch (const Error& error) {
+    throw folder.named(error);
+  }
+  folder.commit();
+  if (!marker) return;
+  try {
+    marker->commit();
+  } catch (...) {
+    if (!marker->isNamed()) folder.takeBack();
+    throw;
+  }
+}
+
+namespace {
+
+// OpenFOAM's decomposed case: `processorK/constant/polyMesh` for each part, with the addresses that
+// decomposePar writes.
+
+/// A face of a part that is not between two of its cells.
+struct OuterFace {
+  std::int32_t tag;
+  std::uint64_t run;  ///< as of FaceRuns
+  Index cell;
+  std::uint8_t side;
+};
+
+/// Tags are in order, and faces without come last.
+bool comesBefore(std::int32_t a, std::int32_t b) { return (a == 0) != (b == 0) ? b == 0 : a < b; }
+
+/// Of a face that a part has, but whose smaller cell is in another.
+constexpr std::uint64_t kOfOther = ~std::uint64_t{0};
+
+/// What is left to be written of a part when all are known.
+struct OpenPart {
+  struct Border {
+    std::uint32_t part;
+    std::vector<std::uint64_t> faces;  ///< of `owned`, or kOfOther
+  };
+  std::uint32_t part = 0;
+  FaceRuns owned;  ///< inner faces by their smaller cells, those of borders, too
+  std::vector<std::pair<std::int32_t, FaceRuns>> patches;  ///< by tags, in order
+  std::vector<Border> borders;
+};
+
+/// The faces of one part, as its polyMesh lists them.
+class PartFaces {
+ public:
+  PartFaces(const MeshPart& part, Stage& stage)
+      : part_(part), neighbours_(adjacency::findFaceNeighbours(part.mesh, stage)) {
+    open.part = part.part;
+    for (const PartNeighbour& neighbour : part.neighbours) {
+      for (const PartFace& face : neighbour.faces) {
+        outside_[sideOf(face.cell, face.side)] = face.otherCell;
+      }
+    }
+    tags_.reserve(part.mesh.features.quads.size());
+    for (const FeatureQuad& quad : part.mesh.features.quads) {
+      tags_.emplace_back(sorted(quad.vertices), quad.tag);
+    }
+    std::sort(tags_.begin(), tags_.end());
+  }
+
+  void run() {
+    std::vector<OuterFace> outer;
+    for (std::size_t c = 0; c < part_.mesh.cells.size(); ++c) addCell(static_cast<Index>(c), outer);
+    std::stable_sort(outer.begin(), outer.end(), [](const OuterFace& a, const OuterFace& b) {
+      return comesBefore(a.tag, b.tag);
+    });
+    for (const OuterFace& face : outer) {
+      if (open.patches.empty() || open.patches.back().first != face.tag) {
+        open.patches.emplace_back(face.tag, FaceRuns());
+      }
+      open.patches.back().second.add(face.run);
+      add(face.cell, face.side);
+    }
+    for (const PartNeighbour& neighbour : part_.neighbours) addBorder(neighbour);
+  }
+
+  PolyMesh poly;
+  OpenPart open;
+
+ private:
+  static std::uint64_t sideOf(std::size_t cell, std::size_t side) { return 8 * cell + side; }
+  static Quad sorted(Quad quad) {
+    std::sort(quad.begin(), quad.end());
+    return quad;
+  }
+  void add(Index cell, std::size_t side) {
+    Quad quad = adjacency::faceVertices(part_.mesh.cells[cell], side);
+    poly.faces.push_back(quad);
+    poly.owners.push_back(cell);
+  }
+  [[nodiscard]] std::int32_t tagOf(Index cell, std::size_t side) const {
+    const Quad quad = sorted(adjacency::faceVertices(part_.mesh.cells[cell], side));
+    const auto found =
+        std::lower_bound(tags_.begin(), tags_.end(), std::pair(quad, std::int32_t{0}),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+    return found != tags_.end() && found->first == quad ? found->second : 0;
+  }
+
+  /// Inner faces to larger cells, in order of these; and faces that are not inside of the part.
+  void addCell(Index cell, std::vector<OuterFace>& outer) {
+    owned_.clear();
+    const std::uint64_t number = part_.globalCells[cell];
+    if (cell == 0 || number != part_.globalCells[cell - 1] + 1) run_ = number;
+    for (std::uint8_t side = 0; side < 6; ++side) {
+      const Index other = neighbours_[cell][side];
+      const auto outside = other != kNone ? outside_.end() : outside_.find(sideOf(cell, side));
+      if (other != kNone) {
+        if (other > cell) owned_.push_back({part_.globalCells[other], side, other});
+      } else if (outside == outside_.end()) {
+        outer.push_back({tagOf(cell, side), run_, cell, side});
+      } else if (outside->second > number) {
+        owned_.push_back({outside->second, side, kNone});
+      }
+    }
+    std::sort(owned_.begin(), owned_.end(), [](const Owned& a, const Owned& b) {
+      return a.other != b.other ? a.other < b.other : a.side < b.side;
+    });
+    for (const Owned& face : owned_) {
+      if (face.local == kNone) outerFaces_[sideOf(cell, face.side)] = open.owned.count();
+      open.owned.add(run_);
+      if (face.local == kNone) continue;
+      add(cell, face.side);
+      poly.neighbours.push_back(face.local);
+    }
+  }
+
+  /// Faces as both parts list them: beginning at the same vertex, in opposite directions.
+  void addBorder(const PartNeighbour& neighbour) {
+    if (neighbour.faces.empty()) return;
+    OpenPart::Border& border = open.borders.emplace_back();
+    border.part = neighbour.part;
+    for (const PartFace& face : neighbour.faces) {
+      add(face.cell, face.side);
+      Quad& quad = poly.faces.back();
+      std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+      const auto owned = outerFaces_.find(sideOf(face.cell, face.side));
+      border.faces.push_back(owned != outerFaces_.end() ? owned->second : kOfOther);
+    }
+  }
+
+  /// A face of a cell, by the other one.
+  struct Owned {
+    std::uint64_t other;  ///< global
+    std::uint8_t side;
+    Index local;  ///< kNone if in another part
+  };
+
+  const MeshPart& part_;
+  adjacency::FaceNeighbours neighbours_;
+  std::vector<Owned> owned_;                           ///< of one cell
+  std::uint64_t run_ = 0;                              ///< of that cell
+  std::map<std::uint64_t, std::uint64_t> outside_;     ///< of faces between parts: the other cell
+  std::map<std::uint64_t, std::uint64_t> outerFaces_;  ///< of those whose smaller cell is here
+  std::vector<std::pair<Quad, std::int32_t>> tags_;
+};
+
+std::string processorPatch(std::uint32_t here, std::uint32_t there) {
+  return "        type            processor;\n        inGroups        1(processor);\n"
+         "        matchTolerance  0.0001;\n        transform       unknown;\n"
+         "        myProcNo        " +
+         std::to_string(here) + ";\n        neighbProcNo    " + std::to_string(there) + ";\n";
+}
+
+class OpenFoamSink final : public PartSink {
+ public:
+  OpenFoamSink(const std::filesystem::path& file, Context& context, ProcessTeam* team)
+      : context_(context),
+        file_(file),
+        case_(lowerCaseExtension(file) == ".foam" ? file.parent_path() : file),
+        team_(team) {
+    if (case_ != file && isFirst(team)) marker_.emplace(file);
+  }
+
+  void begin(const PartsInfo& info) override {
+    info_ = info;
+    refuseGhosts(info.ghostLayers, "OpenFOAM's decomposed cases");
+    requireInt32(info.pointCount, "OpenFOAM numbers vertices");
+    // OpenFOAM counts folders to learn the number of parts.
+    const std::filesystem::path next = case_ / ("processor" + std::to_string(info.parts));
+    std::error_code unknown;
+    if (std::filesystem::exists(next, unknown)) {
+      throw Error(ErrorCode::FileWrite,
+                  next.string() + " is there, of a case with more parts than " +
+                      std::to_string(info.parts) + ". Remove the old processor folders first.");
+    }
+    for (const std::int32_t tag : info.quadTags) boundary_[tag];
+    boundary_[0];
+  }
+
+  void part(MeshPart&& part) override {
+    Stage stage(context_, "write mesh");
+    folders_.emplace_back(folderOf(part.part));
+    const OutputFolder& folder = folders_.back();
+    try {
+      withThreads(context_.threads(), [&] { writePart(part, folder, stage); });
+    } catch (const Error& error) {
+      throw folder.named(error);
+    }
+  }
+
+  void end() override {
+    Stage stage(context_, "write mesh");
+    numberFaces();
+    for (std::size_t p = 0; p < open_.size(); ++p) {
+      try {
+        finishPart(open_[p], folders_[p], stage);
+      } catch (const Error& error) {
+        throw folders_[p].named(error);
+      }
+    }
+    agree(team_);  // all parts are written
+    nameAll();
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path folderOf(std::uint32_t part) const {
+    return case_ / ("processor" + std::to_string(part)) / "constant" / "polyMesh";
+  }
+
+  void writePart(const MeshPart& part, const OutputFolder& folder, Stage& stage) {
+    PartFaces faces(part, stage);
+    faces.run();
+    PolyMeshWriter writer(folder.temporary(), context_.threads());
+    writer.write(part.mesh, faces.poly, stage);
+    writer.writeZones(part.mesh.regions.empty() ? CellGroups{} : groupCells(part.mesh));
+    const auto label = [](const Array<std::uint64_t>& labels) {
+      return [&labels](char* place, std::size_t i) { return put(place, labels[i]); };
+    };
+    writer.writeLabels("pointProcAddressing", part.globalPoints.size(), stage,
+                       label(part.globalPoints));
+    writer.writeLabels("cellProcAddressing", part.globalCells.size(), stage,
+                       label(part.globalCells));
+    writer.commit();
+    open_.push_back(std::move(faces.open));
+  }
+
+  void numberFaces() {
+    for (const OpenPart& open : open_) {
+      inner_.add(open.owned);
+      for (const auto& [tag, faces] : open.patches) boundary_.at(tag).add(faces);
+    }
+    std::uint64_t next = inner_.finish(0, team_);
+    for (auto& [tag, numbers] : boundary_) next = numbers.finish(next, team_);
+    requireInt32(next, "OpenFOAM numbers faces");
+    for (const OpenPart& open : open_) {
+      for (const OpenPart::Border& border : open.borders) {
+        std::vector<std::uint64_t>& numbers = borders_[{open.part, border.part}];
+        for (const std::uint64_t face : border.faces) {
+          numbers.push_back(face == kOfOther ? kOfOther : inner_.of(open.owned, face));
+        }
+      }
+    }
+    if (team_ != nullptr) exchangeBorders();
+  }
+
+  /// Takes the numbers of common faces from other processes.
+  void exchangeBorders() {
+    std::vector<std::uint64_t> mine;
+    for (const auto& [parts, numbers] : borders_) {
+      mine.insert(mine.end(), {parts.second, numbers.size()});
+      mine.insert(mine.end(), numbers.begin(), numbers.end());
+    }
+    team_->showAll(mine, [&](std::uint32_t from, std::span<const std::uint64_t> theirs) {
+      while (!theirs.empty()) {
+        const std::span<const std::uint64_t> numbers = theirs.subspan(2, theirs[1]);
+        if (theirs[0] == team_->rank()) {
+          borders_[{from, team_->rank()}].assign(numbers.begin(), numbers.end());
+        }
+        theirs = theirs.subspan(2 + numbers.size());
+      }
+    });
+  }
+
+  /// What takes the numbers of all faces.
+  void finishPart(const OpenPart& open, const OutputFolder& folder, Stage& stage) {
+    std::vector<std::int64_t> addresses = innerAddresses(open);
+    std::vector<PolyMesh::Patch> patches;
+    std::vector<std::int64_t> patchAddresses;
+    std::map<std::int32_t, std::string> names;
+    std::vector<ElementGroup> groups;
+    addMissingGroups(groups, info_.quadTags, true, "surface", "boundary");
+    for (const ElementGroup& group : groups) names[group.tag] = group.name;
+    auto own = open.patches.begin();
+    for (const auto& [tag, numbers] : boundary_) {
+      if (numbers.empty()) continue;
+      const std::size_t begin = addresses.size();
+      if (own != open.patches.end() && own->first == tag) {
+        numbers.forEach(own->second,
+                        [&](std::uint64_t number) { addresses.push_back(addressOf(number)); });
+        ++own;
+      }
+      patchAddresses.push_back(static_cast<std::int64_t>(patches.size()));
+      patches.push_back({names.at(tag), begin, addresses.size(), {}});
+    }
+    for (const OpenPart::Border& border : open.borders) {
+      const std::size_t begin = addresses.size();
+      const std::vector<std::uint64_t>& here = borders_.at({open.part, border.part});
+      const std::vector<std::uint64_t>& there = borders_.at({border.part, open.part});
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        addresses.push_back(here[i] != kOfOther ? addressOf(here[i]) : -addressOf(there[i]));
+      }
+      patchAddresses.push_back(-1);
+      patches.push_back(
+          {"procBoundary" + std::to_string(open.part) + "to" + std::to_string(border.part), begin,
+           addresses.size(), processorPatch(open.part, border.part)});
+    }
+    PolyMeshWriter writer(folder.temporary(), context_.threads());
+    writer.writeBoundary(patches);
+    const auto label = [](const std::vector<std::int64_t>& labels) {
+      return [&labels](char* place, std::size_t i) {
+        return put(place, static_cast<std::int32_t>(labels[i]));
+      };
+    };
+    writer.writeLabels("faceProcAddressing", addresses.size(), stage, label(addresses));
+    writer.writeLabels("boundaryProcAddressing", patchAddresses.size(), stage,
+                       label(patchAddresses));
+    writer.commit();
+  }
+
+  /// Of faces between two cells of the part.
+  [[nodiscard]] std::vector<std::int64_t> innerAddresses(const OpenPart& open) const {
+    std::vector<bool> isOuter(open.owned.count(), false);
+    for (const OpenPart::Border& border : open.borders) {
+      for (const std::uint64_t face : border.faces) {
+        if (face != kOfOther) isOuter[face] = true;
+      }
+    }
+    std::vector<std::int64_t> addresses;
+    std::size_t face = 0;
+    inner_.forEach(open.owned, [&](std::uint64_t number) {
+      if (!isOuter[face++]) addresses.push_back(addressOf(number));
+    });
+    return addresses;
+  }
+  /// From 1 on, so that a sign can say that the face is turned around.
+  static std::int64_t addressOf(std::uint64_t face) { return static_cast<std::int64_t>(face) + 1; }
+
+  /// Gives all folders their names, and the marker, which comes last.
+  void nameAll() {
+    std::size_t done = 0;
+    try {
+      for (; done < folders_.size(); ++done) folders_[done].commit();
+      agree(team_);
+      if (marker_) marker_->commit();
+      agree(team_);
+    } catch (...) {
+      // A marker that is there is only not yet safe on the disk; other processes cannot know.
+      const bool isNamed = marker_ && marker_->isNamed();
+      if (isNamed && team_ == nullptr) throw;
+      std::error_code unknown;
+      if (isNamed) std::filesystem::remove(file_, unknown);
+      while (done-- > 0) folders_[done].takeBack();
+      throw;
+    }
+  }
+
+  struct Before {
+    bool operator()(std::int32_t a, std::int32_t b) const { return comesBefore(a, b); }
+  };
+
+  Context& context_;
+  std::filesystem::path file_;
+  std::filesystem::path case_;
+  ProcessTeam* team_;
+  std::optional<OutputFile> marker_;  ///< of the first process
+  PartsInfo info_;
+  std::deque<OutputFolder> folders_;
+  std::vector<OpenPart> open_;  ///< those of this process
+  FaceNumbers inner_;
+  std::map<std::int32_t, FaceNumbers, Before> boundary_;  ///< by tag
+  /// From one part to another: numbers of their common faces, of those whose smaller cell the first
+  /// has.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint64_t>> borders_;
+};
+
+}  // namespace
+
+std::unique_ptr<PartSink> openOpenFoamPartSink(const std::filesystem::path& file,
+                                               const WriteOptions& /*options*/, Context& context,
+                                               ProcessTeam* team) {
+  return std::make_unique<OpenFoamSink>(file, context, team);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,518 @@
+// Hex meshes, and maps on tets, from and to polyhedral meshes (see ovm_cells.hpp).
+#include <algorithm>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/vector3.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/formats/ovm_cells.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+constexpr std::size_t kOvmHexesGrain = 4096;
+constexpr std::size_t kReversed = 4;  // the order of a cell that begins alike but turns round
+
+using QuadLoops = std::array<std::array<Index, 4>, 6>;
+
+/// Where a vertex stands in a loop, or 4.
+std::size_t placeIn(const std::array<Index, 4>& loop, Index vertex) {
+  return static_cast<std::size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
+}
+
+/// Where side i of the base begins in the loop of a face that passes it in the other direction; or
+/// 4, also if the face shares more with the base.
+std::size_t sideOfBase(const std::array<Index, 4>& base, const std::array<Index, 4>& loop) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t place = placeIn(loop, base[(i + 1) % 4]);
+    if (place < 4 && loop[(place + 1) % 4] == base[i]) return i;
+  }
+  return 4;
+}
+
+/// The hexahedron with the six half-faces in VTK's order: the loop of the first one, then the
+/// vertices that edges join to them. Positive if loops run counter-clockwise seen from inside.
+/// @return false if they do not bound a hexahedron
+bool assembleHex(const QuadLoops& loops, Hex& hex) {
+  const std::array<Index, 4>& base = loops[0];
+  std::array<Index, 4> top = {kNone, kNone, kNone, kNone};
+  const auto join = [&top](std::size_t i, Index vertex) {
+    if (top[i] == kNone) top[i] = vertex;
+    return top[i] == vertex;
+  };
+  unsigned sides = 0;
+  std::size_t lid = 0;
+  for (std::size_t s = 1; s < 6; ++s) {
+    const std::size_t side = sideOfBase(base, loops[s]);
+    if (side == 4) {
+      lid = s;
+      continue;
+    }
+    // The loop is base[side + 1], base[side], and the two vertices above them.
+    const std::size_t place = placeIn(loops[s], base[side]);
+    const bool same = join(side, loops[s][(place + 1) % 4]);
+    if (!join((side + 1) % 4, loops[s][(place + 2) % 4]) || !same) return false;
+    sides |= 1U << side;
+  }
+  if (sides != 15U || lid == 0) return false;
+  hex = {base[0], base[1], base[2], base[3], top[0], top[1], top[2], top[3]};
+  if (hasVertexTwice(hex)) return false;
+  // The lid passes the vertices above the base in the other direction.
+  const std::size_t start = placeIn(loops[lid], top[3]);
+  if (start == 4) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (loops[lid][(start + i) % 4] != top[3 - i]) return false;
+  }
+  return true;
+}
+
+/// Whether most hexahedra have a negative volume (that of their mean edge vectors). Of a large
+/// mesh, some tens of thousands are asked: positions are far from each other in memory.
+bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells, Stage& stage) {
+  constexpr std::size_t kAsked = std::size_t{1} << 16;
+  const std::size_t step = cells.size() / kAsked + 1;
+  const auto volumeOf = [&](std::size_t i) {
+    const Hex& hex = cells[i * step];
+    const auto edges = [&](const Quad& to, const Quad& from) {
+      Vec3 sum{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        sum = plus(sum, minus(points[hex[to[k]]], points[hex[from[k]]]));
+      }
+      return sum;
+    };
+    return tripleProduct(edges({4, 5, 6, 7}, {0, 1, 2, 3}), edges({1, 2, 5, 6}, {0, 3, 4, 7}),
+                         edges({3, 2, 7, 6}, {0, 1, 4, 5}));
+  };
+  return areMostlyNegative(stage, blockCount(cells.size(), step), volumeOf);
+}
+
+void reverse(std::span<Hex> cells, Stage& stage) {
+  parallelFor(stage, cells.size(), kOvmHexesGrain,
+              [&](std::size_t c) { cells[c] = inHexOrder(cells[c], kReversed); });
+}
+
+class HexReader : OvmCellReader<8, kHexOrders> {
+ public:
+  using OvmCellReader::OvmCellReader;
+
+  HexMesh read() {
+    hexes_.points = std::move(mesh_.points);
+    readCells();
+    if (properties_[OvmInteger::CornerOrder].empty() &&
+        isMostlyNegative(hexes_.points, hexes_.cells, stage_)) {
+      reverse(hexes_.cells, stage_);
+    }
+    readGenerators();
+    readFeatures(hexes_.features, hexes_.features.quads);
+    // The numbering of edges says nothing.
+    std::vector<FeatureEdge>& edges = hexes_.features.edges;
+    for (FeatureEdge& edge : edges) std::sort(edge.vertices.begin(), edge.vertices.end());
+    std::sort(edges.begin(), edges.end(),
+              [](const FeatureEdge& a, const FeatureEdge& b) { return a.vertices < b.vertices; });
+    hexes_.regions = properties_[OvmInteger::Region];
+    return std::move(hexes_);
+  }
+
+ private:
+  void readCells() {
+    hexes_.cells.resize(topology_.cells.size());
+    const std::size_t fault =
+        firstUnreadable([this](std::size_t cell, const QuadLoops& loops, std::size_t order) {
+          Hex assembled;
+          if (!assembleHex(loops, assembled)) return false;
+          hexes_.cells[cell] = inHexOrder(assembled, order);
+          return true;
+        });
+    if (fault < hexes_.cells.size()) failToBound(fault);
+  }
+
+  /// Restores generators that this library wrote. Those of other programs name entities of a tet
+  /// mesh that is not here.
+  void readGenerators() {
+    const Array<std::int32_t>& tets = properties_[OvmInteger::GeneratorTet];
+    const Array<std::int32_t>& corners = properties_[OvmInteger::GeneratorCorners];
+    if (tets.empty() || corners.empty()) return;
+    hexes_.generatorTet.resize(tets.size());
+    hexes_.generatorCorners.resize(tets.size());
+    const std::size_t fault = firstFault(stage_, tets.size(), [&](std::size_t v) {
+      hexes_.generatorTet[v] = static_cast<Index>(tets[v]);
+      hexes_.generatorCorners[v] = static_cast<CornerSet>(corners[v]);
+      return tets[v] >= -1 && corners[v] >= 1 && corners[v] <= 15;
+    });
+    if (fault == tets.size()) return;
+    throw Error(ErrorCode::FileSyntax,
+                fileName_ + ": the generator of vertex " + std::to_string(fault) + " is tet " +
+                    std::to_string(tets[fault]) + " with the corner set " +
+                    std::to_string(corners[fault]) + ", which must be from 1 to 15.",
+                Place{PlaceKind::Vertex, fault});
+  }
+
+  HexMesh hexes_;
+};
+
+/// Tells how cells are listed, which a reader finds from where their first half-faces begin.
+/// @param cells   those of the mesh as the topology was built from them
+/// @param turned  whether they begin alike but turn the other way
+void setCornerOrder(OvmProperties& properties, const OvmTopology& topology,
+                    std::span<const Hex> cells, bool turned, Stage& stage) {
+  const auto orderOf = [&](std::size_t c) {
+    const std::size_t direction = turned ? kReversed : 0;
+    const Index first = topology.cells.handles[6 * c];
+    if (first % 2 == 0) return direction;  // begins where its cell does
+    const Index begin = topology.from(topology.faces.handles[4 * std::size_t{first / 2}]);
+    return (4 - placeIn({cells[c][0], cells[c][1], cells[c][2], cells[c][3]}, begin)) % 4 +
+           direction;
+  };
+  Array<std::int32_t> orders(cells.size());
+  const std::size_t unlike = firstFault(stage, cells.size(), [&](std::size_t c) {
+    orders[c] = static_cast<std::int32_t>(orderOf(c));
+    return orders[c] == 0;
+  });
+  if (unlike < cells.size()) properties[OvmInteger::CornerOrder] = std::move(orders);
+}
+
+void setGenerators(OvmProperties& properties, const HexMesh& mesh, Stage& stage) {
+  if (mesh.generatorCorners.empty()) return;
+  const std::size_t vertices = mesh.points.size();
+  Array<std::int32_t>& types = properties[OvmInteger::GeneratorType];
+  Array<std::int32_t>& corners = properties[OvmInteger::GeneratorCorners];
+  types.resize(vertices);
+  corners.resize(vertices);
+  Array<std::int32_t>& tets = properties[OvmInteger::GeneratorTet];
+  tets.resize(mesh.generatorTet.size());
+  std::transform(mesh.generatorTet.begin(), mesh.generatorTet.end(), tets.begin(),
+                 [](Index tet) { return static_cast<std::int32_t>(tet); });
+  const std::size_t fault = firstFault(stage, vertices, [&](std::size_t v) {
+    types[v] = static_cast<std::int32_t>(generatorKind(mesh.generatorCorners[v]));
+    corners[v] = mesh.generatorCorners[v];
+    return corners[v] >= 1 && corners[v] <= 15;
+  });
+  if (fault == vertices) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "The generator of vertex " + std::to_string(fault) + " has the corner set " +
+                  std::to_string(corners[fault]) + ", which must be from 1 to 15.",
+              Place{PlaceKind::Vertex, fault});
+}
+
+}  // namespace
+
+Hex inHexOrder(const Hex& assembled, std::size_t order) noexcept {
+  Hex hex;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t corner = order < 4 ? (order + i) % 4 : (order - i) % 4;
+    hex[i] = assembled[corner];
+    hex[i + 4] = assembled[corner + 4];
+  }
+  return hex;
+}
+
+HexMesh toHexMesh(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
+  return HexReader(std::move(mesh), fileName, stage).read();
+}
+
+OvmOutput toOvm(const HexMesh& mesh, Stage& stage) {
+  const bool turned = isMostlyNegative(mesh.points, mesh.cells, stage);
+  Array<Hex> turnedCells;
+  if (turned) {
+    turnedCells = mesh.cells;
+    reverse(turnedCells, stage);
+  }
+  const std::span<const Hex> cells = turned ? turnedCells : mesh.cells;
+  OvmTopology topology = buildOvmTopology(mesh.points.size(), cells, stage);
+  OvmProperties properties;
+  setCornerOrder(properties, topology, cells, turned, stage);
+  setGenerators(properties, mesh, stage);
+  setOvmFeatures<4>(properties, topology, mesh.features, mesh.features.quads, mesh.regions);
+  return {mesh.points, std::move(topology), std::move(properties).listed()};
+}
+
+namespace {
+
+// Maps on tets from and to polyhedral meshes (see ovm_cells.hpp).
+
+constexpr std::size_t kOvmTetsGrain = 4096;
+
+using TetOrder = std::array<std::uint8_t, 4>;
+
+/// All orders of a tet's corners, which the property CornerOrder numbers: corner i of the listed
+/// tet is corner kTetOrders[n][i] of the assembled one. Number 0 changes nothing.
+constexpr std::array<TetOrder, 24> kTetOrders = {
+    {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {0, 3, 2, 1},
+     {1, 0, 2, 3}, {1, 0, 3, 2}, {1, 2, 0, 3}, {1, 2, 3, 0}, {1, 3, 0, 2}, {1, 3, 2, 0},
+     {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3}, {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0},
+     {3, 0, 1, 2}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}, {3, 2, 1, 0}}};
+/// Where most tets are inside out, two corners of each are exchanged.
+constexpr std::size_t kAsListed = 0;
+constexpr std::size_t kTurned = 2;
+
+/// The three vertices of each half-face, in order.
+using TriangleLoops = std::array<std::array<Index, 3>, 4>;
+
+/// A cell that was read: its corners, and half-face s of its list is opposite corner `opposite[s]`.
+struct AssembledTet {
+  Tet corners{};
+  std::array<std::uint8_t, 4> opposite{};
+};
+
+/// The tet with the four half-faces: the loop of the first one, then the vertex opposite it.
+/// @return false if they do not bound a tet
+bool assembleTet(const TriangleLoops& loops, AssembledTet& tet) {
+  const std::array<Index, 3>& base = loops[0];
+  const auto inBase = [&](Index v) { return std::find(base.begin(), base.end(), v) != base.end(); };
+  const auto* const apex = std::find_if_not(loops[1].begin(), loops[1].end(), inBase);
+  if (apex == loops[1].end()) return false;
+  tet.corners = {base[0], base[1], base[2], *apex};
+  if (hasVertexTwice(tet.corners)) return false;
+
+  unsigned seen = 0;
+  for (std::size_t s = 0; s < 4; ++s) {
+    const auto inLoop = [&loop = loops[s]](Index v) {
+      return std::find(loop.begin(), loop.end(), v) != loop.end();
+    };
+    const auto opposite = static_cast<std::size_t>(
+        std::find_if_not(tet.corners.begin(), tet.corners.end(), inLoop) - tet.corners.begin());
+    // All half-faces run the same way round, seen from inside.
+    if (!adjacency::areOpposite(loopOfHalfFace(loops[s], 1),
+                                adjacency::faceVertices(tet.corners, opposite)))
+      return false;
+    tet.opposite[s] = static_cast<std::uint8_t>(opposite);
+    seen |= 1U << opposite;
+  }
+  return seen == 15U;
+}
+
+bool isRotation(std::int32_t rotation) { return rotation >= -1 && rotation < 24; }
+
+/// Makes tets out of a mesh's cells, with all that belongs to their corners and faces.
+class TetReader : OvmCellReader<4, kTetOrders.size()> {
+ public:
+  using OvmCellReader::OvmCellReader;
+
+  TetMap read() {
+    requireMap();
+    // Four sides of faces each, none of them twice: else the check throws before there is room.
+    if (2 * topology_.cells.size() > topology_.faces.size()) requireProper();
+    map_.points.assign(mesh_.points.begin(), mesh_.points.end());
+    map_.parameters.resize(topology_.cells.size());
+    if (!properties_[OvmInteger::Transition].empty()) map_.rotations.resize(topology_.cells.size());
+    readTets();
+    requireRotations();
+    forEachTag(OvmInteger::EdgeValence, [this](std::size_t e, std::int32_t offset) {
+      map_.edgeValences.push_back({topology_.edges[e][0], topology_.edges[e][1], offset});
+    });
+    readFeatures(map_.features, map_.features.faces);
+    const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
+    map_.regions.assign(regions.begin(), regions.end());
+    return std::move(map_);
+  }
+
+  TetCells readWithoutMap() {
+    readTets();
+    TetCells result;
+    result.points = std::move(mesh_.points);
+    result.cells.assign(map_.tets.begin(), map_.tets.end());
+    return result;
+  }
+
+ private:
+  void requireMap() const {
+    if (!properties_.parametrization.empty() || topology_.cells.size() == 0) return;
+    requireProper();
+    const std::string name = "\"" + std::string(kParametrizationName) + "\"";
+    throw Error(
+        ErrorCode::FileUnsupported,
+        fileName_ + ": the file holds " + std::to_string(topology_.cells.size()) +
+            " tets, but no map: " +
+            (mesh_.hasForeignParametrization
+                 ? "its property " + name +
+                       " is not one of half-faces with three numbers each (3d, vec3d)."
+                 : "it has no property " + name + " of half-faces (3d, vec3d).") +
+            " Save the map under this name, the value of a half-face being the parameters "
+            "of the vertex opposite it in its cell, or save it as .hexex; or give the map as a "
+            "second mesh (--polycube).");
+  }
+
+  void readTets() {
+    map_.tets.resize(topology_.cells.size());
+    const auto read = [this](std::size_t cell, const auto& loops, std::size_t order) {
+      return readTet(cell, loops, kTetOrders[order]);
+    };
+    const std::size_t fault =
+        firstUnreadable([&](std::size_t cell, const auto& loops, std::size_t order) {
+          return read(cell, loops, order) &&
+                 (map_.parameters.empty() || isFinite(map_.parameters[cell]));
+        });
+    if (fault == map_.tets.size()) return;
+    if (!readCell(fault, read)) failToBound(fault);
+    throw Error(ErrorCode::NotFinite,
+                fileName_ + ": a parameter of tet " + std::to_string(fault) + " is not finite.",
+                Place{PlaceKind::Tet, fault});
+  }
+
+  /// Reads a tet with the parameters and rotations that the map has room for.
+  bool readTet(std::size_t cell, const TriangleLoops& loops, const TetOrder& order) {
+    AssembledTet tet;
+    if (!assembleTet(loops, tet)) return false;
+    TetOrder place{};  // of each assembled corner in the listed tet
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      place[order[i]] = i;
+      map_.tets[cell][i] = tet.corners[order[i]];
+    }
+    for (std::size_t s = 0; s < 4; ++s) {
+      const Index halfFace = topology_.cells[cell][s];
+      const std::size_t corner = place[tet.opposite[s]];
+      if (!map_.parameters.empty()) {
+        map_.parameters[cell][corner] = properties_.parametrization[halfFace];
+      }
+      if (map_.rotations.empty()) continue;
+      const std::int32_t rotation = properties_[OvmInteger::Transition][halfFace];
+      map_.rotations[cell][corner] = static_cast<std::int8_t>(isRotation(rotation) ? rotation : -1);
+    }
+    return true;
+  }
+
+  /// Refuses values beyond the 24 rotations, except at the boundary, where they mean nothing.
+  void requireRotations() const {
+    const Array<std::int32_t>& rotations = properties_[OvmInteger::Transition];
+    if (std::all_of(rotations.begin(), rotations.end(), isRotation)) return;
+    Array<char> used(rotations.size(), 0);
+    for (const Index halfFace : topology_.cells.handles) used[halfFace] = 1;
+    for (std::size_t i = 0; i < topology_.cells.handles.size(); ++i) {
+      const Index halfFace = topology_.cells.handles[i];
+      if (isRotation(rotations[halfFace]) || used[halfFace ^ 1U] == 0) continue;
+      throw Error(ErrorCode::FileSyntax,
+                  fileName_ + ": the rotation across half-face " + std::to_string(halfFace) +
+                      " of tet " + std::to_string(i / 4) + " is " +
+                      std::to_string(rotations[halfFace]) +
+                      ", but rotations are numbered from 0 to 23, or -1 if unknown.",
+                  Place{PlaceKind::Tet, i / 4});
+    }
+  }
+
+  TetMap map_;
+};
+
+/// The number of the order that tets are written in.
+std::size_t writtenOrder(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
+  const auto volumeOf = [&](std::size_t t) {
+    const Vec3& origin = points[tets[t][0]];
+    return tripleProduct(minus(points[tets[t][3]], origin), minus(points[tets[t][1]], origin),
+                         minus(points[tets[t][2]], origin));
+  };
+  return areMostlyNegative(stage, tets.size(), volumeOf) ? kTurned : kAsListed;
+}
+
+OvmTopology topologyOf(std::size_t points, std::span<const Tet> tets, const TetOrder& order,
+                       Stage& stage) {
+  Array<Tet> ordered(tets.size());
+  parallelFor(stage, tets.size(), kOvmTetsGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) ordered[t][i] = tets[t][order[i]];
+  });
+  return buildOvmTopology(points, ordered, stage);
+}
+
+/// Makes a mesh out of a map.
+class TetWriter {
+ public:
+  TetWriter(const TetMap& map, Stage& stage)
+      : map_(map),
+        stage_(stage),
+        orderNumber_(writtenOrder(map.points, map.tets, stage)),
+        order_(kTetOrders[orderNumber_]),
+        topology_(topologyOf(map.points.size(), map.tets, order_, stage)) {}
+
+  OvmOutput write() {
+    setCornerOrder();
+    setHalfFaceValues();
+    setEdgeValences();
+    setOvmFeatures<3>(properties_, topology_, map_.features, map_.features.faces, map_.regions);
+    return {map_.points, std::move(topology_), std::move(properties_).listed()};
+  }
+
+ private:
+  /// How the corners of a tet are listed, against the order in which a reader finds them.
+  [[nodiscard]] std::size_t listedOrder(std::size_t tet) const {
+    // Tets begin with their first half-face, and nearly all of those begin where the tet does.
+    const Index first = topology_.cells.handles[4 * tet];
+    if (first % 2 == 0) return orderNumber_;
+    const std::array<Index, 3> loop = loopOfHalfFace(loopOfFace<3>(topology_, first / 2), first);
+    const Tet& listed = map_.tets[tet];
+    const Tet assembled = {loop[0], loop[1], loop[2], listed[order_[3]]};
+    const auto* const found =
+        std::find_if(kTetOrders.begin(), kTetOrders.end(), [&](const TetOrder& order) {
+          return listed == Tet{assembled[order[0]], assembled[order[1]], assembled[order[2]],
+                               assembled[order[3]]};
+        });
+    return static_cast<std::size_t>(found - kTetOrders.begin());
+  }
+
+  void setCornerOrder() {
+    Array<std::int32_t> orders(map_.tets.size());
+    const std::size_t unlike = firstFault(stage_, orders.size(), [&](std::size_t t) {
+      orders[t] = static_cast<std::int32_t>(listedOrder(t));
+      return orders[t] == 0;
+    });
+    if (unlike < orders.size()) properties_[OvmInteger::CornerOrder] = std::move(orders);
+  }
+
+  /// Parameters and rotations, which half-faces carry for the corners opposite them.
+  void setHalfFaceValues() {
+    Array<Vec3>& parameters = properties_.parametrization;
+    Array<std::int32_t>& rotations = properties_[OvmInteger::Transition];
+    // The half-faces at the boundary have no cell; all others are overwritten.
+    parameters.assign(2 * topology_.faces.size(), Vec3{});
+    if (!map_.rotations.empty()) rotations.assign(parameters.size(), -1);
+    parallelFor(stage_, map_.tets.size(), kOvmTetsGrain, [&](std::size_t t) {
+      for (std::size_t s = 0; s < 4; ++s) {
+        const Index halfFace = topology_.cells.handles[4 * t + s];
+        const std::size_t corner = order_[kOvmTetOpposite[s]];
+        parameters[halfFace] = map_.parameters[t][corner];
+        if (rotations.empty()) continue;
+        const std::int8_t rotation = map_.rotations[t][corner];
+        rotations[halfFace] = isRotation(rotation) ? rotation : -1;
+      }
+    });
+  }
+
+  void setEdgeValences() {
+    if (map_.edgeValences.empty()) return;
+    Array<std::int32_t>& offsets = properties_[OvmInteger::EdgeValence];
+    offsets.assign(topology_.edges.size(), 0);
+    const OvmEdgeFinder finder(topology_.vertexCount, topology_.edges);
+    for (const EdgeValence& edge : map_.edgeValences) {
+      const Place place{PlaceKind::Edge, edge.vertex0, edge.vertex1};
+      setOvmValue(offsets, finder.find(edge.vertex0, edge.vertex1), edge.offset,
+                  toString(place) + " with a known valence", place);
+    }
+  }
+
+  const TetMap& map_;
+  Stage& stage_;
+  std::size_t orderNumber_;
+  const TetOrder& order_;
+  OvmTopology topology_;
+  OvmProperties properties_;
+};
+
+}  // namespace
+
+TetMap toTetMap(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
+  return TetReader(std::move(mesh), fileName, stage).read();
+}
+
+TetCells toTetCells(OvmMesh&& mesh, const std::string& fileName, Stage& stage) {
+  return TetReader(std::move(mesh), fileName, stage).readWithoutMap();
+}
+
+OvmOutput toOvm(const TetMap& map, Stage& stage) {
+  requireWritable(map, stage);
+  return TetWriter(map, stage).write();
+}
+
+OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
+  return topologyOf(points.size(), tets, kTetOrders[writtenOrder(points, tets, stage)], stage);
+}
+
+}  // namespace hexhex::io

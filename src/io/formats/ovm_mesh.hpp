@@ -1,0 +1,227 @@
+// What `.ovm` and `.ovmb` files hold: a polyhedral mesh of vertices, edges, faces and cells, and
+// the properties of them that this library knows; and what reads and writes them.
+//
+// Half-edge 2e is edge e as stored, 2e + 1 the same edge reversed. Half-face 2f is face f as stored
+// (a closed loop of half-edges), 2f + 1 the reversed loop.
+//
+// A text has the sections Vertices, Edges, Faces, Polyhedra, each with a count and one element per
+// line; then properties: a line `HFProp vec3d "name"`, and a value per element. Binary files are a
+// header and chunks (ovmb_reader.cpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/output_file.hpp>
+
+namespace hexhex::io {
+
+/// What a property belongs to; the numbers are those of `.ovmb`.
+enum class OvmEntity : std::uint8_t { Vertex, Edge, Face, Cell, HalfEdge, HalfFace, Mesh };
+
+/// Vertices, edges, faces and cells as files and sentences call them.
+struct OvmElements {
+  const char* section;  ///< of `.ovm`
+  const char* one;
+  const char* many;
+  const char* parts;           ///< what an element names
+  std::uint32_t leastValence;  ///< fewer half-edges or half-faces enclose nothing
+  std::size_t fewestBytes;     ///< of the shortest lines, e.g. "0 0 0", "0 1", "3 0 2 4", with ends
+};
+/// By entity.
+inline constexpr std::array<OvmElements, 4> kOvmElements = {
+    {{"Vertices", "vertex", "vertices", "", 0, 6},
+     {"Edges", "edge", "edges", "vertex", 2, 4},
+     {"Faces", "face", "faces", "half-edge", 3, 8},
+     {"Polyhedra", "cell", "cells", "half-face", 4, 10}}};
+
+/// By entity: the first word of the line of `.ovm` that begins a property.
+inline constexpr std::array<std::string_view, 7> kOvmPropertyWords = {
+    "VProp", "EProp", "FProp", "CProp", "HEProp", "HFProp", "MProp"};
+
+/// Indices of half-entities have to fit into 32 bits, so there are at most this many entities of a
+/// kind. It is also the limit of OpenVolumeMesh.
+inline constexpr std::uint64_t kMaxOvmEntities = (std::uint64_t{1} << 31) - 1;
+
+/// Lists of handles, one after the other.
+struct OvmLists {
+  Array<Index> handles;
+  std::size_t length = 0;        ///< of each list, if all have the same; else 0
+  Array<std::uint64_t> offsets;  ///< if they have not: list i is [offsets[i], offsets[i + 1])
+
+  [[nodiscard]] std::size_t size() const noexcept {
+    if (length > 0) return handles.size() / length;
+    return offsets.empty() ? 0 : offsets.size() - 1;
+  }
+  [[nodiscard]] std::span<const Index> operator[](std::size_t i) const noexcept {
+    if (length > 0) return {handles.data() + i * length, length};
+    return {handles.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+  }
+};
+
+struct OvmTopology {
+  std::size_t vertexCount = 0;
+  Array<std::array<Index, 2>> edges;  ///< from, to
+  OvmLists faces;                     ///< half-edges in loop order
+  OvmLists cells;                     ///< half-faces
+
+  [[nodiscard]] std::size_t count(OvmEntity entity) const noexcept {
+    const std::array<std::size_t, 7> counts = {vertexCount,
+                                               edges.size(),
+                                               faces.size(),
+                                               cells.size(),
+                                               2 * edges.size(),
+                                               2 * faces.size(),
+                                               1};
+    return counts[static_cast<std::size_t>(entity)];
+  }
+  /// The vertex that a half-edge comes from.
+  [[nodiscard]] Index from(Index halfEdge) const noexcept {
+    return edges[halfEdge / 2][halfEdge % 2];
+  }
+  /// The vertex that a half-edge goes to.
+  [[nodiscard]] Index to(Index halfEdge) const noexcept { return from(halfEdge ^ 1U); }
+};
+
+/// The map: for each half-face the parameters of the vertex opposite it in its cell, in the cell's
+/// chart. Half-faces without a cell have values without meaning.
+inline constexpr std::string_view kParametrizationName = "HexHex::Parametrization";
+
+/// Properties of integers (C++ `int`) that are read and written, in the order in
+/// which they are written.
+enum class OvmInteger : std::uint8_t {
+  FeatureVertices,
+  GeneratorType,     ///< of hex meshes: dimension of the simplex of the tets that holds the vertex
+  GeneratorTet,      ///< the simplex as HexMesh has it, so that it comes back as it was
+  GeneratorCorners,  ///< likewise
+  EdgeValence,
+  FeatureEdges,
+  FeatureFaces,
+  Transition,
+  CornerOrder,  ///< of cells: how their corners were listed, which the format does not say
+  Region        ///< of cells: TetMap::regions, HexMesh::regions
+};
+
+struct OvmIntegerName {
+  OvmEntity entity;
+  std::string_view name;  ///< some are misspelt, and known so
+};
+inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
+    {{OvmEntity::Vertex, "AlgoHex::FeatureVertices"},
+     {OvmEntity::Vertex, "v_tet_generator_type"},
+     {OvmEntity::Vertex, "hexhex::generator_tet"},
+     {OvmEntity::Vertex, "hexhex::generator_corners"},
+     {OvmEntity::Edge, "edge_valance"},
+     {OvmEntity::Edge, "AlgoHex::FeatureEdges"},
+     {OvmEntity::Face, "AlgoHex::FeatureFaces"},
+     {OvmEntity::HalfFace, "HalffaceTransiton"},
+     {OvmEntity::Cell, "hexhex::corner_order"},
+     {OvmEntity::Cell, "hexhex::region"}}};
+
+/// A property as it is written: integers, points, or pairs of numbers.
+struct OvmProperty {
+  OvmEntity entity = OvmEntity::Vertex;
+  std::string_view name;
+  std::variant<Array<std::int32_t>, Array<Vec3>, Array<std::array<double, 2>>> values = {};
+};
+
+/// Values of the properties that this library knows, one per element of the entity; empty if there
+/// is no such property.
+struct OvmProperties {
+  Array<Vec3> parametrization;  ///< per half-face
+  std::array<Array<std::int32_t>, kOvmIntegers.size()> integers;
+
+  [[nodiscard]] Array<std::int32_t>& operator[](OvmInteger property) noexcept {
+    return integers[static_cast<std::size_t>(property)];
+  }
+  [[nodiscard]] const Array<std::int32_t>& operator[](OvmInteger property) const noexcept {
+    return integers[static_cast<std::size_t>(property)];
+  }
+  /// All properties that there are, in the order in which they are written.
+  [[nodiscard]] std::vector<OvmProperty> listed() && {
+    std::vector<OvmProperty> list;
+    for (std::size_t i = 0; i < integers.size(); ++i) {
+      if (i == static_cast<std::size_t>(OvmInteger::Transition) && !parametrization.empty()) {
+        list.push_back({OvmEntity::HalfFace, kParametrizationName, std::move(parametrization)});
+      }
+      if (integers[i].empty()) continue;
+      list.push_back({kOvmIntegers[i].entity, kOvmIntegers[i].name, std::move(integers[i])});
+    }
+    return list;
+  }
+};
+
+/// What the values of a property are.
+enum class OvmNumbers : std::uint8_t { Integers, Points, Others };
+
+/// A mesh as it was read.
+struct OvmMesh {
+  Array<Vec3> points;
+  OvmTopology topology;
+  OvmProperties properties;
+  /// Whether the file has a property of the map's name that is no map, for error messages.
+  bool hasForeignParametrization = false;
+
+  /// Where the values of a property go. Both are null if it is not known, or came before.
+  struct Destination {
+    Array<Vec3>* points = nullptr;
+    Array<std::int32_t>* integers = nullptr;
+  };
+  [[nodiscard]] Destination destinationOf(OvmEntity entity, std::string_view name,
+                                          OvmNumbers numbers) {
+    if (name == kParametrizationName) {
+      const bool isMap = entity == OvmEntity::HalfFace && numbers == OvmNumbers::Points;
+      Array<Vec3>& values = properties.parametrization;
+      if (isMap && values.empty()) return {.points = &values};
+      hasForeignParametrization = true;
+    }
+    for (std::size_t i = 0; i < kOvmIntegers.size(); ++i) {
+      if (kOvmIntegers[i].entity != entity || kOvmIntegers[i].name != name) continue;
+      Array<std::int32_t>& values = properties.integers[i];
+      if (numbers == OvmNumbers::Integers && values.empty()) return {.integers = &values};
+    }
+    return {};
+  }
+};
+
+/// A mesh as it is written.
+struct OvmOutput {
+  std::span<const Vec3> points;  ///< of the mesh that it was made from
+  OvmTopology topology;
+  std::vector<OvmProperty> properties;  ///< in the order in which they are written
+  bool hasWideHandles = false;  ///< handles of `.ovmb` have four bytes, even if fewer would do
+};
+
+inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
+/// Whether a file begins like an `.ovmb` file.
+[[nodiscard]] inline bool isOvmb(std::string_view bytes) noexcept {
+  return bytes.starts_with(kOvmbMagic);
+}
+
+/// Read the mesh and the properties that this library knows. Handles are in range; nothing else
+/// about the topology is checked.
+/// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite, TooLarge, with the line
+///         or byte
+[[nodiscard]] OvmMesh parseOvmText(std::string_view text, const std::string& fileName,
+                                   Stage& stage);
+[[nodiscard]] OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage);
+
+/// Write and commit a mesh in the layout of OpenVolumeMesh's own files: for each kind of element
+/// one chunk or section, handles without offset; numbers of `.ovm` have the fewest digits that read
+/// back to the same double.
+/// @param mesh  for `.ovm` with faces and cells of one valence each
+/// @throws Error FileWrite
+void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage);
+void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage);
+
+}  // namespace hexhex::io

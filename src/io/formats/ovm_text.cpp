@@ -1,0 +1,487 @@
+// `.ovm` files (see ovm_mesh.hpp): reads and writes them; and what of both formats is read and
+// written.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/ovm_cells.hpp>
+#include <io/formats/ovm_mesh.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> kIntegerTypes = {"int",  "uint",  "short",
+                                                           "long", "ulong", "bool"};
+constexpr std::array<std::string_view, 2> kPointTypes = {"vec3d", "vec3f"};
+
+bool equalsIgnoringCase(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lowerCase(x) == lowerCase(y); });
+}
+
+OvmNumbers numbersOf(std::string_view type) {
+  const auto isType = [type](std::string_view known) { return equalsIgnoringCase(type, known); };
+  if (std::any_of(kPointTypes.begin(), kPointTypes.end(), isType)) return OvmNumbers::Points;
+  const bool integers = std::any_of(kIntegerTypes.begin(), kIntegerTypes.end(), isType);
+  return integers ? OvmNumbers::Integers : OvmNumbers::Others;
+}
+
+/// The line that begins a property.
+struct PropertyHeader {
+  OvmEntity entity = OvmEntity::Mesh;
+  std::string_view type;
+  std::string_view name;
+};
+
+/// Removes and returns the first word of a line.
+std::string_view takeWord(std::string_view& line) {
+  line.remove_prefix(
+      static_cast<std::size_t>(std::find_if_not(line.begin(), line.end(), isSpace) - line.begin()));
+  const auto length =
+      static_cast<std::size_t>(std::find_if(line.begin(), line.end(), isSpace) - line.begin());
+  const std::string_view word = line.substr(0, length);
+  line.remove_prefix(length);
+  return word;
+}
+
+std::optional<PropertyHeader> parseHeader(std::string_view line) {
+  const std::string_view keyword = takeWord(line);
+  const auto* const word =
+      std::find_if(kOvmPropertyWords.begin(), kOvmPropertyWords.end(),
+                   [&](std::string_view known) { return equalsIgnoringCase(known, keyword); });
+  if (word == kOvmPropertyWords.end()) return std::nullopt;
+  PropertyHeader header{
+      static_cast<OvmEntity>(word - kOvmPropertyWords.begin()), takeWord(line), {}};
+  const std::size_t quote = line.find('"');
+  if (quote == std::string_view::npos) return header;
+  header.name = line.substr(quote + 1);
+  while (!header.name.empty() && (isSpace(header.name.back()) || header.name.back() == '"')) {
+    header.name.remove_suffix(1);
+  }
+  return header;
+}
+
+Index readHandle(TextScanner& scanner, const OvmElements& elements, std::size_t number,
+                 std::size_t limit) {
+  std::int64_t handle = 0;
+  if (!scanner.readInteger(handle)) {
+    scanner.failInteger("a " + std::string(elements.parts) + " of " + elements.one + " " +
+                        std::to_string(number));
+  }
+  if (handle < 0 || static_cast<std::uint64_t>(handle) >= limit) {
+    scanner.fail(ErrorCode::IndexOutOfRange,
+                 std::string(elements.one) + " " + std::to_string(number) + " names " +
+                     elements.parts + " " + quoted(scanner.currentToken()) + ", but there are " +
+                     std::to_string(limit) + ", numbered from 0.");
+  }
+  return static_cast<Index>(handle);
+}
+
+std::uint32_t readValence(TextScanner& scanner, const OvmElements& elements, std::size_t number) {
+  std::int64_t valence = 0;
+  if (!scanner.readInteger(valence)) {
+    scanner.failInteger("the valence of " + std::string(elements.one) + " " +
+                        std::to_string(number));
+  }
+  if (valence < elements.leastValence || valence > kNone) {
+    scanner.fail(ErrorCode::FileSyntax, std::string(elements.one) + " " + std::to_string(number) +
+                                            " has the valence " + std::to_string(valence) +
+                                            "; at least " + std::to_string(elements.leastValence) +
+                                            " is needed.");
+  }
+  return static_cast<std::uint32_t>(valence);
+}
+
+class OvmTextReader {
+ public:
+  OvmTextReader(std::string_view text, const std::string& fileName, Stage& stage)
+      : text_(text),
+        scanner_(text, fileName, TextScanner::Comments::Hash),
+        stage_(stage),
+        index_(text, stage),
+        hasComments_(text.find('#') != std::string_view::npos) {}
+
+  OvmMesh read() {
+    OvmTopology& topology = mesh_.topology;
+    readHeader();
+    readArrays(mesh_.points, kOvmElements[0], [](TextScanner& scanner, std::size_t i) {
+      double coordinate = 0;
+      if (scanner.readNumber(coordinate)) return coordinate;
+      scanner.failNumber("a coordinate of vertex " + std::to_string(i));
+    });
+    topology.vertexCount = mesh_.points.size();
+    const OvmElements& edges = kOvmElements[1];
+    readArrays(topology.edges, edges, [&](TextScanner& scanner, std::size_t i) {
+      return readHandle(scanner, edges, i, topology.vertexCount);
+    });
+    readLists(topology.faces, kOvmElements[2], topology.count(OvmEntity::HalfEdge));
+    readLists(topology.cells, kOvmElements[3], topology.count(OvmEntity::HalfFace));
+    readProperties();
+    return std::move(mesh_);
+  }
+
+ private:
+  /// "OVM ASCII", which may be missing.
+  void readHeader() {
+    if (isOvmb(text_)) {
+      throw Error(ErrorCode::FileUnsupported,
+                  scanner_.fileName() +
+                      ": this is a binary file of OpenVolumeMesh. Give it the extension .ovmb.");
+    }
+    if (!equalsIgnoringCase(scanner_.peekToken(), "OVM")) return;
+    scanner_.readToken();
+    const std::string_view kind = scanner_.readToken();
+    if (equalsIgnoringCase(kind, "ASCII")) return;
+    const bool binary = equalsIgnoringCase(kind, "BINARY");
+    scanner_.fail(binary ? ErrorCode::FileUnsupported : ErrorCode::FileSyntax,
+                  "expected \"OVM ASCII\", found \"OVM\" and " + quoted(kind) +
+                      (binary ? ". Save the file as text, or as .ovmb." : "."));
+  }
+
+  /// @return the number of elements
+  std::size_t readSection(const OvmElements& elements) {
+    if (!equalsIgnoringCase(scanner_.readToken(), elements.section)) {
+      const std::string_view found = scanner_.currentToken();
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "expected the section " + std::string(elements.section) + ", found " +
+                        (found.empty() ? "the end of the file: it is incomplete" : quoted(found)) +
+                        ".");
+    }
+    const std::size_t count = scanner_.readCount(elements.many, elements.fewestBytes);
+    if (count > kMaxOvmEntities) {
+      scanner_.fail(ErrorCode::TooLarge, exceedsLimit(count, elements.many, kMaxOvmEntities));
+    }
+    return count;
+  }
+
+  /// Reads a section of elements that have the same number of values.
+  /// @param readValue  of (scanner, number of the element)
+  template <class Value, std::size_t n, class Read>
+  void readArrays(Array<std::array<Value, n>>& arrays, const OvmElements& elements,
+                  const Read& readValue) {
+    const std::size_t count = readSection(elements);
+    arrays.resize(count);
+    readElements(scanner_, hasComments_ ? nullptr : &index_, stage_, count, n,
+                 [&](TextScanner& scanner, std::size_t i) {
+                   scanner.failIfAtEnd(i, count, elements.many);
+                   for (Value& value : arrays[i]) value = readValue(scanner, i);
+                 });
+  }
+
+  void readLists(OvmLists& lists, const OvmElements& elements, std::size_t limit) {
+    const std::size_t count = readSection(elements);
+    if (readUniformLists(lists, count, elements, limit)) return;
+    lists.offsets.push_back(0);
+    readElements(scanner_, nullptr, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
+      scanner.failIfAtEnd(i, count, elements.many);
+      const std::uint32_t length = readValence(scanner, elements, i);
+      for (std::uint32_t k = 0; k < length; ++k) {
+        lists.handles.push_back(readHandle(scanner, elements, i, limit));
+      }
+      lists.offsets.push_back(lists.handles.size());
+    });
+    // One length for all, if possible: with comments, they were not read as such.
+    const std::uint64_t length = count > 0 ? lists.offsets[1] : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (lists.offsets[i + 1] - lists.offsets[i] != length) return;
+    }
+    lists.offsets = {};
+    lists.length = static_cast<std::size_t>(length);
+  }
+
+  /// Reads lists that are all as long as the first, in parallel, which comments prevent; false, and
+  /// nothing read, if they are not, or wrong.
+  bool readUniformLists(OvmLists& lists, std::size_t count, const OvmElements& elements,
+                        std::size_t limit) {
+    if (hasComments_ || count == 0 || !scanner_.skipSpace()) return false;
+    const std::size_t begin = scanner_.position();
+    const std::uint32_t length = readValence(scanner_, elements, 0);
+    scanner_.moveTo(begin);
+    const std::size_t tokensEach = length + std::size_t{1};
+    // Also keeps memory in proportion to the file.
+    if ((index_.count() - index_.countBefore(begin)) / tokensEach < count) return false;
+    lists.length = length;
+    lists.handles.resize(count * length);
+    try {
+      readElements(scanner_, &index_, stage_, count, tokensEach,
+                   [&](TextScanner& scanner, std::size_t i) {
+                     if (readValence(scanner, elements, i) != length) {
+                       scanner.fail(ErrorCode::FileUnsupported, "valences vary.");
+                     }
+                     for (std::size_t k = i * length; k < (i + 1) * length; ++k) {
+                       lists.handles[k] = readHandle(scanner, elements, i, limit);
+                     }
+                   });
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::Cancelled) throw;
+      scanner_.moveTo(begin);
+      lists = {};
+      return false;
+    }
+    return true;
+  }
+
+  /// Reads the properties that this library knows and skips all others.
+  void readProperties() {
+    const std::size_t begin = scanner_.position();
+    scanner_ = TextScanner(text_, scanner_.fileName());  // here, '#' may be part of a text
+    scanner_.moveTo(begin);
+    // Behind values that were skipped without knowing them, everything up to the next header
+    // belongs to them. Behind others, nothing does.
+    bool anythingGoes = false;
+    while (scanner_.skipSpace()) {
+      const std::string_view first = scanner_.currentToken();
+      const bool comment = !anythingGoes && first.front() == '#';
+      const std::string_view rest = text_.substr(scanner_.position());
+      const std::optional<PropertyHeader> header = parseHeader(rest.substr(0, rest.find('\n')));
+      if (!header && !comment && !anythingGoes) {
+        scanner_.fail(ErrorCode::FileSyntax,
+                      "expected a property (e.g. VProp) or the end of the file, found " +
+                          quoted(first) + ".");
+      }
+      scanner_.takeLine();
+      if (!header) continue;
+      const OvmMesh::Destination values =
+          mesh_.destinationOf(header->entity, header->name, numbersOf(header->type));
+      if (values.points != nullptr) readParametrization(*values.points);
+      if (values.integers != nullptr) readIntegers(*values.integers, *header);
+      anythingGoes = values.points == nullptr && values.integers == nullptr;
+      if (anythingGoes && equalsIgnoringCase(header->type, "string")) {
+        // Strings may contain whatever looks like the next header, but their lengths are known.
+        skipStrings(mesh_.topology.count(header->entity));
+        anythingGoes = false;
+      }
+    }
+  }
+
+  /// Parameters of half-faces without a cell mean nothing, so not even finite numbers are demanded
+  /// here.
+  void readParametrization(Array<Vec3>& values) {
+    // Every number takes two bytes, so that no count can ask for more memory than the file
+    // justifies.
+    const std::size_t count = mesh_.topology.count(OvmEntity::HalfFace);
+    if (count > text_.size() - scanner_.position()) {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "the values of the map are incomplete: the file ends before them.");
+    }
+    values.resize(count);
+    readElements(
+        scanner_, &index_, stage_, count, 3, [&values](TextScanner& scanner, std::size_t i) {
+          for (double& parameter : values[i]) {
+            if (scanner.readNumber(parameter)) continue;
+            const NumberProblem problem = parseNumber(scanner.currentToken(), parameter);
+            if (problem != NumberProblem::NotFinite && problem != NumberProblem::Overflow) {
+              scanner.failNumber("a parameter of half-face " + std::to_string(i));
+            }
+            parameter = std::numeric_limits<double>::quiet_NaN();
+            scanner.readToken();
+          }
+        });
+  }
+
+  void readIntegers(Array<std::int32_t>& values, const PropertyHeader& header) {
+    const std::size_t count = mesh_.topology.count(header.entity);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::int64_t value = 0;
+      if (!scanner_.readInteger(value)) {
+        scanner_.failInteger("a value of the property " + quoted(header.name));
+      }
+      if (!std::in_range<std::int32_t>(value)) {
+        scanner_.fail(ErrorCode::FileUnsupported,
+                      "the property " + quoted(header.name) + " has the value " +
+                          std::string(scanner_.currentToken()) +
+                          ", which does not fit into 32 bits with a sign.");
+      }
+      values.push_back(static_cast<std::int32_t>(value));
+    }
+  }
+
+  /// Skips strings of the form "3:a b".
+  void skipStrings(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool atEnd = !scanner_.skipSpace();
+      const std::string_view rest = text_.substr(scanner_.position());
+      std::size_t length = 0;
+      const auto result = std::from_chars(rest.data(), rest.data() + rest.size(), length);
+      const auto digits = static_cast<std::size_t>(result.ptr - rest.data());
+      if (atEnd || result.ec != std::errc{} || digits == rest.size() || rest[digits] != ':' ||
+          length > rest.size() - digits - 1) {
+        scanner_.fail(ErrorCode::FileSyntax,
+                      "expected a text with its length in front, like \"3:abc\".");
+      }
+      scanner_.moveTo(scanner_.position() + digits + 1 + length);
+    }
+  }
+
+  std::string_view text_;
+  TextScanner scanner_;
+  Stage& stage_;
+  TokenIndex index_;
+  bool hasComments_;
+  OvmMesh mesh_;
+};
+
+}  // namespace
+
+OvmMesh parseOvmText(std::string_view text, const std::string& fileName, Stage& stage) {
+  return OvmTextReader(text, fileName, stage).read();
+}
+
+namespace {
+
+// Writes `.ovm` files (see ovm_mesh.hpp).
+
+/// A number and what separates it from the next.
+constexpr std::size_t kRoomPerNumber = kNumberRoom + 1;
+
+class OvmTextWriter {
+ public:
+  OvmTextWriter(const OvmOutput& mesh, OutputFile& output, Stage& stage)
+      : mesh_(mesh),
+        output_(output),
+        lines_(output_, stage.context().threads()),
+        progress_(stage, totalOf(mesh)) {}
+
+  void write() {
+    output_.write("OVM ASCII\n");
+    writeSection("Vertices", mesh_.points);
+    writeSection("Edges", std::span(mesh_.topology.edges));
+    writeSection("Faces", mesh_.topology.faces);
+    writeSection("Polyhedra", mesh_.topology.cells);
+    for (const OvmProperty& property : mesh_.properties) writeProperty(property);
+    output_.commit();
+  }
+
+ private:
+  static std::size_t totalOf(const OvmOutput& mesh) {
+    std::size_t total = mesh.points.size() + mesh.topology.edges.size() +
+                        mesh.topology.faces.size() + mesh.topology.cells.size();
+    for (const OvmProperty& property : mesh.properties) {
+      total += mesh.topology.count(property.entity);
+    }
+    return total;
+  }
+  template <class Number, std::size_t n>
+  void writeLines(std::span<const std::array<Number, n>> arrays) {
+    lines_.write(
+        arrays.size(), n * kRoomPerNumber,
+        [arrays](char* place, std::size_t i) { return put(putNumbers(place, arrays[i]), '\n'); },
+        &progress_);
+  }
+  void writeLines(std::span<const std::int32_t> numbers) {
+    lines_.write(
+        numbers.size(), kRoomPerNumber,
+        [numbers](char* place, std::size_t i) { return put(put(place, numbers[i]), '\n'); },
+        &progress_);
+  }
+  void writeLines(const OvmLists& lists) {
+    lines_.write(
+        lists.size(), (lists.length + 1) * kRoomPerNumber,
+        [&lists](char* place, std::size_t i) {
+          place = put(place, lists.length);
+          for (const Index handle : lists[i]) place = put(put(place, ' '), handle);
+          return put(place, '\n');
+        },
+        &progress_);
+  }
+  template <class Values>
+  void writeSection(const char* keyword, const Values& values) {
+    output_.write(keyword).write('\n').write(values.size()).write('\n');
+    writeLines(values);
+  }
+  void writeProperty(const OvmProperty& property) {
+    constexpr std::array<const char*, 3> kTypes = {"int", "vec3d", "vec2d"};  // as the variant
+    output_.write(kOvmPropertyWords[static_cast<std::size_t>(property.entity)]).write(' ');
+    output_.write(kTypes[property.values.index()]).write(" \"").write(property.name).write("\"\n");
+    std::visit([this](const auto& values) { writeLines(std::span(values)); }, property.values);
+  }
+
+  const OvmOutput& mesh_;
+  OutputFile& output_;
+  LineWriter lines_;
+  LoopProgress progress_;
+};
+
+}  // namespace
+
+void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
+  OvmTextWriter(mesh, output, stage).write();
+}
+
+namespace {
+
+using Parse = OvmMesh (*)(std::string_view bytes, const std::string& fileName, Stage& stage);
+using Write = void (*)(const OvmOutput& mesh, OutputFile& output, Stage& stage);
+template <class Result>
+using Convert = Result (*)(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
+
+template <class Result>
+Result read(const Input& input, Context& context, std::string_view stageName, Parse parse,
+            Convert<Result> convert) {
+  return inStage(context, stageName, [&](Stage& stage) {
+    const auto parsed = [&] {
+      Array<char> room;  // given back before cells are made
+      // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
+      return parse(input.text(room, stage, "OoVv#"), input.name(), stage);
+    };
+    return convert(parsed(), input.name(), stage);
+  });
+}
+
+/// @param mesh  a map or a hex mesh
+template <class Mesh>
+void write(const Mesh& mesh, const std::filesystem::path& file, Context& context,
+           std::string_view stageName, Write writeFile) {
+  Stage stage(context, stageName);
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  withThreads(context.threads(), [&] { writeFile(toOvm(mesh, stage), output, stage); });
+}
+
+}  // namespace
+
+TetMap readOvmMap(const Input& input, Context& context) {
+  return read<TetMap>(input, context, "read map", parseOvmText, toTetMap);
+}
+TetMap readOvmbMap(const Input& input, Context& context) {
+  return read<TetMap>(input, context, "read map", parseOvmb, toTetMap);
+}
+TetCells readOvmTets(const Input& input, Context& context) {
+  return read<TetCells>(input, context, "read tets", parseOvmText, toTetCells);
+}
+TetCells readOvmbTets(const Input& input, Context& context) {
+  return read<TetCells>(input, context, "read tets", parseOvmb, toTetCells);
+}
+HexMesh readOvmHexMesh(const Input& input, Context& context) {
+  return read<HexMesh>(input, context, "read mesh", parseOvmText, toHexMesh);
+}
+HexMesh readOvmbHexMesh(const Input& input, Context& context) {
+  return read<HexMesh>(input, context, "read mesh", parseOvmb, toHexMesh);
+}
+
+void writeOvmMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
+  write(map, file, context, "write map", writeOvmText);
+}
+void writeOvmbMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
+  write(map, file, context, "write map", writeOvmb);
+}
+void writeOvmHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
+                     const WriteOptions& /*options*/, Context& context) {
+  write(mesh, file, context, "write mesh", writeOvmText);
+}
+void writeOvmbHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
+                      const WriteOptions& /*options*/, Context& context) {
+  write(mesh, file, context, "write mesh", writeOvmb);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,657 @@
+// `.ovmb` files: a header, and the chunks behind it, which hold vertices, edges, faces, cells and
+// properties.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <base/vector3.hpp>
+#include <io/core/bytes.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/ovm_mesh.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+struct OvmbChunk {
+  std::string_view type;     ///< four characters
+  std::string_view payload;  ///< without padding
+};
+
+/// A file that was cut into its pieces; refers to the bytes.
+struct OvmbFrame {
+  std::string_view bytes;
+  const std::string& fileName;
+  std::array<std::uint64_t, 4> counts{};  ///< of vertices, edges, faces, cells, as announced
+  std::vector<OvmbChunk> chunks;          ///< in order, without unknown and end chunks
+
+  [[nodiscard]] ByteCursor cursor(std::string_view part) const { return {part, bytes, fileName}; }
+};
+
+/// A range of elements, as VERT, TOPO and PROP chunks begin with.
+struct OvmbSpan {
+  std::uint64_t first = 0;
+  std::uint64_t count = 0;
+};
+OvmbSpan readOvmbSpan(ByteCursor& cursor) {
+  OvmbSpan span;
+  span.first = cursor.read<std::uint64_t>("a span of elements");
+  span.count = cursor.read<std::uint32_t>("a span of elements");
+  return span;
+}
+
+/// Decodes points that are stored as three floats or doubles each.
+/// @return the first that is not finite, or their number
+template <class Stored>
+std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& stage) {
+  return firstFault(
+      stage, points.size(),
+      [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          points[i][k] = double{loadLittle<Stored>(data + (3 * i + k) * sizeof(Stored))};
+        }
+        return isFinite(points[i]);
+      },
+      std::size_t{1} << 14);
+}
+
+// Vertices, edges, faces and cells of an `.ovmb` file.
+
+// Numbers of the four kinds of elements, in file headers and TOPO chunks.
+constexpr std::size_t kEdges = 1;
+constexpr std::size_t kFaces = 2;
+constexpr std::size_t kCells = 3;
+
+/// "an edge"
+std::string anyOf(std::size_t entity) {
+  return (entity == kEdges ? "an " : "a ") + std::string(kOvmElements[entity].one);
+}
+
+/// Calls f with a number of the width that a file has.
+template <class F>
+void withWidth(std::uint8_t bytes, const F& f) {
+  if (bytes == 1) f(std::uint8_t{});
+  if (bytes == 2) f(std::uint16_t{});
+  if (bytes == 4) f(std::uint32_t{});
+}
+
+/// Adds the elements of one chunk after the other to a mesh.
+class ElementReader {
+ public:
+  ElementReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
+      : frame_(frame), mesh_(mesh), stage_(stage) {}
+
+  void readVertices(std::string_view payload) {
+    ByteCursor cursor = frame_.cursor(payload);
+    const OvmbSpan span = readNextSpan(cursor, 0);
+    const std::size_t position = cursor.position();
+    const auto encoding = cursor.read<std::uint32_t>("the header of a VERT chunk");
+    if (encoding == 1) {
+      decodePoints<float>(cursor, span);
+    } else if (encoding == 2) {
+      decodePoints<double>(cursor, span);
+    } else {
+      cursor.failAt(position, ErrorCode::FileSyntax,
+                    "the encoding of the vertices must be 1 (float32) or 2 (float64), followed by "
+                    "three zero bytes.");
+    }
+    if (cursor.remaining() > 0) {
+      cursor.fail(ErrorCode::FileSyntax, "the VERT chunk is longer than its vertices.");
+    }
+  }
+
+  void readTopology(std::string_view payload) {
+    ByteCursor cursor = frame_.cursor(payload);
+    ByteCursor span = cursor;
+    static_cast<void>(readOvmbSpan(cursor));
+    const std::size_t position = cursor.position();
+    const std::size_t entity = cursor.read<std::uint8_t>("the header of a TOPO chunk");
+    if (entity < kEdges || entity > kCells) {
+      cursor.failAt(position, ErrorCode::FileSyntax,
+                    "a TOPO chunk must be about edges (1), faces (2) or cells (3), found " +
+                        std::to_string(entity) + ".");
+    }
+    const auto count = static_cast<std::size_t>(readNextSpan(span, entity).count);
+    readEncoding(cursor);
+    if (count == 0) cursor.failAt(position, ErrorCode::FileSyntax, "a TOPO chunk is empty.");
+    const std::span<Index> handles =
+        entity == kEdges ? readEdges(cursor, count) : readLists(cursor, count, entity);
+    withWidth(encoding_.handleBytes, [&]<class Stored>(Stored /*width*/) {
+      decodeHandles<Stored>(cursor, handles, entity);
+    });
+  }
+
+  void requireAll() const {
+    for (std::size_t entity = 0; entity < 4; ++entity) {
+      if (done_[entity] == frame_.counts[entity]) continue;
+      throw Error(ErrorCode::FileSyntax, frame_.fileName + ": the file header announces " +
+                                             std::to_string(frame_.counts[entity]) + " " +
+                                             kOvmElements[entity].many + ", but the file holds " +
+                                             std::to_string(done_[entity]) + ".");
+    }
+  }
+
+ private:
+  /// Spans of one kind of element follow each other without gaps.
+  OvmbSpan readNextSpan(ByteCursor& cursor, std::size_t entity) {
+    const std::size_t position = cursor.position();
+    const OvmbSpan span = readOvmbSpan(cursor);
+    const std::string many = kOvmElements[entity].many;
+    if (span.first != done_[entity]) {
+      cursor.failAt(position, ErrorCode::FileSyntax,
+                    "expected " + many + " from number " + std::to_string(done_[entity]) +
+                        " on, found number " + std::to_string(span.first) + ".");
+    }
+    if (span.count > frame_.counts[entity] - span.first) {
+      cursor.failAt(position, ErrorCode::FileSyntax,
+                    "there are more " + many + " than the " +
+                        std::to_string(frame_.counts[entity]) + " that the file header announces.");
+    }
+    done_[entity] += span.count;
+    return span;
+  }
+
+  template <class Stored>
+  void decodePoints(ByteCursor& cursor, const OvmbSpan& span) {
+    const std::size_t begin = cursor.position();
+    const char* const data = cursor.take(span.count * 3 * sizeof(Stored), "a VERT chunk").data();
+    mesh_.points.resize(static_cast<std::size_t>(span.first + span.count));
+    const std::size_t fault =
+        decodeOvmbPoints<Stored>(data, std::span(mesh_.points).subspan(span.first), stage_);
+    if (fault == span.count) return;
+    const std::uint64_t vertex = span.first + fault;
+    cursor.failAt(begin + 3 * fault * sizeof(Stored), ErrorCode::NotFinite,
+                  "a coordinate of vertex " + std::to_string(vertex) + " is not finite.",
+                  Place{PlaceKind::Vertex, vertex});
+  }
+
+  void readEncoding(ByteCursor& cursor) {
+    constexpr std::string_view kWhat = "the header of a TOPO chunk";
+    encoding_.valence = cursor.read<std::uint8_t>(kWhat);
+    const std::size_t position = cursor.position();
+    encoding_.valenceBytes = cursor.read<std::uint8_t>(kWhat);
+    encoding_.handleBytes = cursor.read<std::uint8_t>(kWhat);
+    encoding_.handleOffset = cursor.read<std::uint64_t>(kWhat);
+    const auto isWidth = [](std::uint8_t bytes) { return bytes == 1 || bytes == 2 || bytes == 4; };
+    const bool goodValences =
+        encoding_.valence > 0 ? encoding_.valenceBytes == 0 : isWidth(encoding_.valenceBytes);
+    if (goodValences && isWidth(encoding_.handleBytes)) return;
+    cursor.failAt(position, ErrorCode::FileSyntax,
+                  "the encoding of valences must be 1, 2 or 4 if they vary, else 0, and that of "
+                  "handles 1, 2 or 4.");
+  }
+
+  /// @return room for the handles, of which the rest of the chunk has as many, as below
+  std::span<Index> readEdges(const ByteCursor& cursor, std::size_t count) {
+    if (encoding_.valence != 2) {
+      cursor.fail(ErrorCode::FileSyntax, "edges must have the valence 2, found " +
+                                             std::to_string(encoding_.valence) + ".");
+    }
+    if (cursor.remaining() != 2 * count * encoding_.handleBytes) {
+      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its edges.");
+    }
+    Array<std::array<Index, 2>>& edges = mesh_.topology.edges;
+    edges.resize(edges.size() + count);
+    // Pairs of numbers are numbers one after the other.
+    return {reinterpret_cast<Index*>(edges.data() + edges.size() - count), 2 * count};
+  }
+
+  std::span<Index> readLists(ByteCursor& cursor, std::size_t count, std::size_t entity) {
+    const std::string many = kOvmElements[entity].many;
+    if (count * std::max(encoding_.valence, encoding_.valenceBytes) > cursor.remaining()) {
+      cursor.fail(ErrorCode::FileSyntax,
+                  "a TOPO chunk is too short for its " + std::to_string(count) + " " + many + ".");
+    }
+    if (encoding_.valence > 0 && encoding_.valence < kOvmElements[entity].leastValence) {
+      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has " + many + " of valence " +
+                                             std::to_string(encoding_.valence) + ".");
+    }
+    std::uint64_t handles = std::uint64_t{count} * encoding_.valence;
+    if (encoding_.valence == 0) {
+      valences_.resize(count);
+      withWidth(encoding_.valenceBytes,
+                [&]<class Stored>(Stored /*width*/) { decodeValences<Stored>(cursor, entity); });
+      handles = std::accumulate(valences_.begin(), valences_.end(), handles);
+    }
+    // The first comparison keeps the product from overflowing.
+    if (handles > cursor.remaining() || cursor.remaining() != handles * encoding_.handleBytes) {
+      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its " + many + ".");
+    }
+    return appendLists(entity == kFaces ? mesh_.topology.faces : mesh_.topology.cells, count,
+                       static_cast<std::size_t>(handles));
+  }
+
+  template <class Stored>
+  void decodeValences(ByteCursor& cursor, std::size_t entity) {
+    const std::uint32_t least = kOvmElements[entity].leastValence;
+    const std::size_t begin = cursor.position();
+    const char* const data = cursor.take(valences_.size() * sizeof(Stored), "the valences").data();
+    const std::size_t fault = firstFault(stage_, valences_.size(), [&](std::size_t i) {
+      valences_[i] = loadLittle<Stored>(data + i * sizeof(Stored));
+      return valences_[i] >= least;
+    });
+    if (fault == valences_.size()) return;
+    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileSyntax,
+                  anyOf(entity) + " has the valence " + std::to_string(valences_[fault]) +
+                      "; at least " + std::to_string(least) + " is needed.");
+  }
+
+  /// Appends lists with so many handles in total, and returns the room for them.
+  std::span<Index> appendLists(OvmLists& lists, std::size_t count, std::size_t handles) const {
+    const bool uniform =
+        encoding_.valence > 0 || std::adjacent_find(valences_.begin(), valences_.end(),
+                                                    std::not_equal_to<>()) == valences_.end();
+    const std::size_t length = uniform ? handles / count : 0;
+    const std::size_t before = lists.size();
+    if (before == 0) lists.length = length;
+    if (length == 0 || lists.length != length) {  // from now on, lists have lengths of their own
+      if (lists.offsets.empty()) {
+        for (std::size_t i = 0; i <= before; ++i) lists.offsets.push_back(i * lists.length);
+        lists.length = 0;
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        lists.offsets.push_back(lists.offsets.back() + (uniform ? length : valences_[i]));
+      }
+    }
+    lists.handles.resize(lists.handles.size() + handles);
+    return std::span(lists.handles).last(handles);
+  }
+
+  template <class Stored>
+  void decodeHandles(ByteCursor& cursor, std::span<Index> handles, std::size_t entity) {
+    const std::uint64_t limit = (entity == kEdges ? 1U : 2U) * frame_.counts[entity - 1];
+    const std::uint64_t offset = encoding_.handleOffset;
+    const std::uint64_t room = limit - std::min(limit, offset);
+    const std::size_t begin = cursor.position();
+    const char* const data = cursor.take(handles.size() * sizeof(Stored), "the handles").data();
+    const auto storedAt = [data](std::size_t i) {
+      return loadLittle<Stored>(data + i * sizeof(Stored));
+    };
+    std::atomic<bool> good{true};
+    parallelBlocks(stage_, handles.size(), kGrain,
+                   [&, decoded = handles.data(), added = static_cast<Index>(offset)](
+                       std::size_t first, std::size_t end, std::size_t /*block*/) {
+                     // Only the largest is compared, so that compilers decode several at once:
+                     // else, reading a hex mesh takes a fifth longer.
+                     Stored largest = 0;
+                     for (std::size_t i = first; i < end; ++i) {
+                       const Stored stored = storedAt(i);
+                       decoded[i] = stored + added;
+                       largest = std::max(largest, stored);
+                     }
+                     if (largest >= room) good.store(false, std::memory_order_relaxed);
+                   });
+    if (good) return;
+    const std::size_t fault =
+        firstFault(stage_, handles.size(), [&](std::size_t i) { return storedAt(i) < room; });
+    const std::uint64_t stored = storedAt(fault);
+    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::IndexOutOfRange,
+                  anyOf(entity) + " names " + kOvmElements[entity].parts + " " +
+                      std::to_string(stored) + " + " + std::to_string(offset) + ", but there are " +
+                      std::to_string(limit) + ", numbered from 0.");
+  }
+
+  static constexpr std::size_t kGrain = 16384;
+
+  const OvmbFrame& frame_;
+  OvmMesh& mesh_;
+  Stage& stage_;
+  std::array<std::uint64_t, 4> done_{};
+  // Of the chunk that is being read, the second half of its header:
+  struct {
+    std::uint8_t valence = 0;       ///< 0: varies
+    std::uint8_t valenceBytes = 0;  ///< if it varies
+    std::uint8_t handleBytes = 0;
+    std::uint64_t handleOffset = 0;
+  } encoding_;
+  Array<std::uint32_t> valences_;  ///< if they vary
+};
+
+/// Decodes all VERT and TOPO chunks: any encoding of numbers, handles and valences, any number of
+/// spans. Handles are in range afterwards; nothing else about the topology is checked.
+/// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
+void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage) {
+  ElementReader reader(frame, mesh, stage);
+  for (const OvmbChunk& chunk : frame.chunks) {
+    if (chunk.type == "VERT") reader.readVertices(chunk.payload);
+    if (chunk.type == "TOPO") reader.readTopology(chunk.payload);
+  }
+  reader.requireAll();
+  mesh.topology.vertexCount = mesh.points.size();
+}
+
+// Cuts an `.ovmb` file into its chunks, and decodes its properties.
+
+constexpr std::uint8_t kMandatory = 1;
+
+/// What stands before the body of a chunk.
+struct ChunkHeader {
+  std::size_t position = 0;  ///< in the file
+  std::string_view type;     ///< four characters
+  std::uint8_t version = 0;
+  std::uint8_t padding = 0;
+  std::uint8_t compression = 0;
+  std::uint8_t flags = 0;
+  std::uint64_t length = 0;  ///< of the body, including padding
+};
+
+void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
+  if (!isOvmb(frame.bytes)) {
+    cursor.fail(ErrorCode::FileSyntax,
+                "an .ovmb file begins with \"OVMB\" and the bytes 0A 0D 0A FF, which are missing "
+                "here. If this is a text file of OpenVolumeMesh, give it the extension .ovm.");
+  }
+  static_cast<void>(cursor.take(kOvmbMagic.size(), "the signature"));
+  const auto readByte = [&cursor](const char* what) {
+    return unsigned{cursor.read<std::uint8_t>(what)};
+  };
+  const auto require = [&cursor](bool condition, ErrorCode code, const std::string& sentence) {
+    if (!condition) cursor.failAt(cursor.position() - 1, code, sentence);
+  };
+  // The version of the file is not checked: chunks have versions of their own.
+  static_cast<void>(readByte("the version of the file"));
+  const unsigned version = readByte("the version of the header");
+  require(version == 1, ErrorCode::FileUnsupported,
+          "the header has version " + std::to_string(version) + "; only version 1 is supported.");
+  const unsigned dimension = readByte("the dimension");
+  require(dimension == 3, ErrorCode::FileUnsupported,
+          "the dimension must be 3, found " + std::to_string(dimension) + ".");
+  // Valences decide what the cells are; this is but a hint.
+  const unsigned kind = readByte("the kind of the mesh");
+  require(kind <= 2, ErrorCode::FileSyntax,
+          "the kind of the mesh must be 0, 1 or 2, found " + std::to_string(kind) + ".");
+  const std::size_t reserved = cursor.position();
+  if (cursor.read<std::uint32_t>("the reserved part") != 0) {
+    cursor.failAt(reserved, ErrorCode::FileSyntax, "the reserved part of the header is not zero.");
+  }
+  for (std::uint64_t& count : frame.counts) {
+    const std::size_t position = cursor.position();
+    count = cursor.read<std::uint64_t>("the header");
+    if (count > kMaxOvmEntities) {
+      cursor.failAt(position, ErrorCode::TooLarge,
+                    "the header announces " + std::to_string(count) +
+                        " elements of a kind; at most " + std::to_string(kMaxOvmEntities) +
+                        " are supported.");
+    }
+  }
+}
+
+ChunkHeader readChunkHeader(ByteCursor& cursor) {
+  constexpr std::string_view kWhat = "the header of a chunk";
+  ChunkHeader header;
+  header.position = cursor.position();
+  header.type = cursor.take(4, kWhat);
+  header.version = cursor.read<std::uint8_t>(kWhat);
+  header.padding = cursor.read<std::uint8_t>(kWhat);
+  header.compression = cursor.read<std::uint8_t>(kWhat);
+  header.flags = cursor.read<std::uint8_t>(kWhat);
+  header.length = cursor.read<std::uint64_t>(kWhat);
+  if (header.padding > 7 || header.padding > header.length || header.flags > kMandatory) {
+    cursor.failAt(header.position, ErrorCode::FileSyntax,
+                  "the chunk " + quoted(header.type) + " has an impossible header.");
+  }
+  return header;
+}
+
+std::string_view takePayload(const ChunkHeader& header, ByteCursor& cursor) {
+  const std::string_view body = cursor.take(header.length, "the chunk " + quoted(header.type));
+  const std::string_view payload = body.substr(0, body.size() - header.padding);
+  const std::string_view padding = body.substr(payload.size());
+  if (std::any_of(padding.begin(), padding.end(), [](char byte) { return byte != 0; })) {
+    cursor.failAt(cursor.position() - header.padding, ErrorCode::FileSyntax,
+                  "the padding at the end of the chunk " + quoted(header.type) + " is not zero.");
+  }
+  return payload;
+}
+
+/// Whether a chunk is of a kind that this library knows; if not, it has to be optional.
+bool isKnown(const ChunkHeader& header, const ByteCursor& cursor) {
+  constexpr std::array<std::string_view, 5> kTypes = {"VERT", "TOPO", "DIRP", "PROP", "EOF "};
+  const bool known = std::find(kTypes.begin(), kTypes.end(), header.type) != kTypes.end() &&
+                     header.version == 0 && header.compression == 0;
+  if (known || (header.flags & kMandatory) == 0) return known;
+  cursor.failAt(header.position, ErrorCode::FileUnsupported,
+                "the chunk " + quoted(header.type) + " (version " + std::to_string(header.version) +
+                    ", compression " + std::to_string(header.compression) +
+                    ") is not supported, and marked as mandatory. Save the file with an earlier "
+                    "version of OpenVolumeMesh, uncompressed.");
+}
+
+/// @param bytes, fileName  must outlive the frame
+/// @throws Error FileSyntax, also if the end chunk is missing; FileUnsupported; TooLarge
+OvmbFrame splitOvmb(std::string_view bytes, const std::string& fileName) {
+  OvmbFrame frame{bytes, fileName, {}, {}};
+  ByteCursor cursor = frame.cursor(bytes);
+  readFileHeader(frame, cursor);
+  while (true) {
+    if (cursor.remaining() == 0) {
+      cursor.fail(ErrorCode::FileSyntax,
+                  "the file ends without its end chunk: it is truncated. Copy or save it again.");
+    }
+    const ChunkHeader header = readChunkHeader(cursor);
+    const bool known = isKnown(header, cursor);
+    const std::string_view payload = takePayload(header, cursor);
+    if (!known) continue;
+    if (header.type == "EOF ") {
+      if (!payload.empty()) {
+        cursor.failAt(header.position, ErrorCode::FileSyntax, "the end chunk is not empty.");
+      }
+      break;
+    }
+    frame.chunks.push_back({header.type, payload});
+  }
+  if (cursor.remaining() > 0) {
+    cursor.fail(ErrorCode::FileSyntax,
+                "there are " + std::to_string(cursor.remaining()) + " bytes after the end chunk.");
+  }
+  return frame;
+}
+
+constexpr std::string_view kBits = "b";
+
+/// Calls f with a number of an integer type.
+/// @return whether there is such a type
+template <class F>
+bool withIntegerType(std::string_view type, const F& f) {
+  const auto callIf = [&]<class Stored>(std::string_view name, Stored stored) {
+    if (type != name) return false;
+    f(stored);
+    return true;
+  };
+  return callIf("u8", std::uint8_t{}) || callIf("u16", std::uint16_t{}) ||
+         callIf("u32", std::uint32_t{}) || callIf("u64", std::uint64_t{}) ||
+         callIf("i8", std::int8_t{}) || callIf("i16", std::int16_t{}) ||
+         callIf("i32", std::int32_t{}) || callIf("i64", std::int64_t{}) ||
+         callIf(kBits, std::uint8_t{});
+}
+
+/// The same for types of points, with a coordinate.
+template <class F>
+bool withPointType(std::string_view type, const F& f) {
+  if (type == "3d") f(double{});
+  if (type == "3f") f(float{});
+  return type == "3d" || type == "3f";
+}
+
+/// One entry of the directory.
+struct Entry {
+  OvmEntity entity = OvmEntity::Vertex;
+  std::string_view name;
+  std::string_view type;
+  std::string_view defaultValue;
+  OvmMesh::Destination destination = {};
+};
+
+Entry readEntry(ByteCursor& cursor) {
+  const std::size_t position = cursor.position();
+  const auto entity = cursor.read<std::uint8_t>("the directory of properties");
+  if (entity > static_cast<std::uint8_t>(OvmEntity::Mesh)) {
+    cursor.failAt(position, ErrorCode::FileSyntax,
+                  "a property belongs to an entity of kind " + std::to_string(entity) +
+                      "; only 0 to 6 exist.");
+  }
+  const auto text = [&cursor](std::string_view what) {
+    return cursor.take(cursor.read<std::uint32_t>(what), what);
+  };
+  Entry entry;
+  entry.entity = static_cast<OvmEntity>(entity);
+  entry.name = text("the name of a property");
+  entry.type = text("the type of a property");
+  entry.defaultValue = text("the default value of a property");
+  return entry;
+}
+
+/// What is decoded, for messages.
+struct Subject {
+  const char* name;
+  const char* verb;
+};
+constexpr Subject kDefault = {"the default value", "has"};
+constexpr Subject kValues = {"the values", "have"};
+
+/// All that remains behind a cursor, which must have this size.
+const char* takeAll(std::uint64_t bytes, const Entry& entry, const Subject& subject,
+                    ByteCursor& cursor) {
+  if (cursor.remaining() != bytes) {
+    cursor.fail(ErrorCode::FileSyntax, subject.name + (" of the property " + quoted(entry.name)) +
+                                           " " + subject.verb + " " +
+                                           std::to_string(cursor.remaining()) +
+                                           " bytes instead of " + std::to_string(bytes) + ".");
+  }
+  return cursor.take(bytes, subject.name).data();
+}
+
+/// Decodes the properties that this library knows, by entity, name and type; the map may be of
+/// doubles or floats, integers of any width, or bits. All others are skipped, after a check of
+/// their place in the file. Elements outside of all spans have the default value.
+class PropertyReader {
+ public:
+  PropertyReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
+      : frame_(frame), mesh_(mesh), stage_(stage) {}
+
+  void readDirectory(std::string_view payload) {
+    ByteCursor cursor = frame_.cursor(payload);
+    if (hasDirectory_) cursor.fail(ErrorCode::FileSyntax, "there is a second DIRP chunk.");
+    hasDirectory_ = true;
+    while (cursor.remaining() > 0) {
+      Entry entry = readEntry(cursor);
+      entry.destination = mesh_.destinationOf(entry.entity, entry.name, numbersOf(entry.type));
+      if (entry.destination.points != nullptr) makeDefault(entry, *entry.destination.points);
+      if (entry.destination.integers != nullptr) makeDefault(entry, *entry.destination.integers);
+      entries_.push_back(entry);
+    }
+  }
+
+  void readProperty(std::string_view payload) {
+    ByteCursor cursor = frame_.cursor(payload);
+    const OvmbSpan span = readOvmbSpan(cursor);
+    const std::size_t position = cursor.position();
+    const auto number = cursor.read<std::uint32_t>("the header of a PROP chunk");
+    if (number >= entries_.size()) {
+      cursor.failAt(position, ErrorCode::FileSyntax,
+                    "a PROP chunk is about property " + std::to_string(number) + ", but only " +
+                        std::to_string(entries_.size()) + " are listed before it.");
+    }
+    const Entry& entry = entries_[number];
+    const std::size_t count = mesh_.topology.count(entry.entity);
+    if (span.first > count || span.count > count - span.first) {
+      cursor.fail(ErrorCode::FileSyntax, "values of the property " + quoted(entry.name) +
+                                             " lie outside of its " + std::to_string(count) +
+                                             " elements.");
+    }
+    const auto decodeInto = [&](auto* values) {
+      if (values == nullptr) return;
+      decode(entry,
+             std::span(*values).subspan(static_cast<std::size_t>(span.first),
+                                        static_cast<std::size_t>(span.count)),
+             kValues, cursor);
+    };
+    decodeInto(entry.destination.points);
+    decodeInto(entry.destination.integers);
+  }
+
+ private:
+  static OvmNumbers numbersOf(std::string_view type) {
+    const auto ignore = [](auto /*number*/) {};
+    if (withPointType(type, ignore)) return OvmNumbers::Points;
+    return withIntegerType(type, ignore) ? OvmNumbers::Integers : OvmNumbers::Others;
+  }
+
+  template <class T>
+  void makeDefault(const Entry& entry, Array<T>& values) {
+    ByteCursor cursor = frame_.cursor(entry.defaultValue);
+    T value{};
+    decode(entry, std::span<T>(&value, 1), kDefault, cursor);
+    values.assign(mesh_.topology.count(entry.entity), value);
+  }
+
+  void decode(const Entry& entry, std::span<Vec3> values, const Subject& subject,
+              ByteCursor& cursor) {
+    withPointType(entry.type, [&]<class Stored>(Stored /*coordinate*/) {
+      const char* const data = takeAll(values.size() * 3 * sizeof(Stored), entry, subject, cursor);
+      // Half-faces without a cell may have any numbers.
+      decodeOvmbPoints<Stored>(data, values, stage_);
+    });
+  }
+
+  void decode(const Entry& entry, std::span<std::int32_t> values, const Subject& subject,
+              ByteCursor& cursor) {
+    const std::size_t begin = cursor.position();
+    if (entry.type == kBits) {  // eight elements per byte, from the lowest bit on
+      const char* const data = takeAll((values.size() + 7) / 8, entry, subject, cursor);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = static_cast<unsigned char>(data[i / 8]) >> (i % 8) & 1;
+      }
+      return;
+    }
+    withIntegerType(entry.type, [&]<class Stored>(Stored /*number*/) {
+      const char* const data = takeAll(values.size() * sizeof(Stored), entry, subject, cursor);
+      const auto valueAt = [data](std::size_t i) {
+        return loadLittle<Stored>(data + i * sizeof(Stored));
+      };
+      const std::size_t fault = firstFault(stage_, values.size(), [&](std::size_t i) {
+        values[i] = static_cast<std::int32_t>(static_cast<std::int64_t>(valueAt(i)));
+        return std::in_range<std::int32_t>(valueAt(i));
+      });
+      if (fault == values.size()) return;
+      cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileUnsupported,
+                    "the property " + quoted(entry.name) + " has the value " +
+                        std::to_string(valueAt(fault)) +
+                        ", which does not fit into 32 bits with a sign.");
+    });
+  }
+
+  const OvmbFrame& frame_;
+  OvmMesh& mesh_;
+  Stage& stage_;
+  bool hasDirectory_ = false;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage) {
+  const OvmbFrame frame = splitOvmb(bytes, fileName);
+  OvmMesh mesh;
+  readOvmbElements(frame, mesh, stage);
+  PropertyReader reader(frame, mesh, stage);
+  for (const OvmbChunk& chunk : frame.chunks) {
+    if (chunk.type == "DIRP") reader.readDirectory(chunk.payload);
+    if (chunk.type == "PROP") reader.readProperty(chunk.payload);
+  }
+  return mesh;
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,284 @@
+// Lagrange cells in `.vtu` files, and hexahedra with 20 and 27 nodes in files of VTK.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/error.hpp>
+
+#include <io/formats/element_lists.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
+#include <io/formats/vtk_data_set.hpp>
+#include <io/formats/vtk_source.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// Lagrange hexahedra with so many nodes.
+CellKind lagrangeCells(std::size_t nodes) {
+  return {.corners = nodes,
+          .singular = "Lagrange hexahedron",
+          .plural = "Lagrange hexahedra",
+          .vtkType = kVtkLagrangeHexahedron};
+}
+
+/// Cells of order 2 that have types of their own; the nodes of the second kind are in the order of
+/// Lagrange cells, and the first kind lacks the last 7.
+constexpr std::array<CellKind, 2> kQuadratic = {{{.corners = 20,
+                                                  .singular = "hexahedron with 20 nodes",
+                                                  .plural = "hexahedra with 20 nodes",
+                                                  .vtkType = 25},
+                                                 {.corners = 27,
+                                                  .singular = "hexahedron with 27 nodes",
+                                                  .plural = "hexahedra with 27 nodes",
+                                                  .vtkType = 29}}};
+
+std::size_t countCells(const VtkSource& source, const CellKind& kind) {
+  return countVtkCells(source, kind, 0, source.cells);
+}
+
+/// The kind of such cells that a file without straight hexahedra has; null if there is none.
+const CellKind* quadraticKind(const VtkSource& source) {
+  if (countCells(source, kCellKind<8>) > 0) return nullptr;
+  for (const CellKind& kind : kQuadratic) {
+    if (countCells(source, kind) > 0) return &kind;
+  }
+  return nullptr;
+}
+
+/// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
+/// along x and y around the bottom, then around the top, then those along z, counter-clockwise
+/// (since VTK 9); faces across x, y, z, the lower of each pair first.
+std::vector<std::uint32_t> vtkNodeOrder(int order) {
+  auto edges = adjacency::kHexEdges;
+  std::swap(edges[10], edges[11]);  // where VTK 9 differs
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, 0, order));
+  for (const auto& [a, b] : edges) {
+    append(nodes, between(corner(a, 0, order), corner(b, 0, order), order - 1));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t first = axis == 0 ? 1 : 0;
+    const std::size_t second = axis == 2 ? 1 : 2;
+    for (const int side : {0, order}) {
+      for (int j = 1; j < order; ++j) {
+        for (int i = 1; i < order; ++i) {
+          Node node{};
+          node[axis] = side;
+          node[first] = i;
+          node[second] = j;
+          nodes.push_back(node);
+        }
+      }
+    }
+  }
+  for (int k = 1; k < order; ++k) {
+    for (int j = 1; j < order; ++j) {
+      for (int i = 1; i < order; ++i) nodes.push_back({i, j, k});
+    }
+  }
+  return placesOf(nodes, order);
+}
+
+/// The order of cells with (p + 1)^3 nodes; 0 if no p from 1 to 9 has as many.
+int orderOf(std::uint64_t nodes) {
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    const auto n = static_cast<std::uint64_t>(order) + 1;
+    if (n * n * n == nodes) return order;
+  }
+  return 0;
+}
+
+/// The order of the cells, which must be the same for all.
+int findOrder(const VtkSource& source) {
+  Array<std::int64_t> types(source.cells);
+  Array<std::int64_t> ends(source.cells);
+  source.copy(source.types, 0, types.size(), types.data());
+  source.copy(source.offsets, 0, ends.size(), ends.data());
+  std::int64_t nodes = 0;
+  for (std::size_t c = 0; c < types.size(); ++c) {
+    if (types[c] != kVtkLagrangeHexahedron) continue;
+    const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
+    // Readers of cells say what is wrong with corners that end before they begin, or too late.
+    const auto stored = static_cast<std::int64_t>(source.connectivity.count);
+    if (begin < 0 || ends[c] < begin || ends[c] > stored) break;
+    const std::int64_t count = ends[c] - begin;
+    const bool first = nodes == 0;
+    if (first && orderOf(static_cast<std::uint64_t>(count)) > 0) nodes = count;
+    if (count == nodes) continue;
+    source.fail(ErrorCode::FileUnsupported,
+                "cell " + std::to_string(c) + " has " + std::to_string(count) + " nodes" +
+                    (first ? ", but Lagrange hexahedra of an order p from 1 to 9, the same in all "
+                             "directions, have (p + 1)^3."
+                           : ", but the cells before it have " + std::to_string(nodes) +
+                                 ". Cells of different orders are not supported."),
+                Place{PlaceKind::Cell, c});
+  }
+  return nodes == 0 ? 1 : orderOf(static_cast<std::uint64_t>(nodes));
+}
+
+/// From the order of VTK to that of LagrangeMesh.
+void reorderNodes(LagrangeMesh& mesh, Stage& stage) {
+  constexpr std::size_t kGrain = std::size_t{1} << 10;
+  const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);
+  parallelBlocks(stage, mesh.cellCount(), kGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::vector<Index> row(places.size());
+                   for (std::size_t c = begin; c < end; ++c) {
+                     Index* const nodes = mesh.nodes.data() + c * row.size();
+                     std::copy_n(nodes, row.size(), row.begin());
+                     for (std::size_t k = 0; k < row.size(); ++k) nodes[places[k]] = row[k];
+                   }
+                 });
+}
+
+/// Renumbers tags of corners; others are no part of the straight mesh.
+void renumberFeatures(const std::vector<bool>& isCorner, const Array<Index>& newNumber,
+                      HexFeatures& features) {
+  const auto isNoCorner = [&isCorner](Index node) { return !isCorner[node]; };
+  std::erase_if(features.vertices,
+                [&](const FeatureVertex& feature) { return isNoCorner(feature.vertex); });
+  for (FeatureVertex& feature : features.vertices) feature.vertex = newNumber[feature.vertex];
+  const auto renumber = [&](auto& elements) {
+    std::erase_if(elements, [&](const auto& element) {
+      return std::ranges::any_of(element.vertices, isNoCorner);
+    });
+    for (auto& element : elements) {
+      for (Index& vertex : element.vertices) vertex = newNumber[vertex];
+    }
+  };
+  renumber(features.edges);
+  renumber(features.quads);
+}
+
+/// Renumbers nodes so that those at corners come first, otherwise in the order of the file.
+void putCornersFirst(LagrangeMesh& mesh) {
+  std::vector<bool> isCorner(mesh.points.size(), false);
+  const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);  // corners come first
+  const std::size_t perCell = mesh.nodesPerCell();
+  for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
+    for (std::size_t k = 0; k < 8; ++k) isCorner[mesh.nodes[c * perCell + places[k]]] = true;
+  }
+  mesh.vertexCount = static_cast<std::uint64_t>(std::count(isCorner.begin(), isCorner.end(), true));
+  Array<Index> newNumber(mesh.points.size());
+  Index nextCorner = 0;
+  auto nextOther = static_cast<Index>(mesh.vertexCount);
+  for (std::size_t v = 0; v < newNumber.size(); ++v) {
+    newNumber[v] = isCorner[v] ? nextCorner++ : nextOther++;
+  }
+  const auto moved = [&newNumber](const auto& from) {
+    auto to = from;
+    for (std::size_t v = 0; v < from.size(); ++v) to[newNumber[v]] = from[v];
+    return to;
+  };
+  mesh.points = moved(mesh.points);
+  mesh.generatorTet = moved(mesh.generatorTet);
+  mesh.generatorCorners = moved(mesh.generatorCorners);
+  for (Index& node : mesh.nodes) node = newNumber[node];
+  renumberFeatures(isCorner, newNumber, mesh.features);
+}
+
+/// From rows of 20 nodes to rows of 27.
+void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string& fileName) {
+  const std::size_t perCell = mesh.nodesPerCell();
+  Array<Index> rows(mesh.nodes.size() / nodesEach * perCell);
+  std::vector<std::size_t> cells(rows.size() / perCell);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    cells[c] = c;
+    std::copy_n(mesh.nodes.data() + nodesEach * c, nodesEach, rows.data() + perCell * c);
+  }
+  mesh.nodes = std::move(rows);
+  addMiddles(mesh.points, mesh.nodes, cells, fileName);
+}
+
+LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
+  source.requireIndexable();
+  LagrangeMesh mesh;
+  const bool isLagrange = countCells(source, lagrangeCells(0)) > 0;
+  const CellKind* const quadratic = isLagrange ? nullptr : quadraticKind(source);
+  mesh.order = quadratic != nullptr ? 2 : findOrder(source);
+  const CellKind wanted = quadratic != nullptr ? *quadratic : lagrangeCells(mesh.nodesPerCell());
+  if (source.cells == 0) failWithoutVtkCells(source, wanted);
+  mesh.points.resize(source.points);
+  readVtkPoints(source, mesh.points, stage);
+  Array<std::size_t> numbers;
+  const auto makeRoom = [&](std::size_t cells) {
+    mesh.nodes.resize(cells * wanted.corners);
+    return mesh.nodes.data();
+  };
+  readVtkCells(source, wanted, makeRoom, &numbers, stage);
+  source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
+  if (wanted.corners < mesh.nodesPerCell()) completeCells(mesh, wanted.corners, fileName);
+  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkHexFeatures(source);
+  fromVtkOrder(mesh, stage);
+  return mesh;
+}
+
+}  // namespace
+
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage) {
+  reorderNodes(mesh, stage);
+  putCornersFirst(mesh);
+}
+
+bool holdsLagrangeVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    const auto source = openVtuFile(input, stage);
+    return countCells(*source, lagrangeCells(0)) > 0 || quadraticKind(*source) != nullptr;
+  });
+}
+
+bool holdsCurvedVtkLegacy(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return quadraticKind(*openVtkLegacyFile(input, false, stage)) != nullptr;
+  });
+}
+
+LagrangeMesh readCurvedVtkLegacy(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    const auto source = openVtkLegacyFile(input, true, stage);
+    if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
+    return readLagrange(*source, input.name(), stage);
+  });
+}
+
+LagrangeMesh readLagrangeVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readLagrange(*openVtuFile(input, stage), input.name(), stage);
+  });
+}
+
+void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                      const WriteOptions& options, Context& context) {
+  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  const std::size_t perCell = mesh.nodesPerCell();
+  const std::vector<std::uint32_t> order = vtkNodeOrder(mesh.order);
+  const PointPiece nodes = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
+  VtkDataSet data(mesh.points.size(), mesh.cellCount());
+  data.curved = true;
+  addPoints(data, std::span(&nodes, 1));
+  addQuality(data, mesh, options, context);
+  addTags(data, mesh.features, mesh.regions);  // vertices are the first nodes
+  data.addComputed<std::int64_t>(VtkSection::Cells, "connectivity", mesh.nodes.size(),
+                                 [&](std::size_t i) {
+                                   const std::size_t cell = i / perCell;
+                                   return mesh.nodes[cell * perCell + order[i - cell * perCell]];
+                                 });
+  data.addComputed<std::int64_t>(VtkSection::Cells, "offsets", data.cells,
+                                 [perCell](std::size_t i) { return perCell * (i + 1); });
+  data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
+                                 [](std::size_t) { return kVtkLagrangeHexahedron; });
+  Stage stage(context, "write mesh");
+  writeVtkXml(output, data, false, stage);
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,223 @@
+// Data sets of VTK, to be written: of meshes, and of parts.
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <hexhex/error.hpp>
+
+#include <io/formats/vtk_data_set.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// A tag for each vertex, 0 without.
+/// @throws Error InvalidArgument for a vertex that does not exist
+Array<std::int32_t> vertexTags(const std::vector<FeatureVertex>& features, std::size_t vertices) {
+  Array<std::int32_t> tags(vertices);
+  std::fill(tags.begin(), tags.end(), 0);
+  for (const FeatureVertex& feature : features) {
+    if (feature.vertex < tags.size()) {
+      tags[feature.vertex] = feature.tag;
+      continue;
+    }
+    throw Error(ErrorCode::InvalidArgument, "A feature names vertex " +
+                                                std::to_string(feature.vertex) +
+                                                ", which is not one of the mesh.");
+  }
+  return tags;
+}
+
+/// Elements as rows of numbers: the vertices and the tag.
+template <class Feature>
+std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
+  std::vector<std::int64_t> rows;
+  for (const Feature& feature : features) {
+    rows.insert(rows.end(), feature.vertices.begin(), feature.vertices.end());
+    rows.push_back(feature.tag);
+  }
+  return rows;
+}
+
+/// Number of rows of an array that lists of points have all, or none of them.
+template <class Value>
+std::uint64_t rowsIn(const VtkDataSet& data, std::span<const PointPiece> lists,
+                     std::span<const Value> PointPiece::*values) {
+  const auto isEmpty = [values](const PointPiece& list) { return (list.*values).empty(); };
+  return std::all_of(lists.begin(), lists.end(), isEmpty) ? 0 : data.points;
+}
+
+/// What lists of points have in memory.
+/// @tparam T  the number type
+template <class T, class Value>
+void addLists(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
+              std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
+  data.add<T>(section, name, components, rowsIn(data, lists, values),
+              [lists, values](const VtkBytes& output) {
+                for (const PointPiece& list : lists) {
+                  output((list.*values).data(), (list.*values).size_bytes());
+                }
+              });
+}
+
+void addCoordinates(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addLists<double>(data, VtkSection::Points, "Points", 3, lists, &PointPiece::points);
+}
+
+void addGeneratorTets(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addLists<Index>(data, VtkSection::PointData, kVtkGeneratorTets, 1, lists,
+                  &PointPiece::generatorTet);
+}
+
+void addGeneratorCorners(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addLists<CornerSet>(data, VtkSection::PointData, kVtkGeneratorCorners, 1, lists,
+                      &PointPiece::generatorCorners);
+}
+
+void addGeneratorKinds(VtkDataSet& data, std::span<const PointPiece> lists) {
+  const auto kinds = [lists](const VtkBytes& output) {
+    for (const PointPiece& list : lists) {
+      writeValues<std::uint8_t>(output, list.generatorCorners.size(), [&](std::size_t i) {
+        return generatorKind(list.generatorCorners[i]);
+      });
+    }
+  };
+  data.add<std::uint8_t>(VtkSection::PointData, "generator_kind", 1,
+                         rowsIn(data, lists, &PointPiece::generatorCorners), kinds);
+}
+
+/// @tparam Corner  the number type in the file
+template <class Corner>
+void addCorners(VtkDataSet& data, const VtkPiece& piece, std::uint64_t count) {
+  data.add<Corner>(VtkSection::Cells, "connectivity", 1, count, [&piece](const VtkBytes& output) {
+    const auto write = [&output](const auto& corners) {
+      // Indices that fit have the same bytes with and without a sign.
+      if (sizeof(Corner) == sizeof(corners[0])) {
+        output(corners.data(), corners.size_bytes());
+      } else {
+        writeValues<Corner>(output, corners.size(), [&](std::size_t i) { return corners[i]; });
+      }
+    };
+    std::visit(write, piece.corners);
+  });
+}
+
+/// @tparam End  the number type in the file
+template <class End>
+void addEnds(VtkDataSet& data, const VtkPiece& piece, std::size_t corners) {
+  data.add<End>(
+      VtkSection::Cells, "offsets", 1, data.cells, [&piece, corners](const VtkBytes& output) {
+        writeValues<End>(output, piece.cells,
+                         [&](std::size_t i) { return corners * (piece.firstCell + i + 1); });
+      });
+}
+
+template <class Feature>
+void addRows(VtkDataSet& data, std::string_view name, const std::vector<Feature>& features) {
+  if (features.empty()) return;
+  data.addOwn(VtkSection::FieldData, name, rowsOf(features), features.front().vertices.size() + 1);
+}
+
+template <class AnyFeatures, class Face>
+void addTagsOf(VtkDataSet& data, const AnyFeatures& features, std::string_view faceTags,
+               const std::vector<Face>& faces, std::span<const std::int32_t> regions) {
+  addRows(data, kVtkEdgeTags, features.edges);
+  addRows(data, faceTags, faces);
+  if (!features.vertices.empty()) {
+    data.addOwn(VtkSection::PointData, kVtkVertexTags, vertexTags(features.vertices, data.points));
+  }
+  if (!regions.empty()) data.add(VtkSection::CellData, kVtkRegions, regions);
+}
+
+}  // namespace
+
+VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_t cells,
+                       std::size_t corners, std::uint8_t type) {
+  VtkDataSet data(points, cells);
+  const std::span lists(&piece.vertices, 1);
+  if (!piece.vertices.generatorCorners.empty()) {
+    addGeneratorKinds(data, lists);
+    addGeneratorCorners(data, lists);
+  }
+  if (!piece.vertices.generatorTet.empty()) addGeneratorTets(data, lists);
+  addCoordinates(data, lists);
+  // 32-bit numbers are signed, since every reader takes those.
+  constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
+  const auto addCornersAs =
+      points > kLargestInt32 ? addCorners<std::int64_t> : addCorners<std::int32_t>;
+  addCornersAs(data, piece, corners * cells);
+  const auto addEndsAs =
+      cells > kLargestInt32 / corners ? addEnds<std::int64_t> : addEnds<std::int32_t>;
+  addEndsAs(data, piece, corners);
+  data.add<std::uint8_t>(
+      VtkSection::Cells, "types", 1, cells, [&piece, type](const VtkBytes& output) {
+        writeValues<std::uint8_t>(output, piece.cells, [type](std::size_t) { return type; });
+      });
+  return data;
+}
+
+void addPoints(VtkDataSet& data, std::span<const PointPiece> lists) {
+  addCoordinates(data, lists);
+  addGeneratorTets(data, lists);
+  addGeneratorCorners(data, lists);
+  addGeneratorKinds(data, lists);
+}
+
+void addTags(VtkDataSet& data, const HexFeatures& features, std::span<const std::int32_t> regions) {
+  addTagsOf(data, features, kVtkQuadTags, features.quads, regions);
+}
+
+void addTags(VtkDataSet& data, const Features& features, std::span<const std::int32_t> regions) {
+  addTagsOf(data, features, kVtkTriangleTags, features.faces, regions);
+}
+
+VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece& piece,
+                      Context& context) {
+  piece.vertices = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
+  piece.setCells(0, std::span<const Hex>(mesh.cells));
+  VtkDataSet data = meshDataSet(piece, mesh.points.size(), mesh.cells.size(),
+                                std::tuple_size_v<Hex>, kVtkHexahedron);
+  addQuality(data, mesh, options, context);
+  addTags(data, mesh.features, mesh.regions);
+  return data;
+}
+
+VtkDataSet partDataSet(const MeshPart& part, const PartsInfo& info, VtkPiece& piece) {
+  const HexMesh& mesh = part.mesh;
+  const std::size_t points = mesh.points.size();
+  const std::size_t cells = mesh.cells.size();
+  piece.vertices = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
+  piece.setCells(0, std::span<const Hex>(mesh.cells));
+  VtkDataSet data = meshDataSet(piece, points, cells, std::tuple_size_v<Hex>, kVtkHexahedron);
+  constexpr VtkSection kPoints = VtkSection::PointData;
+  constexpr VtkSection kCells = VtkSection::CellData;
+  if (mesh.generatorCorners.empty()) {
+    data.addOwn(kPoints, "generator_kind", std::vector<std::uint8_t>(points, 0));
+    data.addOwn(kPoints, kVtkGeneratorCorners, std::vector<std::uint8_t>(points, 0));
+    data.addOwn(kPoints, kVtkGeneratorTets, std::vector<std::uint32_t>(points, 0));
+  }
+  addTags(data, mesh.features, {});
+  if (!info.vertexTags.empty() && mesh.features.vertices.empty()) {
+    data.addOwn(kPoints, kVtkVertexTags, std::vector<std::int32_t>(points, 0));
+  }
+  if (!info.regions.empty()) {
+    data.add(kCells, kVtkRegions, std::span<const std::int32_t>(mesh.regions));
+  }
+  const auto number = [&data](VtkSection section, std::string_view name,
+                              const Array<std::uint64_t>& numbers) {
+    data.addComputed<std::int64_t>(section, name, numbers.size(),
+                                   [&numbers](std::size_t i) { return numbers[i]; });
+  };
+  number(kPoints, kVtkGlobalPoints, part.globalPoints);
+  number(kCells, kVtkGlobalCells, part.globalCells);
+  if (info.ghostLayers == 0) return data;
+  data.addComputed<std::uint8_t>(kPoints, kVtkGhosts, points, [&part](std::size_t i) {
+    return part.pointOwners[i] == part.part ? 0 : kVtkDuplicate;
+  });
+  data.addComputed<std::uint8_t>(kCells, kVtkGhosts, cells, [&part](std::size_t i) {
+    return i < part.ownCells ? 0 : kVtkDuplicate;
+  });
+  return data;
+}
+
+}  // namespace hexhex::io

@@ -1,0 +1,225 @@
+// A data set of VTK as those who write one describe it: arrays of points, cells, and of the whole,
+// each with its name, its type and a function that writes its bytes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <hexhex/context.hpp>
+#include <hexhex/io.hpp>
+#include <hexhex/parts.hpp>
+#include <hexhex/quality.hpp>
+#include <hexhex/stream.hpp>
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/output_file.hpp>
+
+namespace hexhex::io {
+
+// VTK's types of cells.
+inline constexpr std::uint8_t kVtkLine = 3;
+inline constexpr std::uint8_t kVtkPolygon = 7;
+inline constexpr std::uint8_t kVtkTet = 10;
+inline constexpr std::uint8_t kVtkHexahedron = 12;
+inline constexpr std::uint8_t kVtkLagrangeHexahedron = 72;
+
+/// Where arrays belong, in the order of a file. Cells are those of an unstructured grid, Lines and
+/// Polys those of PolyData.
+enum class VtkSection : std::uint8_t {
+  FieldData,
+  PointData,
+  CellData,
+  Points,
+  Lines,
+  Polys,
+  Cells
+};
+
+// Names of arrays, for readers and writers.
+inline constexpr std::string_view kVtkGeneratorTets = "generator_tet";
+inline constexpr std::string_view kVtkGeneratorCorners = "generator_corners";
+inline constexpr std::string_view kVtkVertexTags = "feature_vertex";
+inline constexpr std::string_view kVtkEdgeTags = "feature_edges";
+inline constexpr std::string_view kVtkTriangleTags = "feature_triangles";
+inline constexpr std::string_view kVtkQuadTags = "feature_quads";
+inline constexpr std::string_view kVtkRegions = "region";
+// Those of VTK's own.
+inline constexpr std::string_view kVtkGlobalPoints = "GlobalPointIds";
+inline constexpr std::string_view kVtkGlobalCells = "GlobalCellIds";
+inline constexpr std::string_view kVtkGhosts = "vtkGhostType";
+
+/// Takes bytes of an array, front to back.
+using VtkBytes = std::function<void(const void* bytes, std::size_t size)>;
+
+/// Writes valueOf(i) for every i in [0, count).
+template <class T, class F>
+void writeValues(const VtkBytes& output, std::size_t count, const F& valueOf) {
+  std::array<T, (1U << 14U) / sizeof(T)> values;  // enough to keep calls from showing
+  for (std::size_t begin = 0; begin < count; begin += values.size()) {
+    const std::size_t size = std::min(values.size(), count - begin);
+    for (std::size_t i = 0; i < size; ++i) values[i] = static_cast<T>(valueOf(begin + i));
+    output(values.data(), size * sizeof(T));
+  }
+}
+
+/// One array. Tuples in a row are `components` numbers of the type.
+struct VtkArray {
+  VtkSection section = VtkSection::Points;
+  std::string_view name;
+  std::string_view type;  ///< VTK's name of the number type
+  std::size_t components = 1;
+  std::uint64_t rows = 0;
+  std::uint64_t bytes = 0;
+  /// All bytes of the array, or those of its next rows where the data set comes in pieces.
+  std::function<void(const VtkBytes&)> write;
+};
+
+/// Points and cells with arrays. What arrays are made from must outlive the data set.
+class VtkDataSet {
+ public:
+  /// @param elements  the section of the cells' corners: says which kind of data set it is
+  VtkDataSet(std::uint64_t points_, std::uint64_t cells_, VtkSection elements_ = VtkSection::Cells)
+      : points(points_), cells(cells_), elements(elements_) {}
+
+  std::uint64_t points;
+  std::uint64_t cells;
+  VtkSection elements;
+  /// Arcs, patches or cells of higher order. Their files are of version 2.2: from 2.1 on, VTK takes
+  /// the edges of higher-order hexahedra in the order of VTK 9.
+  bool curved = false;
+
+  /// In the order of their sections.
+  [[nodiscard]] const std::vector<VtkArray>& arrays() const noexcept { return arrays_; }
+
+  template <class T>
+  void add(VtkSection section, std::string_view name, std::size_t components, std::uint64_t rows,
+           std::function<void(const VtkBytes&)> write) {
+    const auto behind =
+        std::find_if(arrays_.begin(), arrays_.end(),
+                     [section](const VtkArray& array) { return array.section > section; });
+    arrays_.insert(behind, {section, name, typeName<T>(), components, rows,
+                            rows * components * sizeof(T), std::move(write)});
+  }
+  /// Numbers as they lie in memory.
+  template <class T>
+  void add(VtkSection section, std::string_view name, std::span<const T> values,
+           std::size_t components = 1) {
+    add<T>(section, name, components, values.size() / components,
+           [values](const VtkBytes& output) { output(values.data(), values.size_bytes()); });
+  }
+  /// The same of vectors.
+  template <class T, std::size_t n>
+  void add(VtkSection section, std::string_view name, std::span<const std::array<T, n>> values) {
+    add<T>(section, name, n, values.size(),
+           [values](const VtkBytes& output) { output(values.data(), values.size_bytes()); });
+  }
+  /// Numbers that the data set keeps.
+  template <class Numbers>
+  void addOwn(VtkSection section, std::string_view name, Numbers&& numbers,
+              std::size_t components = 1) {
+    using T = typename std::remove_cvref_t<Numbers>::value_type;
+    const std::uint64_t rows = numbers.size() / components;  // before the numbers move
+    add<T>(section, name, components, rows,
+           [own = std::forward<Numbers>(numbers)](const VtkBytes& output) {
+             output(own.data(), own.size() * sizeof(T));
+           });
+  }
+  /// valueOf(i) for every i in [0, count).
+  template <class T, class F>
+  void addComputed(VtkSection section, std::string_view name, std::uint64_t count, F valueOf) {
+    add<T>(section, name, 1, count, [count, valueOf = std::move(valueOf)](const VtkBytes& output) {
+      writeValues<T>(output, count, valueOf);
+    });
+  }
+
+ private:
+  template <class T>
+  static constexpr std::string_view typeName() {
+    if constexpr (std::same_as<T, double>) return "Float64";
+    if constexpr (std::same_as<T, std::uint8_t>) return "UInt8";
+    if constexpr (std::same_as<T, std::int32_t>) return "Int32";
+    if constexpr (std::same_as<T, std::uint32_t>) return "UInt32";
+    if constexpr (std::same_as<T, std::int64_t>) return "Int64";
+  }
+
+  std::vector<VtkArray> arrays_;
+};
+
+/// Vertices and cells of a mesh, all or some of them: what the arrays of meshDataSet() write next.
+struct VtkPiece {
+  PointPiece vertices = {};
+  std::uint64_t firstCell = 0;
+  std::size_t cells = 0;
+  std::variant<std::span<const Index>, std::span<const std::uint64_t>> corners = {};
+
+  template <class Vertex, std::size_t n>
+  void setCells(std::uint64_t first, std::span<const std::array<Vertex, n>> list) {
+    firstCell = first;
+    cells = list.size();
+    corners = std::span(list.empty() ? nullptr : list.front().data(), n * list.size());
+  }
+};
+
+/// Points, cells of one type and, where pieces have them, generators.
+/// @param piece    outlives the data set
+/// @param corners  of each cell
+[[nodiscard]] VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points,
+                                     std::uint64_t cells, std::size_t corners, std::uint8_t type);
+
+/// Adds points and the arrays generator_tet, generator_corners and generator_kind.
+/// @param lists  of points, one behind the other; outlive the data set
+void addPoints(VtkDataSet& data, std::span<const PointPiece> lists);
+
+/// Adds the cell array scaled_jacobian: what the options say or, if that is nothing, what is
+/// computed.
+template <class Mesh>
+void addQuality(VtkDataSet& data, const Mesh& mesh, const WriteOptions& options, Context& context) {
+  constexpr std::string_view kName = "scaled_jacobian";
+  if (!options.scaledJacobians.empty()) {
+    return data.add(VtkSection::CellData, kName, options.scaledJacobians);
+  }
+  data.addOwn(VtkSection::CellData, kName, scaledJacobians(mesh, context));
+}
+
+/// Adds tags and regions: the point array feature_vertex (Int32), the field arrays feature_edges,
+/// feature_triangles and feature_quads (Int64: vertices and the tag), and the cell array region
+/// (Int32); each if there are any.
+/// @param regions  outlive the data set
+/// @throws Error InvalidArgument for a tagged vertex that does not exist
+void addTags(VtkDataSet& data, const HexFeatures& features, std::span<const std::int32_t> regions);
+void addTags(VtkDataSet& data, const Features& features, std::span<const std::int32_t> regions);
+
+/// What `.vtu` and `.vtkhdf` hold of a hex mesh, as writeVtu() describes it.
+/// @param piece  outlives the data set, as the mesh and the options do
+[[nodiscard]] VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options,
+                                    VtkPiece& piece, Context& context);
+
+/// Writes and commits a file of VTK's XML, array by array. One thread does it, straight from
+/// memory: that is as fast as the file system takes bytes, which lets one thread at a time write to
+/// a file. Blocks of compressed arrays come from all threads; the bytes do not depend on their
+/// number.
+/// @param compress  with zlib, which is there; the output has positions then
+void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage);
+
+// A part as a data set of VTK.
+
+/// VTK's mark of points and cells that another part owns.
+inline constexpr std::uint8_t kVtkDuplicate = 1;
+
+/// Points, generators, tags, regions, global numbers and, if there are ghosts in the mesh, which
+/// points and cells of the part belong to others. All parts have the same arrays of points and
+/// cells. Empty arrays of tags are left out.
+/// @param part, piece  outlive the data set
+[[nodiscard]] VtkDataSet partDataSet(const MeshPart& part, const PartsInfo& info, VtkPiece& piece);
+
+}  // namespace hexhex::io

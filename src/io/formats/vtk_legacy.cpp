@@ -1,0 +1,757 @@
+// Legacy `.vtk` files (see formats.hpp): reads their sections, in any order, and up to version 4
+// piece by piece; and writes them, a mesh or map in memory like a mesh of one piece.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/bytes.hpp>
+#include <io/core/cell_counts.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/line_writer.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/plain_mesh.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/vtk_source.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// VTK writes characters of names that separate tokens as "%20".
+std::string decodedVtkName(std::string_view token) {
+  std::string name;
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    unsigned code = 0;
+    const char* const digits = token.data() + i + 1;
+    const bool coded = token[i] == '%' && token.size() - i > 2 &&
+                       std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
+    name += coded ? static_cast<char>(code) : token[i];
+    if (coded) i += 2;
+  }
+  return name;
+}
+
+bool isReal(VtkScalar scalar) { return isOf<float>(scalar) || isOf<double>(scalar); }
+
+struct NumberType {
+  std::string_view name;
+  VtkScalar scalar;
+};
+
+// The first three are those that a file need not tell. Bits and strings are no numbers, and never
+// wanted.
+constexpr std::array<NumberType, 16> kTypes = {{{"int", std::int32_t{}},
+                                                {"float", float{}},
+                                                {"unsigned_char", std::uint8_t{}},
+                                                {"double", double{}},
+                                                {"vtktypeint64", std::int64_t{}},
+                                                {"vtkidtype", std::int32_t{}},
+                                                {"vtktypeint32", std::int32_t{}},
+                                                {"long", std::int64_t{}},
+                                                {"unsigned_int", std::uint32_t{}},
+                                                {"unsigned_long", std::uint64_t{}},
+                                                {"vtktypeuint64", std::uint64_t{}},
+                                                {"short", std::int16_t{}},
+                                                {"unsigned_short", std::uint16_t{}},
+                                                {"char", std::int8_t{}},
+                                                {"bit", std::uint8_t{}},
+                                                {"string", std::uint8_t{}}}};
+
+/// An open `.vtk` file. Functions throw Error FileSyntax, FileUnsupported, NotFinite or TooLarge,
+/// with the line.
+class VtkLegacyFile final : public VtkSource {
+ public:
+  VtkLegacyFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
+      : VtkSource(std::move(bytes), fileName), stage_(stage), scanner_(text(), fileName) {
+    readHead();
+    while (!isBehindMesh() && readOn()) {
+    }
+    require(hasPoints_, "POINTS");
+    require(hasCells_, "CELLS");
+    require(hasTypes_, "CELL_TYPES");
+    if (types.count == cells) return;
+    scanner_.fail(ErrorCode::FileSyntax, "the file has " + std::to_string(cells) + " cells but " +
+                                             std::to_string(types.count) + " types of cells.");
+  }
+
+  /// Reads the regions of cells if they follow as this library writes them.
+  void readRegions() {
+    const std::string begin =
+        "CELL_DATA " + std::to_string(cells) + "\nSCALARS region int 1\nLOOKUP_TABLE default";
+    if (!scanner_.skipSpace() || !text().substr(scanner_.position()).starts_with(begin)) return;
+    const std::size_t numbers = scanner_.position() + begin.size();
+    arrays.push_back({VtkSection::CellData, std::string(kVtkRegions), VtkNumbers::Integers, 1,
+                      false, [this, numbers](VtkNumbers, std::optional<std::uint64_t>) {
+                        scanner_.moveTo(numbers);
+                        return readIntegers(cells, kTypes[0], "a region");
+                      }});
+  }
+
+  /// Reads the next section, array, or beginning of several arrays.
+  bool readOn() override {
+    if (fieldArrays_ > 0) {
+      readFieldArray();
+      return true;
+    }
+    if (!scanner_.skipSpace()) return false;
+    const std::string keyword = readKeyword();
+    if (isBehindMesh()) {
+      readAttribute(keyword);
+    } else {
+      readSection(keyword);
+    }
+    return true;
+  }
+
+ private:
+  void readHead() {
+    constexpr std::string_view kMagic = "# vtk DataFile Version ";
+    if (!scanner_.takeLine().starts_with(kMagic)) {
+      scanner_.moveTo(0);
+      scanner_.fail(
+          ErrorCode::FileSyntax,
+          "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
+    }
+    static_cast<void>(scanner_.takeLine());  // a title, which may be anything
+    const std::string encoding = readKeyword();
+    binary_ = encoding == "binary";
+    if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");
+    if (readKeyword() != "dataset") scanner_.failToken("\"DATASET\"");
+    if (readKeyword() != "unstructured_grid") {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "the data set must be an UNSTRUCTURED_GRID, found " +
+                        quoted(scanner_.currentToken()) + ".");
+    }
+    if (!binary_) index_.emplace(text(), stage_);
+  }
+
+  /// Whether only arrays follow.
+  [[nodiscard]] bool isBehindMesh() const { return hasPoints_ && hasCells_ && hasTypes_; }
+
+  void readSection(const std::string& keyword) {
+    if (keyword == "points") {
+      beginSection(hasPoints_, "POINTS");
+      readPoints();
+    } else if (keyword == "cells") {
+      beginSection(hasCells_, "CELLS");
+      readCells();
+    } else if (keyword == "cell_types") {
+      beginSection(hasTypes_, "CELL_TYPES");
+      types =
+          readIntegers(scanner_.readCount("types of cells", 2), kTypes[0], "the type of a cell");
+    } else if (keyword == "field") {
+      beginField();
+    } else if (keyword == "metadata") {
+      skipMetadata();
+    } else {
+      scanner_.failToken("POINTS, CELLS or CELL_TYPES");
+    }
+  }
+
+  /// Notes that a section is there, unless it was before.
+  void beginSection(bool& present, std::string_view keyword) {
+    scanner_.failIfRepeated(present, keyword);
+    present = true;
+  }
+
+  void require(bool present, std::string_view keyword) const {
+    if (present) return;
+    scanner_.fail(ErrorCode::FileSyntax, "the file ends without the section " +
+                                             std::string(keyword) + ": it is incomplete.");
+  }
+
+  void readPoints() {
+    points = scanner_.readCount("points", 6);
+    const NumberType& type = readType();
+    if (!isReal(type.scalar)) {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "the coordinates of points must be float or double.");
+    }
+    coordinates = readNumbers(3 * points, type, VtkNumbers::Reals, [](std::size_t i) {
+      return NumberName("a coordinate of ", "point", i / 3);
+    });
+  }
+
+  void readCells() {
+    // Counted as numbers of one digit or four bytes.
+    const std::size_t first = scanner_.readCount("cells", 2);
+    const std::size_t second = scanner_.readCount("numbers of cells", 2);
+    const std::size_t before = scanner_.position();
+    if (readKeyword() != "offsets") {
+      scanner_.moveTo(before);
+      cells = first;
+      return readOldCells(second);
+    }
+    // From version 5 on: where cells begin and the last one ends, and all corners.
+    cells = std::max<std::size_t>(first, 1) - 1;
+    offsets = readIntegers(first, readType(), "an offset of a cell");
+    if (readKeyword() != "connectivity") scanner_.failToken("\"CONNECTIVITY\"");
+    connectivity = readIntegers(second, readType(), "a corner of a cell");
+  }
+
+  /// Up to version 4: each cell is its number of corners, and its corners.
+  void readOldCells(std::size_t numbers) {
+    gap = 1;
+    connectivity = readIntegers(numbers, kTypes[0], "a corner of a cell");
+    const auto numberAt = [&](std::size_t i) {
+      if (binary_)
+        return std::int64_t{loadBig<std::int32_t>(text().data() + connectivity.position + 4 * i)};
+      std::int64_t number = 0;
+      copy(connectivity, i, 1, &number);
+      return number;
+    };
+    // Usually all cells are alike.
+    const std::size_t each = cells > 0 ? numbers / cells : 0;
+    const auto hasAsMany = [&](std::size_t cell) {
+      return numberAt(each * cell) == static_cast<std::int64_t>(each - 1);
+    };
+    if (each > 0 && each * cells == numbers && firstFault(stage_, cells, hasAsMany) == cells) {
+      stride = each;
+      return;
+    }
+    offsets = textColumn(VtkNumbers::Integers, cells + 1);
+    std::size_t place = 0;
+    for (std::size_t cell = 0; cell <= cells; ++cell) {
+      const auto offset = static_cast<std::int64_t>(place);
+      std::memcpy(offsets.decoded.data() + cell * sizeof(offset), &offset, sizeof(offset));
+      if (cell == cells) break;
+      const std::int64_t count = place < numbers ? numberAt(place) : -1;
+      if (count < 0 || static_cast<std::uint64_t>(count) > numbers - place - 1) {
+        scanner_.fail(ErrorCode::FileSyntax,
+                      "cell " + std::to_string(cell) + " of " + std::to_string(cells) +
+                          " goes beyond the " + std::to_string(numbers) +
+                          " numbers that the section CELLS announces.",
+                      Place{PlaceKind::Cell, cell});
+      }
+      place += 1 + static_cast<std::size_t>(count);
+    }
+  }
+
+  /// Reads one array, or the beginning of several.
+  void readAttribute(const std::string& keyword) {
+    if (keyword == "metadata") return skipMetadata();
+    if (keyword == "field") return beginField();
+    if (keyword == "point_data" || keyword == "cell_data")
+      return beginArrays(keyword == "cell_data");
+    const std::string_view name = scanner_.readToken();
+    const auto array = [&](std::size_t components, const NumberType& type) {
+      readArray(name, components, elements(), type);
+    };
+    const NumberType& colour = binary_ ? kTypes[2] : kTypes[1];
+    if (keyword == "scalars") return readScalars(name);
+    if (keyword == "vectors" || keyword == "normals") return array(3, readType());
+    if (keyword == "tensors") return array(9, readType());
+    if (keyword == "tensors6") return array(6, readType());
+    if (keyword == "global_ids" || keyword == "pedigree_ids") return array(1, readType());
+    if (keyword == "texture_coordinates") {
+      const std::size_t components = scanner_.readCount("components", 1);
+      return array(components, readType());
+    }
+    if (keyword == "color_scalars") return array(scanner_.readCount("components", 1), colour);
+    if (keyword == "lookup_table") return skipNumbers(4 * scanner_.readCount("colours", 4), colour);
+    scanner_.fail(ErrorCode::FileSyntax, "expected a keyword of point or cell data, found " +
+                                             quoted(std::string_view(keyword)) + ".");
+  }
+
+  void beginArrays(bool ofCells) {
+    ofCells_ = ofCells;
+    const std::int64_t count = scanner_.integer("the number of values");
+    if (count >= 0 && static_cast<std::uint64_t>(count) == elements()) return;
+    scanner_.fail(ErrorCode::FileSyntax,
+                  "the arrays are for " + std::to_string(count) + (ofCells ? " cells" : " points") +
+                      ", but the file has " + std::to_string(elements()) + ".");
+  }
+
+  /// "SCALARS name type components", where the last may be missing, and the name of a table of
+  /// colours.
+  void readScalars(std::string_view name) {
+    constexpr std::string_view kTable = "lookup_table";
+    const NumberType& type = readType();
+    std::size_t components = 1;
+    if (lowerCase(scanner_.peekToken()) != kTable) components = scanner_.readCount("components", 1);
+    if (lowerCase(scanner_.peekToken()) == kTable) {
+      scanner_.readToken();
+      scanner_.readToken();
+    }
+    readArray(name, components, elements(), type);
+  }
+
+  void beginField() {
+    scanner_.readToken();
+    fieldArrays_ = scanner_.readCount("arrays", 8);
+  }
+
+  void readFieldArray() {
+    --fieldArrays_;
+    if (lowerCase(scanner_.peekToken()) == "metadata") {
+      scanner_.readToken();
+      skipMetadata();
+    }
+    const std::string_view name = scanner_.readToken();
+    const std::size_t components = scanner_.readCount("components", 1);
+    const std::size_t tuples = scanner_.readCount("tuples", 1);
+    readArray(name, components, tuples, readType());
+  }
+
+  /// Skips the numbers of an array. In front of the mesh's sections, arrays belong to nothing.
+  void readArray(std::string_view name, std::size_t components, std::size_t tuples,
+                 const NumberType& type) {
+    if (components > 0 && tuples > text().size() / components) {
+      scanner_.fail(ErrorCode::FileSyntax, "an array has more numbers than the file has bytes.");
+    }
+    see(name, ofCells_, components);
+    const std::size_t count = components * tuples;
+    const std::size_t begin = scanner_.position();
+    const bool isNumbers = type.name != "string" && type.name != "bit";
+    if (isBehindMesh() && tuples == elements() && isNumbers) {
+      arrays.push_back({ofCells_ ? VtkSection::CellData : VtkSection::PointData,
+                        decodedVtkName(name),
+                        isReal(type.scalar) ? VtkNumbers::Reals : VtkNumbers::Integers, components,
+                        false, [this, begin, count, &type](VtkNumbers numbers, auto&&) {
+                          scanner_.moveTo(begin);
+                          return readNumbers(count, type, numbers,
+                                             [](std::size_t) { return "a number of an array"; });
+                        }});
+    }
+    skipNumbers(count, type);
+  }
+
+  /// Reads a word that may come in any letter case, in lower case.
+  std::string readKeyword() { return lowerCase(scanner_.readToken()); }
+
+  const NumberType& readType() {
+    const std::string name = readKeyword();
+    const auto* const found = std::find_if(
+        kTypes.begin(), kTypes.end(), [&](const NumberType& type) { return type.name == name; });
+    if (found != kTypes.end()) return *found;
+    scanner_.failToken("a type of numbers, e.g. double");
+  }
+
+  /// Skips lines up to an empty one.
+  void skipMetadata() {
+    static_cast<void>(scanner_.takeLine());
+    while (scanner_.position() < text().size()) {
+      const std::string_view line = scanner_.takeLine();
+      if (line.empty() || line == "\r") return;
+    }
+  }
+
+  /// Goes on behind the bytes of so many numbers, which begin on the next line.
+  /// @return where they begin
+  std::size_t takeBytes(std::size_t count, std::size_t bytesEach) {
+    scanner_.skipLineBreak();
+    const std::size_t begin = scanner_.position();
+    const std::size_t left = text().size() - begin;
+    if (count > left / bytesEach) {
+      scanner_.fail(ErrorCode::FileSyntax,
+                    std::to_string(count) + " numbers of " + std::to_string(bytesEach) +
+                        " bytes are announced, but only " + std::to_string(left) +
+                        " bytes are left: the file is incomplete.");
+    }
+    scanner_.moveTo(begin + count * bytesEach);
+    return begin;
+  }
+
+  /// @param what  for messages: what(i) is what number i should be
+  template <class What>
+  VtkColumn readNumbers(std::size_t count, const NumberType& type, VtkNumbers numbers,
+                        const What& what) {
+    VtkColumn column;
+    if (binary_) {
+      column.scalar = type.scalar;
+      column.bigEndian = true;
+      column.count = count;
+      column.position = takeBytes(count, bytesOf(type.scalar));
+      return column;
+    }
+    column = textColumn(numbers, count);
+    readElements(scanner_, &*index_, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
+      readVtkNumber(scanner, numbers, column, i, what(i));
+    });
+    return column;
+  }
+
+  VtkColumn readIntegers(std::size_t count, const NumberType& type, const char* what) {
+    if (!isOf<std::int32_t>(type.scalar) && !isOf<std::int64_t>(type.scalar)) {
+      scanner_.fail(ErrorCode::FileUnsupported, std::string(what) + " cannot be of type " +
+                                                    std::string(type.name) +
+                                                    ", only int or vtktypeint64.");
+    }
+    return readNumbers(count, type, VtkNumbers::Integers, [what](std::size_t) { return what; });
+  }
+
+  void skipNumbers(std::size_t count, const NumberType& type) {
+    if (!binary_) {
+      scanner_.moveTo(index_->find(index_->countBefore(scanner_.position()) + count));
+      return;
+    }
+    if (type.name == "string") {
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "an array of strings has no known length in bytes; save the file without it.");
+    }
+    static_cast<void>(type.name == "bit" ? takeBytes((count + 7) / 8, 1)
+                                         : takeBytes(count, bytesOf(type.scalar)));
+  }
+
+  /// Number of points or cells, whichever arrays belong to.
+  [[nodiscard]] std::size_t elements() const { return ofCells_ ? cells : points; }
+
+  Stage& stage_;
+  TextScanner scanner_;
+  std::optional<TokenIndex> index_;  ///< only of text
+  bool binary_ = false;
+  bool hasPoints_ = false;
+  bool hasCells_ = false;
+  bool hasTypes_ = false;
+  bool ofCells_ = false;         ///< whether arrays belong to cells or to points
+  std::size_t fieldArrays_ = 0;  ///< that follow in the field that was begun
+};
+
+}  // namespace
+
+std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions, Stage& stage) {
+  VtkFileBytes bytes;
+  bytes.text = input.text(bytes.room, stage, "#");
+  auto file = std::make_unique<VtkLegacyFile>(std::move(bytes), input.name(), stage);
+  file->counts = input.counts();
+  if (withRegions) file->readRegions();
+  return file;
+}
+
+namespace {
+
+// Legacy `.vtk` files up to version 4 piece by piece.
+
+/// Looks for the sections POINTS, CELLS and CELL_TYPES, in this order, and nothing but hexahedra.
+/// Arrays may follow.
+class VtkPieces {
+ public:
+  VtkPieces(const InputFile& file, const std::string& name, Context& context, bool isText)
+      : file_(file),
+        context_(context),
+        text_(file, name, context, isText ? TextWindow::kText : TextWindow::kWords) {
+    layout.isText = isText;
+  }
+
+  /// @return whether the file is of the form
+  [[nodiscard]] bool look() {
+    constexpr std::uint64_t kNumbers = 1 + 8;  // of a cell: how many corners it has, and these
+    if (!lookAtHead() || !isNext("points") || !takeCount(layout.points.count)) return false;
+    const std::string type = lowerCase(text_.token());
+    if (type != "float" && type != "double") return false;
+    layout.coordinateBytes = type == "float" ? 4 : 8;
+    if (!skip(layout.points, 3, layout.coordinateBytes) || !isNext("cells") ||
+        !takeCount(layout.cells.count) || text_.count() != kNumbers * layout.cells.count) {
+      return false;
+    }
+    return skip(layout.cells, kNumbers, 4) && isNext("cell_types") &&
+           text_.count() == layout.cells.count && areHexahedra();
+  }
+
+  PlainLayout layout{
+      .isBigEndian = true, .firstVertex = 0, .inFrontOfCell = 1, .tellsCorners = true};
+
+ private:
+  /// Reads everything up to the first section.
+  [[nodiscard]] bool lookAtHead() {
+    const std::string magic = text_.takeLine();
+    constexpr std::string_view kMagic = "# vtk DataFile Version ";
+    // From version 5 on, cells are stored in another way.
+    if (!magic.starts_with(kMagic) || magic.size() == kMagic.size() || magic[kMagic.size()] < '1' ||
+        magic[kMagic.size()] > '4') {
+      return false;
+    }
+    static_cast<void>(text_.takeLine());  // a title, which may be anything
+    return isNext(layout.isText ? "ascii" : "binary") && isNext("dataset") &&
+           isNext("unstructured_grid");
+  }
+  [[nodiscard]] bool isNext(std::string_view keyword) {
+    return lowerCase(text_.token()) == keyword;
+  }
+  [[nodiscard]] bool takeCount(std::uint64_t& to) {
+    const std::optional<std::uint64_t> found = text_.count();
+    to = found.value_or(0);
+    return found.has_value();
+  }
+  /// Goes behind a run, of which each element has so many numbers. Bytes begin on the next line.
+  [[nodiscard]] bool skip(PlainRun& run, std::uint64_t numbersEach, std::uint64_t bytesEach) {
+    const std::uint64_t numbers = numbersEach * run.count;
+    if (!layout.isText && !text_.skipLineBreak()) return false;
+    run.position = text_.position();
+    if (layout.isText) return text_.skip(numbers);
+    if (numbers > (file_.size() - run.position) / bytesEach) return false;
+    text_.moveTo(run.position + numbers * bytesEach);
+    return true;
+  }
+
+  [[nodiscard]] bool areHexahedra() {
+    PlainRun types{0, layout.cells.count};
+    if (!layout.isText && !skip(types, 1, 4)) return false;
+    std::atomic<bool> all{true};
+    Array<char> bytes;
+    for (std::uint64_t first = 0; first < types.count && all; first += kPieceElements) {
+      const std::size_t count = std::min<std::uint64_t>(kPieceElements, types.count - first);
+      if (layout.isText) {
+        text_.elements(count, 1, [&](TextScanner& scanner, std::size_t) {
+          if (scanner.integer("the type of a cell") != kCellKind<8>.vtkType) all = false;
+        });
+        continue;
+      }
+      context_.throwIfCancelled();
+      bytes.resize(4 * count);
+      file_.readAt(types.position + 4 * first, bytes.data(), bytes.size());
+      for (std::size_t i = 0; i < count; ++i) {
+        if (loadBig<std::int32_t>(bytes.data() + 4 * i) != kCellKind<8>.vtkType) return false;
+      }
+    }
+    return all;
+  }
+
+  const InputFile& file_;
+  Context& context_;
+  TextWindow text_;
+};
+
+std::optional<PlainLayout> lookAtVtk(const InputFile& file, const std::string& name,
+                                     Context& context) {
+  for (const bool isText : {false, true}) {
+    VtkPieces pieces(file, name, context, isText);
+    if (pieces.look()) return pieces.layout;
+  }
+  return {};
+}
+
+}  // namespace
+
+void readVtkLegacyTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({lookAtVtk, readVtkLegacy}, sink, input, context);
+}
+
+namespace {
+
+// Legacy `.vtk` files: a mesh or map in memory is written like a mesh of one piece.
+
+/// Numbers as text: in the form of version 2.0, which every program reads.
+struct VtkText {
+  static constexpr std::string_view kEncoding = "ASCII";
+  static constexpr std::string_view kEndOfSection = {};
+  static constexpr std::size_t kRoom = kNumberRoom + 1;  ///< for a number
+
+  template <class T, std::size_t n>
+  static char* numbers(char* place, const std::array<T, n>& numbers) {
+    return put(putNumbers(place, numbers), '\n');
+  }
+  template <class Vertex, std::size_t corners>
+  static char* cell(char* place, const std::array<Vertex, corners>& cell) {
+    return numbers(put(put(place, corners), ' '), cell);
+  }
+};
+
+/// Numbers as bytes, the largest first.
+struct VtkBigBytes {
+  static constexpr std::string_view kEncoding = "BINARY";
+  static constexpr std::string_view kEndOfSection = "\n";
+  static constexpr std::size_t kRoom = 8;
+
+  template <class T>
+  static char* number(char* place, T number) {
+    return putBigBytes(place, number);
+  }
+  template <class T, std::size_t n>
+  static char* numbers(char* place, const std::array<T, n>& numbers) {
+    for (const T value : numbers) place = number(place, value);
+    return place;
+  }
+  template <class Vertex, std::size_t corners>
+  static char* cell(char* place, const std::array<Vertex, corners>& cell) {
+    place = number(place, static_cast<std::uint32_t>(corners));
+    for (const Vertex vertex : cell) place = number(place, static_cast<std::uint32_t>(vertex));
+    return place;
+  }
+};
+
+/// Writes the sections of a file, in order: of hexahedra, which may come in pieces, or of the tets
+/// of a map.
+template <class Numbers, std::size_t corners = 8>
+class LegacyWriter {
+ public:
+  LegacyWriter(const std::filesystem::path& file, int threads)
+      : name_(file.string()), output_(file), lines_(output_, threads) {}
+
+  /// Everything up to the points.
+  /// @throws Error TooLarge for points that 32-bit indices cannot number
+  void begin(std::uint64_t points, std::uint64_t cells) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
+      throw Error(ErrorCode::TooLarge,
+                  name_ +
+                      ": legacy binary .vtk files have vertex numbers of 31 bits, which do not "
+                      "suffice for " +
+                      std::to_string(points) + " points; write .vtu.");
+    }
+    cellCount_ = cells;
+    output_.write("# vtk DataFile Version 2.0\n");
+    output_.write(corners == 8 ? "hexahedral mesh by hexhex\n" : "integer-grid map by hexhex\n");
+    output_.write(Numbers::kEncoding).write("\nDATASET UNSTRUCTURED_GRID\n");
+    output_.write("POINTS ").write(points).write(" double\n");
+  }
+  void points(const PointPiece& piece) {
+    rows(piece.points.size(), [&](std::size_t i) -> const Vec3& { return piece.points[i]; });
+  }
+  void beginCells() {
+    output_.write(Numbers::kEndOfSection);
+    output_.write("CELLS ").write(cellCount_);
+    output_.write(' ').write((corners + 1) * cellCount_).write('\n');
+  }
+  template <class Vertex>
+  void cells(std::uint64_t /*first*/, std::span<const std::array<Vertex, corners>> cells) {
+    lines_.write(
+        cells.size(), (corners + 1) * Numbers::kRoom,
+        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress_);
+  }
+  void types() {
+    output_.write(Numbers::kEndOfSection);
+    output_.write("CELL_TYPES ").write(cellCount_).write('\n');
+    constexpr auto kType = static_cast<std::uint32_t>(kCellKind<corners>.vtkType);
+    rows(cellCount_, [](std::size_t) { return std::array{kType}; });
+    output_.write(Numbers::kEndOfSection);
+  }
+  /// An array of cells.
+  /// @param head  what follows their number
+  template <class Row>
+  void cellData(std::string_view head, const Row& row) {
+    output_.write("CELL_DATA ").write(cellCount_).write(head);
+    rows(cellCount_, row);
+    output_.write(Numbers::kEndOfSection);
+  }
+  void commit() { output_.commit(); }
+  void end() {
+    types();
+    commit();
+  }
+
+  /// Everything up to the types of cells. What is written from now on advances the progress.
+  void write(std::span<const Vec3> allPoints, std::span<const std::array<Index, corners>> allCells,
+             LoopProgress& progress) {
+    progress_ = &progress;
+    begin(allPoints.size(), allCells.size());
+    points({0, allPoints, {}, {}});
+    beginCells();
+    cells(0, allCells);
+    types();
+  }
+
+ private:
+  /// n rows: row(i) is an array of numbers.
+  template <class Row>
+  void rows(std::size_t n, const Row& row) {
+    constexpr std::size_t kColumns = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
+    lines_.write(
+        n, kColumns * Numbers::kRoom,
+        [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress_);
+  }
+
+  std::string name_;
+  OutputFile output_;
+  LineWriter lines_;
+  std::uint64_t cellCount_ = 0;
+  LoopProgress* progress_ = nullptr;
+};
+
+template <class Numbers>
+void writeMesh(const HexMesh& mesh, const std::filesystem::path& file,
+               const WriteOptions& /*options*/, Context& context) {
+  Stage stage(context, "write mesh");
+  LegacyWriter<Numbers> writer(file, context.threads());
+  LoopProgress progress(stage, mesh.points.size() + 2 * mesh.cells.size() + mesh.regions.size());
+  writer.write(mesh.points, mesh.cells, progress);
+  if (!mesh.regions.empty()) {
+    writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
+                    [&mesh](std::size_t c) { return std::array{mesh.regions[c]}; });
+  }
+  writer.commit();
+}
+
+/// Names of arrays are tokens: other characters are written as "%20", as VTK does it.
+std::string encodedName(std::string_view name) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  if (name.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "The name of the map's array is empty.");
+  }
+  std::string token;
+  for (const char c : name) {
+    if (c > ' ' && c <= '~' && c != '%' && c != '"') {
+      token += c;
+      continue;
+    }
+    const auto code = static_cast<unsigned char>(c);
+    token += {'%', kDigits[code / 16U], kDigits[code % 16U]};
+  }
+  return token;
+}
+
+template <class Numbers>
+void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
+              Context& context) {
+  Stage stage(context, "write map");
+  const std::string name = encodedName(options.mapArray);
+  LegacyWriter<Numbers, 4> writer(file, context.threads());
+  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+  const std::size_t tets = map.tets.size();
+  LoopProgress progress(stage, map.points.size() + 3 * tets);
+  writer.write(map.points, map.tets, progress);
+  writer.cellData(
+      "\nFIELD FieldData 1\n" + name + " 12 " + std::to_string(tets) + " double\n",
+      [&map](std::size_t t) { return std::bit_cast<std::array<double, 12>>(map.parameters[t]); });
+  writer.commit();
+}
+
+}  // namespace
+
+void writeVtkLegacy(const HexMesh& mesh, const std::filesystem::path& file,
+                    const WriteOptions& options, Context& context) {
+  writeMesh<VtkText>(mesh, file, options, context);
+}
+
+void writeVtkLegacyBinary(const HexMesh& mesh, const std::filesystem::path& file,
+                          const WriteOptions& options, Context& context) {
+  writeMesh<VtkBigBytes>(mesh, file, options, context);
+}
+
+void writeVtkLegacyMap(const TetMap& map, const std::filesystem::path& file,
+                       const WriteOptions& options, Context& context) {
+  writeMap<VtkText>(map, file, options, context);
+}
+
+void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& file,
+                             const WriteOptions& options, Context& context) {
+  writeMap<VtkBigBytes>(map, file, options, context);
+}
+
+std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {
+  return openWriterSink<LegacyWriter<VtkText>>(file, context);
+}
+
+std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
+                                                  Context& context) {
+  return openWriterSink<LegacyWriter<VtkBigBytes>>(file, context);
+}
+
+}  // namespace hexhex::io

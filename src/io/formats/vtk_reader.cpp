@@ -1,0 +1,795 @@
+// Reads data sets of VTK, whatever the file: numbers of columns; points and cells, a range at a
+// time, checked; meshes and maps of them; and what writers of this library add.
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include <hexhex/stream.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <base/vector3.hpp>
+#include <io/core/bytes.hpp>
+#include <io/core/checked_sink.hpp>
+#include <io/core/input_file.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/vtk_source.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// The number at a place of any alignment. Only numbers of 4 and 8 bytes come with the largest byte
+/// first.
+template <class T, bool bigEndian>
+T loadNumber(const char* place) {
+  if constexpr (bigEndian && sizeof(T) >= sizeof(std::uint32_t)) {
+    return loadBig<T>(place);
+  } else {
+    T number;
+    std::memcpy(&number, place, sizeof(T));
+    return number;
+  }
+}
+
+/// Numbers one after the other, as they are stored, into an array of T.
+template <class T>
+void convert(const VtkColumn& column, const char* from, std::size_t count, T* to) {
+  const auto convertFrom = [&](auto zero) {
+    const auto all = [&](auto bigEndian) {
+      using Stored = decltype(zero);
+      for (std::size_t i = 0; i < count; ++i) {
+        // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits keep their sign, too.
+        to[i] = static_cast<T>(loadNumber<Stored, bigEndian>(from + i * sizeof(Stored)));
+      }
+    };
+    if (column.bigEndian) return all(std::true_type{});
+    all(std::false_type{});
+  };
+  std::visit(convertFrom, column.scalar);
+}
+
+/// Whether numbers in memory have the bytes of the stored ones, so that they are read to their
+/// place. With another copy, reading a map from a `.vtu` file takes a quarter longer.
+template <class T>
+bool isStoredAs(const VtkColumn& column) {
+  if (column.bigEndian) return false;
+  if constexpr (std::is_same_v<T, Index>) {
+    return isOf<std::int32_t>(column.scalar) || isOf<std::uint32_t>(column.scalar);
+  } else {
+    return isOf<T>(column.scalar);
+  }
+}
+
+}  // namespace
+
+std::size_t bytesOf(const VtkScalar& scalar) {
+  return std::visit([](auto zero) { return sizeof(zero); }, scalar);
+}
+
+const VtkSourceArray* VtkSource::find(VtkSection section, std::string_view name,
+                                      std::size_t components, VtkNumbers numbers,
+                                      std::size_t begin) const {
+  const auto first = arrays.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto found = std::find_if(first, arrays.end(), [&](const VtkSourceArray& array) {
+    return array.section == section && array.name == name && array.components == components &&
+           array.numbers == numbers;
+  });
+  return found == arrays.end() ? nullptr : &*found;
+}
+
+VtkColumn VtkSource::load(const VtkSourceArray& array) const {
+  std::optional<std::uint64_t> count;
+  if (array.section == VtkSection::PointData) count = array.components * points;
+  if (array.section == VtkSection::CellData) count = array.components * cells;
+  return array.load(array.numbers, count);
+}
+
+template <class T>
+void VtkSource::copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const {
+  const std::size_t size = count * bytesOf(column.scalar);
+  const std::uint64_t position = column.position + begin * bytesOf(column.scalar);
+  if (!column.decoded.empty()) return convert(column, column.decoded.data() + position, count, to);
+  if (!bytes_.isInMemory() && isStoredAs<T>(column)) {
+    static_cast<void>(bytes_.view(position, size, reinterpret_cast<char*>(to)));
+    return;
+  }
+  Array<char> room(bytes_.isInMemory() ? 0 : size);
+  convert(column, bytes_.view(position, size, room.data()), count, to);
+}
+
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, double*) const;
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, std::int64_t*) const;
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, Index*) const;
+template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, CornerSet*) const;
+
+void VtkSource::see(std::string_view name, bool ofCells, std::size_t components) {
+  constexpr std::size_t kMostSeen = 20;  // that a sentence can name
+  if (seen.size() == kMostSeen) {
+    ++unnamed;
+    return;
+  }
+  seen.push_back('"' + std::string(name) + (ofCells ? "\" (cells, " : "\" (points, ") +
+                 std::to_string(components) + (components == 1 ? " component)" : " components)"));
+}
+
+VtkColumn textColumn(VtkNumbers numbers, std::size_t count) {
+  VtkColumn column;
+  column.scalar = numbers == VtkNumbers::Reals ? VtkScalar(double{}) : VtkScalar(std::int64_t{});
+  column.count = count;
+  column.decoded.resize(memorySize(std::uint64_t{count} * sizeof(double)));
+  return column;
+}
+
+void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
+                   const NumberName& name) {
+  const auto set = [place = column.decoded.data() + i * sizeof(double)](auto number) {
+    std::memcpy(place, &number, sizeof(number));
+  };
+  if (numbers == VtkNumbers::Reals) return set(scanner.number(name));
+  set(scanner.integer(name));
+}
+
+namespace {
+
+// Points and cells, a range at a time, checked; and meshes and maps of them.
+
+// Points or cells that one thread reads at once: a fraction of a millisecond's work.
+constexpr std::size_t kVtkReaderGrain = std::size_t{1} << 13;
+
+/// Calls f(begin, end, block) for all blocks of n elements, in parallel. Of several errors, the one
+/// of the first block is thrown.
+template <class F>
+void forEachBlock(Stage& stage, std::size_t n, const F& f) {
+  const std::size_t begin = firstUnreadable(
+      stage, n, kVtkReaderGrain, [&](std::size_t first, std::size_t end, std::size_t& i) {
+        f(first, end, first / kVtkReaderGrain);
+        i = end;
+      });
+  if (begin < n)
+    f(begin, std::min(begin + kVtkReaderGrain, n), begin / kVtkReaderGrain);  // throws again
+}
+
+/// Voxels are hexahedra that list the corners of both layers row by row instead of all around.
+constexpr std::int64_t kVtkVoxel = 11;
+bool isOfKind(std::int64_t type, const CellKind& kind) {
+  return type == kind.vtkType || (type == kVtkVoxel && kind.vtkType == kCellKind<8>.vtkType);
+}
+
+/// Types of consecutive cells, and where their corners are.
+class CellTable {
+ public:
+  CellTable(const VtkSource& source, const CellKind& wanted, std::uint64_t first, std::size_t count)
+      : source_(source), wanted_(wanted), first_(first), types_(count), places_(count + 1, 0) {
+    source.copy(source.types, first, count, types_.data());
+    if (source.stride > 0) {
+      for (std::size_t i = 0; i <= count; ++i) {
+        places_[i] = static_cast<std::int64_t>(source.stride * (first + i));
+      }
+      return;
+    }
+    if (source.offsets.count > source.cells) {
+      source.copy(source.offsets, first, count + 1, places_.data());
+      return;
+    }
+    // The end of the cell before is the beginning of the first one.
+    const std::size_t before = first > 0 ? 1 : 0;
+    source.copy(source.offsets, first - before, count + before, places_.data() + 1 - before);
+  }
+
+  [[nodiscard]] bool isWanted(std::size_t i) const { return isOfKind(types_[i], wanted_); }
+  [[nodiscard]] bool isVoxel(std::size_t i) const { return types_[i] == kVtkVoxel; }
+  [[nodiscard]] std::uint64_t begin(std::size_t i) const {
+    return static_cast<std::uint64_t>(places_[i]) + source_.gap;
+  }
+  [[nodiscard]] std::uint64_t end(std::size_t i) const {
+    return static_cast<std::uint64_t>(places_[i + 1]);
+  }
+  [[nodiscard]] bool isGood(std::size_t i) const {
+    return isOrdered(i) && (!isWanted(i) || end(i) - begin(i) == wanted_.corners);
+  }
+
+  /// Throws what is wrong with a cell that is not good.
+  [[noreturn]] void fail(std::size_t i) const {
+    const std::string cell = std::to_string(first_ + i);
+    const Place place{PlaceKind::Cell, first_ + i};
+    if (!isOrdered(i)) {
+      source_.fail(ErrorCode::FileSyntax,
+                   "the corners of cell " + cell + " end at " + std::to_string(end(i)) +
+                       ", which is before they begin or beyond the " +
+                       std::to_string(source_.connectivity.count) + " corners in the file.",
+                   place);
+    }
+    source_.fail(ErrorCode::FileSyntax,
+                 "cell " + cell + " is a " + std::string(wanted_.singular) + " with " +
+                     std::to_string(end(i) - begin(i)) + " instead of " +
+                     std::to_string(wanted_.corners) + " corners.",
+                 place);
+  }
+
+ private:
+  [[nodiscard]] bool isOrdered(std::size_t i) const {
+    return end(i) >= begin(i) && end(i) <= source_.connectivity.count;
+  }
+
+  const VtkSource& source_;
+  const CellKind& wanted_;
+  std::uint64_t first_;
+  Array<std::int64_t> types_;
+  Array<std::int64_t> places_;
+};
+
+/// The usual case: numbers of 32 bits, which are corners as they are. Without it, reading a whole
+/// `.vtu` file takes 40 % longer.
+/// @return false if they have 64 bits, or one is no point
+bool copyVertices(const VtkSource& source, std::size_t corners, std::uint64_t begin,
+                  std::span<Index> vertices) {
+  const VtkScalar scalar = source.connectivity.scalar;
+  const bool narrow = isOf<std::int32_t>(scalar) || isOf<std::uint32_t>(scalar);
+  if (!narrow || source.points > kNone) return false;
+  if (source.gap == 0) {
+    source.copy(source.connectivity, begin, vertices.size(), vertices.data());
+  } else {
+    constexpr std::size_t kCellsAtOnce = 512;  // whose numbers stay in the cache
+    const std::size_t each = corners + source.gap;
+    Array<Index> numbers(each * kCellsAtOnce);
+    Index* to = vertices.data();
+    for (std::size_t left = vertices.size() / corners; left > 0;) {
+      const std::size_t cells = std::min(kCellsAtOnce, left);
+      source.copy(source.connectivity, begin, each * cells - source.gap, numbers.data());
+      for (std::size_t cell = 0; cell < cells; ++cell) {
+        const Index* const from = numbers.data() + each * cell;
+        for (std::size_t k = 0; k < corners; ++k) *to++ = from[k];
+      }
+      begin += each * cells;
+      left -= cells;
+    }
+  }
+  // A negative number is a large one here.
+  const Index* const numbers = vertices.data();
+  Index largest = 0;
+  for (std::size_t k = 0; k < vertices.size(); ++k) largest = std::max(largest, numbers[k]);
+  return largest < source.points;
+}
+
+/// Reads wanted cells that follow each other.
+/// @param first  the number of the first
+/// @param begin  where its corners begin
+template <class Vertex>
+void readRun(const VtkSource& source, std::size_t corners, std::uint64_t first, std::uint64_t begin,
+             std::span<Vertex> vertices) {
+  if constexpr (std::is_same_v<Vertex, Index>) {
+    if (copyVertices(source, corners, begin, vertices)) return;
+  }
+  const std::size_t cells = vertices.size() / corners;
+  const std::size_t each = corners + source.gap;
+  Array<std::int64_t> numbers(each * cells - source.gap);
+  source.copy(source.connectivity, begin, numbers.size(), numbers.data());
+  Vertex* to = vertices.data();
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const std::int64_t* const from = numbers.data() + each * cell;
+    for (std::size_t k = 0; k < corners; ++k) {
+      // A negative number is a large one here.
+      if (static_cast<std::uint64_t>(from[k]) >= source.points) {
+        source.fail(ErrorCode::IndexOutOfRange,
+                    "cell " + std::to_string(first + cell) + " names point " +
+                        std::to_string(from[k]) + ", but the " + std::to_string(source.points) +
+                        " points are numbered from 0.",
+                    Place{PlaceKind::Cell, first + cell});
+      }
+      *to++ = static_cast<Vertex>(from[k]);
+    }
+  }
+}
+
+/// @param cells, points  of the mesh
+template <class Points, class Cells>
+void readMesh(const VtkSource& source, Points& points, Cells& cells, Array<std::size_t>* numbers,
+              Stage& stage) {
+  source.requireIndexable();
+  points.resize(source.points);
+  readVtkPoints(source, points, stage);
+  constexpr std::size_t kCorners = std::tuple_size_v<typename Cells::value_type>;
+  const auto makeRoom = [&cells](std::size_t count) {
+    cells.resize(count);
+    return count == 0 ? nullptr : cells.front().data();
+  };
+  readVtkCells(source, kCellKind<kCorners>, makeRoom, numbers, stage);
+}
+
+// Components of the two forms of a map.
+constexpr std::size_t kCellMapComponents = 12;
+constexpr std::size_t kPointMapComponents = 3;
+
+/// Finds the map among the arrays that are known, or goes on to others.
+const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
+  std::size_t looked = 0;  // at so many arrays before
+  do {
+    if (const auto* const found = source.find(VtkSection::CellData, name, kCellMapComponents,
+                                              VtkNumbers::Reals, looked)) {
+      return found;
+    }
+    if (const auto* const found = source.find(VtkSection::PointData, name, kPointMapComponents,
+                                              VtkNumbers::Reals, looked)) {
+      return found;
+    }
+    looked = source.arrays.size();
+  } while (source.readOn());
+  return nullptr;
+}
+
+/// For messages.
+std::string arraysIn(const VtkSource& source) {
+  std::string found;
+  for (const std::string& array : source.seen) found += (found.empty() ? "" : ", ") + array;
+  if (source.unnamed > 0) found += ", and " + std::to_string(source.unnamed) + " more";
+  return found.empty() ? "none" : found;
+}
+
+[[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
+  source.fail(ErrorCode::FileUnsupported,
+              "the file holds " + std::to_string(tets) + " tets, but no map: no cell array \"" +
+                  std::string(name) +
+                  "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
+                  "this name with 3, for a map with one chart. Arrays in the file: " +
+                  arraysIn(source) +
+                  ". Name the map's array (--map-array), or give the map as a second mesh "
+                  "(--polycube).");
+}
+
+/// The parameters of tets from a number per cell of the file.
+/// @param numbers  which cells of the file the tets are
+void readCellParameters(const VtkSource& source, const VtkColumn& column,
+                        std::span<const std::size_t> numbers,
+                        std::vector<TetParameters>& parameters, Stage& stage) {
+  forEachBlock(stage, source.cells, [&](std::size_t begin, std::size_t end, std::size_t) {
+    auto tet = std::lower_bound(numbers.begin(), numbers.end(), begin);
+    if (tet == numbers.end() || *tet >= end) return;
+    Array<double> values(kCellMapComponents * (end - begin));
+    source.copy(column, kCellMapComponents * begin, values.size(), values.data());
+    for (; tet != numbers.end() && *tet < end; ++tet) {
+      std::copy_n(values.data() + kCellMapComponents * (*tet - begin), kCellMapComponents,
+                  parameters[static_cast<std::size_t>(tet - numbers.begin())][0].data());
+    }
+  });
+}
+
+/// The same from three numbers per point.
+void readPointParameters(const VtkSource& source, const VtkColumn& column, TetMap& map,
+                         Stage& stage) {
+  Array<Vec3> values(source.points);
+  forEachBlock(stage, values.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    source.copy(column, kPointMapComponents * begin, kPointMapComponents * (end - begin),
+                values[begin].data());
+  });
+  parallelFor(stage, map.tets.size(), kVtkReaderGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < map.tets[t].size(); ++i) {
+      map.parameters[t][i] = values[map.tets[t][i]];
+    }
+  });
+}
+
+}  // namespace
+
+void readVtkPoints(const VtkSource& source, std::uint64_t first, std::span<Vec3> points) {
+  if (points.empty()) return;
+  source.copy(source.coordinates, 3 * first, 3 * points.size(), points.front().data());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (isFinite(points[i])) continue;
+    source.fail(ErrorCode::NotFinite,
+                "a coordinate of point " + std::to_string(first + i) + " is not finite.",
+                Place{PlaceKind::Vertex, first + i});
+  }
+}
+
+void readVtkPoints(const VtkSource& source, std::span<Vec3> points, Stage& stage) {
+  forEachBlock(stage, points.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+    readVtkPoints(source, begin, points.subspan(begin, end - begin));
+  });
+}
+
+std::size_t countVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t first,
+                          std::size_t count) {
+  Array<std::int64_t> types(count);
+  source.copy(source.types, first, count, types.data());
+  return static_cast<std::size_t>(std::count_if(
+      types.begin(), types.end(), [&cells](std::int64_t type) { return isOfKind(type, cells); }));
+}
+
+template <class Vertex>
+void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t first,
+                  std::size_t count, Vertex* vertices, std::size_t* numbers) {
+  const CellTable table(source, cells, first, count);
+  std::size_t good = 0;
+  while (good < count && table.isGood(good)) ++good;
+  // Cells that follow each other have their corners one after the other, and are read at once.
+  for (std::size_t i = 0; i < good;) {
+    std::size_t end = i;
+    while (end < good && table.isWanted(end)) ++end;
+    const std::size_t size = cells.corners * (end - i);
+    if (end > i)
+      readRun(source, cells.corners, first + i, table.begin(i), std::span(vertices, size));
+    for (std::size_t k = i; k < end; ++k, vertices += cells.corners) {
+      if (!table.isVoxel(k)) continue;
+      std::swap(vertices[2], vertices[3]);
+      std::swap(vertices[6], vertices[7]);
+    }
+    for (std::size_t k = i; numbers != nullptr && k < end; ++k) *numbers++ = first + k;
+    i = std::max(end, i + 1);
+  }
+  if (good < count) table.fail(good);
+}
+
+template void readVtkCells(const VtkSource&, const CellKind&, std::uint64_t, std::size_t, Index*,
+                           std::size_t*);
+template void readVtkCells(const VtkSource&, const CellKind&, std::uint64_t, std::size_t,
+                           std::uint64_t*, std::size_t*);
+
+void readVtkCells(const VtkSource& source, const CellKind& cells,
+                  const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
+                  Stage& stage) {
+  const std::size_t all = source.cells;
+  std::vector<std::size_t> begins(blockCount(all, kVtkReaderGrain) + 1, 0);
+  forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    begins[block] = countVtkCells(source, cells, begin, end - begin);
+  });
+  const std::size_t count = exclusiveScan(std::span(begins));
+  noteVtkCells(source, cells, count);
+  if (all > 0 && count == 0) failWithoutVtkCells(source, cells);
+  Index* const vertices = makeRoom(count);
+  if (numbers != nullptr) numbers->resize(count);
+  forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
+    readVtkCells(source, cells, begin, end - begin, vertices + cells.corners * begins[block],
+                 numbers != nullptr ? numbers->data() + begins[block] : nullptr);
+  });
+}
+
+void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t count) {
+  if (count == source.cells) return source.counts->addVtk(cells.vtkType, count);
+  Array<std::int64_t> types;
+  for (std::uint64_t first = 0; first < source.cells; first += kVtkReaderGrain) {
+    types.resize(std::min<std::uint64_t>(kVtkReaderGrain, source.cells - first));
+    source.copy(source.types, first, types.size(), types.data());
+    // Cells of one type mostly follow each other.
+    for (std::size_t i = 0; i < types.size();) {
+      std::size_t end = i + 1;
+      while (end < types.size() && types[end] == types[i]) ++end;
+      source.counts->addVtk(isOfKind(types[i], cells) ? cells.vtkType : types[i], end - i);
+      i = end;
+    }
+  }
+}
+
+void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
+  source.fail(ErrorCode::FileUnsupported,
+              "the file holds no " + std::string(cells.plural) + ": none of its " +
+                  std::to_string(source.cells) + " cells has the type " +
+                  std::to_string(cells.vtkType) + source.counts->instead() + "." +
+                  (cells.corners == 8 ? source.counts->adviceOnCurved() : ""));
+}
+
+HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
+  HexMesh mesh;
+  Array<std::size_t> numbers;
+  const bool regions = hasVtkRegions(source);
+  readMesh(source, mesh.points, mesh.cells, regions ? &numbers : nullptr, stage);
+  if (regions) mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkHexFeatures(source);
+  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  return mesh;
+}
+
+TetCells readVtkTets(const VtkSource& source, Stage& stage) {
+  TetCells mesh;
+  readMesh(source, mesh.points, mesh.cells, nullptr, stage);
+  return mesh;
+}
+
+TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage) {
+  TetMap map;
+  Array<std::size_t> numbers;
+  readMesh(source, map.points, map.tets, &numbers, stage);
+  const Array<std::int32_t> regions = readVtkRegions(source, numbers);
+  map.regions.assign(regions.begin(), regions.end());
+  const VtkSourceArray* const array = findMap(source, mapArray);
+  if (array == nullptr) failWithoutMap(source, map.tets.size(), mapArray);
+  const VtkColumn column = source.load(*array);
+  map.parameters.resize(map.tets.size());
+  if (array->section == VtkSection::CellData) {
+    readCellParameters(source, column, numbers, map.parameters, stage);
+  } else {
+    readPointParameters(source, column, map, stage);
+  }
+  const std::size_t fault = firstFault(stage, map.tets.size(),
+                                       [&](std::size_t t) { return isFinite(map.parameters[t]); });
+  if (fault < map.tets.size()) {
+    source.fail(ErrorCode::NotFinite,
+                "a parameter of tet " + std::to_string(fault) + " is not finite.",
+                Place{PlaceKind::Tet, fault});
+  }
+  map.features = readVtkTetFeatures(source);
+  return map;
+}
+
+TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& stage) {
+  source.requireIndexable();
+  TriangleLabels labels;
+  Array<std::size_t> numbers;
+  const auto makeRoom = [&labels](std::size_t count) {
+    labels.triangles.resize(count);
+    return count == 0 ? nullptr : labels.triangles.front().data();
+  };
+  readVtkCells(source, kTriangleKind, makeRoom, &numbers, stage);
+  const VtkSourceArray* array = nullptr;
+  do {
+    array = source.find(VtkSection::CellData, name, 1, VtkNumbers::Integers);
+  } while (array == nullptr && source.readOn());
+  if (array == nullptr) {
+    source.fail(ErrorCode::FileUnsupported,
+                "no cell array \"" + std::string(name) +
+                    "\" of whole numbers, which are to be the labels of " +
+                    std::to_string(numbers.size()) +
+                    " triangles. Arrays in the file: " + arraysIn(source) + ".");
+  }
+  const VtkColumn column = source.load(*array);
+  for (const std::size_t number : numbers) {
+    source.copy(column, number, 1, &labels.labels.emplace_back());
+  }
+  return labels;
+}
+
+namespace {
+
+// What writers of this library add to a mesh: generators, tags and regions in arrays.
+
+/// An array that is used if it is as this library writes it.
+std::optional<VtkColumn> findGenerators(const VtkSource& source, std::string_view name,
+                                        VtkScalar scalar) {
+  const VtkSourceArray* const array =
+      source.find(VtkSection::PointData, name, 1, VtkNumbers::Integers);
+  if (array == nullptr || !array->appended || source.points == 0) return std::nullopt;
+  VtkColumn column = array->load(VtkNumbers::Integers, std::nullopt);
+  if (column.scalar != scalar || column.count != source.points) return std::nullopt;
+  return column;
+}
+
+/// Calls f(i, number) for all numbers of an array, which must fit into 32 bits.
+template <class F>
+void forEachNumber(const VtkSource& source, const VtkSourceArray& array, const F& f) {
+  constexpr std::size_t kNumbersAtOnce = std::size_t{1} << 16;  // half a megabyte at a time
+  const VtkColumn column = source.load(array);
+  Array<std::int64_t> numbers;
+  for (std::uint64_t begin = 0; begin < column.count; begin += kNumbersAtOnce) {
+    numbers.resize(std::min<std::uint64_t>(kNumbersAtOnce, column.count - begin));
+    source.copy(column, begin, numbers.size(), numbers.data());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (!std::in_range<std::int32_t>(numbers[i])) {
+        source.fail(
+            ErrorCode::FileUnsupported,
+            "the array \"" + array.name + "\" has the value " + std::to_string(numbers[i]) +
+                ", which does not fit into 32 bits.",
+            Place{array.section == VtkSection::CellData ? PlaceKind::Cell : PlaceKind::Vertex,
+                  begin + i});
+      }
+      f(static_cast<std::size_t>(begin) + i, static_cast<std::int32_t>(numbers[i]));
+    }
+  }
+}
+
+std::vector<FeatureVertex> readVertexTags(const VtkSource& source) {
+  std::vector<FeatureVertex> features;
+  const VtkSourceArray* const array =
+      source.find(VtkSection::PointData, kVtkVertexTags, 1, VtkNumbers::Integers);
+  if (array == nullptr) return features;
+  forEachNumber(source, *array, [&](std::size_t vertex, std::int32_t tag) {
+    if (tag != 0) features.push_back({static_cast<Index>(vertex), tag});
+  });
+  return features;
+}
+
+/// Rows of vertices and a tag.
+/// @tparam Feature  FeatureEdge, FeatureFace or FeatureQuad
+template <class Feature>
+std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
+  constexpr std::size_t kVertices = decltype(Feature::vertices){}.size();
+  std::vector<Feature> features;
+  const VtkSourceArray* const array =
+      source.find(VtkSection::FieldData, name, kVertices + 1, VtkNumbers::Integers);
+  if (array == nullptr) return features;
+  const VtkColumn column = source.load(*array);
+  if (column.count % array->components != 0) {
+    source.fail(ErrorCode::FileSyntax,
+                "the array \"" + array->name + "\" has " + std::to_string(column.count) +
+                    " numbers, which are no rows of " + std::to_string(array->components) + ".");
+  }
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(column.count));
+  source.copy(column, 0, numbers.size(), numbers.data());
+  features.resize(numbers.size() / array->components);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const std::int64_t* const row = numbers.data() + array->components * i;
+    bool good = std::in_range<std::int32_t>(row[kVertices]);
+    for (std::size_t k = 0; k < kVertices; ++k) {
+      good = good && row[k] >= 0 && static_cast<std::uint64_t>(row[k]) < source.points;
+      features[i].vertices[k] = static_cast<Index>(row[k]);
+    }
+    features[i].tag = static_cast<std::int32_t>(row[kVertices]);
+    if (good) continue;
+    source.fail(ErrorCode::IndexOutOfRange,
+                "row " + std::to_string(i) + " of the array \"" + array->name +
+                    "\" (counted from 0) names a point that does not exist, or a tag that does "
+                    "not fit into 32 bits. If a program has changed the points since, remove the "
+                    "array.");
+  }
+  return features;
+}
+
+const VtkSourceArray* findRegions(const VtkSource& source) {
+  return source.find(VtkSection::CellData, kVtkRegions, 1, VtkNumbers::Integers);
+}
+
+}  // namespace
+
+VtkGenerators findVtkGenerators(const VtkSource& source) {
+  return {findGenerators(source, kVtkGeneratorTets, std::uint32_t{}),
+          findGenerators(source, kVtkGeneratorCorners, std::uint8_t{})};
+}
+
+void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<CornerSet>& corners) {
+  const VtkGenerators generators = findVtkGenerators(source);
+  if (!generators.tets || !generators.corners) return;
+  corners.resize(source.points);
+  source.copy(*generators.corners, 0, corners.size(), corners.data());
+  const auto isSimplex = [](CornerSet set) { return set >= 1 && set <= 15; };
+  if (!std::all_of(corners.begin(), corners.end(), isSimplex)) {
+    corners.clear();  // arrays of the same names, but something else
+    return;
+  }
+  tets.resize(source.points);
+  source.copy(*generators.tets, 0, tets.size(), tets.data());
+}
+
+HexFeatures readVtkHexFeatures(const VtkSource& source) {
+  return {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
+          readRows<FeatureQuad>(source, kVtkQuadTags)};
+}
+
+Features readVtkTetFeatures(const VtkSource& source) {
+  return {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
+          readRows<FeatureFace>(source, kVtkTriangleTags)};
+}
+
+bool hasVtkRegions(const VtkSource& source) { return findRegions(source) != nullptr; }
+
+Array<std::int32_t> readVtkRegions(const VtkSource& source, std::span<const std::size_t> cells) {
+  Array<std::int32_t> regions;
+  const VtkSourceArray* const array = findRegions(source);
+  if (array == nullptr) return regions;
+  regions.resize(cells.size());
+  std::size_t next = 0;
+  forEachNumber(source, *array, [&](std::size_t cell, std::int32_t region) {
+    if (next < cells.size() && cells[next] == cell) regions[next++] = region;
+  });
+  return regions;
+}
+
+namespace {
+
+// Files as a whole, or piece by piece.
+
+// Points or cells of a piece: a few megabytes.
+constexpr std::size_t kPiece = std::size_t{1} << 16;
+
+/// Calls f(first, count) for consecutive ranges of n elements, and reports progress.
+template <class F>
+void forEachPiece(Stage& stage, std::uint64_t n, const F& f) {
+  LoopProgress progress(stage, n);
+  for (std::uint64_t first = 0; first < n; first += kPiece) {
+    const std::size_t count = std::min<std::uint64_t>(kPiece, n - first);
+    f(first, count);
+    progress.advance(count);
+  }
+}
+
+void sendPoints(const VtkSource& source, MeshSink& sink, Stage& stage) {
+  Array<Vec3> points;
+  Array<Index> tets;
+  Array<CornerSet> corners;
+  const VtkGenerators generators = findVtkGenerators(source);
+  forEachPiece(stage, source.points, [&](std::uint64_t first, std::size_t count) {
+    points.resize(count);
+    readVtkPoints(source, first, points);
+    const auto copy = [&](const auto& column, auto& values) {
+      if (!column) return;
+      values.resize(count);
+      source.copy(*column, first, count, values.data());
+    };
+    copy(generators.tets, tets);
+    copy(generators.corners, corners);
+    sink.points({first, points, tets, corners});
+  });
+}
+
+template <class Cell>
+void sendCells(const VtkSource& source, MeshSink& sink, Stage& stage) {
+  Array<Cell> cells;
+  std::uint64_t sent = 0;
+  forEachPiece(stage, source.cells, [&](std::uint64_t first, std::size_t count) {
+    cells.resize(countVtkCells(source, kCellKind<8>, first, count));
+    readVtkCells(source, kCellKind<8>, first, count, cells.empty() ? nullptr : cells[0].data());
+    if (!cells.empty()) sink.cells(sent, std::span<const Cell>(cells));
+    sent += cells.size();
+  });
+}
+
+void sendPieces(const VtkSource& source, MeshSink& sink, Stage& stage) {
+  std::uint64_t hexahedra = 0;
+  forEachPiece(stage, source.cells, [&](std::uint64_t first, std::size_t count) {
+    hexahedra += countVtkCells(source, kCellKind<8>, first, count);
+  });
+  noteVtkCells(source, kCellKind<8>, hexahedra);
+  if (source.cells > 0 && hexahedra == 0) failWithoutVtkCells(source, kCellKind<8>);
+  sink.begin(source.points, hexahedra);
+  sendPoints(source, sink, stage);
+  if (source.points < kNone) {
+    sendCells<Hex>(source, sink, stage);
+  } else {
+    sendCells<Hex64>(source, sink, stage);
+  }
+  sink.end();
+}
+
+}  // namespace
+
+HexMesh readVtu(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readVtkHexMesh(*openVtuFile(input, stage), stage);
+  });
+}
+
+TetCells readVtuTets(const Input& input, Context& context) {
+  return inStage(context, "read tets",
+                 [&input](Stage& stage) { return readVtkTets(*openVtuFile(input, stage), stage); });
+}
+
+TetMap readVtuMap(const Input& input, const ReadOptions& options, Context& context) {
+  return inStage(context, "read map", [&](Stage& stage) {
+    return readVtkMap(*openVtuFile(input, stage), options.mapArray, stage);
+  });
+}
+
+TriangleLabels readVtuLabels(const Input& input, std::string_view array, Context& context) {
+  return inStage(context, "read labels", [&](Stage& stage) {
+    return readVtkLabels(*openVtuFile(input, stage), array, stage);
+  });
+}
+
+TriangleLabels readVtkLegacyLabels(const Input& input, std::string_view array, Context& context) {
+  return inStage(context, "read labels", [&](Stage& stage) {
+    return readVtkLabels(*openVtkLegacyFile(input, false, stage), array, stage);
+  });
+}
+
+HexMesh readVtkLegacy(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&input](Stage& stage) {
+    return readVtkHexMesh(*openVtkLegacyFile(input, true, stage), stage);
+  });
+}
+
+TetCells readVtkLegacyTets(const Input& input, Context& context) {
+  return inStage(context, "read tets", [&input](Stage& stage) {
+    return readVtkTets(*openVtkLegacyFile(input, false, stage), stage);
+  });
+}
+
+TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Context& context) {
+  return inStage(context, "read map", [&](Stage& stage) {
+    return readVtkMap(*openVtkLegacyFile(input, false, stage), options.mapArray, stage);
+  });
+}
+
+void readVtuTo(MeshSink& sink, const Input& input, Context& context) {
+  Stage stage(context, "read mesh");
+  sendPieces(*openVtuFile(input, stage), sink, stage);
+}
+
+}  // namespace hexhex::io

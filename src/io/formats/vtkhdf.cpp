@@ -1,0 +1,374 @@
+// VTKHDF files (see formats.hpp): of a whole mesh, and of parts.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <hdf5.h>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hexhex/team.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/hdf_file.hpp>
+#include <io/core/output_file.hpp>
+#include <io/core/output_folder.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/vtk_data_set.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// HDF5's type of the numbers that VTK's XML calls so, in memory.
+[[nodiscard]] inline hid_t vtkHdfTypeOf(std::string_view name) {
+  if (name == "Float64") return HDF5(H5T_NATIVE_DOUBLE_g);
+  if (name == "Int64") return HDF5(H5T_NATIVE_INT64_g);
+  if (name == "Int32") return HDF5(H5T_NATIVE_INT32_g);
+  if (name == "UInt32") return HDF5(H5T_NATIVE_UINT32_g);
+  return HDF5(H5T_NATIVE_UINT8_g);
+}
+
+/// The attributes by which VTK knows the format.
+void writeVtkHdfKind(const HdfFile& file, hid_t grid) {
+  constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
+  file.writeAttribute(grid, "Version", HDF5(H5T_NATIVE_INT64_g), file.space({2}), kVersion.data());
+  const std::string kind = "UnstructuredGrid";
+  const HdfObject text = file.text(kind.size(), H5T_STR_NULLPAD);
+  file.writeAttribute(grid, "Type", text.id(), file.space({}), kind.data());
+}
+
+/// Writes one file.
+class VtkHdfWriter {
+ public:
+  VtkHdfWriter(const OutputFile& file, const VtkDataSet& data, Stage& stage)
+      : data_(data),
+        file_(file, HdfFile::Order::OfNames),
+        grid_(file_.group(file_.root(), "VTKHDF")),
+        progress_(stage, data.points + data.cells) {}
+
+  void write() {
+    writeVtkHdfKind(file_, grid_.id());
+    count("NumberOfPoints", data_.points);
+    count("NumberOfCells", data_.cells);
+    count("NumberOfConnectivityIds", 8 * data_.cells);
+    for (const VtkArray& array : data_.arrays()) {
+      if (array.section == VtkSection::Points) writeRows(grid_, "Points", array);
+    }
+    progress_.advance(data_.points);
+    writeCells();
+    progress_.advance(data_.cells);
+    writeGroup("PointData", VtkSection::PointData);
+    writeGroup("CellData", VtkSection::CellData);
+    writeGroup("FieldData", VtkSection::FieldData);
+    grid_.close();
+    file_.close();
+  }
+
+ private:
+  void count(const char* name, std::uint64_t number) {
+    writeNumbers(name, 1, [number](std::size_t) { return number; });
+  }
+  /// Writes n integers of 64 bits.
+  template <class F>
+  void writeNumbers(const char* name, std::uint64_t n, const F& valueOf) {
+    VtkArray array;
+    array.type = "Int64";
+    array.rows = n;
+    array.write = [&](const VtkBytes& output) { writeValues<std::int64_t>(output, n, valueOf); };
+    writeRows(grid_, name, array);
+  }
+
+  /// Writes a dataset, piece by piece as the array's bytes come.
+  void writeRows(const HdfObject& group, const char* name, const VtkArray& array) {
+    const hid_t memory = vtkHdfTypeOf(array.type);
+    const hid_t stored = array.section == VtkSection::Cells && memory == HDF5(H5T_NATIVE_INT32_g)
+                             ? HDF5(H5T_STD_I64LE_g)  // whatever the number of points
+                             : memory;
+    const auto spaceOf = [&](hsize_t rows) {
+      return array.components == 1 ? file_.space({rows}) : file_.space({rows, array.components});
+    };
+    const HdfObject space = spaceOf(array.rows);
+    const HdfObject set = file_.dataset(group.id(), name, stored, space);
+    std::array<hsize_t, 2> begin = {0, 0};
+    array.write([&](const void* bytes, std::size_t size) {
+      if (size == 0) return;
+      const std::array<hsize_t, 2> count = {size / (array.components * HDF5(H5Tget_size)(memory)),
+                                            array.components};
+      const HdfObject part = spaceOf(count[0]);
+      space.require(HDF5(H5Sselect_hyperslab)(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
+                                              count.data(), nullptr));
+      set.require(HDF5(H5Dwrite)(set.id(), memory, part.id(), space.id(), H5P_DEFAULT, bytes));
+      begin[0] += count[0];
+    });
+  }
+
+  void writeCells() {
+    for (const VtkArray& array : data_.arrays()) {
+      if (array.section != VtkSection::Cells) continue;
+      if (array.name == "connectivity") writeRows(grid_, "Connectivity", array);
+      if (array.name == "types") writeRows(grid_, "Types", array);
+      if (array.name != "offsets") continue;
+      // Where cells begin, and the last one ends.
+      writeNumbers("Offsets", data_.cells + 1, [](std::size_t i) { return 8 * i; });
+    }
+  }
+
+  void writeGroup(const char* name, VtkSection section) {
+    const HdfObject group = file_.group(grid_.id(), name);
+    for (const VtkArray& array : data_.arrays()) {
+      if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
+    }
+  }
+
+  const VtkDataSet& data_;
+  HdfFile file_;
+  HdfObject grid_;
+  LoopProgress progress_;
+};
+
+}  // namespace
+
+void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
+                 const WriteOptions& options, Context& context) {
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file, OutputFile::Target::Regular);
+  VtkPiece piece;
+  const VtkDataSet data = hexDataSet(mesh, options, piece, context);
+  Stage stage(context, "write mesh");
+  VtkHdfWriter(target, data, stage).write();
+  target.commit();
+}
+
+namespace {
+
+// One VTKHDF file with all parts: their arrays stand one behind the other, and for each part there
+// is how long they are.
+//
+// One process adds part by part to datasets that grow. Where each process of a team has one, all
+// lengths are known before anything is written: the first process has HDF5 lay out the file, with
+// room for all, and then each writes its own bytes to where they belong, as parallel HDF5 does for
+// such datasets. So it takes neither HDF5's library for MPI nor MPI.
+
+/// What a part adds to a dataset of the file.
+struct Column {
+  std::string name;  ///< of the dataset, below VTKHDF
+  const VtkArray* array;
+};
+
+/// Adds the arrays that VTKHDF has beside those of the pieces of `.pvtu`.
+void addLayout(VtkDataSet& data, const MeshPart& part) {
+  const auto addCount = [&data](const char* name, std::uint64_t count) {
+    data.addOwn(VtkSection::Cells, name, std::vector{static_cast<std::int64_t>(count)});
+  };
+  const Array<Hex>& cells = part.mesh.cells;
+  constexpr std::size_t kCorners = std::tuple_size_v<Hex>;
+  addCount("NumberOfPoints", data.points);
+  addCount("NumberOfCells", data.cells);
+  addCount("NumberOfConnectivityIds", kCorners * data.cells);
+  data.addComputed<std::int64_t>(VtkSection::Cells, "Offsets", cells.size() + 1,
+                                 [](std::size_t i) { return kCorners * i; });
+  // Of 64 bits, whatever the number of points.
+  data.addComputed<std::int64_t>(
+      VtkSection::Cells, "Connectivity", kCorners * cells.size(),
+      [&cells](std::size_t i) { return cells[i / kCorners][i % kCorners]; });
+}
+
+/// @param data  with those of addLayout()
+std::vector<Column> columnsOf(const VtkDataSet& data) {
+  std::vector<Column> columns;
+  for (const VtkArray& array : data.arrays()) {
+    const std::string name(array.name);
+    if (array.section == VtkSection::PointData) columns.push_back({"PointData/" + name, &array});
+    if (array.section == VtkSection::CellData) columns.push_back({"CellData/" + name, &array});
+    if (array.section == VtkSection::Points) columns.push_back({"Points", &array});
+    if (array.section != VtkSection::Cells || name == "connectivity" || name == "offsets") continue;
+    columns.push_back({name == "types" ? "Types" : name, &array});
+  }
+  return columns;
+}
+
+/// Begins the file. @return  what holds all of it
+HdfObject addGrid(const HdfFile& file) {
+  HdfObject grid = file.group(file.root(), "VTKHDF");
+  writeVtkHdfKind(file, grid.id());
+  for (const char* name : {"PointData", "CellData", "FieldData"}) {
+    static_cast<void>(file.group(grid.id(), name));
+  }
+  return grid;
+}
+
+/// A dataset that grows.
+struct GrowingSet {
+  HdfObject set;
+  hsize_t rows = 0;
+
+  void add(const HdfFile& file, const VtkArray& array) {
+    const hid_t type = vtkHdfTypeOf(array.type);
+    array.write([&](const void* bytes, std::size_t size) {
+      const std::size_t row = array.components * HDF5(H5Tget_size)(type);
+      file.append(set, type, array.components, rows, bytes, size / row);
+    });
+  }
+};
+
+/// Tags of edges or quads, which belong to no part: rows of global vertices and the tag, as of the
+/// mesh in one piece.
+template <std::size_t n>
+class TagRows {
+ public:
+  template <class Feature>
+  void add(const MeshPart& part, const std::vector<Feature>& features) {
+    for (const Feature& feature : features) {
+      std::array<std::int64_t, n>& row = rows_.emplace_back();
+      std::transform(feature.vertices.begin(), feature.vertices.end(), row.begin(),
+                     [&](Index v) { return static_cast<std::int64_t>(part.globalPoints[v]); });
+      row.back() = feature.tag;
+    }
+  }
+  /// Leaves those of all processes in the first one, and none in others.
+  void gather(ProcessTeam& team) {
+    const std::vector<std::array<std::int64_t, n>> own = std::move(rows_);
+    rows_.clear();
+    const auto* const mine = reinterpret_cast<const std::uint64_t*>(own.data());
+    team.showAll(std::span(mine, n * own.size()),
+                 [&](std::uint32_t /*rank*/, std::span<const std::uint64_t> theirs) {
+                   if (team.rank() != 0) return;
+                   for (; !theirs.empty(); theirs = theirs.subspan(n)) {
+                     std::copy_n(theirs.begin(), n, rows_.emplace_back().begin());
+                   }
+                 });
+  }
+  void write(const HdfFile& file, hid_t grid, std::string_view name) {
+    if (rows_.empty()) return;
+    std::sort(rows_.begin(), rows_.end());
+    rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
+    const hid_t type = HDF5(H5T_NATIVE_INT64_g);
+    const HdfObject set =
+        file.dataset(grid, "FieldData/" + std::string(name), type, file.space({rows_.size(), n}));
+    set.require(
+        HDF5(H5Dwrite)(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows_.front().data()));
+  }
+
+ private:
+  std::vector<std::array<std::int64_t, n>> rows_;
+};
+
+class VtkHdfSink final : public PartSink {
+ public:
+  VtkHdfSink(const std::filesystem::path& path, Context& context, ProcessTeam* team)
+      : context_(context), team_(team), target_(path, team) {}
+
+  void begin(const PartsInfo& info) override {
+    info_ = info;
+    if (team_ != nullptr) return;
+    file_.emplace(target_.output(), HdfFile::Order::OfNames);
+    grid_.emplace(addGrid(*file_));
+  }
+
+  void part(MeshPart&& part) override {
+    Stage stage(context_, "write mesh");
+    VtkPiece piece;
+    VtkDataSet data = partDataSet(part, info_, piece);
+    addLayout(data, part);
+    edges_.add(part, part.mesh.features.edges);
+    quads_.add(part, part.mesh.features.quads);
+    if (team_ != nullptr) return writeTogether(columnsOf(data));
+    for (const Column& column : columnsOf(data)) {
+      auto place = sets_.find(column.name);
+      if (place == sets_.end()) {
+        const VtkArray& array = *column.array;
+        HdfObject set =
+            file_->growing(grid_->id(), column.name, vtkHdfTypeOf(array.type), array.components);
+        place = sets_.emplace(column.name, GrowingSet{std::move(set)}).first;
+      }
+      place->second.add(*file_, *column.array);
+    }
+  }
+
+  void end() override {
+    Stage stage(context_, "write mesh");
+    if (file_) {
+      writeTags(*file_, grid_->id());
+      sets_.clear();
+      grid_->close();
+      file_->close();
+      grid_.reset();
+      file_.reset();  // others may write now
+    }
+    target_.commit();
+  }
+
+ private:
+  void writeTags(const HdfFile& file, hid_t grid) {
+    edges_.write(file, grid, kVtkEdgeTags);
+    quads_.write(file, grid, kVtkQuadTags);
+  }
+
+  void writeTogether(const std::vector<Column>& columns) {
+    std::vector<std::uint64_t> rows(columns.size());
+    std::transform(columns.begin(), columns.end(), rows.begin(),
+                   [](const Column& column) { return column.array->rows; });
+    const GatheredNumbers ofAll = team_->gather(rows);
+    std::vector<std::uint64_t> before(columns.size(), 0);
+    std::vector<std::uint64_t> total(columns.size(), 0);
+    for (std::uint32_t r = 0; r < team_->size(); ++r) {
+      if (r == team_->rank()) before = total;
+      for (std::size_t i = 0; i < total.size(); ++i) total[i] += ofAll.of(r)[i];
+    }
+    edges_.gather(*team_);
+    quads_.gather(*team_);
+    std::vector<std::uint64_t> places(columns.size());
+    if (team_->rank() == 0) places = layOut(columns, total);
+    team_->share(std::as_writable_bytes(std::span(places)));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (rows[i] == 0) continue;
+      const VtkArray& array = *columns[i].array;
+      FilePart output(target_.output(), places[i] + before[i] * (array.bytes / array.rows));
+      array.write([&](const void* bytes, std::size_t size) { output.writeBytes(bytes, size); });
+      output.flush();
+    }
+  }
+
+  /// @param rows  of each dataset
+  /// @return where each begins in the file
+  std::vector<std::uint64_t> layOut(const std::vector<Column>& columns,
+                                    const std::vector<std::uint64_t>& rows) {
+    HdfFile file(target_.output(), HdfFile::Order::OfNames);
+    HdfObject grid = addGrid(file);
+    std::vector<std::uint64_t> places;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const VtkArray& array = *columns[i].array;
+      places.push_back(file.reserve(grid.id(), columns[i].name, vtkHdfTypeOf(array.type), rows[i],
+                                    array.components));
+    }
+    writeTags(file, grid.id());
+    grid.close();
+    file.close();
+    return places;
+  }
+
+  Context& context_;
+  ProcessTeam* team_;
+  SharedFile target_;
+  PartsInfo info_;
+  TagRows<3> edges_;
+  TagRows<5> quads_;
+  // In one process alone.
+  std::optional<HdfFile> file_;
+  std::optional<HdfObject> grid_;
+  std::map<std::string, GrowingSet> sets_;
+};
+
+}  // namespace
+
+std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file,
+                                             const WriteOptions& /*options*/, Context& context,
+                                             ProcessTeam* team) {
+  return std::make_unique<VtkHdfSink>(file, context, team);
+}
+
+}  // namespace hexhex::io

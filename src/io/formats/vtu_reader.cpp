@@ -1,0 +1,556 @@
+// Reads `.vtu` files: tags, which say where the arrays are, then the arrays' lengths, which must
+// agree with them. Every size and offset is checked against the file.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hexhex/types.hpp>
+
+#include <base/parallel.hpp>
+#include <base/stage.hpp>
+#include <io/core/bytes.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/core/zlib_blocks.hpp>
+#include <io/formats/vtk_source.hpp>
+#include <io/formats/xml_tags.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// How an array is stored.
+struct VtuEncoding {
+  bool base64 = false;
+  bool compressed = false;      ///< in blocks, with zlib; only if hasZlib()
+  std::size_t lengthBytes = 4;  ///< of the numbers in front of the data
+};
+
+constexpr std::uint8_t kNoDigit = 255;
+constexpr std::uint8_t kPadding = 64;
+
+constexpr std::array<std::uint8_t, 256> kBase64Digits = [] {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
+  std::array<std::uint8_t, 256> table{};
+  table.fill(kNoDigit);
+  for (std::size_t i = 0; i < kDigits.size(); ++i) {
+    table[static_cast<unsigned char>(kDigits[i])] = static_cast<std::uint8_t>(i);
+  }
+  return table;
+}();
+
+/// Bytes front to back: as they are, or out of a base64 text. There, white space is skipped, and
+/// texts that end with padding may follow each other.
+class EncodedBytes {
+ public:
+  EncodedBytes(std::string_view text, bool base64) : rest_(text), base64_(base64) {}
+
+  /// Reads so many bytes; false if there are not as many, or the text is no base64.
+  [[nodiscard]] bool read(char* to, std::size_t size) {
+    if (!base64_) {
+      if (size > rest_.size()) return false;
+      std::copy_n(rest_.data(), size, to);
+      rest_.remove_prefix(size);
+      return true;
+    }
+    while (size > 0) {
+      if (pendingBegin_ == pendingEnd_ && !decodeGroup()) return false;
+      *to++ = pending_[pendingBegin_++];
+      --size;
+    }
+    return true;
+  }
+
+  /// The most bytes that can be left.
+  [[nodiscard]] std::size_t room() const noexcept {
+    return base64_ ? rest_.size() / 4 * 3 + (pendingEnd_ - pendingBegin_) : rest_.size();
+  }
+
+ private:
+  /// Four characters are three bytes, or fewer with padding.
+  bool decodeGroup() {
+    std::array<std::uint8_t, 4> digits{};
+    std::size_t count = 0;
+    std::size_t used = 0;
+    while (count < digits.size()) {
+      if (used == rest_.size()) return false;
+      const char c = rest_[used++];
+      if (isSpace(c)) continue;
+      digits[count] = kBase64Digits[static_cast<unsigned char>(c)];
+      if (digits[count++] == kNoDigit) return false;
+    }
+    rest_.remove_prefix(used);
+    if (digits[0] == kPadding || digits[1] == kPadding) return false;
+    const bool one = digits[2] == kPadding;
+    const bool two = digits[3] == kPadding;
+    if (one && !two) return false;
+    const auto digit = [&](std::size_t i) { return std::uint32_t{digits[i]} & 63U; };
+    const std::uint32_t bits =
+        digit(0) << 18U | digit(1) << 12U | (one ? 0 : digit(2) << 6U) | (two ? 0 : digit(3));
+    pending_ = {static_cast<char>(bits >> 16U), static_cast<char>(bits >> 8U),
+                static_cast<char>(bits)};
+    pendingBegin_ = 0;
+    pendingEnd_ = one ? 1 : (two ? 2 : 3);
+    return true;
+  }
+
+  std::string_view rest_;
+  bool base64_;
+  std::array<char, 3> pending_{};
+  std::size_t pendingBegin_ = 0;
+  std::size_t pendingEnd_ = 0;
+};
+
+/// Where the blocks of a compressed array are.
+struct Blocks {
+  std::uint64_t size = 0;             ///< of each block, not compressed
+  std::uint64_t lastSize = 0;         ///< of the last one
+  std::vector<std::uint64_t> begins;  ///< of the compressed blocks, and the end of the last
+};
+
+/// A number in front of the data, in this machine's order of bytes, as the reader has checked.
+bool readLength(EncodedBytes& source, std::size_t lengthBytes, std::uint64_t& length) {
+  std::array<char, sizeof(length)> bytes{};
+  if (!source.read(bytes.data(), lengthBytes)) return false;
+  if (lengthBytes == sizeof(std::uint32_t)) {
+    std::uint32_t shortLength = 0;
+    std::memcpy(&shortLength, bytes.data(), sizeof(shortLength));
+    length = shortLength;
+  } else {
+    std::memcpy(&length, bytes.data(), sizeof(length));
+  }
+  return true;
+}
+
+/// In front of the blocks: their number, their size, that of a last shorter block or 0, and the
+/// sizes of the compressed ones.
+bool readBlocks(EncodedBytes& source, std::size_t lengthBytes, Blocks& blocks) {
+  std::uint64_t count = 0;
+  if (!readLength(source, lengthBytes, count) || !readLength(source, lengthBytes, blocks.size) ||
+      !readLength(source, lengthBytes, blocks.lastSize) || count > source.room() / lengthBytes) {
+    return false;
+  }
+  if (blocks.lastSize == 0) blocks.lastSize = blocks.size;
+  blocks.begins = {0};
+  for (std::uint64_t i = 0; i < count; ++i) {
+    std::uint64_t size = 0;
+    if (!readLength(source, lengthBytes, size) || size > source.room()) return false;
+    const std::uint64_t limit = size * kLargestZlibRatio;
+    if ((i + 1 < count ? blocks.size : blocks.lastSize) > limit) return false;
+    blocks.begins.push_back(blocks.begins.back() + size);
+  }
+  return blocks.begins.back() <= source.room() && blocks.lastSize <= blocks.size;
+}
+
+constexpr const char* kIncomplete = "the data of this array are incomplete.";
+constexpr const char* kIncompleteOrNoBase64 =
+    "the data of this array are incomplete, or no base64.";
+
+/// The bytes of an array.
+/// @param text  from the array's first byte on; what follows the array is ignored
+/// @param fail  throws an error about the array with this sentence
+Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, Stage& stage,
+                           const std::function<void(const char* sentence)>& fail) {
+  EncodedBytes source(text, encoding.base64);
+  if (!encoding.compressed) {
+    std::uint64_t length = 0;
+    if (!readLength(source, encoding.lengthBytes, length) || length > source.room()) {
+      fail(kIncomplete);
+    }
+    Array<char> bytes(static_cast<std::size_t>(length));
+    if (!source.read(bytes.data(), bytes.size())) fail(kIncompleteOrNoBase64);
+    return bytes;
+  }
+  Blocks blocks;
+  if (!readBlocks(source, encoding.lengthBytes, blocks)) fail(kIncomplete);
+  const std::size_t count = blocks.begins.size() - 1;
+  if (count == 0) return {};
+  Array<char> compressed(memorySize(blocks.begins.back()));
+  if (!source.read(compressed.data(), compressed.size())) fail(kIncompleteOrNoBase64);
+  Array<char> bytes(memorySize((count - 1) * blocks.size + blocks.lastSize));
+  constexpr std::size_t kGrain = 8;  // blocks of some tens of kilobytes
+  const auto inflate = [&](std::size_t i) {
+    const auto begin = static_cast<std::size_t>(blocks.begins[i]);
+    const auto end = static_cast<std::size_t>(blocks.begins[i + 1]);
+    const auto place = static_cast<std::size_t>(i * blocks.size);
+    const auto size = static_cast<std::size_t>(i + 1 < count ? blocks.size : blocks.lastSize);
+    return inflateBlock({compressed.data() + begin, end - begin}, {bytes.data() + place, size});
+  };
+  if (firstFault(stage, count, inflate, kGrain) < count) {
+    fail("the compressed data of this array are damaged.");
+  }
+  return bytes;
+}
+
+// `.vtu` files: tags, which say where the arrays are, then the arrays' lengths, which must agree
+// with them. Every size and offset is checked against the file.
+
+constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
+
+constexpr std::array<std::pair<std::string_view, VtkSection>, 5> kSections = {
+    {{"FieldData", VtkSection::FieldData},
+     {"PointData", VtkSection::PointData},
+     {"CellData", VtkSection::CellData},
+     {"Points", VtkSection::Points},
+     {"Cells", VtkSection::Cells}}};
+
+constexpr std::array<std::pair<std::string_view, VtkScalar>, 10> kScalars = {
+    {{"Int8", std::int8_t{}},
+     {"UInt8", std::uint8_t{}},
+     {"Int16", std::int16_t{}},
+     {"UInt16", std::uint16_t{}},
+     {"Int32", std::int32_t{}},
+     {"UInt32", std::uint32_t{}},
+     {"Int64", std::int64_t{}},
+     {"UInt64", std::uint64_t{}},
+     {"Float32", float{}},
+     {"Float64", double{}}}};
+
+/// What a table has under a name; null if it has nothing.
+template <class Table>
+auto* lookUp(const Table& table, std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [name](const auto& entry) { return entry.first == name; });
+  return found == table.end() ? nullptr : &found->second;
+}
+
+VtkNumbers numbersOf(std::string_view type) {
+  if (type.starts_with("Float")) return VtkNumbers::Reals;
+  if (type.starts_with("Int") || type.starts_with("UInt")) return VtkNumbers::Integers;
+  return VtkNumbers::Others;
+}
+
+/// An open `.vtu` file. Functions throw Error FileSyntax or FileUnsupported.
+class VtuFile final : public VtkSource {
+ public:
+  /// @param stage  for parallel decoding
+  VtuFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
+      : VtkSource(std::move(bytes), fileName), stage_(stage), tags_(text(), fileName) {
+    readTags();
+    if (points > 0) {
+      coordinates = loadNeeded(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3 * points);
+    }
+    if (cells == 0) return;
+    types = loadNeeded(VtkSection::Cells, "types", "cell types", VtkNumbers::Integers, cells);
+    offsets = loadNeeded(VtkSection::Cells, "offsets", "cell offsets", VtkNumbers::Integers, cells);
+    connectivity =
+        loadNeeded(VtkSection::Cells, "connectivity", "cell corners", VtkNumbers::Integers, {});
+  }
+
+  void requireIndexable() const override {
+    for (const std::uint64_t count : {points, cells}) {
+      if (count <= kNone) continue;
+      tags_.fail(ErrorCode::TooLarge,
+                 "the file holds " + std::to_string(count) + " points or cells; at most " +
+                     std::to_string(kNone) + " are supported.",
+                 *piece_);
+    }
+  }
+
+ private:
+  void readTags() {
+    XmlTag tag;
+    const VtkSection* section = nullptr;
+    while (tags_.next(tag)) {
+      if (!hasFileTag_ && tag.name != "VTKFile") break;
+      if (const VtkSection* const named = lookUp(kSections, tag.name)) {
+        section = tag.closing ? nullptr : named;
+      }
+      if (tag.closing) continue;
+      if (tag.name == "VTKFile") readFileTag(tag);
+      if (tag.name == "Piece") readPieceTag(tag);
+      if (tag.name == "DataArray" && section != nullptr) readArrayTag(tag, *section);
+      if (tag.name == "AppendedData") {
+        readAppendedTag(tag);
+        break;  // binary data, no more tags
+      }
+    }
+    if (!hasFileTag_) fail(ErrorCode::FileSyntax, "this is no VTK XML file: no tag VTKFile.");
+    if (!piece_) fail(ErrorCode::FileSyntax, "the file has no tag Piece: it is incomplete.");
+  }
+
+  void readFileTag(const XmlTag& tag) {
+    hasFileTag_ = true;
+    if (tag.attribute("type") != "UnstructuredGrid") {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the file's type is " + quoted(tag.attribute("type")) +
+                     ", only UnstructuredGrid is supported.",
+                 tag);
+    }
+    const std::string_view compressor = tag.attribute("compressor");
+    compressed_ = !compressor.empty();
+    if (compressed_ && compressor != kZlibCompressor) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the file is compressed with " + quoted(compressor) +
+                     ". Save it uncompressed or with zlib (vtkZLibDataCompressor).",
+                 tag);
+    }
+    const bool little = std::endian::native == std::endian::little;
+    const std::string_view order = tag.attribute("byte_order");
+    if (!order.empty() && order != (little ? "LittleEndian" : "BigEndian")) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the byte order " + quoted(order) + " is not that of this machine.", tag);
+    }
+    const std::string_view header = tag.attribute("header_type");
+    lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+  }
+
+  void readPieceTag(const XmlTag& tag) {
+    if (piece_) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the file has several pieces; merge them into one and save it again.", tag);
+    }
+    piece_ = tag;
+    points = readCount(tag, "NumberOfPoints");
+    cells = readCount(tag, "NumberOfCells");
+  }
+
+  std::uint64_t readCount(const XmlTag& tag, std::string_view attribute) const {
+    const std::string_view value = tag.attribute(attribute);
+    std::uint64_t count = 0;
+    const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
+    if (result.ec != std::errc{} || result.ptr != value.data() + value.size()) {
+      tags_.fail(
+          ErrorCode::FileSyntax,
+          "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
+          tag);
+    }
+    // Each point or cell takes some bytes, which zlib makes smaller at most by its ratio. Besides,
+    // products of this count cannot overflow then.
+    if (count / (compressed_ ? kLargestZlibRatio : 1) > fileSize()) {
+      tags_.fail(ErrorCode::FileSyntax,
+                 std::string(attribute) + " is " + std::to_string(count) +
+                     ", more than the file has room for: it is wrong or the file is incomplete.",
+                 tag);
+    }
+    return count;
+  }
+
+  void readArrayTag(const XmlTag& tag, VtkSection section) {
+    VtkSourceArray array;
+    array.section = section;
+    array.name = tag.attribute("Name");
+    // Of arrays without a name, only the last one of the points is looked for.
+    if (section != VtkSection::Points && array.name.empty()) return;
+    if (section == VtkSection::Points && !arrays.empty() && arrays.back().section == section) {
+      arrays.pop_back();
+    }
+    array.numbers = numbersOf(tag.attribute("type"));
+    const std::string_view components = tag.attribute("NumberOfComponents");
+    std::from_chars(components.data(), components.data() + components.size(), array.components);
+    array.appended = tag.attribute("format") == "appended";
+    array.load = [this, tag](VtkNumbers numbers, std::optional<std::uint64_t> count) {
+      return loadArray(tag, numbers, count);
+    };
+    const bool ofCells = section == VtkSection::CellData;
+    if (ofCells || section == VtkSection::PointData) see(array.name, ofCells, array.components);
+    arrays.push_back(std::move(array));
+  }
+
+  void readAppendedTag(const XmlTag& tag) {
+    const std::string_view encoding = tag.attribute("encoding");
+    appendedBase64_ = encoding == "base64";
+    if (!appendedBase64_ && encoding != "raw") {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the appended data are encoded as " + quoted(encoding) +
+                     ", which is neither raw nor base64.",
+                 tag);
+    }
+    const std::size_t mark = text().find('_', tag.end);
+    if (mark == std::string_view::npos) {
+      tags_.fail(ErrorCode::FileSyntax, "the appended data are missing: the file is incomplete.",
+                 tag);
+    }
+    appended_ = mark + 1;
+  }
+
+  /// The numbers of an array that no file can do without. That of the points may have any name.
+  VtkColumn loadNeeded(VtkSection section, std::string_view name, const char* what,
+                       VtkNumbers numbers, std::optional<std::uint64_t> count) const {
+    const auto found =
+        std::find_if(arrays.rbegin(), arrays.rend(), [&](const VtkSourceArray& array) {
+          return array.section == section && (name.empty() || array.name == name);
+        });
+    if (found != arrays.rend()) return found->load(numbers, count);
+    fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
+  }
+
+  /// The numbers of an array, exactly `count` of them if that is known.
+  VtkColumn loadArray(const XmlTag& tag, VtkNumbers numbers,
+                      std::optional<std::uint64_t> count) const {
+    const std::string_view format = tag.attribute("format");
+    if (format == "ascii") return parse(tag, numbers, count);
+    if (format != "appended" && format != "binary") {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the data format " + quoted(format) + " is none of appended, binary and ascii.",
+                 tag);
+    }
+    const std::string_view type = tag.attribute("type");
+    const VtkScalar* const scalar = lookUp(kScalars, type);
+    if (scalar == nullptr || numbersOf(type) != numbers) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "the number type " + quoted(type) + " is not supported for this array.", tag);
+    }
+    VtkColumn column;
+    column.scalar = *scalar;
+    std::uint64_t bytes = 0;
+    if (format == "appended" && !appendedBase64_ && !compressed_) {
+      bytes = findAppended(tag, column);
+    } else {
+      column.decoded = decode(tag);
+      bytes = column.decoded.size();
+    }
+    column.count = bytes / bytesOf(column.scalar);
+    if (count && column.count != *count) {
+      tags_.fail(ErrorCode::FileSyntax,
+                 "this array should hold " + std::to_string(*count) + " numbers, but it holds " +
+                     std::to_string(column.count) + ".",
+                 tag);
+    }
+    return column;
+  }
+
+  /// Finds an array that is appended as plain bytes.
+  /// @return their number
+  std::uint64_t findAppended(const XmlTag& tag, VtkColumn& column) const {
+    const std::uint64_t offset = readCount(tag, "offset");
+    const std::uint64_t room = appended_ ? fileSize() - *appended_ : 0;
+    if (offset <= room && room - offset >= lengthBytes_) {
+      VtkColumn length;
+      length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar(std::uint64_t{})
+                                                            : VtkScalar(std::uint32_t{});
+      length.position = *appended_ + offset;
+      std::int64_t bytes = 0;
+      copy(length, 0, 1, &bytes);
+      column.position = length.position + lengthBytes_;
+      if (static_cast<std::uint64_t>(bytes) <= room - offset - lengthBytes_) {
+        return static_cast<std::uint64_t>(bytes);
+      }
+    }
+    tags_.fail(ErrorCode::FileSyntax,
+               "the data of this array lie beyond the end of the file: it is incomplete.", tag);
+  }
+
+  /// The bytes of an array that is base64 in its tag or appended, or compressed.
+  Array<char> decode(const XmlTag& tag) const {
+    std::string_view encoded = contentOf(tag);
+    bool base64 = true;
+    if (tag.attribute("format") == "appended") {
+      const std::uint64_t offset = readCount(tag, "offset");
+      const std::uint64_t room = appended_ ? text().size() - *appended_ : 0;
+      if (offset > room) {
+        tags_.fail(ErrorCode::FileSyntax,
+                   "the data of this array lie beyond the end of the file: it is incomplete.", tag);
+      }
+      encoded = text().substr(appended_ ? *appended_ + offset : text().size());
+      base64 = appendedBase64_;
+    }
+    if (compressed_ && !hasZlib()) {
+      tags_.fail(ErrorCode::FileUnsupported,
+                 "this program was built without zlib, which compressed arrays need.", tag);
+    }
+    return decodeVtuArray(
+        encoded, {base64, compressed_, lengthBytes_}, stage_,
+        [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, sentence, tag); });
+  }
+
+  /// The numbers of a text. Without a count: as many as there are.
+  VtkColumn parse(const XmlTag& tag, VtkNumbers numbers, std::optional<std::uint64_t> count) const {
+    // A view from the beginning of the file makes line numbers right; the scanner ends at the next
+    // tag. Two bytes are the least that a number takes with its separator.
+    const std::string_view content = contentOf(tag);
+    TextScanner scanner = tags_.scannerTo(tag.end + content.size());
+    scanner.moveTo(tag.end);
+    const std::size_t room = content.size() / 2 + 1;
+    if (count && *count > room) {
+      tags_.fail(ErrorCode::FileSyntax,
+                 "this array should hold " + std::to_string(*count) +
+                     " numbers, but there is only room for " + std::to_string(room) + ".",
+                 tag);
+    }
+    VtkColumn column = textColumn(numbers, count ? *count : room);
+    const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
+    column.count = 0;
+    while (count ? column.count < *count : scanner.skipSpace()) {
+      readVtkNumber(scanner, numbers, column, column.count++, what);
+    }
+    if (scanner.skipSpace()) scanner.failToken("the end of the array");
+    return column;
+  }
+
+  std::string_view contentOf(const XmlTag& tag) const {
+    return text().substr(tag.end, std::min(text().find('<', tag.end), text().size()) - tag.end);
+  }
+
+  Stage& stage_;
+  XmlTags tags_;
+  bool hasFileTag_ = false;
+  std::optional<XmlTag> piece_;
+  std::size_t lengthBytes_ = 4;  ///< of the numbers in front of encoded arrays
+  bool compressed_ = false;
+  bool appendedBase64_ = false;
+  std::optional<std::uint64_t> appended_;  ///< position behind the '_' of AppendedData
+};
+
+/// Whether a text, which may go on, is a head with all its tags behind which arrays follow as plain
+/// bytes; nothing while the end of the head is not in the text.
+std::optional<bool> isPlainHead(std::string_view text) {
+  const std::size_t tag = text.find("<AppendedData");
+  const std::size_t mark = tag == std::string_view::npos ? tag : text.find('_', tag);
+  if (mark == std::string_view::npos) return {};
+  return text.find("compressor=") == std::string_view::npos &&
+         text.substr(tag, mark - tag).find("base64") == std::string_view::npos;
+}
+
+/// The head of a regular file whose arrays are appended to it as plain bytes; nothing of other
+/// files.
+Array<char> readPlainHead(const InputFile& input) {
+  // How much of a file is searched for the end of its head: first this, then more, at most that. A
+  // head takes some kilobytes; one with more holds arrays as text.
+  constexpr std::size_t kFirst = std::size_t{1} << 16;
+  constexpr std::size_t kMost = std::size_t{1} << 24;
+  Array<char> bytes;
+  if (!input.isRegular()) return bytes;
+  for (std::size_t most = kFirst; most <= kMost; most *= 4) {
+    bytes.resize(std::min<std::uint64_t>(most, input.size()));
+    input.readAt(0, bytes.data(), bytes.size());
+    if (const std::optional<bool> plain = isPlainHead(asText(bytes))) {
+      if (*plain) return bytes;
+      break;
+    }
+    if (bytes.size() == input.size()) break;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage) {
+  VtkFileBytes bytes;
+  if (!input.bytes()) {
+    bytes.file = std::make_unique<InputFile>(input.path());
+    bytes.room = readPlainHead(*bytes.file);
+    bytes.text = asText(bytes.room);
+  }
+  if (bytes.text.empty()) {
+    bytes.file.reset();
+    bytes.text = input.text(bytes.room, stage, kXmlFirst);
+  }
+  auto file = std::make_unique<VtuFile>(std::move(bytes), input.name(), stage);
+  file->counts = input.counts();
+  return file;
+}
+
+}  // namespace hexhex::io
