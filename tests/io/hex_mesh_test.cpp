@@ -321,7 +321,7 @@ TEST(Vtu, UnsupportedAndBrokenFilesSaySo) {
        ErrorCode::FileUnsupported, 12, "\"packed\""},
       {replaced(good, "\"types\"", "\"kinds\""), ErrorCode::FileSyntax, 0,
        "no array of cell types"},
-      {replaced(good, "10 12<", "10 11<"), ErrorCode::FileUnsupported, 0, "no hexahedra"},
+      {replaced(good, "10 12<", "10 41<"), ErrorCode::FileUnsupported, 0, "no hexahedra"},
       {replaced(good, "4 12<", "4 13<"), ErrorCode::FileSyntax, 0, "corners of cell 1"},
       {replaced(good, "4 12<", "5 12<"), ErrorCode::FileSyntax, 0, "with 7 instead of 8"},
       {replaced(good, "4 12<", "4 -1<"), ErrorCode::FileSyntax, 0, "corners of cell 1"},

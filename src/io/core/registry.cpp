@@ -310,7 +310,7 @@ std::span<const FileFormat> fileFormats() {
                               format.readTriangles != nullptr};
       // Not in this build, or for parts, arcs and patches alone.
       if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes ||
-          row.readsTriangles) {
+          row.readsSurfaces) {
         result.push_back(row);
       }
     }
