@@ -137,11 +137,12 @@ std::string lastLines(std::string_view said) {
   constexpr std::size_t kLines = 12;
   std::string text;
   for (std::size_t i = 0; i < kLines && !said.empty(); ++i) {
-    const std::size_t begin = said.find_last_of('\n') + 1;  // or 0
-    const std::string line(said.substr(begin));
-    said = said.substr(0, begin == 0 ? 0 : begin - 1);
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    text = text.empty() ? line : line + " | " + text;
+    const std::size_t end = said.rfind('\n');
+    const bool isFirst = end == std::string_view::npos;
+    const std::string_view line = isFirst ? said : said.substr(end + 1);
+    said = isFirst ? std::string_view() : said.substr(0, end);
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    text.insert(0, text.empty() ? "" : " | ").insert(0, line);
   }
   return text.empty() ? "It said nothing." : "It said: " + text;
 }

@@ -107,6 +107,7 @@ ProgramEnd runProgram(const std::vector<std::string>& words, const std::filesyst
   const std::string said = folder / "said.txt";
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
+  pointers.reserve(copies.size() + 1);
   for (std::string& word : copies) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   std::array<int, 2> ends{};
