@@ -72,12 +72,15 @@ double farthestAllowed(const SurfaceDistance& before) {
 
 double meritOf(const ImproveReport& report) {
   constexpr double kGood = 0.3;        // a minimum above needs no better
-  constexpr double kFar = 0.01;        // of the diagonal: that is another object
+  constexpr double kElsewhere = 0.01;  // of the diagonal: that is another object
   constexpr double kUnfollowed = 0.5;  // of a mesh that follows no curve
+  constexpr double kGrown = 2;         // times the cells that were asked for, before layers
   if (!report.after.allPositive()) return -1;
   const double quality = std::min(1.0, report.after.quality.minimum / kGood);
-  const double nearness = std::max(0.0, 1 - report.distanceAfter.hausdorff() / kFar);
-  return quality * nearness * (kUnfollowed + (1 - kUnfollowed) * report.curvesFollowed);
+  const double nearness = std::max(0.0, 1 - report.distanceAfter.hausdorff() / kElsewhere);
+  const auto cells = static_cast<double>(report.after.positive);
+  const double size = std::min(1.0, kGrown * (1 - static_cast<double>(report.addedCells) / cells));
+  return quality * nearness * size * (kUnfollowed + (1 - kUnfollowed) * report.curvesFollowed);
 }
 
 BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,

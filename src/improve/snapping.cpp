@@ -37,7 +37,7 @@ class Regions {
       : quads_(quads), paths_(paths), sets_(quads.size()) {
     for (Index q = 0; q < quads.size(); ++q) {
       for (std::size_t i = 0; i < 4; ++i) {
-        sides_.push_back({ascending(quads[q][i], quads[q][(i + 1) % 4]), q});
+        sides_.emplace_back(ascending(quads[q][i], quads[q][(i + 1) % 4]), q);
       }
     }
     std::sort(sides_.begin(), sides_.end());
@@ -179,6 +179,27 @@ class CurveSnapper {
     }
   }
 
+  /// Vertices that moved, and rings of others around them.
+  [[nodiscard]] std::vector<Index> nearMoved(const Array<Vec3>& before,
+                                             const adjacency::VertexLists<Index>& beside) const {
+    std::vector<Index> near;
+    std::vector<std::uint8_t> isNear(before.size(), 0);
+    for (Index v = 0; v < before.size(); ++v) {
+      if (mesh_.points[v] == before[v]) continue;
+      near.push_back(v);
+      isNear[v] = 1;
+    }
+    std::size_t begin = 0;
+    for (int ring = 0; ring < kRoomRings; ++ring) {
+      for (const std::size_t end = near.size(); begin < end; ++begin) {
+        for (const Index v : beside(near[begin])) {
+          if (std::exchange(isNear[v], 1) == 0) near.push_back(v);
+        }
+      }
+    }
+    return near;
+  }
+
   /// Others around go to the middle of their neighbours, on the boundary along it.
   void makeRoom(const Array<Vec3>& before) {
     const std::size_t n = mesh_.points.size();
@@ -199,21 +220,7 @@ class CurveSnapper {
         add(b, a);
       }
     });
-    std::vector<Index> near;
-    std::vector<std::uint8_t> isNear(n, 0);
-    for (Index v = 0; v < n; ++v) {
-      if (mesh_.points[v] == before[v]) continue;
-      near.push_back(v);
-      isNear[v] = 1;
-    }
-    std::size_t begin = 0;
-    for (int ring = 0; ring < kRoomRings; ++ring) {
-      for (const std::size_t end = near.size(); begin < end; ++begin) {
-        for (const Index v : beside(near[begin])) {
-          if (std::exchange(isNear[v], 1) == 0) near.push_back(v);
-        }
-      }
-    }
+    const std::vector<Index> near = nearMoved(before, beside);
     for (int round = 0; round < kRoomRounds; ++round) {
       for (const Index v : near) {
         if (places_.freedom[v] != Freedom::Free && places_.freedom[v] != Freedom::OnPatch) continue;
