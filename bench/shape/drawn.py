@@ -22,9 +22,9 @@ from evaluation import document
 SIZES = {"coarse": (1 / 12, 1000), "fine": (1 / 20, 4000)}  # edges of tets in diagonals, cells
 PAGE = "any-part.md"
 # By words of the sentence. All are about polycubes: where both ways fail, the sentence is that of the second one.
-CAUSES = {"labels: border turns too often": "quarter turns", "labels: edge without length": "has no length",
-          "labels: not those of a polycube": "the best labels that were found",
-          "bend: tets stay flipped": "stay flipped"}
+CAUSES = {"labels that are not those of a polycube": "the best labels that were found",
+          "labels: a border turns too often": "quarter turns", "labels: an edge without length": "has no length",
+          "labels: faces overlap around a vertex": "faces overlap", "tets stay flipped": "stay flipped"}
 
 
 def write_tets(file, points, tets):
@@ -46,11 +46,9 @@ def cause_of(made):
     """What a refusal is about, else the code of the error, or a signal."""
     if made.returncode < 0:
         return f"signal {-made.returncode}"
-    for cause, words in CAUSES.items():
-        if words in made.stderr:
-            return cause
     code = re.search(r"\[(\w+)(, [^]]*)?\]\s*$", made.stderr)
-    return code.group(1) if code else f"exit code {made.returncode}"
+    return next((cause for cause, words in CAUSES.items() if words in made.stderr),
+                code.group(1) if code else f"exit code {made.returncode}")
 
 
 def mesh(command, part, target, cells, seconds):
@@ -80,7 +78,7 @@ def one_run(options, part, size, points, tets):
         cause = "refuted" if verdict.bad else ""
     line |= {"cause": cause, "said": said}
     if cause:
-        kept = options.folder / cause.replace(" ", "-")
+        kept = options.folder / re.sub(r"\W+", "-", cause)
         kept.mkdir(exist_ok=True)
         for file in filter(Path.exists, (tet_file, hex_file)):
             file.rename(kept / file.name)
@@ -134,7 +132,8 @@ def groups_table(lines):
         text += group_row("anything oblique" if kind == "oblique" else f"with a {kind}",
                           [line for line in lines if (line["oblique"] if kind == "oblique" else kind in line["kinds"])])
     for count in range(solids.MOST_FEATURES + 1):
-        text += group_row(f"{count} feature{'' if count == 1 else 's'}", [line for line in lines if len(line["kinds"]) == count + 1])
+        name = "1 feature" if count == 1 else f"{count} features"
+        text += group_row(name, [line for line in lines if len(line["kinds"]) == count + 1])
     return text
 
 
@@ -143,10 +142,10 @@ def causes_table(lines):
     for line in lines:
         causes.setdefault(line["cause"], []).append(line)
     causes.pop("", None)
-    text = "| cause | runs | for example seeds |\n|---|---:|---|\n"
+    text = "| cause | runs | seeds, for example |\n|---|---:|---|\n"
     for cause, failed in sorted(causes.items(), key=lambda item: -len(item[1])):
         seeds = ", ".join(f"{line['seed']} {line['size']}" for line in failed[:4])
-        text += f"| `{cause}` | {len(failed)} | {seeds} |\n"
+        text += f"| {cause} | {len(failed)} | {seeds} |\n"
     return text
 
 
@@ -155,9 +154,10 @@ def summary(lines, seconds):
     named = f"{seeds[0]} to {seeds[-1]}" if seeds == list(range(seeds[0], seeds[-1] + 1)) else ", ".join(map(str, seeds))
     tets = {size: sorted(line["tets"] for line in lines if line["size"] == size) for size in SIZES}
     times = sorted(line["seconds"] for line in lines if certified(line))
-    middle = "; ".join(f"{size}: {each[0]:,} to {each[-1]:,} tets, half of them below {each[len(each) // 2]:,}, {SIZES[size][1]:,} cells asked"
-                       for size, each in tets.items() if each)
-    spent = f" Where there is a mesh, it took {times[0]:.0f} to {times[-1]:.0f} s, half of them below {times[len(times) // 2]:.0f} s." if times else ""
+    middle = "; ".join(f"{size}: {each[0]:,} to {each[-1]:,} tets, half of the parts below {each[len(each) // 2]:,}, "
+                       f"{SIZES[size][1]:,} cells asked for" for size, each in tets.items() if each)
+    spent = (f" Where there is a mesh, it took {times[0]:.0f} to {times[-1]:.0f} s, half of them below "
+             f"{times[len(times) // 2]:.0f} s.") if times else ""
     return (f"{len(seeds)} parts, seeds {named}, {len(lines)} runs of one thread, each with {seconds} s of processor time. "
             f"{middle[0].upper()}{middle[1:]}.{spent}\n")
 
@@ -180,7 +180,7 @@ def main():
     parts = {"drawn-summary": lambda: summary(lines, options.seconds), "drawn-groups": lambda: groups_table(lines),
              "drawn-causes": lambda: causes_table(lines)}
     if options.docs:
-        document.rewrite_page(options.docs / PAGE, parts)
+        document.rewrite_page(options.docs / PAGE, dict(parts))
     print(*(make() for make in parts.values()), sep="\n")
 
 

@@ -2,9 +2,9 @@
 
 A seed is a part: what is drawn depends on nothing but it (and on Gmsh's version, whose tets differ). A part begins as
 a box, cylinder, cone, ball or torus and gets up to four features: another of these fused to it, a rib, a hole, a
-fillet or a chamfer. Half of what is added is turned by right angles, half by any angle. A feature that leaves several bodies or none,
-changes hardly anything, leaves an edge shorter than a fiftieth of the diagonal, or that Gmsh cannot fill with positive tets, is
-drawn again."""
+fillet or a chamfer. Half of what is added is turned by right angles, half by any angle. A feature that leaves several
+bodies or none, changes hardly anything, leaves an edge shorter than a fiftieth of the diagonal, or what Gmsh cannot fill
+with positive tets, is drawn again."""
 import contextlib
 import math
 import multiprocessing
