@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -58,7 +60,8 @@ class FramesMapper {
       const EdgeWalks walks(tets_);
       untangle::Problem problem = seamlessProblem(tets_, walks, stage_);
       requireRoom(problem);
-      const std::vector<Index> flipped = untangleTets(problem);
+      std::vector<Index> flipped = untangleTets(problem);
+      if (flipped.empty()) flipped = woundTets(problem, walks);
       if (flipped.empty()) return mapOf(problem);
       if (refinements == kMostRefinements) failFlipped(flipped);
       refineAt(flipped);
@@ -150,6 +153,42 @@ class FramesMapper {
     return roundUnknowns(problem);
   }
 
+  /// Tets around edges that have more or fewer hexahedra in the map than in the field: all are
+  /// positive, but they go around the edge once too often.
+  [[nodiscard]] std::vector<Index> woundTets(const untangle::Problem& problem,
+                                             const EdgeWalks& walks) const {
+    const std::vector<TetParameters> parameters = parametersOf(problem);
+    std::vector<Index> wound;
+    for (std::size_t edge = 0; edge < walks.size(); ++edge) {
+      double angle = 0;
+      for (const HalfFace h : walks.outs(edge)) {
+        const Index t = adjacency::tetOf(h);
+        const Tet& tet = tets_.mesh().tets[t];
+        const auto cornerOf = [&](Index v) {
+          return static_cast<std::size_t>(std::find(tet.begin(), tet.end(), v) - tet.begin());
+        };
+        angle += dihedralAngle(parameters[t], cornerOf(walks[edge][0]), cornerOf(walks[edge][1]));
+      }
+      if (isTurnOf(walks, edge, std::lround(2 * angle / std::numbers::pi))) continue;
+      for (const HalfFace h : walks.outs(edge)) wound.push_back(adjacency::tetOf(h));
+    }
+    return wound;
+  }
+
+  [[nodiscard]] bool isTurnOf(const EdgeWalks& walks, std::size_t edge, long quarters) const {
+    if (walks.isBoundary(edge)) return quarters == boundaryValence(tets_, walks, edge);
+    switch (turningAt(tets_, walks, edge).kind) {
+      case EdgeTurning::Kind::Regular:
+        return quarters == 4;
+      case EdgeTurning::Kind::Three:
+        return quarters == 3;
+      case EdgeTurning::Kind::Five:
+        return quarters == 5;
+      default:
+        return quarters == 2 || quarters == 6;
+    }
+  }
+
   /// Splits the longest edge, at one of their vertices, of tets near flips.
   void refineAt(const std::vector<Index>& flipped) {
     std::vector<bool> isNear(tets_.mesh().points.size());
@@ -213,7 +252,8 @@ class FramesMapper {
     throw Error(
         ErrorCode::FlippedTet,
         "No map was found along the frame field of this object: " + std::to_string(flipped.size()) +
-            " tets stay flipped, this one among them. Refine the tets there, or make a "
+            " tets stay flipped, or go around an edge too often, this one among them. Refine the "
+            "tets there, or make a "
             "polycube of the object.",
         {PlaceKind::Tet, tets_.parentOf(flipped.front())});
   }

@@ -918,6 +918,17 @@ class Repair(CommandTest):
                               expect=INVALID_MAP, code="FlippedTet")
         self.assertEqual(list(self.folder.glob("bad*")), [])
 
+    def test_maps_along_frames_are_seamless(self):
+        """Not so where all tets are positive, but go around an edge twice."""
+        part = pathlib.Path(__file__).parents[2] / "examples" / "bracket.mesh"
+        run = self.run_command("map", str(part), "-o", "frames.hexex", "--method", "frames", expect=None)
+        if "cannot make maps" in run.stderr:
+            self.skipTest("built without quantization")
+        if run.returncode == SUCCESS:
+            self.run_command("quantize", "frames.hexex", "-o", "integer.hexex", "--cells", "500")
+        else:
+            self.assertIn("[NotMeshable", run.stderr)
+
     def test_quantize(self):
         self.run_command("generate", "sphere", "--stretch", "0.5", "--charts", "random", "--quiet",
                          "-o", "seamless.hexex")
