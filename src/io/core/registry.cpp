@@ -173,6 +173,7 @@ std::string_view usualName(std::string_view name) {
 bool holdsMaps(const Format& format) {
   return format.maps.read != nullptr || format.maps.write != nullptr;
 }
+constexpr bool writesParts(const Format& format) { return !format.parts.description.empty(); }
 bool holdsMeshes(const Format& format) {
   return format.meshes.read != nullptr || format.meshes.write != nullptr || format.overHdf5;
 }
@@ -191,7 +192,7 @@ constexpr std::array<Purpose, 9> kPurposes = {
       "maps or hexahedral meshes"},
      {[](const Format& format) { return format.readTets != nullptr; }, "tetrahedral meshes"},
      {[](const Format& format) { return format.readTriangles != nullptr; }, "surfaces"},
-     {[](const Format& format) { return !format.parts.description.empty(); }, "meshes in parts"},
+     {writesParts, "meshes in parts"},
      {[](const Format& format) { return format.curved.write != nullptr; }, "cells of higher order"},
      {[](const Format& format) { return format.writeArcs != nullptr; }, "arcs"},
      {[](const Format& format) { return format.writePatches != nullptr; }, "patches"}}};
@@ -309,8 +310,7 @@ std::span<const FileFormat> fileFormats() {
                               format.compresses && io::hasZlib(),
                               format.readTriangles != nullptr};
       // Not in this build, or for parts, arcs and patches alone.
-      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes ||
-          row.readsSurfaces) {
+      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces) {
         result.push_back(row);
       }
     }
@@ -320,16 +320,19 @@ std::span<const FileFormat> fileFormats() {
 }
 
 std::span<const PartFormat> partFormats() noexcept {
-  static const std::vector<PartFormat> list = [] {
-    std::vector<PartFormat> result;
+  constexpr auto kCount = static_cast<std::size_t>(
+      std::count_if(io::kFormatTable.begin(), io::kFormatTable.end(), io::writesParts));
+  static constexpr std::array<PartFormat, kCount> kList = [] {
+    std::array<PartFormat, kCount> list{};
+    std::size_t i = 0;
     for (const io::Format& format : io::kFormatTable) {
-      if (format.parts.description.empty()) continue;
-      result.push_back({format.label.name, format.label.extension, format.parts.description,
-                        format.parts.byTeams});
+      if (!io::writesParts(format)) continue;
+      list[i++] = {format.label.name, format.label.extension, format.parts.description,
+                   format.parts.byTeams};
     }
-    return result;
+    return list;
   }();
-  return list;
+  return kList;
 }
 
 }  // namespace hexhex
