@@ -8,8 +8,8 @@
 #include <hexhex/extract.hpp>        // IWYU pragma: export
 #include <hexhex/extractor.hpp>      // IWYU pragma: export
 #include <hexhex/features.hpp>       // IWYU pragma: export
-#include <hexhex/improve.hpp>        // IWYU pragma: export
 #include <hexhex/fill.hpp>           // IWYU pragma: export
+#include <hexhex/improve.hpp>        // IWYU pragma: export
 #include <hexhex/io.hpp>             // IWYU pragma: export
 #include <hexhex/map_structure.hpp>  // IWYU pragma: export
 #include <hexhex/mesh.hpp>           // IWYU pragma: export
