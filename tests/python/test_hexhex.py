@@ -607,6 +607,7 @@ def test_interrupts_after_quantization():
     needs_quantization()
     code = """
 import os, signal, hexhex
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in jobs of a shell's background
 map = hexhex.generate("sphere")
 hexhex.quantize(hexhex.Map(map.points, map.tets, map.igm * 2**0.5), cells=500)
 try:
