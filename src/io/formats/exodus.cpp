@@ -39,7 +39,7 @@ constexpr std::size_t kExodusLineBytes = 81;
 constexpr std::int32_t fromOne(std::size_t i) { return static_cast<std::int32_t>(i) + 1; }
 
 /// Where each cell stands in the order of the blocks; empty: as they are.
-Array<Index> placesOf(const CellGroups& cells) {
+Array<Index> cellPlacesOf(const CellGroups& cells) {
   Array<Index> places(cells.order.size());
   for (std::size_t i = 0; i < places.size(); ++i) places[cells.at(i)] = static_cast<Index>(i);
   return places;
@@ -187,7 +187,7 @@ class ExodusFile {
 
   /// The sides of each group of boundary quads.
   void addSideSets() {
-    const Array<Index> places = placesOf(groups_.cells);
+    const Array<Index> places = cellPlacesOf(groups_.cells);
     ExodusList& sets = sides_;
     for (const ElementGroup& group : groups_.quads.groups) {
       std::vector<std::int32_t> cells;
@@ -607,7 +607,7 @@ class NemesisFile final : public ExodusFile {
 
   /// Cells with and without a face to another part, and these faces.
   void addCells() {
-    const Array<Index> places = placesOf(groups_.cells);
+    const Array<Index> places = cellPlacesOf(groups_.cells);
     std::vector<bool> atBorder(part_.ownCells, false);
     std::vector<std::int32_t> ids;
     std::vector<std::int32_t> ends;

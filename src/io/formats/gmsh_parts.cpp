@@ -377,9 +377,9 @@ std::string gmshEnd(const GmshSums& sums) {
 void copyAll(OutputFile& from, OutputFile& to) {
   from.flush();
   std::string bytes;
-  constexpr std::uint64_t kPiece = std::uint64_t{1} << 22;
+  constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 22;
   for (std::uint64_t begin = 0; begin < from.position(); begin += bytes.size()) {
-    bytes.resize(static_cast<std::size_t>(std::min(kPiece, from.position() - begin)));
+    bytes.resize(static_cast<std::size_t>(std::min(kPieceBytes, from.position() - begin)));
     from.readBytesAt(begin, bytes.data(), bytes.size());
     to.write(bytes);
   }
