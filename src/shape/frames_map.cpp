@@ -239,7 +239,7 @@ class FramesMapper {
         "No hexahedral mesh follows the frame field of this object: " +
             std::to_string(count(FieldDefect::Kind::Compound)) +
             " edges turn about a diagonal, at " + std::to_string(count(FieldDefect::Kind::Zipper)) +
-            " vertices curves of valence 3 become those of valence 5 or end, " +
+            " vertices curves meet as in no hexahedral mesh, " +
             std::to_string(count(FieldDefect::Kind::Boundary)) +
             " edges of the boundary turn as no hexahedra do, and " +
             std::to_string(count(FieldDefect::Kind::Flat) + count(FieldDefect::Kind::HalfTurn)) +

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <shape/frames_matching.hpp>
 
@@ -76,8 +77,7 @@ void addZippers(const FrameTets& tets, const std::vector<Ends>& ends,
   const std::vector<bool> isOuter = tets.boundaryVertices();
   for (Index v = 0; v < ends.size(); ++v) {
     if (isOuter[v] || ends[v].others > 0) continue;
-    const bool changes = ends[v].threes == 1 && ends[v].fives == 1;
-    if (changes || ends[v].threes + ends[v].fives == 1)
+    if (!isNode(ends[v].threes, ends[v].fives))
       defects.push_back({FieldDefect::Kind::Zipper, {v, v}});
   }
 }
@@ -157,6 +157,16 @@ int boundaryValence(const FrameTets& tets, const EdgeWalks& walks, std::size_t e
   for (int k = 0; k < 3; ++k) best = std::max(best, std::abs(frame.col(k).dot(along)));
   if (std::abs(cosine) < best - 1e-6 && std::abs(cosine) < kAligned) return 0;
   return cosine > 0 ? 3 : 1;
+}
+
+bool isNode(int threes, int fives) {
+  // Hexahedra around a vertex make triangles on a small sphere, at each corner of which are as many
+  // as hexahedra at that edge. Of the spheres with three to five everywhere, there are these (of
+  // all triangulations with up to ten corners, and there is one with twelve but none with eleven).
+  using Counts = std::pair<int, int>;
+  constexpr std::array<Counts, 11> kNodes = {
+      {{0, 0}, {2, 0}, {4, 0}, {0, 2}, {2, 2}, {1, 3}, {0, 4}, {0, 6}, {2, 6}, {0, 8}, {0, 12}}};
+  return std::find(kNodes.begin(), kNodes.end(), Counts(threes, fives)) != kNodes.end();
 }
 
 std::vector<FieldDefect> defectsOf(const FrameTets& tets, const EdgeWalks& walks) {

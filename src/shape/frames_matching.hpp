@@ -48,11 +48,16 @@ struct EdgeTurning {
 /// The signed axis of a frame that is nearest to a boundary triangle's normal.
 [[nodiscard]] lattice::Direction normalDirection(const FrameTets& tets, adjacency::HalfFace h);
 
+/// Whether so many singular curves may meet at a vertex inside, of valence 3 and of valence 5. A
+/// curve that goes on counts twice.
+[[nodiscard]] bool isNode(int threes, int fives);
+
 /// Why there is no hexahedral mesh along a field.
 struct FieldDefect {
   enum class Kind : std::uint8_t {
     Compound,  ///< an edge around which charts turn about a diagonal
-    Zipper,    ///< a vertex where a curve of valence 3 becomes one of valence 5, or ends
+    Zipper,    ///< a vertex where curves meet as in no hexahedral mesh, !isNode(): one of valence 3
+               ///< becomes one of valence 5, say, or ends
     Boundary,  ///< an edge at which the boundary turns as no hexahedra do
     Flat,      ///< a triangle with three singular edges: no map has all of them along axes
     HalfTurn,  ///< an edge where two curves of one valence have become one, mostly of no use

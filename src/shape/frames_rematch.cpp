@@ -149,9 +149,7 @@ class Rematcher {
     const int proper = threes + fives;
     if (isOuter_[v]) return kBoundaryNode * unit_ * std::max(0, proper + improper - 1);
     if (improper > 0 || proper == 0) return 0;
-    const bool isImpossible =
-        proper == 1 || (threes == 1 && fives == 1) || (threes == 3 && fives <= 1) || threes > 4;
-    return isImpossible ? kZipper * unit_ : kNode * unit_ * std::max(0, proper - 2);
+    return unit_ * (isNode(threes, fives) ? kNode * std::max(0, proper - 2) : kZipper);
   }
 
   [[nodiscard]] double faceCost(HalfFace h) const {

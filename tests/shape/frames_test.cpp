@@ -176,6 +176,29 @@ TEST(FrameTensor, MovesAroundACircleWithOneAxisFixed) {
   }
 }
 
+/// Around a vertex, hexahedra are triangles on a sphere: those with three, four or five at each
+/// corner have deltahedra's names.
+TEST(FrameNodes, AreThoseOfTriangulatedSpheres) {
+  EXPECT_TRUE(isNode(0, 0));   // octahedron
+  EXPECT_TRUE(isNode(4, 0));   // tetrahedron: the corners of the cube in a ball
+  EXPECT_TRUE(isNode(2, 0));   // triangular bipyramid: a curve that goes on
+  EXPECT_TRUE(isNode(0, 2));   // pentagonal bipyramid, likewise
+  EXPECT_TRUE(isNode(2, 2));   // two tetrahedra on faces of a third
+  EXPECT_TRUE(isNode(1, 3));   // an octahedron with a tetrahedron on a face
+  EXPECT_TRUE(isNode(0, 4));   // snub disphenoid
+  EXPECT_TRUE(isNode(0, 6));   // triaugmented triangular prism
+  EXPECT_TRUE(isNode(2, 6));   // an octahedron with tetrahedra on opposite faces
+  EXPECT_TRUE(isNode(0, 8));   // gyroelongated square bipyramid
+  EXPECT_TRUE(isNode(0, 12));  // icosahedron
+  EXPECT_FALSE(isNode(1, 0));  // ends
+  EXPECT_FALSE(isNode(0, 1));
+  EXPECT_FALSE(isNode(1, 1));  // changes its valence
+  EXPECT_FALSE(isNode(3, 1));  // Euler's formula holds for these, but there is no such sphere
+  EXPECT_FALSE(isNode(3, 3));
+  EXPECT_FALSE(isNode(0, 10));  // eleven corners
+  EXPECT_FALSE(isNode(5, 0));
+}
+
 /// The identity, but for a rotation of the grid and a translation: no tet is distorted.
 TEST(FramesMap, KeepsABoxAsItIs) {
   for (const double angle : {0.0, 0.4, 1.1}) {
