@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -64,5 +66,19 @@ class VertexLists {
   Array<Offset> ends_;
   Array<T> values_;
 };
+
+/// The other ends of the edges of each vertex.
+/// @param edges  each with the smaller vertex first; any number of times
+[[nodiscard]] inline VertexLists<Index> verticesBeside(std::vector<std::array<Index, 2>> edges,
+                                                       std::size_t vertexCount, Stage& stage) {
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return VertexLists<Index>(vertexCount, stage, [&](const auto& add) {
+    for (const auto& [a, b] : edges) {
+      add(a, b);
+      add(b, a);
+    }
+  });
+}
 
 }  // namespace hexhex::adjacency

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include <hexhex/types.hpp>
 
@@ -18,6 +19,10 @@ namespace hexhex {
 
 [[nodiscard]] constexpr Vec3 plus(const Vec3& a, const Vec3& b) noexcept {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+[[nodiscard]] constexpr Vec3 times(double factor, const Vec3& a) noexcept {
+  return {factor * a[0], factor * a[1], factor * a[2]};
 }
 
 /// Exact ones: points of lattices, far from where they would overflow.
@@ -97,5 +102,13 @@ using IntegerVector = std::array<std::int64_t, 3>;
 }
 
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
+
+/// The mean of some points.
+[[nodiscard]] inline Vec3 centreOf(std::span<const Vec3> points) noexcept {
+  Vec3 sum{};
+  for (const Vec3& point : points) sum = plus(sum, point);
+  for (double& x : sum) x /= static_cast<double>(points.size());
+  return sum;
+}
 
 }  // namespace hexhex

@@ -16,7 +16,9 @@
 #include <hexhex/io.hpp>
 
 #include <base/parallel.hpp>
+#include <base/short_number.hpp>
 #include <base/stage.hpp>
+#include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 
@@ -61,21 +63,16 @@ double totalVolume(const TetMesh& mesh) {
   return sum;
 }
 
-Vec3 centreOf(const TetMesh& mesh, const Tet& tet) {
-  Vec3 centre{};
-  for (const Index v : tet) {
-    for (std::size_t k = 0; k < 3; ++k) centre[k] += mesh.points[v][k] / 4;
-  }
-  return centre;
-}
-
 /// Some meshers fill cavities, too.
 void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   if (body.voidCount == 0) return;
   constexpr std::size_t kGrain = 16;
   std::vector<char> isInVoid(mesh.tets.size());
   parallelFor(stage, mesh.tets.size(), kGrain, [&](std::size_t t) {
-    isInVoid[t] = windings(body.voids, centreOf(mesh, mesh.tets[t])) != 0 ? 1 : 0;
+    const auto [a, b, c, d] = mesh.tets[t];
+    const std::array<Vec3, 4> corners = {mesh.points[a], mesh.points[b], mesh.points[c],
+                                         mesh.points[d]};
+    isInVoid[t] = windings(body.voids, centreOf(corners)) != 0 ? 1 : 0;
   });
   std::size_t t = 0;
   std::erase_if(mesh.tets, [&](const Tet& /*tet*/) { return isInVoid[t++] != 0; });
@@ -86,8 +83,8 @@ void requireFilled(double volume, double filled, const std::string& mesher) {
   constexpr double kMostMissing = 0.1;
   if (std::abs(filled - volume) <= kMostMissing * volume) return;
   throw Error(ErrorCode::NotMeshable,
-              "The tets of the mesher " + mesher + " have a volume of " + std::to_string(filled) +
-                  ", but the surface is around one of " + std::to_string(volume) +
+              "The tets of the mesher " + mesher + " have a volume of " + shortNumber(filled) +
+                  ", but the surface is around one of " + shortNumber(volume) +
                   ". Try another one (--mesher), or a smaller --tet-size.");
 }
 
@@ -175,12 +172,13 @@ FilledPart read(const std::filesystem::path& file, const FillOptions& options, C
   const std::string extension = io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
   if (extension == ".step" || extension == ".stp") return fillStep(file, options, context);
   if (!isSurface(extension)) {
-    FilledPart part{readTetMesh(file, {}, context), {}};
-    if (options.mesher == Mesher::Auto && options.tetSize == 0) return part;
-    throw Error(ErrorCode::InvalidArgument,
-                file.string() +
-                    ": the file holds tets, so no mesher and no --tet-size can be "
-                    "chosen.");
+    if (options.mesher != Mesher::Auto || options.tetSize != 0) {
+      throw Error(ErrorCode::InvalidArgument,
+                  file.string() +
+                      ": such files hold no surface, so no mesher and no --tet-size can be "
+                      "chosen.");
+    }
+    return {readTetMesh(file, {}, context), {}};
   }
   const TriangleMesh surface = readTriangleMesh(file, context);
   try {

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <atomic>
-#include <sstream>
 #include <string>
 #include <tuple>
 
+#include <base/short_number.hpp>
 #include <igm/defects.hpp>
 
 namespace hexhex::igm {
@@ -66,14 +66,6 @@ const char* explanation(ErrorCode code) {
     default:
       return "";
   }
-}
-
-/// "0.0123" with few digits.
-std::string shortNumber(double value) {
-  std::ostringstream out;
-  out.precision(3);
-  out << value;
-  return out.str();
 }
 
 bool worse(const Defect::Occurrence& a, const Defect::Occurrence& b) {

@@ -102,20 +102,18 @@ class PathFinder {
     for (const Quad& quad : quads) {
       for (std::size_t i = 0; i < 4; ++i) edges.push_back(ascending(quad[i], quad[(i + 1) % 4]));
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    beside_ = adjacency::VertexLists<Index>(points.size(), stage, [&](const auto& add) {
-      for (const auto& [a, b] : edges) {
-        add(a, b);
-        add(b, a);
-      }
-    });
+    beside_ = adjacency::verticesBeside(std::move(edges), points.size(), stage);
+    double sum = 0;
+    std::size_t count = 0;
     for (Index v = 0; v < points.size(); ++v) {
       if (!beside_(v).empty()) boundary_.push_back(v);
+      for (const Index other : beside_(v)) {
+        if (other < v) continue;
+        sum += length(minus(points[v], points[other]));
+        ++count;
+      }
     }
-    double sum = 0;
-    for (const auto& [a, b] : edges) sum += length(minus(points[a], points[b]));
-    edgeLength_ = sum / static_cast<double>(std::max<std::size_t>(1, edges.size()));
+    edgeLength_ = sum / static_cast<double>(std::max<std::size_t>(1, count));
   }
 
   /// Short ones first, which have least choice; then again those first that found no way, as long

@@ -60,6 +60,20 @@ Index extend(VertexPlaces& places, const mesh::Pillow& pillow) {
 
 }  // namespace
 
+void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
+                  Context& context, Stage& stage) {
+  ImproveReport& report = improved.report;
+  const Array<Vec3> points = improved.mesh.points;
+  report.addedCells = improved.mesh.cells.size() - without.cells.size();
+  report.addedPoints.assign(points.begin() + static_cast<std::ptrdiff_t>(without.points.size()),
+                            points.end());
+  const Subject subject{improved.mesh};
+  Certificate before = std::exchange(report.before, subject.certifyNow(context));
+  improved.distance = movePoints(subject, improved.boundary, improved.places, options, points,
+                                 report, context, stage);
+  report.before = std::move(before);
+}
+
 std::optional<Improved> improvedWithPillow(const HexMesh& mesh, const Boundary& boundary,
                                            const VertexPlaces& places,
                                            const BoundaryDistance& distance,
@@ -89,16 +103,7 @@ std::optional<Improved> improvedWithPillow(const HexMesh& mesh, const Boundary& 
   }
   result.mesh = std::move(pillow.mesh);
   result.boundary = Boundary(result.mesh, boundary.surface, stage);
-  ImproveReport& after = result.report;
-  after.addedCells = result.mesh.cells.size() - mesh.cells.size();
-  const auto firstAdded = static_cast<std::ptrdiff_t>(mesh.points.size());
-  after.addedPoints.assign(result.mesh.points.begin() + firstAdded, result.mesh.points.end());
-  const Subject subject{result.mesh};
-  after.before = subject.certifyNow(context);
-  const Array<Vec3> points = result.mesh.points;
-  result.distance =
-      movePoints(subject, result.boundary, result.places, options, points, after, context, stage);
-  after.before = report.before;
+  moveEnlarged(result, mesh, options, context, stage);
   if (!isAlways && !isBetter(result, distance, report)) return std::nullopt;
   return result;
 }

@@ -19,6 +19,12 @@ struct Improved {
   ImproveReport report;  ///< `after` and what counts vertices
 };
 
+/// Moves the points of a mesh that has more cells than one which was improved already, and
+/// certifies. The report keeps the `before` of the latter.
+/// @param without  that mesh, whose cells and points come first
+void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
+                  Context& context, Stage& stage);
+
 /// Improves a copy with a pillow.
 /// @param boundary, places, distance, report  of the mesh, which was improved already
 /// @return nothing if no pillow is wanted or, with PillowMode::Auto, helps

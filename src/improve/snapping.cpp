@@ -124,12 +124,12 @@ class CurveSnapper {
     std::map<Index, std::map<Index, double>> areas;
     for (Index q = 0; q < boundary_.quads.size(); ++q) {
       const Quad& quad = boundary_.quads[q];
-      Vec3 centre{};
-      for (const Index v : quad) centre = plus(centre, times(0.25, mesh_.points[v]));
-      const auto nearest = static_cast<Index>(boundary_.surface.nearest(centre).triangle);
+      const std::array<Vec3, 4> corners = {mesh_.points[quad[0]], mesh_.points[quad[1]],
+                                           mesh_.points[quad[2]], mesh_.points[quad[3]]};
+      const auto nearest =
+          static_cast<Index>(boundary_.surface.nearest(centreOf(corners)).triangle);
       areas[regions_.of(q)][places_.surface.patchOf(nearest)] +=
-          length(cross(minus(mesh_.points[quad[2]], mesh_.points[quad[0]]),
-                       minus(mesh_.points[quad[3]], mesh_.points[quad[1]])));
+          length(cross(minus(corners[2], corners[0]), minus(corners[3], corners[1])));
     }
     for (const auto& [region, patches] : areas) {
       patchOf_[region] = std::max_element(patches.begin(), patches.end(), [](auto& a, auto& b) {
@@ -212,14 +212,7 @@ class CurveSnapper {
     for (const Hex& cell : mesh_.cells) {
       for (const auto& [a, b] : adjacency::kHexEdges) edges.push_back(ascending(cell[a], cell[b]));
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    const adjacency::VertexLists<Index> beside(n, stage_, [&](const auto& add) {
-      for (const auto& [a, b] : edges) {
-        add(a, b);
-        add(b, a);
-      }
-    });
+    const auto beside = adjacency::verticesBeside(std::move(edges), n, stage_);
     const std::vector<Index> near = nearMoved(before, beside);
     for (int round = 0; round < kRoomRounds; ++round) {
       for (const Index v : near) {
@@ -371,27 +364,6 @@ class CurveSnapper {
   Stage& stage_;
 };
 
-/// Moves the points of a mesh with layers.
-/// @param vertices  of the mesh without
-void moveLayered(Improved& improved, std::size_t vertices, const ImproveOptions& options,
-                 Context& context, Stage& stage) {
-  ImproveReport& report = improved.report;
-  const Certificate before = std::move(report.before);
-  const SurfaceDistance distanceBefore = report.distanceBefore;
-  report.addedCells = improved.mesh.cells.size() - before.validity.size();
-  report.addedPoints.assign(improved.mesh.points.begin() + static_cast<std::ptrdiff_t>(vertices),
-                            improved.mesh.points.end());
-  const Subject subject{improved.mesh};
-  report.before = subject.certifyNow(context);
-  const Array<Vec3> points = improved.mesh.points;
-  report.distanceBefore =
-      improved.boundary.distanceTo(improved.places, points, report.diagonal, stage).largest;
-  improved.distance = movePoints(subject, improved.boundary, improved.places, options, points,
-                                 report, context, stage);
-  report.before = before;
-  report.distanceBefore = distanceBefore;
-}
-
 }  // namespace
 
 std::optional<Improved> improvedWithCurves(const HexMesh& mesh, const Boundary& boundary,
@@ -410,7 +382,12 @@ std::optional<Improved> improvedWithCurves(const HexMesh& mesh, const Boundary& 
     std::optional<Improved> result = snapper.layered(width, report);
     if (!result) break;
     result->report.snappedCurves = snapped;
-    moveLayered(*result, mesh.points.size(), options, context, stage);
+    // Nothing is asked of the points where edges were laid: the layers begin there.
+    result->report.distanceBefore =
+        result->boundary.distanceTo(result->places, result->mesh.points, report.diagonal, stage)
+            .largest;
+    moveEnlarged(*result, mesh, options, context, stage);
+    result->report.distanceBefore = report.distanceBefore;
     const Certificate& after = result->report.after;
     if (!best || after.quality.minimum > best->report.after.quality.minimum) {
       best = std::move(result);

@@ -96,13 +96,6 @@ namespace {
 
 constexpr std::size_t kSurfaceDistanceGrain = 256;
 
-Vec3 centreOf(std::span<const Vec3> corners) {
-  Vec3 sum{};
-  for (const Vec3& corner : corners) sum = plus(sum, corner);
-  for (double& x : sum) x /= static_cast<double>(corners.size());
-  return sum;
-}
-
 std::array<Vec3, 4> cornersOf(const Array<Vec3>& points, const Quad& quad) {
   return {points[quad[0]], points[quad[1]], points[quad[2]], points[quad[3]]};
 }

@@ -19,10 +19,6 @@
 
 namespace hexhex::improvement {
 
-[[nodiscard]] constexpr Vec3 times(double factor, const Vec3& a) noexcept {
-  return {factor * a[0], factor * a[1], factor * a[2]};
-}
-
 /// What one place of a cell contributes, for a step d of the vertex.
 struct EnergyTerm {
   double square = 0;  ///< |J|^2 = square + 2 slope d + growth d^2

@@ -41,11 +41,6 @@ std::vector<Border> bordersOf(const HexMesh& mesh, std::span<const Index> setOf,
   return borders;
 }
 
-Vec3 onTheWay(const Vec3& from, const Vec3& to, double share) {
-  const Vec3 way = minus(to, from);
-  return {from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
-}
-
 Vec3 sumOf(const HexMesh& mesh, const Hex& cell) {
   Vec3 sum{};
   for (const Index v : cell) sum = plus(sum, mesh.points[v]);
@@ -102,8 +97,9 @@ class LayerMaker {
     const bool hasGenerators = mesh_.generatorTet.size() == mesh_.points.size();
     for (std::size_t i = 0; i < copies_.size(); ++i) {
       const Index v = copies_[i].vertex;
-      const Vec3 middle = onTheWay({}, sums[i], 1 / counts[i]);
-      mesh.points.push_back(onTheWay(mesh_.points[v], middle, kLayerDepth));
+      const Vec3& point = mesh_.points[v];
+      const Vec3 inwards = minus(times(1 / counts[i], sums[i]), point);
+      mesh.points.push_back(plus(point, times(kLayerDepth, inwards)));
       if (!hasGenerators) continue;
       mesh.generatorTet.push_back(mesh_.generatorTet[v]);
       mesh.generatorCorners.push_back(mesh_.generatorCorners[v]);

@@ -14,6 +14,7 @@
 
 #include <hexhex/repair.hpp>
 
+#include <base/short_number.hpp>
 #include <base/vector3.hpp>
 #include <igm/measures.hpp>
 #include <igm/prepare.hpp>

@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
+#include <base/short_number.hpp>
 #include <repair/repair_errors.hpp>
 
 namespace hexhex::repairs {
@@ -13,12 +12,6 @@ std::string timesAsText(std::uint64_t count) {
 }
 
 }  // namespace
-
-std::string shortNumber(double value) {
-  std::array<char, 32> text{};
-  static_cast<void>(std::snprintf(text.data(), text.size(), "%.3g", value));
-  return text.data();
-}
 
 void throwWithoutSolver(const igm::DefectCollector& defects) {
   const Defect first = defects.defects().front();

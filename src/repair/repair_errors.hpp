@@ -13,9 +13,6 @@ namespace hexhex::repairs {
 /// What --round may move.
 inline constexpr double kRoundingLimit = 0.1;
 
-/// Three significant digits.
-[[nodiscard]] std::string shortNumber(double value);
-
 /// This build has no solver. @param defects  not empty
 [[noreturn]] void throwWithoutSolver(const igm::DefectCollector& defects);
 
