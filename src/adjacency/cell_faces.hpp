@@ -16,6 +16,17 @@
 
 namespace hexhex::adjacency {
 
+/// Edges are the same if these are.
+[[nodiscard]] inline std::array<Index, 2> ascending(Index a, Index b) noexcept {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Quads are the same if these are.
+[[nodiscard]] inline Quad ascending(Quad quad) noexcept {
+  std::sort(quad.begin(), quad.end());
+  return quad;
+}
+
 /// Local corners of the six faces of a hexahedron, counter-clockwise seen from outside, in VTK's
 /// order: 2 * axis at corner 0, 2 * axis + 1 across from it.
 inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kHexFaces = {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/cell_faces.hpp>
 #include <adjacency/vertex_lists.hpp>
 
 #include <hexhex/types.hpp>
@@ -17,9 +18,7 @@
 
 namespace hexhex::improvement {
 
-[[nodiscard]] inline std::array<Index, 2> ascending(Index a, Index b) noexcept {
-  return {std::min(a, b), std::max(a, b)};
-}
+using adjacency::ascending;
 
 /// Twice the area of a triangle, along its normal.
 [[nodiscard]] inline Vec3 normalOf(const std::array<Vec3, 3>& t) noexcept {

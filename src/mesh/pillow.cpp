@@ -20,16 +20,8 @@ constexpr double kDepth = 0.25;
 
 using Edge = std::array<Index, 2>;
 
-Edge edgeOf(Index a, Index b) {
-  const auto [low, high] = std::minmax(a, b);
-  return {low, high};
-}
-
-Edge edgeOf(const Quad& quad, std::size_t i) { return edgeOf(quad[i], quad[(i + 1) % 4]); }
-
-Quad sortedQuad(Quad quad) {
-  std::sort(quad.begin(), quad.end());
-  return quad;
+Edge edgeOf(const Quad& quad, std::size_t i) {
+  return adjacency::ascending(quad[i], quad[(i + 1) % 4]);
 }
 
 template <class T>
@@ -167,7 +159,7 @@ class PillowMaker {
     adjacency::forEachRun(std::span<const Edge>(atWalls), std::equal_to<>(),
                           [&](const auto& run) { add(run[0], run.size() != 2); });
     for (const FeatureEdge& feature : mesh_.features.edges) {
-      const Edge edge = edgeOf(feature.vertices[0], feature.vertices[1]);
+      const Edge edge = adjacency::ascending(feature.vertices[0], feature.vertices[1]);
       if (feature.tag != 0 && !isOuter(edge)) add(edge, true);
     }
     std::sort(inward.begin(), inward.end());
@@ -280,13 +272,13 @@ class PillowMaker {
 
   void addTags(HexFeatures& features) const {
     std::vector<Quad> boundary;
-    for (const Quad& quad : quads_) boundary.push_back(sortedQuad(quad));
+    for (const Quad& quad : quads_) boundary.push_back(adjacency::ascending(quad));
     std::sort(boundary.begin(), boundary.end());
     std::vector<Quad> walls;
     std::vector<FeatureQuad> quads;
     for (const FeatureQuad& quad : features.quads) {
       walls.clear();
-      if (isIn(boundary, sortedQuad(quad.vertices))) {
+      if (isIn(boundary, adjacency::ascending(quad.vertices))) {
         walls.push_back(quad.vertices);
       } else {
         addWall(quad.vertices, walls);
@@ -297,7 +289,7 @@ class PillowMaker {
     std::vector<FeatureEdge> edges;
     for (const FeatureEdge& edge : features.edges) {
       const auto [a, b] = edge.vertices;
-      if (isOuter(edgeOf(a, b))) {
+      if (isOuter(adjacency::ascending(a, b))) {
         edges.push_back(edge);
         continue;
       }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -47,6 +48,23 @@ Vec3 sumOf(const HexMesh& mesh, const Hex& cell) {
   return sum;
 }
 
+/// An edge or quad of a cell of a set.
+template <class T>
+struct OfSet {
+  T vertices;  ///< ascending
+  Index set;
+  auto operator<=>(const OfSet&) const = default;
+};
+using EdgeOfSet = OfSet<std::array<Index, 2>>;
+using QuadOfSet = OfSet<Quad>;
+
+/// The first with these vertices; null: there is none.
+template <class T>
+const OfSet<T>* found(const std::vector<OfSet<T>>& sorted, const T& vertices) {
+  const auto at = std::lower_bound(sorted.begin(), sorted.end(), OfSet<T>{vertices, 0});
+  return at != sorted.end() && at->vertices == vertices ? &*at : nullptr;
+}
+
 class LayerMaker {
  public:
   LayerMaker(const HexMesh& mesh, std::span<const Index> setOf, Stage& stage)
@@ -67,6 +85,8 @@ class LayerMaker {
     layers.mesh = mesh_;
     addPoints(layers.mesh);
     addCells(layers.mesh);
+    moveQuadTags(layers.mesh.features.quads);
+    moveEdgeTags(layers.mesh.features.edges);
     return layers;
   }
 
@@ -120,6 +140,84 @@ class LayerMaker {
       }
       mesh.cells.push_back(cell);
       if (hasRegions) mesh.regions.push_back(mesh_.regions[border.cell]);
+    }
+  }
+
+  /// Quads of sets go with their cells; where a layer ends beside one, so does its tag.
+  void moveQuadTags(std::vector<FeatureQuad>& tags) const {
+    if (tags.empty()) return;
+    std::vector<QuadOfSet> quads;
+    for (Index cell = 0; cell < mesh_.cells.size(); ++cell) {
+      if (setOf_[cell] == kNone) continue;
+      for (std::size_t face = 0; face < 6; ++face) {
+        const Quad quad = adjacency::faceVertices(mesh_.cells[cell], face);
+        quads.push_back({adjacency::ascending(quad), setOf_[cell]});
+      }
+    }
+    std::sort(quads.begin(), quads.end());
+    const std::vector<EdgeOfSet> ends = endsOfLayers();
+    const std::size_t count = tags.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const FeatureQuad tag = tags[i];
+      const QuadOfSet* const quad = found(quads, adjacency::ascending(tag.vertices));
+      if (quad == nullptr) continue;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Index a = tag.vertices[k];
+        const Index b = tag.vertices[(k + 1) % 4];
+        tags[i].vertices[k] = in(quad->set, a);
+        const EdgeOfSet end{adjacency::ascending(a, b), quad->set};
+        if (!std::binary_search(ends.begin(), ends.end(), end)) continue;
+        tags.push_back({{a, b, in(quad->set, b), in(quad->set, a)}, tag.tag});
+      }
+    }
+  }
+
+  /// Edges that borders of a set have once: the layer ends there.
+  [[nodiscard]] std::vector<EdgeOfSet> endsOfLayers() const {
+    std::vector<EdgeOfSet> edges;
+    for (const Border& border : borders_) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        edges.push_back(
+            {adjacency::ascending(border.quad[k], border.quad[(k + 1) % 4]), setOf_[border.cell]});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<EdgeOfSet> ends;
+    adjacency::forEachRun(std::span<const EdgeOfSet>(edges), std::equal_to<>(),
+                          [&](const auto& run) {
+                            if (run.size() == 1) ends.push_back(run[0]);
+                          });
+    return ends;
+  }
+
+  /// Edges stay where other cells have them, and go with the cells of their set if none has.
+  void moveEdgeTags(std::vector<FeatureEdge>& tags) const {
+    if (tags.empty()) return;
+    std::vector<EdgeOfSet> edges;  // kNone: of no set, or of a layer
+    for (Index cell = 0; cell < mesh_.cells.size(); ++cell) {
+      for (const auto& [a, b] : adjacency::kHexEdges) {
+        edges.push_back(
+            {adjacency::ascending(mesh_.cells[cell][a], mesh_.cells[cell][b]), setOf_[cell]});
+      }
+    }
+    for (const Border& border : borders_) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        edges.push_back({adjacency::ascending(border.quad[k], border.quad[(k + 1) % 4]), kNone});
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    const std::size_t count = tags.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const FeatureEdge tag = tags[i];
+      const auto [a, b] = tag.vertices;
+      const EdgeOfSet* const edge = found(edges, adjacency::ascending(a, b));
+      if (edge == nullptr) continue;
+      const EdgeOfSet kept{edge->vertices, kNone};
+      if (std::binary_search(edges.begin(), edges.end(), kept)) continue;
+      tags[i].vertices = {in(edge->set, a), in(edge->set, b)};
+      for (const Index v : tag.vertices) {
+        if (in(edge->set, v) != v) tags.push_back({{v, in(edge->set, v)}, tag.tag});
+      }
     }
   }
 

@@ -14,7 +14,7 @@ namespace hexhex::mesh {
 
 struct SetLayers {
   /// Cells and vertices of the layers come last. Cells outside of all sets keep their vertices,
-  /// those of sets have copies where they touch others.
+  /// those of sets have copies where they touch others. Tags of quads and edges go along.
   HexMesh mesh;
   Array<Index> originals;  ///< per new vertex: the one that it is a copy of
   Array<Index> sets;       ///< per new vertex: the set whose cells have it
