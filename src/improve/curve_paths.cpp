@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <queue>
@@ -17,7 +16,6 @@ namespace hexhex::improvement {
 
 namespace {
 
-constexpr double kUnreached = std::numeric_limits<double>::infinity();
 /// What an edge costs more whose end is one edge's length off the curve, in lengths: stairs along a
 /// diagonal, a third of an edge off, must be cheaper than its two sides.
 constexpr double kOffPrice = 4;
