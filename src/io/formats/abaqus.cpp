@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -29,6 +30,9 @@ namespace {
 
 /// Abaqus' numbers of the faces of kHexFaces.
 constexpr std::array<char, 6> kAbaqusFaces = {'6', '4', '3', '5', '1', '2'};
+/// The corner of a tetrahedron that each of its faces lacks: from '1' on.
+constexpr std::array<std::size_t, 6> kAbaqusOpposite = {3, 2, 0, 1, 4, 4};
+constexpr std::string_view kAbaqusHeading = "hexahedral mesh by hexhex";
 
 // Reading.
 
@@ -79,6 +83,27 @@ AbaqusType abaqusType(std::string_view name) {
   }
   return type;
 }
+
+/// Tags of groups: what a name of this library says, or the number of the group in its order, if
+/// no name says it.
+class GroupTags {
+ public:
+  /// Before tags of others are asked for.
+  void reserve(const std::string& name) {
+    if (const auto tag = tagInGroupName(name)) taken_.insert(*tag);
+  }
+  [[nodiscard]] std::int32_t next(const std::string& name) {
+    if (const auto tag = tagInGroupName(name)) return *tag;
+    do {
+      ++last_;
+    } while (taken_.contains(last_));
+    return last_;
+  }
+
+ private:
+  std::set<std::int32_t> taken_;
+  std::int32_t last_ = 0;
+};
 
 /// Reads a file and those that it includes.
 class AbaqusReader {
@@ -173,6 +198,8 @@ class AbaqusReader {
       readSet(keyword, keyword.value("elset"), elementSets_);
     } else if (keyword.name == "*surface") {
       readSurface(keyword);
+    } else if (keyword.name == "*heading") {
+      isOwn_ = nextData() && trimmed(line_) == kAbaqusHeading;
     } else if (keyword.name == "*solid section") {
       sections_.push_back(keyword.value("elset"));
     } else if (keyword.name == "*instance") {
@@ -340,13 +367,15 @@ class AbaqusReader {
                                     : kAbaqusFaces.end();
       if (found == kAbaqusFaces.end()) continue;  // the whole surface, or sides of shells
       const auto row = static_cast<std::size_t>(found - kAbaqusFaces.begin());
+      const std::size_t opposite = kAbaqusOpposite[static_cast<std::size_t>(face[1] - '1')];
       const auto set = elementSets_.find(lowerCase(unquoted(elements)));
       if (set == elementSets_.end()) {
-        surface.sides.push_back({integer(elements, "an element or a set of them"), row, 0});
+        surface.sides.push_back(
+            {integer(elements, "an element or a set of them"), row, opposite, 0});
       } else {
         takeRoom(kItemsPerSide * set->second.items.size());
         for (const std::uint64_t element : set->second.items) {
-          surface.sides.push_back({element, row, 0});
+          surface.sides.push_back({element, row, opposite, 0});
         }
       }
     }
@@ -394,10 +423,10 @@ class AbaqusReader {
   }
 
   /// Without the letter and '_' that the writer puts in front.
-  static std::string ownName(const std::string& name) {
+  [[nodiscard]] std::string ownName(const std::string& name) const {
     const bool prefixed = name.size() > 2 && name[1] == '_' &&
                           std::string_view("ens").find(name[0]) != std::string_view::npos;
-    return prefixed && tagInGroupName(name.substr(2)) ? name.substr(2) : name;
+    return prefixed && (isOwn_ || tagInGroupName(name.substr(2))) ? name.substr(2) : name;
   }
 
   /// Regions are the sets that *ELEMENT and *SOLID SECTION name, numbered from 1 in their order,
@@ -408,15 +437,16 @@ class AbaqusReader {
     for (const auto& [name, set] : elementSets_) {
       if (ownName(name) != name) names.push_back(name);
     }
-    std::map<std::string, std::int64_t> numbers;
+    GroupTags tags;
+    for (const std::string& name : names) tags.reserve(ownName(name));
+    std::set<std::string> done;
     std::vector<std::pair<std::uint64_t, std::int32_t>> regions;
     for (const std::string& name : names) {
       const auto set = elementSets_.find(name);
       if (set == elementSets_.end()) continue;
-      const auto [known, isNew] =
-          numbers.emplace(name, static_cast<std::int64_t>(numbers.size()) + 1);
-      if (!isNew) continue;
-      const std::int32_t tag = tagOfGroup(ownName(name), known->second);
+      if (!done.insert(name).second) continue;
+      const std::int32_t tag = tags.next(ownName(name));
+      lists_.addName(3, tag, ownName(name));
       for (const std::uint64_t element : set->second.items) regions.emplace_back(element, tag);
     }
     // Of several sets with one element, the last one counts.
@@ -434,9 +464,11 @@ class AbaqusReader {
   }
 
   void tagSurfaces() {
-    std::int64_t number = 0;
+    GroupTags tags;
+    for (const Surface& surface : surfaces_) tags.reserve(ownName(surface.name));
     for (Surface& surface : surfaces_) {
-      const std::int32_t tag = tagOfGroup(ownName(surface.name), ++number);
+      const std::int32_t tag = tags.next(ownName(surface.name));
+      lists_.addName(2, tag, ownName(surface.name));
       for (ElementSide side : surface.sides) {
         side.tag = tag;
         lists_.sides.push_back(side);
@@ -481,7 +513,8 @@ class AbaqusReader {
   TextScanner* scanner_ = nullptr;
   std::string_view line_;
   bool begun_ = false;
-  int depth_ = 0;  ///< of files in files
+  bool isOwn_ = false;  ///< whether this library wrote the file
+  int depth_ = 0;       ///< of files in files
   int includes_ = 0;
   int instances_ = 0;
   std::uint64_t itemsLeft_ = 1024;  ///< how many members sets may have yet
@@ -529,7 +562,7 @@ class AbaqusWriter {
       : output_(output), lines_(output, threads), mesh_(mesh), stage_(stage) {}
 
   void write(const MeshGroups& groups) {
-    output_.write("*HEADING\nhexahedral mesh by hexhex\n");
+    output_.write("*HEADING\n").write(kAbaqusHeading).write('\n');
     writeNodes();
     writeElements();
     // The set of all elements is there in any case.
