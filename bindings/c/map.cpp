@@ -69,7 +69,11 @@ TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument) {
       readStruct(&require(arrays, argument), HEXHEX_MAP_ARRAYS_INIT, argument);
   const auto points = borrowed<Vec3>(given.points, given.point_count, "points");
   const auto tets = borrowed<Tet>(given.tets, given.tet_count, "tets");
-  return {.points = {points.begin(), points.end()}, .tets = {tets.begin(), tets.end()}};
+  const TetMapView view = viewOf(given);
+  return {.points = {points.begin(), points.end()},
+          .tets = {tets.begin(), tets.end()},
+          .features = view.features.copy(),
+          .regions = {view.regions.begin(), view.regions.end()}};
 }
 
 TetMap copyOf(const hexhex_map& map) { return map.owned ? *map.owned : owned(map.view); }

@@ -84,6 +84,19 @@ AbaqusType abaqusType(std::string_view name) {
   return type;
 }
 
+/// The number of nodes of a shell or membrane (3) or of a beam or truss (2), as Gmsh writes groups
+/// of triangles and lines; 0 of other elements.
+std::size_t nodesOfFacet(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kTriangles = {"cps3", "cpe3",  "s3",   "s3r",
+                                                          "ds3",  "stri3", "m3d3", "sfm3d3"};
+  constexpr std::array<std::string_view, 3> kLines = {"t3d2", "b31", "t2d2"};
+  const auto isIn = [name](const auto& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (isIn(kTriangles)) return 3;
+  return isIn(kLines) ? 2 : 0;
+}
+
 /// Tags of groups: what a name of this library says, or the number of the group in its order, if
 /// no name says it.
 class GroupTags {
@@ -127,6 +140,12 @@ class AbaqusReader {
     std::vector<ElementSide> sides;
   };
   using Sets = std::map<std::string, Set>;
+  /// An element that is no volume.
+  struct Facet {
+    std::uint64_t number;
+    std::size_t count;  ///< of nodes
+    std::array<std::uint64_t, 3> nodes;
+  };
 
   static constexpr std::uint64_t kItemsPerByte = 2;  // of a text: 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
@@ -281,7 +300,10 @@ class AbaqusReader {
     while (nextData()) {
       std::string_view rest = line_;
       const std::uint64_t number = integer(takeField(rest), "the number of an element");
-      if (type.cells == nullptr && name.find("c3d") == std::string::npos) continue;
+      if (type.cells == nullptr && name.find("c3d") == std::string::npos) {
+        readFacet(nodesOfFacet(name), number, rest, set);
+        continue;
+      }
       if (type.cells == nullptr) {
         fail("elements of the type " + quoted(std::string_view(name)) + " are not known",
              ErrorCode::FileUnsupported);
@@ -297,6 +319,16 @@ class AbaqusReader {
         places.push_back(integer(takeField(rest), "a node of an element"));
       }
     }
+  }
+
+  void readFacet(std::size_t nodes, std::uint64_t number, std::string_view rest,
+                 const std::string& set) {
+    if (nodes == 0 || parts_ == ElementParts::Types) return;
+    Facet& facet = facets_.emplace_back(Facet{number, nodes, {}});
+    for (std::size_t k = 0; k < nodes; ++k) {
+      facet.nodes[k] = integer(takeField(rest), "a node of an element");
+    }
+    if (!set.empty()) facetSets_[set].items.push_back(number);
   }
 
   void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
@@ -396,6 +428,8 @@ class AbaqusReader {
     for (std::size_t b = 0; b < lists_.blocks.size(); ++b) resolve(lists_.blocks[b], b, nodes);
     tagRegions();
     tagSurfaces();
+    tagFacets(3, nodes);
+    tagFacets(2, nodes);
     for (auto& [name, set] : nodeSets_) {
       NodeSet& added = lists_.nodeSets.emplace_back(
           NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
@@ -464,16 +498,49 @@ class AbaqusReader {
   }
 
   void tagSurfaces() {
-    GroupTags tags;
-    for (const Surface& surface : surfaces_) tags.reserve(ownName(surface.name));
+    for (const Surface& surface : surfaces_) facetTags_.reserve(ownName(surface.name));
     for (Surface& surface : surfaces_) {
-      const std::int32_t tag = tags.next(ownName(surface.name));
+      const std::int32_t tag = facetTags_.next(ownName(surface.name));
       lists_.addName(2, tag, ownName(surface.name));
       for (ElementSide side : surface.sides) {
         side.tag = tag;
         lists_.sides.push_back(side);
       }
     }
+  }
+
+  /// Triangles or lines have the tag of the first set of nothing else; those that *ELEMENT names
+  /// come last.
+  void tagFacets(std::size_t corners, const NodeTags& nodes) {
+    std::map<std::uint64_t, std::pair<const Facet*, std::int32_t>> facets;
+    for (const Facet& facet : facets_) {
+      if (facet.count == corners) facets.emplace(facet.number, std::pair(&facet, 0));
+    }
+    for (const Sets* sets : {&elementSets_, &facetSets_}) {
+      for (const auto& [name, set] : *sets) {
+        const auto isUntagged = [&](std::uint64_t number) { return facets[number].second == 0; };
+        if (!std::all_of(set.items.begin(), set.items.end(),
+                         [&](std::uint64_t number) { return facets.contains(number); }) ||
+            std::none_of(set.items.begin(), set.items.end(), isUntagged)) {
+          continue;
+        }
+        const std::int32_t tag = facetTags_.next(name);
+        lists_.addName(static_cast<int>(corners) - 1, tag, name);
+        for (const std::uint64_t number : set.items) {
+          if (isUntagged(number)) facets[number].second = tag;
+        }
+      }
+    }
+    for (const auto& [number, entry] : facets) addFacet(*entry.first, entry.second, nodes);
+  }
+
+  void addFacet(const Facet& facet, std::int32_t tag, const NodeTags& nodes) {
+    std::array<Index, 3> v{};
+    for (std::size_t k = 0; k < facet.count; ++k) v[k] = nodes.find(facet.nodes[k]);
+    const bool isKnown = std::find(v.begin(), v.end(), kNone) == v.end();
+    if (tag == 0 || !isKnown) return;
+    if (facet.count == 3) lists_.triangles.push_back({v, tag});
+    if (facet.count == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
   }
 
   [[nodiscard]] std::uint64_t integer(std::string_view word, const char* what) const {
@@ -526,6 +593,9 @@ class AbaqusReader {
   std::vector<std::string> blockSets_;  ///< names of sets that are regions: those of *ELEMENT,
   std::vector<std::string> sections_;   ///< and of *SOLID SECTION
   std::vector<Surface> surfaces_;
+  std::vector<Facet> facets_;
+  Sets facetSets_;  ///< that *ELEMENT names
+  GroupTags facetTags_;
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
 /// Tagged triangles.
 std::vector<FeatureFace> trianglesOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
                                      const Array<Tet>& cells) {
-  std::vector<FeatureFace> triangles;
+  std::vector<FeatureFace> triangles = lists.triangles;
   const NodeTags tets(numbers);
   for (const ElementSide& side : lists.sides) {
     const Index tet = tets.find(side.element);
@@ -144,8 +144,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, c
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::vector<FeatureEdge> features;
-  features.reserve(found.size());
+  std::vector<FeatureEdge> features = lists.lines;
   for (const auto& [tag, edge] : found) features.push_back({edge, tag});
   return features;
 }

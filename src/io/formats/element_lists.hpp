@@ -47,6 +47,8 @@ struct ElementLists {
   Array<Vec3> points;
   std::vector<ElementBlock> blocks;
   std::vector<ElementSide> sides;
+  std::vector<FeatureFace> triangles;  ///< with tags: elements of shells
+  std::vector<FeatureEdge> lines;      ///< with tags: elements of beams
   std::vector<NodeSet> nodeSets;
   std::vector<TagName> names;
 

@@ -628,10 +628,11 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
   return features;
 }
 
-/// The array of regions: this library's, or one that meshio makes of files of other formats.
+/// The array of regions: this library's, meshio's of files of other formats, or Gmsh's.
 const VtkSourceArray* findRegions(const VtkSource& source) {
   for (const std::string_view name :
-       {kVtkRegions, std::string_view("gmsh:physical"), std::string_view("medit:ref")}) {
+       {kVtkRegions, std::string_view("gmsh:physical"), std::string_view("medit:ref"),
+        std::string_view("CellEntityIds")}) {
     const VtkSourceArray* const array =
         source.find(VtkSection::CellData, name, 1, VtkNumbers::Integers);
     if (array != nullptr) return array;
