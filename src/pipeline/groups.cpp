@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -103,23 +104,29 @@ class BoundaryTagger {
   }
 
   std::uint64_t tagEdges(const Features& held) {
-    const Tags<FeatureEdge> known(held.edges);
     const std::vector<Edge> outer = boundaryEdges();
-    std::vector<FeatureEdge> curves;
     std::uint64_t missing = 0;
+    std::set<std::int32_t> open;  // tags of edges that are no lines of the map
+    std::vector<FeatureEdge> curves;
+    const Tags<FeatureEdge> known(held.edges);
     for (FeatureEdge edge : map_.features.edges) {
+      if (edge.tag == 0) continue;
       edge.vertices = sorted(edge.vertices);
-      if (edge.tag == 0 || known.of(edge.vertices) != 0) continue;
-      if (std::binary_search(outer.begin(), outer.end(), edge.vertices)) {
-        curves.push_back(edge);
-      } else {
-        ++missing;
-      }
+      const bool isOuter = std::binary_search(outer.begin(), outer.end(), edge.vertices);
+      const bool isKnown = known.of(edge.vertices) != 0;
+      if (isOuter) curves.push_back(edge);
+      if (isOuter && !isKnown) open.insert(edge.tag);
+      if (!isOuter && !isKnown) ++missing;
     }
+    std::erase_if(curves, [&open](const FeatureEdge& edge) { return !open.contains(edge.tag); });
     if (curves.empty()) return missing;
     const Tags<FeatureEdge> tags(curves);
     const improvement::CurvePaths paths =
         improvement::pathsAlongCurves(mesh_.points, quads_, surfaceWith(curves), stage_);
+    if (paths.missing == 0) {  // where some of a curve are lines of the map, paths are along these
+      std::erase_if(mesh_.features.edges,
+                    [&open](const FeatureEdge& edge) { return open.contains(edge.tag); });
+    }
     std::map<Edge, std::int32_t> added;
     const Tags<FeatureEdge> before(mesh_.features.edges);
     for (const improvement::CurvePath& path : paths.paths) {
@@ -190,6 +197,7 @@ class BoundaryTagger {
     for (const FeatureFace& triangle : triangles_)
       parts.triangles.push_back({triangle.vertices, 0});
     parts.boundaryTriangles = parts.triangles.size();
+    parts.angle = 180;  // a border of patches may zigzag from triangle to triangle
     std::vector<Edge>& sharp = parts.sharp.emplace();
     std::map<Index, std::int32_t> tagAt;
     for (const FeatureEdge& curve : curves) {

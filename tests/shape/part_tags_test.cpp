@@ -18,7 +18,7 @@
 #include "io/io_test_support.hpp"
 #include "support/labelled_bodies.hpp"
 
-namespace hexhex::test {
+namespace hexhex::test::part_tags {
 namespace {
 
 using Cell = CubeBody::Cell;
@@ -340,10 +340,10 @@ TEST(PartTags, OfRegionsAreThoseOfCellsCentres) {
     EXPECT_GT(part.shape.innerFaces, 0U);
     EXPECT_LT(part.shape.alignedFaces, part.shape.innerFaces);
     // All of the skin, and nothing else.
-    std::set<Index> outer;
     for (const FeatureQuad& quad : part.mesh.features.quads) EXPECT_EQ(quad.tag, 5);
-    const std::vector<Index> patches = boundaryPatches(part.mesh, {}).patchOf;
-    EXPECT_EQ(part.mesh.features.quads.size(), patches.size());
+    Context context;
+    const std::size_t quads = boundaryPatches(part.mesh, 0, context).size();
+    EXPECT_EQ(part.mesh.features.quads.size(), quads);
   }
 }
 
@@ -432,4 +432,4 @@ TEST(PartTags, AreInTheMapOfTheCommandMap) {
 }
 
 }  // namespace
-}  // namespace hexhex::test
+}  // namespace hexhex::test::part_tags
