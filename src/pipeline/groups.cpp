@@ -35,7 +35,7 @@ std::array<Index, n> sorted(std::array<Index, n> vertices) {
 template <class Feature>
 class Tags {
  public:
-  explicit Tags(const std::vector<Feature>& features) : entries_(features) {
+  explicit Tags(std::vector<Feature> features) : entries_(std::move(features)) {
     std::erase_if(entries_, [](const Feature& feature) { return feature.tag == 0; });
     for (Feature& entry : entries_) entry.vertices = sorted(entry.vertices);
     std::sort(entries_.begin(), entries_.end(), byVertices);
@@ -146,6 +146,7 @@ class BoundaryTagger {
     for (const Quad& quad : quads_) outer.insert(outer.end(), quad.begin(), quad.end());
     tetmap::sortUnique(outer);
     std::vector<std::array<Vec3, 3>> places;
+    places.reserve(outer.size());
     for (const Index v : outer)
       places.push_back({mesh_.points[v], mesh_.points[v], mesh_.points[v]});
     const improvement::TriangleTree tree(places);
