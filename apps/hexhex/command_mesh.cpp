@@ -98,6 +98,9 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Fil
   if (part.tagsReleased) {
     printLine("sharp edges", "vertices left some, as cells were not positive otherwise");
   }
+  if (part.missingCurves > 0) {
+    printLine("tagged curves", "no edges run along " + counted(part.missingCurves, "piece"));
+  }
   printLine("time", run.partsAsText());
 }
 

@@ -392,6 +392,7 @@ void carryTags(const TetMapView& given, const igm::PreparedMap& prepared, HexMes
   const bool byCells = !given.features.edges.empty() || !given.features.faces.empty();
   if (given.features.empty() && given.regions.empty()) return;
   Stage stage(context, "features");
+  mesh.features.names.assign(given.features.names.begin(), given.features.names.end());
   if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
   if (!byCells && given.regions.empty()) return;
   const sweep::CellCenters centers = sweep::findCells(prepared, stage);

@@ -19,6 +19,7 @@
 #include <io/core/hdf5_library.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/registry.hpp>
+#include <io/core/repeated_features.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/surface/surface.hpp>
 #include <mesh/lagrange_check.hpp>
@@ -200,11 +201,16 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::Tets);
   return inSteps(context, "readTetMesh", io::kReadTets, [&] {
     const io::Input input = io::openInput(file, context);
-    const io::TetCells tets = format.readTets(input, context);
+    io::TetCells tets = format.readTets(input, context);
     io::settleCells(input, io::kCellKind<4>, options, false);
     TetMesh mesh;
     mesh.points.assign(tets.points.begin(), tets.points.end());
     mesh.tets.assign(tets.cells.begin(), tets.cells.end());
+    mesh.regions.assign(tets.regions.begin(), tets.regions.end());
+    mesh.features = std::move(tets.features);
+    io::removeRepeated(mesh.features.vertices);
+    io::removeRepeated(mesh.features.edges);
+    io::removeRepeated(mesh.features.faces);
     return mesh;
   });
 }

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,10 +38,47 @@ Array<std::size_t> orderByTag(std::span<const Tag> tags) {
 struct GroupWords {
   std::string tagged;
   const char* untagged = "boundary";
+  int dimension = 0;                    ///< of the elements
+  std::span<const TagName> names = {};  ///< of the mesh
 };
+
+/// A name as every format holds it: letters, digits and '_', 32 at most, no digit first.
+std::string wordOf(std::string_view name) {
+  constexpr std::size_t kLongest = 32;
+  std::string word;
+  for (const char c : name.substr(0, kLongest - 1)) {
+    const bool isDigit = c >= '0' && c <= '9';
+    const bool isLetter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    if (word.empty() && isDigit) word += '_';
+    word += isDigit || isLetter ? c : '_';
+  }
+  return word;
+}
+
+/// Formats that do not tell capital letters apart need names that differ all the same.
+bool areAlike(std::string_view a, std::string_view b) {
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return small(x) == small(y); });
+}
+
+/// What the file that the mesh came from calls a group; empty if that is not known, or if an
+/// earlier name is like it.
+std::string givenName(const GroupWords& words, Tag tag) {
+  std::vector<std::string> earlier;
+  for (const TagName& known : words.names) {
+    std::string word = wordOf(known.name);
+    const bool isTaken = std::any_of(earlier.begin(), earlier.end(),
+                                     [&](const auto& other) { return areAlike(other, word); });
+    if (known.dimension == words.dimension && known.tag == tag) return isTaken ? "" : word;
+    earlier.push_back(std::move(word));
+  }
+  return {};
+}
 
 std::string groupName(const GroupWords& words, Tag tag) {
   if (tag == 0) return words.untagged;
+  if (std::string given = givenName(words, tag); !given.empty()) return given;
   const std::int64_t wide = tag;
   return words.tagged + (wide < 0 ? "_m" : "_") + std::to_string(wide < 0 ? -wide : wide);
 }
@@ -168,11 +206,12 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
 }  // namespace
 
 VertexGroups groupVertices(const HexMesh& mesh) {
-  return groupFeatures<1>(mesh, mesh.features.vertices, "vertex", {"point"});
+  return groupFeatures<1>(mesh, mesh.features.vertices, "vertex",
+                          {"point", "", 0, mesh.features.names});
 }
 
 EdgeGroups groupEdges(const HexMesh& mesh) {
-  return groupFeatures<2>(mesh, mesh.features.edges, "edge", {"curve"});
+  return groupFeatures<2>(mesh, mesh.features.edges, "edge", {"curve", "", 1, mesh.features.names});
 }
 
 void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_t> tags,
@@ -204,7 +243,8 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   }
   const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside);
   const Array<std::size_t> order = orderByTag(found.tags);
-  QuadGroups result{{groupsOf(found.tags, order, {"surface"}), {}}, {}};
+  QuadGroups result{
+      {groupsOf(found.tags, order, {"surface", "boundary", 2, mesh.features.names}), {}}, {}};
   for (ElementGroup& group : result.groups) {
     if (group.tag > found.lastTag) group.name = groupName({"patch"}, group.tag - found.lastTag);
   }
@@ -220,7 +260,8 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
 CellGroups groupCells(const HexMesh& mesh) {
   if (mesh.regions.empty()) return {{{1, "hexahedra", 0, mesh.cells.size()}}, {}};
   const Array<std::size_t> order = orderByTag(mesh.regions);
-  CellGroups result{groupsOf(mesh.regions, order, {"region", "hexahedra"}), {}};
+  CellGroups result{groupsOf(mesh.regions, order, {"region", "hexahedra", 3, mesh.features.names}),
+                    {}};
   if (result.groups.empty()) result.groups.push_back({1, "hexahedra", 0, 0});
   if (result.groups.size() == 1) return result;
   result.order.resize(order.size());

@@ -34,6 +34,7 @@ TetCells readHexexTets(const Input& input, Context& context) {
   TetCells tets;
   tets.points.assign(map.points.begin(), map.points.end());
   tets.cells.assign(map.tets.begin(), map.tets.end());
+  tets.features = map.features;
   return tets;
 }
 

@@ -1,0 +1,35 @@
+// Features that files list more than once.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <vector>
+
+#include <hexhex/features.hpp>
+
+namespace hexhex::io {
+
+/// The vertices of a feature in ascending order.
+[[nodiscard]] inline std::array<std::uint32_t, 1> keyOf(const FeatureVertex& feature) {
+  return {feature.vertex};
+}
+template <class Feature>
+[[nodiscard]] auto keyOf(const Feature& feature) {
+  auto vertices = feature.vertices;
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+/// Leaves out what is listed before, with whatever tag.
+template <class Feature>
+void removeRepeated(std::vector<Feature>& features) {
+  std::set<decltype(keyOf(features[0]))> seen;
+  std::size_t kept = 0;
+  for (const Feature& feature : features) {
+    if (seen.insert(keyOf(feature)).second) features[kept++] = feature;
+  }
+  features.resize(kept);
+}
+
+}  // namespace hexhex::io
