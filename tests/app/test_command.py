@@ -1249,6 +1249,39 @@ class Convert(CommandTest):
         for name in ("hexex", "mesh", "meshb", "vtu", "vtk", "vtk-binary", "ovm", "ovmb", "msh",
                      "msh22-ascii", "inp", "mfem"):
             self.assertRegex(run.stdout, rf"(?m)^{name} ")
+        for solver in ("calculix", "dealii", "moose"):
+            self.assertRegex(run.stdout, rf"(?m)^{solver} ")
+
+    def test_solvers_choose_format_and_extension(self):
+        self.generate("cylinder")
+        for solver, file, begins in (("dealii", "a.msh", b"$MeshFormat\n2.2 0 8"), ("mfem", "a.mesh", b"MFEM mesh"),
+                                     ("calculix", "a.inp", b"*HEADING"), ("moose", "a.e", b"CDF")):
+            for name in ("a", file):
+                self.run_command("extract", "map.hexex", "-o", name, "--for", solver, "--quiet")
+                self.assertTrue((self.folder / file).read_bytes().startswith(begins), solver)
+                (self.folder / file).unlink()
+        self.run_command("extract", "map.hexex", "-o", "a", "--for", "calculix", "--order", "2")
+        self.assertIn("TYPE=C3D20", (self.folder / "a.inp").read_text())
+        self.run_command("convert", "a.inp", "b", "--for", "mfem")
+        self.assertIn("nodes", (self.folder / "b.mesh").read_text())
+        self.run_command("improve", "b.mesh", "-o", "c", "--for", "mfem", expect=FILE_PROBLEM)
+        for arguments, expect, sentence in (
+                (["-o", "a.vtu", "--for", "mfem"], BAD_USAGE, "MFEM reads .mesh files: write a.mesh in place of a.vtu."),
+                (["-o", "a", "--for", "fenics"], BAD_USAGE, "choose abaqus, calculix, code-aster, dealii, dolfinx,"),
+                (["-o", "a", "--for", "mfem", "--format", "vtu"], BAD_USAGE, "excludes"),
+                (["-o", "d", "--for", "dealii", "--order", "2"], FILE_PROBLEM, "for deal.II, straight cells"),
+                (["-o", "d", "--for", "calculix", "--order", "3"], FILE_PROBLEM, "these are of order 3")):
+            run = self.run_command("extract", "map.hexex", *arguments, expect=expect)
+            self.assertIn(sentence, run.stderr)
+        self.assertNotIn("d.inp", self.files())
+
+    def test_folders_are_made_for_openfoam_and_asked_for_otherwise(self):
+        self.generate("cylinder")
+        for output in ("new/case.foam", "new/constant/polyMesh"):  # the second replaces the folder
+            self.run_command("extract", "map.hexex", "-o", output, "--for", "openfoam", "--quiet")
+            self.assertTrue((self.folder / "new/constant/polyMesh/faces").exists())
+        run = self.run_command("extract", "map.hexex", "-o", "other/a.vtu", expect=FILE_PROBLEM)
+        self.assertIn("its folder does not exist; make it with `mkdir -p other`.", run.stderr)
 
 
 class MixedCells(CommandTest):

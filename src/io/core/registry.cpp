@@ -128,7 +128,10 @@ constexpr std::array kFormatTable = {
     Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"},
            .readTets = AbaqusFormat::readTets,
            .meshes = {AbaqusFormat::readMesh, writeAbaqus},
-           .curved = {AbaqusFormat::holdsCurved, AbaqusFormat::readCurved}},
+           .curved = {.isIn = AbaqusFormat::holdsCurved,
+                      .read = AbaqusFormat::readCurved,
+                      .write = writeQuadraticAbaqus,
+                      .onlyOrder = 2}},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
            .meshes = {.write = writeMfem},
            .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
@@ -162,8 +165,17 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherFor
      {"gmsh22", "msh22-ascii"},
      {"medit", "mesh"}}};
 
-/// The name in the table of what may be called by another name.
-std::string_view usualName(std::string_view name) {
+/// The name in the table of what may be called by another name, or by a solver's.
+std::string_view usualName(const std::filesystem::path& file, std::string_view name,
+                           FileContent content) {
+  if (const SolverFormat* const solver = findSolver(name)) {
+    if (content != FileContent::CurvedCells) return solver->format;
+    if (!solver->curved.empty()) return solver->curved;
+    throw Error(ErrorCode::FileUnsupported,
+                file.string() + ": for " + std::string(solver->program) +
+                    ", straight cells are written only. Leave out --order, or write another "
+                    "format of cells of higher order.");
+  }
   for (const auto& [other, usual] : kOtherFormatNames) {
     if (name == other) return usual;
   }
@@ -267,7 +279,7 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
 
 const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                          FileContent content) {
-  const std::string_view usual = usualName(name);
+  const std::string_view usual = usualName(file, name, content);
   const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
   const Format* const format = usual.empty() ? formatWith(extension, extensionOf, content)
                                              : formatWith(usual, nameOf, content);
