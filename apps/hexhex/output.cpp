@@ -7,6 +7,8 @@
 
 #include <hexhex/error.hpp>
 
+#include "long_run.hpp"
+
 namespace hexhex::command {
 namespace {
 
@@ -57,7 +59,10 @@ void printWarning(std::string_view sentence) {
 
 void printError(const Error& error) {
   const std::string place = toString(error.place());
-  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(error.what()), name(error.code()),
+  const std::string_view signal =
+      error.code() == ErrorCode::Cancelled ? cancelledBySignal() : std::string_view();
+  const std::string_view sentence = signal.empty() ? error.what() : signal;
+  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(sentence), name(error.code()),
                 place.empty() ? "" : ", ", place);
 }
 

@@ -254,6 +254,22 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
                                               ".");
 }
 
+/// What to do with a file that holds something else than what was asked for.
+std::string adviceOn(const std::string& extension, FileContent content) {
+  if (formatWith(extension, extensionOf, FileContent::Triangles) != nullptr) {
+    return ' ' + extension +
+           " files hold surfaces: `hexhex mesh` fills them with tets and makes hexahedra of these.";
+  }
+  if (extension == ".fra") {
+    return " .fra files hold frame fields, not maps: `hexhex map` makes a map of the tets alone.";
+  }
+  const bool tetsOnly = content == FileContent::Map &&
+                        formatWith(extension, extensionOf, FileContent::Tets) != nullptr;
+  if (!tetsOnly) return {};
+  return " Tets without a map: `hexhex mesh` makes hexahedra of them, or give a second mesh with "
+         "their parameters (--tets, --polycube).";
+}
+
 [[noreturn]] void failToExtend(const std::filesystem::path& file, const std::string& extension,
                                FileContent content) {
   const std::string named = "the extension \"" + extension + '"';
@@ -265,14 +281,10 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
           ? (std::filesystem::is_directory(file, unknown) ? "it is a folder"
                                                           : "the file name has no extension")
           : named + " is no format of " + purposeOf(content).what;
-  const bool tetsOnly = content == FileContent::Map &&
-                        formatWith(extension, extensionOf, FileContent::Tets) != nullptr;
   throw Error(ErrorCode::FileUnsupported,
               file.string() + ": " + problem + ". Maps: " + listed(FileContent::Map, extensionOf) +
                   "; hexahedral meshes: " + listed(FileContent::HexMesh, extensionOf) + "." +
-                  (tetsOnly ? " Tets without a map need a second mesh with their parameters "
-                              "(--tets, --polycube)."
-                            : ""));
+                  adviceOn(extension, content));
 }
 
 }  // namespace
