@@ -79,8 +79,8 @@ bool isCurved(const ConvertArguments& arguments, Context& context) {
 
 std::string convertCurved(const ConvertArguments& arguments, Context& context) {
   requireFor(arguments, "cells of higher order",
-             [](const std::filesystem::path& file, const WriteOptions& /*options*/) {
-               requireLagrangeFormat(file);
+             [](const std::filesystem::path& file, const WriteOptions& options) {
+               requireLagrangeFormat(file, options.format);
              });
   if (arguments.reorient) {
     throw Error(ErrorCode::InvalidArgument,
@@ -177,6 +177,7 @@ Command addConvert(CLI::App& app) {
                      "The file to write");
   addKeepWalls(*parser, arguments->input);
   addOutputChoice(*parser, arguments->choice);
+  addSolver(*parser, arguments->choice, arguments->output);
   parser
       ->add_option("--input-format", arguments->input.format,
                    "Read this format, whatever the extension")

@@ -146,6 +146,7 @@ void addOutputs(CLI::App& parser, MeshArguments& arguments) {
       ->required()
       ->option_text("FILE REQUIRED");
   addOutputChoice(parser, arguments.choice);
+  addSolver(parser, arguments.choice, arguments.output);
   parser
       .add_option("--keep-map", arguments.map,
                   "Write the integer-grid map, too, for `extract` and `verify`")

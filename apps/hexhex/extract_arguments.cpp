@@ -30,11 +30,7 @@ void requireCurvedOutputs(const ExtractArguments& arguments) {
                 "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
                 "--patches.");
   }
-  if (arguments.order > 1 && (!arguments.choice.format.empty() || arguments.choice.compress)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The extension alone decides on the format of a mesh of higher order. Leave out "
-                "--format and --compress.");
-  }
+  if (arguments.order > 1) arguments.choice.requireForCurved(arguments.output, arguments.order);
   if (!arguments.arcs.empty()) {
     requireArcFormat(arguments.arcs);
     requireWritable(arguments.arcs);
@@ -158,7 +154,7 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
       .add_option(
           "--order", arguments.order,
           "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
-          ".msh, or .mesh (MFEM)")
+          ".msh, .inp (order 2), or .mesh (MFEM)")
       ->check(CLI::Range(1, kMaxOrder))
       ->option_text("P [1]");
   parser
@@ -179,6 +175,7 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   addKeepWalls(parser, arguments.input);
   addMeshOutput(parser, arguments.output);
   addOutputChoice(parser, arguments.choice);
+  addSolver(parser, arguments.choice, arguments.output);
   addScale(parser, arguments.options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addCurved(parser, arguments);
@@ -215,9 +212,7 @@ void requireOutputs(const ExtractArguments& arguments) {
   }
   if (arguments.parts.parts) {
     requirePartsOutputs(arguments);
-  } else if (arguments.order > 1) {
-    requireLagrangeFormat(arguments.output);
-  } else {
+  } else if (arguments.order == 1) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
   requireWritable(arguments.output);

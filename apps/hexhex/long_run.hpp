@@ -25,6 +25,9 @@ class CancelOnSignal {
   CancelOnSignal& operator=(const CancelOnSignal&) = delete;
 };
 
+/// What the signal that cancelled the run means, "Terminated." for SIGTERM; empty if none came.
+[[nodiscard]] std::string_view cancelledBySignal() noexcept;
+
 /// Progress on the standard error output: one bar for a whole run on a terminal, or a line per
 /// stage.
 class ProgressDisplay {

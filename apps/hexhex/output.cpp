@@ -7,6 +7,8 @@
 
 #include <hexhex/error.hpp>
 
+#include "long_run.hpp"
+
 namespace hexhex::command {
 namespace {
 
@@ -57,7 +59,10 @@ void printWarning(std::string_view sentence) {
 
 void printError(const Error& error) {
   const std::string place = toString(error.place());
-  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(error.what()), name(error.code()),
+  const std::string_view signal =
+      error.code() == ErrorCode::Cancelled ? cancelledBySignal() : std::string_view();
+  const std::string_view sentence = signal.empty() ? error.what() : signal;
+  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(sentence), name(error.code()),
                 place.empty() ? "" : ", ", place);
 }
 
@@ -118,8 +123,12 @@ void requireAllDifferent(std::vector<std::filesystem::path> files,
 }
 
 void requireWritable(const std::filesystem::path& file) {
-  // Opening a pipe twice would end it.
   std::error_code missing;
+  // OpenFOAM's case is made with its folders, or replaced as a folder.
+  const bool makesFolder = file.extension() == ".foam" && file.has_parent_path() &&
+                           !std::filesystem::exists(file.parent_path(), missing);
+  if (makesFolder || file.filename() == "polyMesh") return;
+  // Opening a pipe twice would end it.
   if (!std::filesystem::is_other(file, missing)) static_cast<void>(TextFile(file));
 }
 

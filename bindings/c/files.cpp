@@ -188,7 +188,7 @@ hexhex_status hexhex_require_format(hexhex_output output, const char* file,
       case HEXHEX_OUTPUT_PATCHES:
         return hexhex::requirePatchFormat(name);
       case HEXHEX_OUTPUT_LAGRANGE:
-        return hexhex::requireLagrangeFormat(name);
+        return hexhex::requireLagrangeFormat(name, how.format);
     }
     throw Error(ErrorCode::InvalidArgument, "There is no such kind of output.");
   });

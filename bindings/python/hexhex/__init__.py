@@ -1016,9 +1016,10 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
+            (.vtu, .msh, .inp, MFEM's .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
             meshes also as .npz: their arrays by name, for numpy.load().
-        format: of a map or mesh, whatever the extension is: see formats(), or "npz".
+        format: of a map or mesh, whatever the extension is: see formats(), or "npz"; or the solver
+            that shall read a mesh: "dealii", "ngsolve" and so on (``hexhex formats`` lists them).
         compress: arrays of .vtu and .npz files, with zlib; of a map or mesh.
         patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
             the boundary turns by more degrees, a group ends; 0 to 180.
@@ -1045,11 +1046,12 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
     elif isinstance(what, Mesh):
         _hexhex.write_mesh(what._handle, name, format or "", patch_angle, compress, jacobians,
                            workers, progress)
-    elif format is not None or compress:
-        raise ArgumentError("Curved meshes are written without format and compress.",
-                            "InvalidArgument")
+    elif compress or (format is not None and not isinstance(what, LagrangeMesh)):
+        raise ArgumentError("Curved meshes are written without compress, arcs and patches also "
+                            "without format.", "InvalidArgument")
     elif isinstance(what, LagrangeMesh):
-        _hexhex.write_lagrange(what._handle, name, patch_angle, jacobians, workers, progress)
+        _hexhex.write_lagrange(what._handle, name, format or "", patch_angle, jacobians, workers,
+                               progress)
     elif isinstance(what, Arcs):
         _hexhex.write_arcs(what._handle, tets, name, workers, progress)
     elif isinstance(what, Patches):

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,7 @@
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/gmsh_elements.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
@@ -626,61 +629,132 @@ std::string upperCase(std::string name) {
   return name;
 }
 
+/// The vertices of an edge, the smaller one first, and the node in its middle.
+using EdgeMiddle = std::pair<std::array<Index, 2>, Index>;
+EdgeMiddle edgeMiddle(Index a, Index b, Index node) {
+  return {{std::min(a, b), std::max(a, b)}, node};
+}
+
+/// Cells of order 2 without the nodes in their faces and inside, as C3D20 has them.
+struct QuadraticCells {
+  Array<Vec3> points;
+  Array<std::array<Index, 20>> cells;
+  Array<EdgeMiddle> middles;  ///< ascending
+
+  explicit QuadraticCells(const LagrangeMesh& mesh) : cells(mesh.cellCount()) {
+    // Corners, then the middles of the edges around the bottom, around the top, and between.
+    std::vector<Node> nodes;
+    for (std::size_t k = 0; k < 8; ++k) nodes.push_back(corner(k, 0, 2));
+    std::array<std::array<std::size_t, 2>, 12> edges{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      edges[k] = {k, (k + 1) % 4};
+      edges[k + 4] = {k + 4, (k + 1) % 4 + 4};
+      edges[k + 8] = {k, k + 4};
+    }
+    for (const auto& [a, b] : edges) append(nodes, between(nodes[a], nodes[b], 1));
+    const std::vector<std::uint32_t> places = placesOf(nodes, 2);
+
+    const auto corners = static_cast<std::ptrdiff_t>(mesh.vertexCount);
+    points.assign(mesh.points.begin(), mesh.points.begin() + corners);
+    Array<Index> numbers(mesh.points.size());
+    std::fill(numbers.begin(), numbers.end(), kNone);
+    std::iota(numbers.begin(), numbers.begin() + corners, Index{0});
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      std::array<Index, 20>& cell = cells[i];
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const Index node = mesh.nodes[i * mesh.nodesPerCell() + places[k]];
+        if (numbers[node] == kNone) {
+          numbers[node] = static_cast<Index>(points.size());
+          points.push_back(mesh.points[node]);
+        }
+        cell[k] = numbers[node];
+      }
+      for (std::size_t e = 0; e < edges.size(); ++e) {
+        middles.push_back(edgeMiddle(cell[edges[e][0]], cell[edges[e][1]], cell[8 + e]));
+      }
+    }
+    std::sort(middles.begin(), middles.end());
+    middles.erase(std::unique(middles.begin(), middles.end()), middles.end());
+  }
+};
+
 class AbaqusWriter {
  public:
-  AbaqusWriter(OutputFile& output, const HexMesh& mesh, Stage& stage, int threads)
-      : output_(output), lines_(output, threads), mesh_(mesh), stage_(stage) {}
+  AbaqusWriter(OutputFile& output, Stage& stage, int threads)
+      : output_(output), lines_(output, threads), stage_(stage) {}
 
-  void write(const MeshGroups& groups) {
+  /// @param middles  of edges, ascending; empty for straight cells
+  template <class Cells>
+  void write(const Array<Vec3>& points, const Cells& cells, const MeshGroups& groups,
+             const Array<EdgeMiddle>& middles) {
     output_.write("*HEADING\n").write(kAbaqusHeading).write('\n');
-    writeNodes();
-    writeElements();
+    writeNodes(points);
+    writeElements(cells);
     // The set of all elements is there in any case.
     for (const ElementGroup& group : groups.cells.groups) {
       if (group.name == "hexahedra") continue;
       writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,
                [&](std::size_t i) { return groups.cells.at(group.begin + i); });
     }
-    writeNodeSets(groups.quads);
-    writeNodeSets(groups.edges);
-    writeNodeSets(groups.vertices);
+    writeNodeSets(groups.quads, middles);
+    writeNodeSets(groups.edges, middles);
+    writeNodeSets(groups.vertices, middles);
     for (const ElementGroup& group : groups.quads.groups) writeSurface(groups.quads, group);
   }
 
  private:
-  void writeNodes() {
-    LoopProgress progress(stage_, mesh_.points.size());
+  void writeNodes(const Array<Vec3>& points) {
+    LoopProgress progress(stage_, points.size());
     output_.write("*NODE\n");
-    const auto node = [this](char* place, std::size_t i) {
+    const auto node = [&points](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
-      for (const double coordinate : mesh_.points[i]) {
+      for (const double coordinate : points[i]) {
         place = putShort(put(place, ", "), coordinate);
       }
       return put(place, '\n');
     };
-    lines_.write(mesh_.points.size(), 4 * (kNumberRoom + 2), node, &progress);
+    lines_.write(points.size(), 4 * (kNumberRoom + 2), node, &progress);
   }
 
-  void writeElements() {
-    LoopProgress progress(stage_, mesh_.cells.size());
-    output_.write("*ELEMENT, TYPE=C3D8, ELSET=HEXAHEDRA\n");
-    const auto cell = [this](char* place, std::size_t i) {
+  template <class Cells>
+  void writeElements(const Cells& cells) {
+    constexpr std::size_t kNodes = std::tuple_size_v<typename Cells::value_type>;
+    LoopProgress progress(stage_, cells.size());
+    output_.write("*ELEMENT, TYPE=C3D").write(kNodes).write(", ELSET=HEXAHEDRA\n");
+    const auto cell = [&cells](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
-      for (const Index vertex : mesh_.cells[i]) {
-        place = put(put(place, ", "), std::uint64_t{vertex} + 1);
+      for (std::size_t k = 0; k < kNodes; ++k) {
+        place = put(place, k + 1 == kNamesPerLine ? ",\n" : ", ");
+        place = put(place, std::uint64_t{cells[i][k]} + 1);
       }
       return put(place, '\n');
     };
-    lines_.write(mesh_.cells.size(), 9 * (kNumberRoom + 2), cell, &progress);
+    lines_.write(cells.size(), (kNodes + 1) * (kNumberRoom + 2), cell, &progress);
   }
 
   template <class Groups>
-  void writeNodeSets(const Groups& groups) {
+  void writeNodeSets(const Groups& groups, const Array<EdgeMiddle>& middles) {
     for (const ElementGroup& group : groups.groups) {
-      const Array<Index> vertices = verticesOf(groups, group);
-      writeSet("*NSET, NSET=N_", group, vertices.size(),
-               [&](std::size_t i) { return vertices[i]; });
+      Array<Index> nodes = verticesOf(groups, group);
+      if (!middles.empty()) addMiddles(groups, group, middles, nodes);
+      writeSet("*NSET, NSET=N_", group, nodes.size(), [&](std::size_t i) { return nodes[i]; });
     }
+  }
+
+  /// Adds the nodes in the middle of the edges of a group's elements.
+  template <class Groups>
+  static void addMiddles(const Groups& groups, const ElementGroup& group,
+                         const Array<EdgeMiddle>& middles, Array<Index>& nodes) {
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const auto& element = groups.elements[i];
+      for (std::size_t k = 0; element.size() > 1 && k < element.size(); ++k) {
+        const EdgeMiddle wanted = edgeMiddle(element[k], element[(k + 1) % element.size()], 0);
+        const auto found = std::lower_bound(middles.begin(), middles.end(), wanted);
+        if (found != middles.end() && found->first == wanted.first) nodes.push_back(found->second);
+      }
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   }
 
   /// @param indexAt  of the i-th of n members
@@ -710,7 +784,6 @@ class AbaqusWriter {
 
   OutputFile& output_;
   LineWriter lines_;
-  const HexMesh& mesh_;
   Stage& stage_;
 };
 
@@ -721,7 +794,18 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  AbaqusWriter(output, mesh, stage, context.threads()).write(groups);
+  AbaqusWriter(output, stage, context.threads()).write(mesh.points, mesh.cells, groups, {});
+  output.commit();
+}
+
+void writeQuadraticAbaqus(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                          const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile output(file);
+  const MeshGroups groups(straightMesh(mesh), options.patchAngle, stage);
+  const QuadraticCells cells(mesh);
+  AbaqusWriter(output, stage, context.threads())
+      .write(cells.points, cells.cells, groups, cells.middles);
   output.commit();
 }
 

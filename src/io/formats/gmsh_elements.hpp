@@ -9,9 +9,11 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +24,7 @@
 
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
 #include <io/formats/formats.hpp>
 
@@ -61,6 +64,26 @@ using GmshGroup = std::pair<std::int64_t, std::int64_t>;
     return static_cast<std::int32_t>(tag);
   }
   return {};
+}
+
+/// Gives groups of all dimensions numbers of their own, since programs such as meshio and GetFEM
+/// take groups with one number for one group. Numbers that are tags stay where they can, those of
+/// the first kinds first.
+inline void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds) {
+  std::set<std::uint32_t> taken;
+  std::vector<ElementGroup*> others;
+  for (std::vector<ElementGroup>* const groups : kinds) {
+    for (ElementGroup& group : *groups) {
+      const bool isTag = tagInGroupName(group.name) == static_cast<std::int64_t>(group.number);
+      if (!isTag || !taken.insert(group.number).second) others.push_back(&group);
+    }
+  }
+  std::uint32_t next = 1;
+  for (ElementGroup* const group : others) {
+    if (taken.insert(group->number).second) continue;
+    while (!taken.insert(next).second) ++next;
+    group->number = next;
+  }
 }
 
 /// Tags of elements by their groups or entities.

@@ -143,6 +143,11 @@ class MeditText {
 
   void readHead() {
     if (scanner_.readToken() != "MeshVersionFormatted") {
+      if (scanner_.currentToken() == "MFEM") {
+        scanner_.fail(ErrorCode::FileUnsupported,
+                      "this is a mesh of MFEM, which is written, but not read. Save it as .vtk "
+                      "(Mesh::PrintVTK).");
+      }
       scanner_.fail(ErrorCode::FileSyntax,
                     "a MEDIT file begins with \"MeshVersionFormatted\", found " +
                         quoted(scanner_.currentToken()) + ".");
