@@ -116,7 +116,8 @@ class Moving {
     const std::vector<Index> wereBad = verticesAtBad(sweeps);
     const bool canAtOnce = !curved_ && canMoveAtOnce();
     const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
-    if (isFolded) sweeps.moveAtOnce(target, true, [&] { return quadsBeyond(distance().ofQuads); });
+    if (isFolded)
+      sweeps.moveAtOnce(target, slack_, true, [&] { return quadsBeyond(distance().ofQuads); });
     oneByOne(sweeps);
     const double lowest = std::max(target, report_.before.quality.minimum);
     double floor = lowest;
@@ -194,7 +195,7 @@ class Moving {
                   [&](Index v) { return !std::binary_search(wereBad.begin(), wereBad.end(), v); });
     LooseVertices loose(places_, low, points);
     const Array<Index> simplices = places_.simplex;
-    sweeps.moveAtOnce(target, false, [&] { return quadsBeyond(distance().ofQuads); });
+    sweeps.moveAtOnce(target, slack_, false, [&] { return quadsBeyond(distance().ofQuads); });
     oneByOne(sweeps);
     if (!wereBad.empty()) sweeps.raiseWorst(target, slack_);
     const Sweeps::Standing now = sweeps.standing(target);

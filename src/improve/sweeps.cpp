@@ -119,6 +119,8 @@ constexpr std::size_t kMostCellsAtOnce = 20'000;
 /// Rounds, at most, and the share of all that is missing to right angles that one must bring.
 constexpr int kMostRoundsAtOnce = 20;
 constexpr double kStallAtOnce = 0.01;
+/// A round may be for nothing, as what goes back onto the surface folds: so many are the end.
+constexpr int kStallsAtOnce = 3;
 
 /// So far may boundary quads be from the surface, in diagonals: less than the 1e-3 that are
 /// promised for all of the surface, since only centres are looked at.
@@ -307,7 +309,7 @@ void Sweeps::putBackAll(const Array<Vec3>& before, const Array<Index>& simplices
   measureAll();
 }
 
-void Sweeps::moveAtOnce(double target, bool isFolded,
+void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
                         const std::function<Array<Quad>()>& farQuads) {
   const std::vector<Index> low = cellsThat([&](double quality) { return quality < target; });
   Neighbourhoods near(cellPoints());
@@ -326,8 +328,11 @@ void Sweeps::moveAtOnce(double target, bool isFolded,
   }
   if (isFolded) spreadAtOnce(mesh_, places_, {vertices, cells, boxes_}, stage_);
   if (isFolded) measureAll();
-  for (int round = 0; round < kMostRoundsAtOnce; ++round) {
-    const double deficit = deficitOf(cells);
+  double least = deficitOf(cells);
+  Array<Vec3> best = mesh_.points;
+  Array<Index> bestSimplices = places_.simplex;
+  int stalls = 0;
+  for (int round = 0; round < kMostRoundsAtOnce && stalls < kStallsAtOnce; ++round) {
     const Array<Vec3> points = mesh_.points;
     const Array<Index> simplices = places_.simplex;
     takeBoxes();
@@ -341,11 +346,16 @@ void Sweeps::moveAtOnce(double target, bool isFolded,
       }
     }
     measureAll();
-    untangle(0);
+    untangle(slack);
+    raiseWorst(target, 0);  // from cells that are hardly positive, no step leads on
     const double now = deficitOf(cells);
-    if (now > deficit) putBackAll(points, simplices);
-    if (now > (1 - kStallAtOnce) * deficit) break;
+    if (now > (1 - kStallAtOnce) * least) ++stalls;
+    if (now >= least) continue;
+    least = now;
+    best = mesh_.points;
+    bestSimplices = places_.simplex;
   }
+  putBackAll(best, bestSimplices);
 }
 
 void Sweeps::raiseWorst(double target, double slack) {

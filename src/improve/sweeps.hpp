@@ -145,9 +145,11 @@ class Sweeps {
   /// Moves vertices of straight cells below the target, and many rings around, all at once, time
   /// after time until angles come hardly nearer to right ones. Boundary quads that come too far
   /// from the surface stay where they were from then on.
+  /// @param slack     as of untangle(), for what folds on the way back onto the surface
   /// @param isFolded  whether most cells may be inside out
   /// @param farQuads  of the boundary, which are too far
-  void moveAtOnce(double target, bool isFolded, const std::function<Array<Quad>()>& farQuads);
+  void moveAtOnce(double target, double slack, bool isFolded,
+                  const std::function<Array<Quad>()>& farQuads);
 
   /// The vertices of cells that are not certified or below the target, and of rings around.
   [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const;
