@@ -208,7 +208,7 @@ class Moving {
 
   /// Raises the worst until that brings little.
   /// @return the least scaled Jacobian, or less if cells are bad
-  double raiseFurther(Sweeps& sweeps) {
+  static double raiseFurther(Sweeps& sweeps) {
     constexpr int kMost = 10;
     constexpr double kAim = 0.05;
     constexpr double kStall = 0.01;
