@@ -29,6 +29,11 @@ std::array<Index, n> sorted(std::array<Index, n> vertices) {
   return vertices;
 }
 
+Vec3 normalized(const Vec3& a) {
+  const double size = length(a);
+  return size > 0 ? times(1 / size, a) : Vec3{};
+}
+
 /// Triangles of the boundary, then tagged ones inside and those between regions, if they are in
 /// planes of the grid: in others there are no quads.
 void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
@@ -275,6 +280,28 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isA
       places, stage);
   places.innerQuads = innerQuads(mesh, places.freedom, false, stage);
   return places;
+}
+
+std::size_t VertexPlaces::directionsAt(Index vertex, std::array<Vec3, 3>& directions) const {
+  switch (freedom[vertex]) {
+    case Freedom::Free:
+      directions = kAxes;
+      return 3;
+    case Freedom::OnPatch: {
+      const std::array<Vec3, 3> t = surface.triangle(simplex[vertex]);
+      const Vec3 first = minus(t[1], t[0]);
+      directions[0] = normalized(first);
+      directions[1] = normalized(cross(cross(first, minus(t[2], t[0])), first));
+      return 2;
+    }
+    case Freedom::OnCurve: {
+      const std::array<Vec3, 2> s = surface.segment(simplex[vertex]);
+      directions[0] = normalized(minus(s[1], s[0]));
+      return 1;
+    }
+    default:
+      return 0;
+  }
 }
 
 }  // namespace hexhex::improvement

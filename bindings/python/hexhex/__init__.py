@@ -1124,7 +1124,8 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
         feature_angle: edges where the surface turns by more degrees are curves, and so are tagged
             ones: vertices do not leave them.
         slack: where nothing else makes cells positive, vertices without tags may leave the surface
-            by so much, in diagonals of its bounding box, 0 to 0.1.
+            by so much, in diagonals of its bounding box, 0 to 0.1; in meshes with bad cells also to
+            raise cells below the target.
         pillow: whether straight cells get a layer of cells under the boundary: "never", "always", or
             "auto" if fewer cells stay that are not positive, or the minimum rises by 0.02 at least.
         snap_curves: whether edges of straight cells are laid onto curves that none follows, with

@@ -100,7 +100,7 @@ class Planes {
   std::int64_t near_;
   std::vector<FixedCoordinate> planes_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> numbers_;  ///< by axis and value
-  std::vector<IntegerForm> equations_;  ///< each once
+  std::vector<IntegerForm> equations_;                                   ///< each once
   std::set<IntegerForm> seen_;
   bool isAny_ = false;
 };
