@@ -30,7 +30,9 @@ void requireCurvedOutputs(const ExtractArguments& arguments) {
                 "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
                 "--patches.");
   }
-  if (arguments.order > 1) arguments.choice.requireForCurved(arguments.output, arguments.order);
+  if (arguments.order > 1 && !arguments.parts.parts) {
+    arguments.choice.requireForCurved(arguments.output, arguments.order);
+  }
   if (!arguments.arcs.empty()) {
     requireArcFormat(arguments.arcs);
     requireWritable(arguments.arcs);
@@ -215,7 +217,8 @@ void requireOutputs(const ExtractArguments& arguments) {
   } else if (arguments.order == 1) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
-  requireWritable(arguments.output);
+  // Several processes would each make a folder of their own.
+  requireWritable(arguments.output, !arguments.parts.parts);
   if (arguments.stream && !arguments.parts.parts) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
   }

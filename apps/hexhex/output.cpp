@@ -122,10 +122,10 @@ void requireAllDifferent(std::vector<std::filesystem::path> files,
   }
 }
 
-void requireWritable(const std::filesystem::path& file) {
+void requireWritable(const std::filesystem::path& file, bool makesFolders) {
   std::error_code missing;
   // OpenFOAM's case is made with its folders, or replaced as a folder.
-  const bool makesFolder = file.extension() == ".foam" && file.has_parent_path() &&
+  const bool makesFolder = makesFolders && file.extension() == ".foam" && file.has_parent_path() &&
                            !std::filesystem::exists(file.parent_path(), missing);
   if (makesFolder || file.filename() == "polyMesh") return;
   // Opening a pipe twice would end it.

@@ -73,7 +73,8 @@ void requireAllDifferent(std::vector<std::filesystem::path> files,
 
 /// Throws FileWrite if the file is a folder or a link to nowhere, or no file can be created in its
 /// folder: to fail before long work.
-void requireWritable(const std::filesystem::path& file);
+/// @param makesFolders  whether folders of a case of OpenFOAM are made with it
+void requireWritable(const std::filesystem::path& file, bool makesFolders = true);
 
 /// A report that is asked for: a file, or "-" for the standard output, which then holds nothing
 /// else; or none.
