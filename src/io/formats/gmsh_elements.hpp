@@ -74,7 +74,9 @@ inline void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds)
   std::vector<ElementGroup*> others;
   for (std::vector<ElementGroup>* const groups : kinds) {
     for (ElementGroup& group : *groups) {
-      const bool isTag = tagInGroupName(group.name) == static_cast<std::int64_t>(group.number);
+      // Groups with names of their own say it by themselves.
+      const auto tag = tagInGroupName(group.name).value_or(group.tag);
+      const bool isTag = tag == static_cast<std::int64_t>(group.number);
       if (!isTag || !taken.insert(group.number).second) others.push_back(&group);
     }
   }
