@@ -95,8 +95,8 @@ untangle::Element cornerOf(const HexMesh& mesh, const Steps& steps, const Hex& c
   for (std::size_t k = 0; k < 3; ++k) {
     const Index other = at(place ^ (std::size_t{1} << k));
     element.corners[k + 1] = steps.corner(other);
-    const double length_ = length(minus(mesh.points[other], mesh.points[at(place)]));
-    lengths[k] = own * length_ + (1 - own) * box[k];
+    const double edge = length(minus(mesh.points[other], mesh.points[at(place)]));
+    lengths[k] = own * edge + (1 - own) * box[k];
   }
   const IdealBox ideal = idealBox(lengths);
   std::array<Vec3, 3> edges{};

@@ -14,6 +14,9 @@ namespace hexhex::improvement {
 
 namespace {
 
+/// Where more cells are below the target, moving all at once takes too long: a minute and more.
+constexpr std::size_t kMostLowAtOnce = 5'000;
+
 /// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
 std::vector<Index> worsened(const ImproveReport& report) {
   std::vector<Index> cells;
@@ -122,7 +125,8 @@ class Moving {
     const double lowest = std::max(target, report_.before.quality.minimum);
     double floor = lowest;
     const Sweeps::Standing standing = sweeps.standing(target);
-    const bool isShort = canAtOnce && standing.bad + standing.below > 0;
+    const std::size_t low = standing.bad + standing.below;
+    const bool isShort = canAtOnce && low > 0 && low <= kMostLowAtOnce;
     if (isShort) atOnce(sweeps, wereBad);
     if ((isFolded || isShort) && sweeps.standing(target).depth <= 1 - target) {
       floor = std::max(floor, raiseFurther(sweeps));

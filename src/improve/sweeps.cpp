@@ -118,6 +118,10 @@ constexpr int kLeastRingsAtOnce = 3;
 constexpr std::size_t kMostCellsAtOnce = 20'000;
 /// Rounds, at most, and the share of all that is missing to right angles that one must bring.
 constexpr int kMostRoundsAtOnce = 20;
+/// Rounds times cells, each of which takes a tenth of a millisecond: where cells are only below the
+/// target, and where most are bad, as nothing else mends these.
+constexpr std::size_t kMostWorkAtOnce = 100'000;
+constexpr std::size_t kMostWorkFolded = 300'000;
 constexpr double kStallAtOnce = 0.01;
 /// A round may be for nothing, as what goes back onto the surface folds: so many are the end.
 constexpr int kStallsAtOnce = 3;
@@ -320,6 +324,10 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
     vertices = near.pointsOf(rings, cells);
     if (cells.size() <= kMostCellsAtOnce) break;
   }
+  if (cells.empty()) return;
+  const std::size_t rounds = std::min<std::size_t>(
+      kMostRoundsAtOnce, (isFolded ? kMostWorkFolded : kMostWorkAtOnce) / cells.size());
+  if (rounds == 0) return;
   std::sort(vertices.begin(), vertices.end());
   std::sort(cells.begin(), cells.end());
   std::vector<std::uint8_t> isHeld(mesh_.points.size(), 0);
@@ -332,7 +340,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
   Array<Vec3> best = mesh_.points;
   Array<Index> bestSimplices = places_.simplex;
   int stalls = 0;
-  for (int round = 0; round < kMostRoundsAtOnce && stalls < kStallsAtOnce; ++round) {
+  for (std::size_t round = 0; round < rounds && stalls < kStallsAtOnce; ++round) {
     const Array<Vec3> points = mesh_.points;
     const Array<Index> simplices = places_.simplex;
     takeBoxes();
