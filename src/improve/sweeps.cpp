@@ -124,7 +124,7 @@ constexpr std::size_t kMostWorkAtOnce = 100'000;
 constexpr std::size_t kMostWorkFolded = 300'000;
 constexpr double kStallAtOnce = 0.01;
 /// A round may be for nothing, as what goes back onto the surface folds: so many are the end.
-constexpr int kStallsAtOnce = 3;
+constexpr std::size_t kStallsAtOnce = 3;
 
 /// So far may boundary quads be from the surface, in diagonals: less than the 1e-3 that are
 /// promised for all of the surface, since only centres are looked at.
@@ -327,7 +327,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
   if (cells.empty()) return;
   const std::size_t rounds = std::min<std::size_t>(
       kMostRoundsAtOnce, (isFolded ? kMostWorkFolded : kMostWorkAtOnce) / cells.size());
-  if (rounds == 0) return;
+  if (rounds <= kStallsAtOnce) return;  // too few to come to rest
   std::sort(vertices.begin(), vertices.end());
   std::sort(cells.begin(), cells.end());
   std::vector<std::uint8_t> isHeld(mesh_.points.size(), 0);
@@ -339,7 +339,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
   double least = deficitOf(cells);
   Array<Vec3> best = mesh_.points;
   Array<Index> bestSimplices = places_.simplex;
-  int stalls = 0;
+  std::size_t stalls = 0;
   for (std::size_t round = 0; round < rounds && stalls < kStallsAtOnce; ++round) {
     const Array<Vec3> points = mesh_.points;
     const Array<Index> simplices = places_.simplex;
