@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <base/sorted.hpp>
 #include <extract/features.hpp>
 #include <sweep/cell_centers.hpp>
 #include <sweep/cell_tracer.hpp>
@@ -68,10 +69,6 @@ class TagTable {
     Simplex simplex;
     std::int32_t tag;
   };
-  static Simplex sorted(Simplex simplex) {
-    std::sort(simplex.begin(), simplex.end());
-    return simplex;
-  }
 
   std::vector<Entry> entries_;  ///< ascending
 };

@@ -215,9 +215,10 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
   try {
     TetMesh read = readTetMesh(result, {}, context);
     // Names are those of faces and solids of a STEP file; what else is tagged is the mesher's.
-    if (task.surface != nullptr || read.features.names.empty()) read.regions.clear();
-    if (task.surface != nullptr) read.regions.clear();
-    if (task.surface != nullptr || read.features.names.empty()) read.features = {};
+    if (task.surface != nullptr || read.features.names.empty()) {
+      read.regions.clear();
+      read.features = {};
+    }
     read.features.vertices.clear();
     read.features.edges.clear();
     TetMesh mesh = tidied(std::move(read));

@@ -317,12 +317,16 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
                         const std::function<Array<Quad>()>& farQuads) {
   const std::vector<Index> low = cellsThat([&](double quality) { return quality < target; });
   Neighbourhoods near(cellPoints());
-  std::vector<Index> cells;
-  std::vector<Index> vertices;
-  for (int rings = kMostRingsAtOnce; rings >= kLeastRingsAtOnce; --rings) {
-    cells = low;
-    vertices = near.pointsOf(rings, cells);
-    if (cells.size() <= kMostCellsAtOnce) break;
+  std::vector<Index> cells = low;
+  std::vector<Index> vertices = near.pointsOf(kLeastRingsAtOnce, cells);
+  for (int rings = kLeastRingsAtOnce + 1; rings <= kMostRingsAtOnce; ++rings) {
+    std::vector<Index> more = low;
+    std::vector<Index> around = near.pointsOf(rings, more);
+    if (more.size() > kMostCellsAtOnce) break;
+    const bool isAll = more.size() == cells.size();
+    cells = std::move(more);
+    vertices = std::move(around);
+    if (isAll) break;
   }
   if (cells.empty()) return;
   const std::size_t rounds = std::min<std::size_t>(
@@ -334,8 +338,10 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
   for (const Quad& quad : places_.innerQuads) {  // nothing says when these are too far
     for (const Index v : quad) isHeld[v] = 1;
   }
-  if (isFolded) spreadAtOnce(mesh_, places_, {vertices, cells, boxes_}, stage_);
-  if (isFolded) measureAll();
+  if (isFolded) {
+    spreadAtOnce(mesh_, places_, {vertices, cells, boxes_}, stage_);
+    measureAll();
+  }
   double least = deficitOf(cells);
   Array<Vec3> best = mesh_.points;
   Array<Index> bestSimplices = places_.simplex;

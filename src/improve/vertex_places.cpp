@@ -11,6 +11,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <igm/input.hpp>
 #include <improve/crease_chains.hpp>
@@ -22,12 +23,6 @@ namespace hexhex::improvement {
 namespace {
 
 constexpr std::size_t kVertexPlacesGrain = 4096;
-
-template <std::size_t n>
-std::array<Index, n> sorted(std::array<Index, n> vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
 
 Vec3 normalized(const Vec3& a) {
   const double size = length(a);

@@ -14,6 +14,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <improve/curve_paths.hpp>
 #include <improve/surface_distance.hpp>
@@ -24,12 +25,6 @@ namespace {
 using Edge = tetmap::VertexPair;
 
 constexpr std::size_t kGroupsGrain = 1024;
-
-template <std::size_t n>
-std::array<Index, n> sorted(std::array<Index, n> vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
 
 /// Tags by the vertices of edges, triangles or quads.
 template <class Feature>

@@ -8,6 +8,8 @@
 
 #include <hexhex/quantize.hpp>
 
+#include <base/sorted.hpp>
+
 namespace hexhex::shape {
 
 namespace {
@@ -38,10 +40,6 @@ bool isLevel(const TetParameters& corners, adjacency::HalfFace h, double toleran
 void countInnerFaces(const TetMap& map, const adjacency::TetTopology& topology,
                      FoundFeatures& features) {
   std::vector<std::array<Index, 3>> tagged;
-  const auto sorted = [](std::array<Index, 3> vertices) {
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
-  };
   for (const FeatureFace& face : map.features.faces) {
     if (face.tag != 0) tagged.push_back(sorted(face.vertices));
   }

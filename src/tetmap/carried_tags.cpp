@@ -5,6 +5,8 @@
 #include <tetmap/carried_tags.hpp>
 #include <tetmap/cut.hpp>
 
+#include <base/sorted.hpp>
+
 namespace hexhex::tetmap {
 
 namespace {
@@ -23,14 +25,13 @@ class Carrier {
 
   [[nodiscard]] bool hasWork() const noexcept { return !known_.empty(); }
 
-  void look(decltype(Simplex::vertices) vertices) {
+  void look(const decltype(Simplex::vertices)& vertices) {
     const Tet simplex = added_.simplexOf(vertices);
     const auto found =
         std::lower_bound(known_.begin(), known_.end(), simplex,
                          [](const auto& entry, const Tet& key) { return entry.first < key; });
     if (found == known_.end() || found->first != simplex) return;
-    std::sort(vertices.begin(), vertices.end());
-    found_.push_back({vertices, found->second});
+    found_.push_back({sorted(vertices), found->second});
   }
 
   /// Each once.

@@ -88,13 +88,14 @@ std::int32_t sideOfBox(const Vec3& p, const Vec3& size) {
   return 0;
 }
 
+TetMesh plainBox() {
+  return CubeBody{{2, 2, 1}, [](const Cell&) { return true; }}
+      .labelled(3, [](const Vec3& p) { return p; })
+      .tets;
+}
+
 TetMesh boxWithSides() {
-  TetMesh box = CubeBody{
-      {2, 2, 1}, [](const Cell&) {
-        return true;
-      }}.labelled(3, [](const Vec3& p) {
-          return p;
-        }).tets;
+  TetMesh box = plainBox();
   tag(
       box,
       [](const Vec3& p) {
@@ -348,12 +349,7 @@ TEST(PartTags, OfRegionsAreThoseOfCellsCentres) {
 }
 
 TEST(PartTags, OfAlignedRegionsAreFollowed) {
-  TetMesh box = CubeBody{
-      {2, 2, 1}, [](const Cell&) {
-        return true;
-      }}.labelled(3, [](const Vec3& p) {
-          return p;
-        }).tets;
+  TetMesh box = plainBox();
   tag(
       box, [](const Vec3&) { return 0; }, [](const Vec3& p) { return p[0] < 1 ? 1 : 2; });
   const MeshedPart part = meshed(box, 500);

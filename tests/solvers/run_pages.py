@@ -9,7 +9,6 @@ Exit code 77 if no solver is installed. HEXHEX_PYTHON names a Python with module
 """
 
 import math
-import os
 import pathlib
 import re
 import shutil
@@ -17,23 +16,16 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "parts"))
+from common import python_with  # noqa: E402
+
 PAGES = pathlib.Path(__file__).resolve().parents[2] / "docs" / "solvers"
-PYTHONS = [p for p in (os.environ.get("HEXHEX_PYTHON"), "/usr/bin/python3", sys.executable) if p]
 # Page: what it needs, how exact its numbers are, and options of more runs.
 NEEDS = {"scikit-fem": "skfem", "ngsolve": "ngsolve", "mfem": "mfem", "getfem": "getfem", "calculix": None}
 DIGITS = {"calculix": 1e-6}
 MORE_RUNS = {"calculix": ["--order", "2"]}
 
 OCTAGON = 2 * math.sqrt(2)
-
-
-def python_with(module):
-    """A Python that has a module, or None."""
-    for python in PYTHONS:
-        if os.access(python, os.X_OK) and subprocess.run(
-                [python, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0:
-            return python
-    return None
 
 
 def python_for(page):

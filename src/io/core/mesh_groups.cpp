@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -12,6 +14,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <mesh/smooth_patches.hpp>
 
@@ -38,8 +41,7 @@ Array<std::size_t> orderByTag(std::span<const Tag> tags) {
 struct GroupWords {
   std::string tagged;
   const char* untagged = "boundary";
-  int dimension = 0;                    ///< of the elements
-  std::span<const TagName> names = {};  ///< of the mesh
+  std::map<Tag, std::string> names = {};  ///< of their own
 };
 
 /// A name as every format holds it: letters, digits and '_', 32 at most, no digit first.
@@ -55,30 +57,27 @@ std::string wordOf(std::string_view name) {
   return word;
 }
 
-/// Formats that do not tell capital letters apart need names that differ all the same.
-bool areAlike(std::string_view a, std::string_view b) {
-  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return small(x) == small(y); });
-}
-
-/// What the file that the mesh came from calls a group; empty if that is not known, or if an
-/// earlier name is like it.
-std::string givenName(const GroupWords& words, Tag tag) {
-  std::vector<std::string> earlier;
-  for (const TagName& known : words.names) {
+/// What the file that the mesh came from calls groups. Formats that do not tell capital letters
+/// apart need names that differ all the same: one that is like an earlier one is left out.
+/// @param dimension  of the elements
+std::map<Tag, std::string> givenNames(std::span<const TagName> names, int dimension) {
+  std::map<Tag, std::string> given;
+  std::set<std::string> earlier;
+  for (const TagName& known : names) {
     std::string word = wordOf(known.name);
-    const bool isTaken = std::any_of(earlier.begin(), earlier.end(),
-                                     [&](const auto& other) { return areAlike(other, word); });
-    if (known.dimension == words.dimension && known.tag == tag) return isTaken ? "" : word;
-    earlier.push_back(std::move(word));
+    std::string small = word;
+    for (char& c : small) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    const bool isNew = earlier.insert(std::move(small)).second;
+    if (known.dimension != dimension) continue;
+    given.emplace(known.tag, isNew ? std::move(word) : std::string());
   }
-  return {};
+  return given;
 }
 
 std::string groupName(const GroupWords& words, Tag tag) {
   if (tag == 0) return words.untagged;
-  if (std::string given = givenName(words, tag); !given.empty()) return given;
+  const auto given = words.names.find(tag);
+  if (given != words.names.end() && !given->second.empty()) return given->second;
   const std::int64_t wide = tag;
   return words.tagged + (wide < 0 ? "_m" : "_") + std::to_string(wide < 0 ? -wide : wide);
 }
@@ -142,11 +141,6 @@ ElementGroups<n> groupFeatures(const HexMesh& mesh, const std::vector<Feature>& 
   return result;
 }
 
-Quad sorted(Quad quad) {
-  std::sort(quad.begin(), quad.end());
-  return quad;
-}
-
 /// Quads before they are sorted into groups.
 struct TaggedQuads {
   Array<Quad> quads;
@@ -207,11 +201,12 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
 
 VertexGroups groupVertices(const HexMesh& mesh) {
   return groupFeatures<1>(mesh, mesh.features.vertices, "vertex",
-                          {"point", "", 0, mesh.features.names});
+                          {"point", "", givenNames(mesh.features.names, 0)});
 }
 
 EdgeGroups groupEdges(const HexMesh& mesh) {
-  return groupFeatures<2>(mesh, mesh.features.edges, "edge", {"curve", "", 1, mesh.features.names});
+  return groupFeatures<2>(mesh, mesh.features.edges, "edge",
+                          {"curve", "", givenNames(mesh.features.names, 1)});
 }
 
 void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_t> tags,
@@ -244,7 +239,9 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside);
   const Array<std::size_t> order = orderByTag(found.tags);
   QuadGroups result{
-      {groupsOf(found.tags, order, {"surface", "boundary", 2, mesh.features.names}), {}}, {}};
+      {groupsOf(found.tags, order, {"surface", "boundary", givenNames(mesh.features.names, 2)}),
+       {}},
+      {}};
   for (ElementGroup& group : result.groups) {
     if (group.tag > found.lastTag) group.name = groupName({"patch"}, group.tag - found.lastTag);
   }
@@ -260,8 +257,9 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
 CellGroups groupCells(const HexMesh& mesh) {
   if (mesh.regions.empty()) return {{{1, "hexahedra", 0, mesh.cells.size()}}, {}};
   const Array<std::size_t> order = orderByTag(mesh.regions);
-  CellGroups result{groupsOf(mesh.regions, order, {"region", "hexahedra", 3, mesh.features.names}),
-                    {}};
+  CellGroups result{
+      groupsOf(mesh.regions, order, {"region", "hexahedra", givenNames(mesh.features.names, 3)}),
+      {}};
   if (result.groups.empty()) result.groups.push_back({1, "hexahedra", 0, 0});
   if (result.groups.size() == 1) return result;
   result.order.resize(order.size());

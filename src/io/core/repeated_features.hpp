@@ -1,12 +1,13 @@
 // Features that files list more than once.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <set>
 #include <vector>
 
 #include <hexhex/features.hpp>
+
+#include <base/sorted.hpp>
 
 namespace hexhex::io {
 
@@ -16,9 +17,7 @@ namespace hexhex::io {
 }
 template <class Feature>
 [[nodiscard]] auto keyOf(const Feature& feature) {
-  auto vertices = feature.vertices;
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
+  return sorted(feature.vertices);
 }
 
 /// Leaves out what is listed before, with whatever tag.
