@@ -176,8 +176,7 @@ Command addConvert(CLI::App& app) {
   addMapSourceBefore(*parser, arguments->input, "INPUT", arguments->output, "OUTPUT",
                      "The file to write");
   addKeepWalls(*parser, arguments->input);
-  addOutputChoice(*parser, arguments->choice);
-  addSolver(*parser, arguments->choice, arguments->output);
+  addMeshChoice(*parser, arguments->choice, arguments->output);
   parser
       ->add_option("--input-format", arguments->input.format,
                    "Read this format, whatever the extension")

@@ -147,8 +147,7 @@ Command addImprove(CLI::App& app) {
       ->option_text("FILE");
   addImproveOptions(*parser, arguments->options);
   addHexesOnly(*parser, arguments->hexesOnly);
-  addOutputChoice(*parser, arguments->choice);
-  addSolver(*parser, arguments->choice, arguments->output);
+  addMeshChoice(*parser, arguments->choice, arguments->output);
   addPatchAngle(*parser, arguments->patchAngle);
   addReport(*parser, arguments->report,
             "Write in JSON: quality and certificates before and after,\n"

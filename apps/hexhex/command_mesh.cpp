@@ -145,8 +145,7 @@ void addOutputs(CLI::App& parser, MeshArguments& arguments) {
                   "The mesh to write; `hexhex formats` lists the formats")
       ->required()
       ->option_text("FILE REQUIRED");
-  addOutputChoice(parser, arguments.choice);
-  addSolver(parser, arguments.choice, arguments.output);
+  addMeshChoice(parser, arguments.choice, arguments.output);
   parser
       .add_option("--keep-map", arguments.map,
                   "Write the integer-grid map, too, for `extract` and `verify`")

@@ -176,8 +176,7 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   addMapSource(parser, arguments.input);
   addKeepWalls(parser, arguments.input);
   addMeshOutput(parser, arguments.output);
-  addOutputChoice(parser, arguments.choice);
-  addSolver(parser, arguments.choice, arguments.output);
+  addMeshChoice(parser, arguments.choice, arguments.output);
   addScale(parser, arguments.options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addCurved(parser, arguments);

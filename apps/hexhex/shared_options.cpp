@@ -226,13 +226,15 @@ CLI::Validator formatName() {
   return CLI::Validator(check, "");
 }
 
-void addOutputChoice(CLI::App& parser, OutputChoice& choice) {
-  parser
-      .add_option("--format", choice.format,
-                  "Write this format, whatever the extension;\n`hexhex formats` lists them")
-      ->check(formatName())
-      ->option_text("NAME");
+CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice) {
+  CLI::Option* const format =
+      parser
+          .add_option("--format", choice.format,
+                      "Write this format, whatever the extension;\n`hexhex formats` lists them")
+          ->check(formatName())
+          ->option_text("NAME");
   parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
+  return format;
 }
 
 namespace {
@@ -263,13 +265,15 @@ void requireExtension(const SolverFormat& solver, std::string& output) {
 
 }  // namespace
 
-void addSolver(CLI::App& parser, OutputChoice& choice, std::string& output) {
+void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output) {
+  // Asked for by its name, CLI11 would end the program where memory does not suffice.
+  CLI::Option* const format = addOutputChoice(parser, choice);
   parser
       .add_option("--for", choice.solver,
                   "Write what this solver reads (calculix, dealii, mfem, ...:\n"
                   "`hexhex formats` lists them); gives FILE its extension")
       ->check(oneOf(solverNames()))
-      ->excludes(parser.get_option("--format"))
+      ->excludes(format)
       ->option_text("SOLVER");
   parser.final_callback([&choice, &output] {
     if (!choice.solver.empty()) requireExtension(*findSolver(choice.solver), output);

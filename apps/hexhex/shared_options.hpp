@@ -80,10 +80,11 @@ struct OutputChoice {
 [[nodiscard]] CLI::Validator formatName();
 
 /// Adds --format and --compress.
-void addOutputChoice(CLI::App& parser, OutputChoice& choice);
-/// Adds --for, beside these.
+/// @return the former
+CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice);
+/// Adds these, and --for.
 /// @param output  gets the extension that the solver expects, if it has none
-void addSolver(CLI::App& parser, OutputChoice& choice, std::string& output);
+void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output);
 
 /// Adds --hexes-only.
 void addHexesOnly(CLI::App& parser, bool& hexesOnly);

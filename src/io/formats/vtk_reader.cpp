@@ -721,14 +721,14 @@ namespace {
 // Files as a whole, or piece by piece.
 
 // Points or cells of a piece: a few megabytes.
-constexpr std::size_t kPiece = std::size_t{1} << 16;
+constexpr std::size_t kVtkPiece = std::size_t{1} << 16;
 
 /// Calls f(first, count) for consecutive ranges of n elements, and reports progress.
 template <class F>
 void forEachPiece(Stage& stage, std::uint64_t n, const F& f) {
   LoopProgress progress(stage, n);
-  for (std::uint64_t first = 0; first < n; first += kPiece) {
-    const std::size_t count = std::min<std::uint64_t>(kPiece, n - first);
+  for (std::uint64_t first = 0; first < n; first += kVtkPiece) {
+    const std::size_t count = std::min<std::uint64_t>(kVtkPiece, n - first);
     f(first, count);
     progress.advance(count);
   }
