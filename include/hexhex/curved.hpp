@@ -215,9 +215,9 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 
 /// Throw FileUnsupported unless the functions above know the extension, or the format: to fail
 /// before long work.
-/// @param order  of the cells; 0: not known yet
 void requireArcFormat(const std::filesystem::path& file);
 void requirePatchFormat(const std::filesystem::path& file);
+/// @param order  of the cells; 0: not known yet
 void requireLagrangeFormat(const std::filesystem::path& file, std::string_view format = {},
                            int order = 0);
 
