@@ -356,7 +356,7 @@ int run(const ExtractArguments& given, const CLI::App& parser) {
     });
   } catch (const Error& error) {
     // Here, where all are still there: when one has ended so, mpirun stops the others.
-    if (speaks) printError(error);
+    if (speaks) printError(error, sentenceOf(error));
     return exitCodeOf(error.code());
   }
   return kSuccess;

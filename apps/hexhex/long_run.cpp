@@ -29,9 +29,9 @@ extern "C" void cancelContext(int signal) {
 
 }  // namespace
 
-std::string_view cancelledBySignal() noexcept {
+std::string_view sentenceOf(const Error& error) noexcept {
   const int signal = signalThatCame;
-  if (signal == 0) return {};
+  if (error.code() != ErrorCode::Cancelled || signal == 0) return error.what();
   if (signal == SIGINT) return "Interrupted.";
   return signal == SIGTERM ? "Terminated." : "Its terminal was closed.";
 }

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
 
 namespace hexhex::command {
 
@@ -25,8 +26,8 @@ class CancelOnSignal {
   CancelOnSignal& operator=(const CancelOnSignal&) = delete;
 };
 
-/// What the signal that cancelled the run means, "Terminated." for SIGTERM; empty if none came.
-[[nodiscard]] std::string_view cancelledBySignal() noexcept;
+/// What to tell of an error: where a signal cancelled the run, what that means ("Terminated.").
+[[nodiscard]] std::string_view sentenceOf(const Error& error) noexcept;
 
 /// Progress on the standard error output: one bar for a whole run on a terminal, or a line per
 /// stage.

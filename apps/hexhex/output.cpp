@@ -7,8 +7,6 @@
 
 #include <hexhex/error.hpp>
 
-#include "long_run.hpp"
-
 namespace hexhex::command {
 namespace {
 
@@ -57,11 +55,10 @@ void printWarning(std::string_view sentence) {
   printToStderr("hexhex: warning: {}\n", printable(sentence));
 }
 
-void printError(const Error& error) {
+void printError(const Error& error) { printError(error, error.what()); }
+
+void printError(const Error& error, std::string_view sentence) {
   const std::string place = toString(error.place());
-  const std::string_view signal =
-      error.code() == ErrorCode::Cancelled ? cancelledBySignal() : std::string_view();
-  const std::string_view sentence = signal.empty() ? error.what() : signal;
   printToStderr("hexhex: error: {} [{}{}{}]\n", printable(sentence), name(error.code()),
                 place.empty() ? "" : ", ", place);
 }

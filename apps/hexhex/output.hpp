@@ -53,6 +53,8 @@ void printWarning(std::string_view sentence);
 /// The sentence, and in brackets what a script or a bug report wants to know, on the standard error
 /// output.
 void printError(const Error& error);
+/// @param sentence  in place of the error's
+void printError(const Error& error, std::string_view sentence);
 
 /// 16 hexadecimal digits.
 [[nodiscard]] std::string checksumAsText(std::uint64_t checksum);
