@@ -105,6 +105,10 @@ constexpr std::size_t kMostVisits = 4;
 /// can reach it.
 constexpr double kPrice = 30;
 
+/// Where more cells are below the target, none that is at it may fall below it on the way: many
+/// would end there, and all that moved with them be put back and raised again.
+constexpr std::size_t kMostFalling = 5'000;
+
 /// Vertices may leave creases at bad cells, then also within so many rings of cells around.
 constexpr std::array<int, 2> kLooseRings = {0, 2};
 
@@ -373,6 +377,10 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
 }
 
 void Sweeps::raiseWorst(double target, double slack) {
+  if (cellsThat([&](double quality) { return quality < target; }).size() > kMostFalling) {
+    raise({target, false, kPrice}, slack);
+    return;
+  }
   const Array<Vec3> points = mesh_.points;
   const Array<Index> simplices = places_.simplex;
   const Array<double> qualities = qualities_;
