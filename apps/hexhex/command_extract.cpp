@@ -18,6 +18,7 @@
 #include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/partial.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/verify.hpp>
@@ -104,6 +105,14 @@ void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Ar
   });
 }
 
+void noteBoundary(const ExtractArguments& arguments, const HexMesh& mesh, LongRun& longRun,
+                  ExtractionRecord& record) {
+  if (arguments.run.quiet && arguments.report.empty()) return;
+  record.boundary = longRun.part("quality", [&] {
+    return namedPatches(mesh, arguments.patchAngle.degrees, longRun.context());
+  });
+}
+
 /// Extracts, verifies and writes a mesh in memory.
 void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
@@ -129,8 +138,9 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
   const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = record.certificate->scaledJacobians;
-  writing.patchAngle = arguments.patchAngle;
+  writing.patchAngle = arguments.patchAngle.degrees;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  noteBoundary(arguments, mesh, longRun, record);
   writeMeshPage(arguments, mesh, before, longRun, record);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
@@ -152,8 +162,9 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
   const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
   WriteOptions options = arguments.choice.options();
   options.scaledJacobians = record.certificate->scaledJacobians;
-  options.patchAngle = arguments.patchAngle;
+  options.patchAngle = arguments.patchAngle.degrees;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
+  noteBoundary(arguments, straightMesh(mesh), longRun, record);
   writeMeshPage(arguments, mesh, before, longRun, record);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
@@ -178,7 +189,7 @@ void extractInPieces(const ExtractArguments& arguments, const TetMap& map, LongR
 void extractAllParts(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
   WriteOptions options = arguments.choice.options();
-  options.patchAngle = arguments.patchAngle;
+  options.patchAngle = arguments.patchAngle.degrees;
   PartOptions parts = arguments.parts.chosen();
   parts.verify = !arguments.noVerify;
   record.meshParts = longRun.part("extraction", [&] {
@@ -196,7 +207,7 @@ int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, con
   const PartialMesh partial =
       extractPartial(map, {arguments.options.scale, arguments.options.tolerance}, context);
   WriteOptions options = arguments.choice.options();
-  options.patchAngle = arguments.patchAngle;
+  options.patchAngle = arguments.patchAngle.degrees;
   writeHexMesh(partial.mesh, arguments.output, options, context);
   longRun.finish();
   if (report.isWanted()) {
@@ -243,6 +254,7 @@ std::vector<WorkStep> stepsOf(const ExtractArguments& arguments) {
                 {"writeArcs", 2},
                 {"writePatches", 5},
                 {"certify", 0.5},
+                {"namedPatches", 0.2},
                 {"writeHexMesh", 1},
                 {"writeLagrangeMesh", 4},
                 {"writeViewPage", 10}};
@@ -316,6 +328,13 @@ int extractMesh(const ExtractArguments& arguments) {
   if (report.isWanted()) report.write(reportAsJson(record));
   if (arguments.run.quiet) return kSuccess;
   printWarnings(record, map);
+  if (arguments.stream || arguments.parts.parts) {
+    arguments.patchAngle.warnIfGiven(
+        "smooth patches are those of a mesh that is whole; leave out --stream and --parts");
+  } else {
+    arguments.patchAngle.warnIfUseless(record.boundary, arguments.output,
+                                       arguments.choice.options());
+  }
   if (!report.isOnOutput()) printSummary(record);
   return kSuccess;
 }

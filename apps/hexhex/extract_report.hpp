@@ -13,6 +13,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/partial.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/survey.hpp>
@@ -60,6 +61,7 @@ struct ExtractionRecord {
   std::vector<StageTime> stages;
   std::vector<StageTime> parts;  ///< of the whole run: "reading", "extraction", ...
   std::string partsAsText;
+  std::vector<NamedPatch> boundary;          ///< empty if the mesh was never whole
   std::optional<Certificate> certificate;    ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;  ///< empty if it was skipped
   std::optional<MeshSurvey> streamed;        ///< of a mesh that was written in pieces
