@@ -222,18 +222,6 @@ int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, con
   return kInvalidMap;
 }
 
-/// Says of a map that is not integer, but seamless, what to do.
-void adviseQuantization(const ExtractArguments& arguments, const TetMap& map, const Error& error,
-                        Context& context) {
-  if (arguments.quantize || !canQuantize() || !mayBeSeamless(error.code())) return;
-  const SeamlessReport seamless = examineSeamless(map, context);
-  const std::string advice = adviceFor(seamless, arguments.input);
-  if (!advice.empty()) throw Error(error.code(), advice);
-  throw Error(error.code(),
-              std::string(error.what()) + " Nor can it be quantized: " + seamless.problem,
-              error.place());
-}
-
 /// The functions of the library that a run calls; weights are their seconds for a mesh of seven
 /// million cells.
 std::vector<WorkStep> stepsOf(const ExtractArguments& arguments) {
@@ -318,8 +306,8 @@ int extractMesh(const ExtractArguments& arguments) {
     make(arguments, map, longRun, record);
   } catch (const Error& error) {
     if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) {
-      adviseQuantization(arguments, map, error, longRun.context());
-      throw;
+      if (arguments.quantize) throw;
+      throw withAdvice(error, map, quantizationOf(arguments.input), longRun.context());
     }
     return extractWhatIsValid(arguments, map, error, longRun, report);
   }

@@ -254,13 +254,6 @@ const char* kindName(const SeamlessReport& report) noexcept {
   }
 }
 
-bool mayBeSeamless(ErrorCode code) noexcept {
-  // Rounding to integers flips tets of a map that is not integer.
-  return code == ErrorCode::FlippedTet || code == ErrorCode::TransitionResidual ||
-         code == ErrorCode::BoundaryOffLattice || code == ErrorCode::SingularityOffLattice ||
-         code == ErrorCode::HalfIntegerFixedPoint;
-}
-
 std::string jsonText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

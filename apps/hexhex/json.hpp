@@ -53,9 +53,6 @@ inline constexpr std::array<NamedMethod, 3> kShapeMethods = {{{"auto", ShapeMeth
 /// seamless", "neither".
 [[nodiscard]] const char* kindName(const SeamlessReport& report) noexcept;
 
-/// Whether a map is worth a look at whether it is seamless, by the defect that was found first.
-[[nodiscard]] bool mayBeSeamless(ErrorCode code) noexcept;
-
 /// With a line break at its end. File names need not be valid UTF-8; bytes that are not are
 /// replaced.
 [[nodiscard]] std::string jsonText(const Json& json);
