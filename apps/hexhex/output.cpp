@@ -114,7 +114,7 @@ void printPatches(std::span<const NamedPatch> patches) {
   };
   const auto printRow = [](std::string_view name, const auto& quads, const auto& area,
                            std::string_view centre, std::string_view normal) {
-    printLine(name, fmt::format("{:<9}{:<10}{:<28}{}", quads, area, centre, normal));
+    printLine(name, fmt::format("{:<8} {:<9} {:<27} {}", quads, area, centre, normal));
   };
   printRow("boundary", "quads", "area", "centre", "normal");
   for (const NamedPatch& patch : patches.first(std::min(patches.size(), kMost))) {

@@ -82,8 +82,7 @@ def canonical(mesh: Mesh) -> Mesh:
 
 def _difference(what: str, a: Array, b: Array) -> list[str]:
     """A line for arrays of one shape that differ."""
-    apart = (a != b) & ~((a != a) & (b != b))
-    rows = np.flatnonzero(apart.reshape(len(a), -1).any(axis=1))
+    rows = np.flatnonzero((a != b).any(axis=tuple(range(1, a.ndim))))
     if not len(rows):
         return []
     line = f"{what}: {len(rows)} of {len(a)} differ"
