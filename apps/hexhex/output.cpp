@@ -108,13 +108,13 @@ void printPatches(std::span<const NamedPatch> patches) {
   const auto vectorAsText = [](const Vec3& vector, double unit) {
     std::string text;
     for (const double x : vector) {
-      text += fmt::format("{}{:.4g}", text.empty() ? "(" : ", ", std::abs(x) < unit ? 0 : x);
+      text += fmt::format("{}{:.3g}", text.empty() ? "(" : ", ", std::abs(x) < unit ? 0 : x);
     }
     return text + ")";
   };
   const auto printRow = [](std::string_view name, const auto& quads, const auto& area,
                            std::string_view centre, std::string_view normal) {
-    printLine(name, fmt::format("{:<8} {:<9} {:<27} {}", quads, area, centre, normal));
+    printLine(name, fmt::format("{:<8} {:<9} {:<33} {}", quads, area, centre, normal));
   };
   printRow("boundary", "quads", "area", "centre", "normal");
   for (const NamedPatch& patch : patches.first(std::min(patches.size(), kMost))) {

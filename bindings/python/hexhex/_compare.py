@@ -125,8 +125,8 @@ def difference(a: Mesh, b: Mesh) -> str:
     else:
         for x, y, where in ((a, b, "here"), (b, a, "of the other")):
             lines += _missing(f"points {where}", x.points, y.points, x.points)
-            centres = [m.points[m.cells].mean(axis=1) for m in (x, y)]
-            lines += _missing(f"cells {where}, by their centres", *centres, x.cells)
+            here, there = (m.points[m.cells].mean(axis=1) for m in (x, y))
+            lines += _missing(f"cells {where}, by their centres", here, there, x.cells)
         if len(a.cells) == len(b.cells) and not any(line.startswith("cells") for line in lines):
             lines += _difference("cells", a.cells, b.cells)
     if len(a.regions) != len(b.regions):

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <adjacency/corner_range.hpp>
+
 #include <hexhex/patches.hpp>
 
 #include <base/parallel.hpp>
@@ -44,7 +46,10 @@ std::vector<NamedPatch> namedPatches(const HexMesh& mesh, double angle, Context&
   mesh::requirePatchAngle(angle);
   return inStage(context, "namedPatches", "patches", [&](Stage& stage) {
     io::QuadGroups groups;
-    withThreads(context.threads(), [&] { groups = io::groupQuads(mesh, angle, stage); });
+    withThreads(context.threads(), [&] {
+      adjacency::requireCornersInRange(mesh, stage);
+      groups = io::groupQuads(mesh, angle, stage);
+    });
     std::int32_t lastTag = 0;  // numbers of smooth patches are beyond
     for (const FeatureQuad& quad : mesh.features.quads) lastTag = std::max(lastTag, quad.tag);
     std::vector<NamedPatch> patches;
