@@ -327,7 +327,7 @@ CLI::Option* addPatchAngle(CLI::App& parser, PatchAngle& angle) {
           },
           "Where no faces are tagged, group boundary quads by\npatches that turn by at "
           "most this angle in degrees\nbetween neighbours; 0: one group")
-      ->check(CLI::Range(0, 180))
+      ->check(CLI::Range(0.0, 180.0))
       ->option_text("DEGREES [40]");
 }
 
