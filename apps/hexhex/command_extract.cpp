@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/core.h>
@@ -107,13 +108,19 @@ void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Ar
 
 /// Lists the boundary where that is hardly noticed or asked for: it takes 0.7 of 6 s for six
 /// million cells.
-void noteBoundary(const ExtractArguments& arguments, const HexMesh& mesh, LongRun& longRun,
-                  ExtractionRecord& record) {
+/// @param mesh  straight or curved
+void noteBoundary(const ExtractArguments& arguments, const auto& mesh, std::size_t cells,
+                  LongRun& longRun, ExtractionRecord& record) {
   constexpr std::size_t kFew = 100'000;
-  if (mesh.cells.size() > kFew && !arguments.patchAngle.isGiven) return;
+  if (cells > kFew && !arguments.patchAngle.isGiven) return;
   if (arguments.run.quiet && arguments.report.empty()) return;
   record.boundary = longRun.part("quality", [&] {
-    return namedPatches(mesh, arguments.patchAngle.degrees, longRun.context());
+    const double angle = arguments.patchAngle.degrees;
+    if constexpr (std::is_same_v<std::decay_t<decltype(mesh)>, LagrangeMesh>) {
+      return namedPatches(straightMesh(mesh), angle, longRun.context());
+    } else {
+      return namedPatches(mesh, angle, longRun.context());
+    }
   });
 }
 
@@ -144,7 +151,7 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
   writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle.degrees;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
-  noteBoundary(arguments, mesh, longRun, record);
+  noteBoundary(arguments, mesh, mesh.cells.size(), longRun, record);
   writeMeshPage(arguments, mesh, before, longRun, record);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
@@ -168,7 +175,7 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
   options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle.degrees;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
-  noteBoundary(arguments, straightMesh(mesh), longRun, record);
+  noteBoundary(arguments, mesh, mesh.cellCount(), longRun, record);
   writeMeshPage(arguments, mesh, before, longRun, record);
   record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
                  mesh.features.quads.size()};
