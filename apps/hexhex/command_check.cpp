@@ -48,7 +48,7 @@ Examination examine(const CheckArguments& arguments) {
 /// What the map is, in a sentence, and what to do with it.
 std::string classify(const Examination& found, const MapSource& input) {
   if (found.report.valid()) return "The map is valid.";
-  std::string advice = found.seamless ? adviceFor(*found.seamless, input) : "";
+  std::string advice = found.seamless ? adviceFor(*found.seamless, quantizationOf(input)) : "";
   if (!advice.empty()) return advice;
   std::string text =
       fmt::format("The map is defective: {} of {}.", counted(found.report.defects.size(), "kind"),

@@ -25,7 +25,7 @@ struct ConvertArguments {
   std::string output;
   OutputChoice choice;
   RunOptions run;
-  double patchAngle = WriteOptions{}.patchAngle;
+  PatchAngle patchAngle;
   bool stream = false;
   bool reorient = false;
   bool hexesOnly = false;
@@ -88,9 +88,12 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
                     " holds cells of higher order, but --reorient turns straight cells.");
   }
   WriteOptions writing = arguments.choice.options();
-  writing.patchAngle = arguments.patchAngle;
+  writing.patchAngle = arguments.patchAngle.degrees;
   const LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
   writeLagrangeMesh(mesh, arguments.output, writing, context);
+  if (arguments.patchAngle.isGiven) {
+    arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
+  }
   return fmt::format("a mesh of {} of order {}, {} nodes", counted(mesh.cellCount(), "cell"),
                      mesh.order, mesh.points.size());
 }
@@ -102,7 +105,7 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
   auto content = readInput(arguments, counts, context);
   WriteOptions writing = arguments.choice.options();
   writing.mapArray = arguments.input.mapArray;
-  writing.patchAngle = arguments.patchAngle;
+  writing.patchAngle = arguments.patchAngle.degrees;
   if (const auto* const map = std::get_if<TetMap>(&content)) {
     requireFor(arguments, "a map", requireMapFormat);
     if (arguments.reorient) {
@@ -111,6 +114,7 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
                       " holds a map, but --reorient turns cells of hexahedral meshes.");
     }
     writeMap(*map, arguments.output, writing, context);
+    arguments.patchAngle.warnIfGiven("a map has no quads");
     return fmt::format("a map of {}, {}", counted(map->tets.size(), "tet"),
                        counted(map->points.size(), "point"));
   }
@@ -122,6 +126,7 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
   const std::string turned =
       arguments.reorient ? fmt::format(", of which {} turned", reorient(mesh, context)) : "";
   writeHexMesh(mesh, arguments.output, writing, context);
+  arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
   return fmt::format("a mesh of {}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
                      mesh.points.size());
 }
@@ -131,6 +136,7 @@ std::string convertInPieces(const ConvertArguments& arguments, std::vector<CellC
   const std::unique_ptr<MeshSink> sink =
       openMeshSink(arguments.output, arguments.choice.options(), context);
   readHexMeshTo(*sink, arguments.input.file, readingOf(arguments, counts), context);
+  arguments.patchAngle.warnIfGiven("--stream writes no quads");
   return "a mesh, piece by piece";
 }
 

@@ -27,7 +27,7 @@ struct ImproveArguments {
   std::string page;  ///< empty: none
   OutputChoice choice;
   std::string report;
-  double patchAngle = WriteOptions{}.patchAngle;
+  PatchAngle patchAngle;
   ImproveOptions options;
   RunOptions run;
   bool hexesOnly = false;
@@ -74,8 +74,9 @@ ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRu
   ImproveReport report = improveMesh(arguments, mesh, longRun);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
-  writing.patchAngle = arguments.patchAngle;
+  writing.patchAngle = arguments.patchAngle.degrees;
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
   writeComparison(arguments, mesh, pointsBefore(before, report), report, longRun);
   return report;
 }
@@ -88,8 +89,11 @@ ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun)
   ImproveReport report = improveMesh(arguments, mesh, longRun);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
-  writing.patchAngle = arguments.patchAngle;
+  writing.patchAngle = arguments.patchAngle.degrees;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
+  if (arguments.patchAngle.isGiven) {
+    arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
+  }
   writeComparison(arguments, mesh, before, report, longRun);
   return report;
 }

@@ -14,6 +14,7 @@
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
 #include <hexhex/survey.hpp>
@@ -29,6 +30,7 @@ namespace {
 
 struct InfoArguments {
   MapSource source;
+  PatchAngle patchAngle;
   bool pieces = false;
   bool json = false;
 };
@@ -60,6 +62,7 @@ struct FileContent {
   double largestParameter = 0;
   std::optional<Certificate> certificate;
   CellFaults faults;
+  std::vector<NamedPatch> boundary;
   std::optional<MeshSurvey> survey;
   bool isMap = false;
   std::vector<CellCount> types;  ///< of a mesh
@@ -84,13 +87,14 @@ FileContent contentOf(const TetMap& map) {
   return content;
 }
 
-FileContent contentOf(const HexMesh& mesh, Context& context) {
+FileContent contentOf(const HexMesh& mesh, double patchAngle, Context& context) {
   FileContent content;
   content.cells = mesh.cells.size();
   content.points = mesh.points.size();
   content.box = boxOf(mesh.points);
   if (!mesh.cells.empty()) content.certificate = certify(mesh, context);
   content.faults = findCellFaults(mesh, context);
+  content.boundary = namedPatches(mesh, patchAngle, context);
   return content;
 }
 
@@ -115,7 +119,7 @@ FileContent readFile(const InfoArguments& arguments, Context& context) {
     if (arguments.pieces) return contentOf(surveyFile(source.file, reading, context));
     const auto read = readMapOrHexMesh(source.file, reading, context);
     if (const auto* const map = std::get_if<TetMap>(&read)) return contentOf(*map);
-    return contentOf(std::get<HexMesh>(read), context);
+    return contentOf(std::get<HexMesh>(read), arguments.patchAngle.degrees, context);
   }();
   if (!content.isMap) content.types = std::move(types);
   return content;
@@ -206,6 +210,7 @@ void print(const FileContent& content) {
     printLine("refuted", refutationAsText(*content.certificate));
   }
   printHistogram(content.certificate->quality);
+  printPatches(content.boundary);
 }
 
 Json faultsAsJson(const CellFaults& faults) {
@@ -232,6 +237,7 @@ Json asJson(const FileContent& content, const std::string& file) {
     json["quality"] = qualityAsJson(*content.certificate);
     json["validity"] = validityAsJson(*content.certificate);
     json["faults"] = faultsAsJson(content.faults);
+    json["boundary"] = boundaryAsJson(content.boundary);
   }
   return json;
 }
@@ -241,7 +247,8 @@ int run(const InfoArguments& arguments) {
                        {"readMapOrHexMesh", 2},
                        {"readHexMeshTo", 2},
                        {"certify", 0.5},
-                       {"findCellFaults", 0.3}});
+                       {"findCellFaults", 0.3},
+                       {"namedPatches", 0.3}});
   const FileContent content = read(arguments, longRun.context());
   longRun.finish();
   const std::string name = arguments.source.description();
@@ -266,9 +273,12 @@ Command addInfo(CLI::App& app) {
                    "Read this format, whatever the extension")
       ->check(formatName())
       ->option_text("NAME");
-  parser->add_flag("--pieces", arguments->pieces,
-                   "Read a mesh piece by piece, which needs hardly any\n"
-                   "memory for .vtu; with checksums instead of quality");
+  CLI::Option* const angle = addPatchAngle(*parser, arguments->patchAngle);
+  parser
+      ->add_flag("--pieces", arguments->pieces,
+                 "Read a mesh piece by piece, which needs hardly any\n"
+                 "memory for .vtu; with checksums instead of quality and\npatches")
+      ->excludes(angle);
   parser->add_flag("--json", arguments->json, "Print JSON instead of text");
   parser->footer("Example:\n  hexhex info sphere.vtu");
   return {parser, [arguments] { return run(*arguments); }};

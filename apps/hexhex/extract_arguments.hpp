@@ -31,7 +31,7 @@ struct ExtractArguments {
   QuantizeOptions quantizeOptions;
   bool improve = false;
   ImproveOptions improveOptions;
-  double patchAngle = WriteOptions{}.patchAngle;
+  PatchAngle patchAngle;
   RunOptions run;
   bool stream = false;
   PartsChoice parts;

@@ -161,6 +161,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
       {"quality", orNull(record.certificate, qualityAsJson)},
       {"validity", orNull(record.certificate, validityAsJson)},
+      {"boundary", orNull(record.boundary, boundaryAsJson)},
       {"verification", orNull(record.verification, verificationAsJson)},
       {"repair", repairAsJson(statistics.repair)},
       {"quantization", record.quantized ? quantizeAsJson(*record.quantized) : Json(nullptr)},
@@ -234,6 +235,7 @@ void printSummary(const ExtractionRecord& record) {
   } else if (record.certificate) {
     printQuality(*record.certificate);
   }
+  if (record.boundary) printPatches(*record.boundary);
   if (record.order > 1) {
     printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
   }

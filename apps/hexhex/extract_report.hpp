@@ -13,6 +13,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/partial.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/survey.hpp>
@@ -60,10 +61,11 @@ struct ExtractionRecord {
   std::vector<StageTime> stages;
   std::vector<StageTime> parts;  ///< of the whole run: "reading", "extraction", ...
   std::string partsAsText;
-  std::optional<Certificate> certificate;    ///< empty if the mesh was never whole
-  std::optional<VerifyReport> verification;  ///< empty if it was skipped
-  std::optional<MeshSurvey> streamed;        ///< of a mesh that was written in pieces
-  std::optional<PartsRecord> meshParts;      ///< of a mesh that was written in parts
+  std::optional<std::vector<NamedPatch>> boundary;  ///< empty if it was not listed
+  std::optional<Certificate> certificate;           ///< empty if the mesh was never whole
+  std::optional<VerifyReport> verification;         ///< empty if it was skipped
+  std::optional<MeshSurvey> streamed;               ///< of a mesh that was written in pieces
+  std::optional<PartsRecord> meshParts;             ///< of a mesh that was written in parts
 };
 
 /// The report as JSON text, ending with a line break.

@@ -128,6 +128,19 @@ Json validityAsJson(const Certificate& certificate) {
           {"worst", std::move(worst)}};
 }
 
+Json boundaryAsJson(std::span<const NamedPatch> patches) {
+  Json list = Json::array();
+  for (const NamedPatch& patch : patches) {
+    list.push_back({{"name", patch.name},
+                    {"tag", patch.tag},
+                    {"quads", patch.quads.size()},
+                    {"area", patch.area},
+                    {"centre", patch.centre},
+                    {"normal", patch.normal}});
+  }
+  return list;
+}
+
 Json verificationAsJson(const VerifyReport& verification) {
   Json items = Json::array();
   for (const VerifyItem& item : verification.items) {
@@ -239,13 +252,6 @@ const char* kindName(const SeamlessReport& report) noexcept {
     default:
       return "neither";
   }
-}
-
-bool mayBeSeamless(ErrorCode code) noexcept {
-  // Rounding to integers flips tets of a map that is not integer.
-  return code == ErrorCode::FlippedTet || code == ErrorCode::TransitionResidual ||
-         code == ErrorCode::BoundaryOffLattice || code == ErrorCode::SingularityOffLattice ||
-         code == ErrorCode::HalfIntegerFixedPoint;
 }
 
 std::string jsonText(const Json& json) {

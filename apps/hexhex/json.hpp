@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/mesh.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/shape.hpp>
@@ -28,6 +30,7 @@ using Json = nlohmann::ordered_json;
 
 [[nodiscard]] Json qualityAsJson(const Certificate& certificate);
 [[nodiscard]] Json validityAsJson(const Certificate& certificate);
+[[nodiscard]] Json boundaryAsJson(std::span<const NamedPatch> patches);
 [[nodiscard]] Json verificationAsJson(const VerifyReport& verification);
 [[nodiscard]] Json checksumsAsJson(const MeshSurvey& survey);
 [[nodiscard]] Json quantizeAsJson(const QuantizeReport& report);
@@ -49,9 +52,6 @@ inline constexpr std::array<NamedMethod, 3> kShapeMethods = {{{"auto", ShapeMeth
 /// What a map is that is no integer-grid map: "integer up to a scale", "seamless", "almost
 /// seamless", "neither".
 [[nodiscard]] const char* kindName(const SeamlessReport& report) noexcept;
-
-/// Whether a map is worth a look at whether it is seamless, by the defect that was found first.
-[[nodiscard]] bool mayBeSeamless(ErrorCode code) noexcept;
 
 /// With a line break at its end. File names need not be valid UTF-8; bytes that are not are
 /// replaced.

@@ -1,5 +1,7 @@
 #include "output.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <system_error>
 
@@ -65,7 +67,8 @@ void printError(const Error& error, std::string_view sentence) {
 
 std::string counted(std::uint64_t count, std::string_view noun) {
   if (noun == "vertex" && count != 1) return fmt::format("{} vertices", count);
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+  const bool hisses = noun.ends_with("ch");  // patches
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : hisses ? "es" : "s");
 }
 
 std::string bytesAsText(std::uint64_t bytes) {
@@ -96,6 +99,31 @@ void printQuality(const Certificate& certificate) {
   }
   printLine("validity",
             fmt::format("{}; scaled Jacobian at least {:.4g} inside", text, certificate.minimum));
+}
+
+void printPatches(std::span<const NamedPatch> patches) {
+  if (patches.empty()) return;
+  constexpr std::size_t kMost = 20;
+  // Rounding is no direction, and no place.
+  const auto vectorAsText = [](const Vec3& vector, double unit) {
+    std::string text;
+    for (const double x : vector) {
+      text += fmt::format("{}{:.3g}", text.empty() ? "(" : ", ", std::abs(x) < unit ? 0 : x);
+    }
+    return text + ")";
+  };
+  const auto printRow = [](std::string_view name, const auto& quads, const auto& area,
+                           std::string_view centre, std::string_view normal) {
+    printLine(name, fmt::format("{:<8} {:<9} {:<33} {}", quads, area, centre, normal));
+  };
+  printRow("boundary", "quads", "area", "centre", "normal");
+  for (const NamedPatch& patch : patches.first(std::min(patches.size(), kMost))) {
+    constexpr double kNothing = 1e-6;
+    printRow("  " + patch.name, patch.quads.size(), fmt::format("{:.4g}", patch.area),
+             vectorAsText(patch.centre, kNothing * std::sqrt(patch.area)),
+             vectorAsText(patch.normal, kNothing));
+  }
+  if (patches.size() > kMost) printLine("  and", counted(patches.size() - kMost, "more patch"));
 }
 
 std::string refutationAsText(const Certificate& certificate) {

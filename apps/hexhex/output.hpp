@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
@@ -64,6 +66,9 @@ void printError(const Error& error, std::string_view sentence);
 
 /// Two lines: the scaled Jacobian at corners and everywhere, and whether cells are positive.
 void printQuality(const Certificate& certificate);
+
+/// A table of the boundary: name, quads, area, centre and normal of each patch, 20 at most.
+void printPatches(std::span<const NamedPatch> patches);
 
 /// Which cells are not positive, and where: a sentence.
 [[nodiscard]] std::string refutationAsText(const Certificate& certificate);

@@ -71,28 +71,11 @@ std::string quantizeSummary(const QuantizeReport& report) {
   return text;
 }
 
-std::string adviceFor(const SeamlessReport& report, const MapSource& input) {
-  if (report.kind == SeamlessKind::Neither) return {};
-  const std::string command =
-      fmt::format("`hexhex quantize {} -o integer.hexex", input.description());
-  if (report.integerFactor > 0) {
-    return fmt::format(
-        "The map is integer up to a scale: multiply its parameters by {0:.12g}, as {1} --scale "
-        "{0:.12g}` does.",
-        report.integerFactor, command);
-  }
-  const double cells = std::max(report.cells, 1000.0);
-  if (report.kind == SeamlessKind::Seamless) {
-    return fmt::format(
-        "The map is seamless (to within {:.3g}), but not integer. Make it an integer-grid map: {} "
-        "--cells {:.0f}`.",
-        report.displacement, command, cells);
-  }
-  return fmt::format(
-      "The map is almost seamless: the nearest map that is differs by up to {:.3g}. Let the map's "
-      "solver converge further, or write more digits; or take that one: {} --cells {:.0f}` with "
-      "--tolerance.",
-      report.displacement, command, cells);
+QuantizeCall quantizationOf(const MapSource& input) {
+  return [command = "`hexhex quantize " + input.description() + " -o integer.hexex --"](
+             std::string_view option, std::string_view value) {
+    return fmt::format("{}{} {}`", command, option, value);
+  };
 }
 
 }  // namespace hexhex::command

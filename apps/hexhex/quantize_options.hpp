@@ -28,8 +28,7 @@ void addQuantization(CLI::App& parser, bool& quantize, QuantizeOptions& options)
 /// "5109 cells of 5000 asked for; 31 arcs of 1 to 26 hexahedra"
 [[nodiscard]] std::string quantizeSummary(const QuantizeReport& report);
 
-/// A sentence for a map that is not integer, with the command to go on with; empty if it is
-/// neither.
-[[nodiscard]] std::string adviceFor(const SeamlessReport& report, const MapSource& input);
+/// The command that quantizes a map.
+[[nodiscard]] QuantizeCall quantizationOf(const MapSource& input);
 
 }  // namespace hexhex::command

@@ -296,12 +296,38 @@ void warnOfOtherCells(const std::vector<CellCount>& counts) {
   if (!others.empty()) printWarning("Left out, for --hexes-only: " + others + ".");
 }
 
-void addPatchAngle(CLI::App& parser, double& angle) {
-  parser
-      .add_option("--patch-angle", angle,
-                  "Where no faces are tagged, group boundary quads by\npatches that turn by at "
-                  "most this angle in degrees\nbetween neighbours; 0: one group")
-      ->check(CLI::Range(0, 180))
+void PatchAngle::warnIfGiven(std::string_view why) const {
+  if (isGiven) printWarning(fmt::format("--patch-angle does nothing here: {}.", why));
+}
+
+void PatchAngle::warnIfUseless(std::span<const NamedPatch> patches, const std::string& file,
+                               const WriteOptions& options) const {
+  const auto tagged = [](const NamedPatch& patch) { return patch.tag != 0; };
+  if (std::any_of(patches.begin(), patches.end(), tagged)) {
+    warnIfGiven("quads of the boundary are tagged, and groups are those of tags");
+  } else if (!writesPatches(file, options)) {
+    warnIfGiven(file + " holds no groups of quads without tags; .msh, .inp and .exo do");
+  } else if (degrees > 0 && patches.size() == 1) {
+    warnIfGiven(fmt::format(
+        "no edge at which the boundary turns by more than {:.6g} degrees divides it", degrees));
+  }
+}
+
+void PatchAngle::warnIfUseless(const HexMesh& mesh, const std::string& file,
+                               const WriteOptions& options, Context& context) const {
+  if (isGiven) warnIfUseless(namedPatches(mesh, degrees, context), file, options);
+}
+
+CLI::Option* addPatchAngle(CLI::App& parser, PatchAngle& angle) {
+  return parser
+      .add_option_function<double>(
+          "--patch-angle",
+          [&angle](double degrees) {
+            angle = {degrees, true};
+          },
+          "Where no faces are tagged, group boundary quads by\npatches that turn by at "
+          "most this angle in degrees\nbetween neighbours; 0: one group")
+      ->check(CLI::Range(0.0, 180.0))
       ->option_text("DEGREES [40]");
 }
 

@@ -91,8 +91,23 @@ void addHexesOnly(CLI::App& parser, bool& hexesOnly);
 /// Names the cells that were left out for it, if there are any.
 void warnOfOtherCells(const std::vector<CellCount>& counts);
 
-/// Adds --patch-angle, from 0 to 180 degrees.
-void addPatchAngle(CLI::App& parser, double& angle);
+/// What --patch-angle says.
+struct PatchAngle {
+  double degrees = WriteOptions{}.patchAngle;
+  bool isGiven = false;
+
+  /// Warns of an angle that was given, but changes nothing in a file.
+  /// @param patches  of the mesh that was written
+  void warnIfUseless(std::span<const NamedPatch> patches, const std::string& file,
+                     const WriteOptions& options) const;
+  /// The same of a mesh whose patches nobody needs else.
+  void warnIfUseless(const HexMesh& mesh, const std::string& file, const WriteOptions& options,
+                     Context& context) const;
+  /// The same where there are no patches at all. @param why  "maps have no boundary quads"
+  void warnIfGiven(std::string_view why) const;
+};
+/// Adds it, from 0 to 180 degrees.
+CLI::Option* addPatchAngle(CLI::App& parser, PatchAngle& angle);
 /// Adds --report. @param description  of what is in it
 void addReport(CLI::App& parser, std::string& file, const std::string& description);
 /// Adds --view. @param description  of what the page shows

@@ -256,7 +256,7 @@ Json checkMap(const Json& request, Context& context) {
   take(request, "tolerance", options.tolerance);
   const CheckReport report = check(map, options, context);
   std::optional<SeamlessReport> seamless;
-  if (!report.valid() && canQuantize() && command::mayBeSeamless(report.defects.front().code)) {
+  if (!report.valid() && canQuantize() && mayBeSeamless(report.defects.front().code)) {
     seamless = examineSeamless(map, context);
   }
   Json json = command::checkAsJson(report, options.scale, seamless);

@@ -13,15 +13,19 @@ namespace {
 nb::tuple extractPieces(const ArrayMap& map, bool patches, const Options& options, int threads,
                         const Progress& progress) {
   const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
-  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-    return extractPiecewiseLinear(map.view(), parts, options.get(), context, &statistics);
+  return advising(map, threads, [&] {
+    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      return extractPiecewiseLinear(map.view(), parts, options.get(), context, &statistics);
+    });
   });
 }
 
 nb::tuple extractOrder(const ArrayMap& map, int order, const Options& options, int threads,
                        const Progress& progress) {
-  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-    return extractLagrange(map.view(), order, options.get(), context, &statistics);
+  return advising(map, threads, [&] {
+    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      return extractLagrange(map.view(), order, options.get(), context, &statistics);
+    });
   });
 }
 
@@ -123,19 +127,20 @@ void bindCurved(nb::module_& module) {
              std::uint64_t vertexCount, const In1<Index>& generatorTet,
              const In1<CornerSet>& generatorCorners, const In<std::int32_t, 2>& vertices,
              const In<std::int32_t, 3>& edges, const In<std::int32_t, 5>& quads,
-             const In1<std::int32_t>& regions) {
+             const In1<std::int32_t>& regions, const std::vector<NameRow>& names) {
             LagrangeMesh mesh;
             mesh.order = order;
             mesh.vertexCount = vertexCount;
             assign(mesh.nodes, std::span<const Index>(nodes.data(), nodes.size()));
-            GivenArrays{points, generatorTet, generatorCorners, vertices, edges, quads, regions}
+            GivenArrays{points, generatorTet, generatorCorners, vertices,
+                        edges,  quads,        regions,          names}
                 .copyTo(mesh);
             new (self) LagrangeMesh(std::move(mesh));
           },
           "order"_a, "points"_a.noconvert(), "nodes"_a.noconvert(), "vertex_count"_a,
           "generator_tet"_a.noconvert(), "generator_corners"_a.noconvert(),
           "feature_vertices"_a.noconvert(), "feature_edges"_a.noconvert(),
-          "feature_quads"_a.noconvert(), "regions"_a.noconvert())
+          "feature_quads"_a.noconvert(), "regions"_a.noconvert(), "tag_names"_a)
       .def_prop_ro("order", [](const LagrangeMesh& self) { return self.order; })
       .def_prop_ro("vertex_count", [](const LagrangeMesh& self) { return self.vertexCount; })
       .def_prop_ro(

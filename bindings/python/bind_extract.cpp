@@ -92,8 +92,10 @@ void readInto(const nb::object& target, const std::string& file, const std::stri
 
 nb::tuple extractMesh(const ArrayMap& map, const Options& options, int threads,
                       const Progress& progress) {
-  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-    return extract(map.view(), options.get(), context, &statistics);
+  return advising(map, threads, [&] {
+    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+      return extract(map.view(), options.get(), context, &statistics);
+    });
   });
 }
 

@@ -8,6 +8,9 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quantize.hpp>
+#if defined(HEXHEX_HAS_VIEWER)
+#include <hexhex/view.hpp>
+#endif
 
 #include "border.hpp"
 
@@ -74,6 +77,26 @@ void requireFormat(const std::string& what, const std::string& file, const std::
   throw Error(ErrorCode::InvalidArgument,
               "A \"" + what +
                   "\" is nothing that can be written. Choose map, mesh, arcs, patches or curved.");
+}
+
+/// @param mesh  straight or curved
+void writePage(const auto& mesh, const std::string& file, const std::string& title, int threads,
+               const Progress& progress) {
+#if defined(HEXHEX_HAS_VIEWER)
+  ViewOptions options;
+  options.title = title;
+  run(threads, progress, [&](Context& context) { writeViewPage(mesh, file, options, context); });
+#else
+  static_cast<void>(mesh);
+  static_cast<void>(title);
+  static_cast<void>(threads);
+  static_cast<void>(progress);
+  throw Error(
+      ErrorCode::FileUnsupported,
+      file +
+          ": this hexhex was built without the viewer page. Wheels have it; with nodejs and "
+          "npm, `pip install . -C cmake.define.HEXHEX_BUILD_VIEWER=ON` builds it.");
+#endif
 }
 
 }  // namespace
@@ -173,6 +196,10 @@ void bindFiles(nb::module_& module) {
         });
       },
       "map"_a, "file"_a, "format"_a, "compress"_a, "map_array"_a, "threads"_a, "progress"_a.none());
+  module.def("write_page", &writePage<HexMesh>, "mesh"_a, "file"_a, "title"_a, "threads"_a,
+             "progress"_a.none());
+  module.def("write_page", &writePage<LagrangeMesh>, "mesh"_a, "file"_a, "title"_a, "threads"_a,
+             "progress"_a.none());
   module.def("formats", &formats);
   module.def("require_format", &requireFormat, "what"_a, "file"_a, "format"_a, "patch_angle"_a,
              "compress"_a, "map_array"_a);

@@ -136,16 +136,18 @@ void bindMap(nb::module_& module) {
           [](ArrayMap* self, InPoints points, InTets tets, InIgm igm,
              In<std::int32_t, 2> featureVertices, In<std::int32_t, 3> featureEdges,
              In<std::int32_t, 4> featureFaces, In1<std::int32_t> regions,
-             In<std::int32_t, 3> edgeValences, In<std::int8_t, 4> rotations) {
-            new (self) ArrayMap{
-                std::move(points),          std::move(tets),         std::move(igm),
-                std::move(featureVertices), std::move(featureEdges), std::move(featureFaces),
-                std::move(regions),         std::move(edgeValences), std::move(rotations)};
+             In<std::int32_t, 3> edgeValences, In<std::int8_t, 4> rotations,
+             const std::vector<NameRow>& names) {
+            new (self) ArrayMap{std::move(points),       std::move(tets),
+                                std::move(igm),          std::move(featureVertices),
+                                std::move(featureEdges), std::move(featureFaces),
+                                std::move(regions),      std::move(edgeValences),
+                                std::move(rotations),    namesOf(names)};
           },
           "points"_a.noconvert(), "tets"_a.noconvert(), "igm"_a.noconvert(),
           "feature_vertices"_a.noconvert(), "feature_edges"_a.noconvert(),
           "feature_faces"_a.noconvert(), "regions"_a.noconvert(), "edge_valences"_a.noconvert(),
-          "rotations"_a.noconvert());
+          "rotations"_a.noconvert(), "tag_names"_a);
 
   nb::class_<TetMap>(module, "Map", "A map in the library's own arrays.")
       .def_prop_ro("points",
@@ -178,6 +180,7 @@ void bindMap(nb::module_& module) {
                      auto& list = unwrapped<TetMap>(self).features.faces;
                      return viewOn<std::int32_t, 2>(list, self, {list.size(), 4});
                    })
+      .def_prop_ro("tag_names", [](const TetMap& self) { return rowsOf(self.features.names); })
       .def_prop_ro("regions",
                    [](nb::handle self) {
                      auto& regions = unwrapped<TetMap>(self).regions;

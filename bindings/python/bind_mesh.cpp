@@ -1,10 +1,10 @@
 // Hexahedral meshes, and what they are: quality, structure, patches, sums.
 #include <algorithm>
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
-#include <nanobind/stl/vector.h>
 
+#include <hexhex/base_complex.hpp>
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/patches.hpp>
@@ -71,6 +71,47 @@ nb::tuple meshStructureOf(const HexMesh& mesh, int threads, const Progress& prog
   return nb::make_tuple(ownedArray<Index, 2>(std::move(rows), {n, 4}), d);
 }
 
+/// (name, tag, quads, area, centre, normal) of each.
+nb::list namedPatchesOf(const HexMesh& mesh, double angle, int threads) {
+  nb::list list;
+  for (NamedPatch& patch :
+       run(threads, {}, [&](Context& context) { return namedPatches(mesh, angle, context); })) {
+    const std::size_t n = patch.quads.size();
+    list.append(nb::make_tuple(patch.name, patch.tag,
+                               ownedArray<Index, 2>(std::move(patch.quads), {n, 4}), patch.area,
+                               patch.centre, patch.normal));
+  }
+  return list;
+}
+
+nb::tuple baseComplexOf(const HexMesh& mesh, int threads, const Progress& progress) {
+  BaseComplex found =
+      run(threads, progress, [&](Context& context) { return findBaseComplex(mesh, context); });
+  const std::size_t n = mesh.cells.size();
+  std::vector<std::array<std::uint64_t, 4>> blocks;
+  for (const MeshBlock& block : found.blocks) {
+    blocks.push_back({block.size[0], block.size[1], block.size[2], block.cells});
+  }
+  nb::list curves;
+  for (SingularCurve& curve : found.curves) {
+    const std::size_t length = curve.vertices.size();
+    curves.append(nb::make_tuple(ownedArray<Index, 1>(std::move(curve.vertices), {length}),
+                                 curve.valence, curve.boundary));
+  }
+  nb::list irregular;
+  for (IrregularVertices& type : found.irregular) {
+    const std::size_t count = type.vertices.size();
+    irregular.append(nb::make_tuple(type.boundary, type.innerValences, type.boundaryValences,
+                                    ownedArray<Index, 1>(std::move(type.vertices), {count})));
+  }
+  const std::size_t count = blocks.size();
+  return nb::make_tuple(ownedArray<Index, 2>(std::move(found.cellSheets), {n, 3}), found.sheets,
+                        ownedArray<Index, 2>(std::move(found.cellChords), {n, 3}), found.chords,
+                        ownedArray<Index, 1>(std::move(found.cellBlocks), {n}),
+                        ownedArray<std::uint64_t, 2>(std::move(blocks), {count, 4}), curves,
+                        irregular);
+}
+
 }  // namespace
 
 nb::tuple asTuple(Certificate&& certificate) {
@@ -98,16 +139,19 @@ void bindMesh(nb::module_& module) {
           [](HexMesh* self, const InPoints& points, const InCells& cells,
              const In1<Index>& generatorTet, const In1<CornerSet>& generatorCorners,
              const In<std::int32_t, 2>& vertices, const In<std::int32_t, 3>& edges,
-             const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions) {
+             const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions,
+             const std::vector<NameRow>& names) {
             HexMesh mesh;
             assign(mesh.cells, elements<Hex>(cells));
-            GivenArrays{points, generatorTet, generatorCorners, vertices, edges, quads, regions}
+            GivenArrays{points, generatorTet, generatorCorners, vertices,
+                        edges,  quads,        regions,          names}
                 .copyTo(mesh);
             new (self) HexMesh(std::move(mesh));
           },
           "points"_a.noconvert(), "cells"_a.noconvert(), "generator_tet"_a.noconvert(),
           "generator_corners"_a.noconvert(), "feature_vertices"_a.noconvert(),
-          "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert())
+          "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert(),
+          "tag_names"_a)
       .def_prop_ro("cells", [](nb::handle self) {
         auto& cells = unwrapped<HexMesh>(self).cells;
         return viewOn<Index, 2>(cells, self, {cells.size(), 8});
@@ -122,15 +166,8 @@ void bindMesh(nb::module_& module) {
       },
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def("structure", &meshStructureOf, "mesh"_a, "threads"_a, "progress"_a.none());
-  module.def(
-      "boundary_patches",
-      [](const HexMesh& mesh, double angle, int threads) {
-        auto quads = run(threads, {},
-                         [&](Context& context) { return boundaryPatches(mesh, angle, context); });
-        const std::size_t n = quads.size();
-        return ownedArray<std::int32_t, 2>(std::move(quads), {n, 5});
-      },
-      "mesh"_a, "angle"_a, "threads"_a);
+  module.def("named_patches", &namedPatchesOf, "mesh"_a, "angle"_a, "threads"_a);
+  module.def("base_complex", &baseComplexOf, "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
       "survey",
       [](const HexMesh& mesh, int threads, const Progress& progress) {

@@ -30,6 +30,15 @@ Dict asDict(const QuantizeReport& r) {
   return d;
 }
 
+Error adviceOn(const Error& error, const ArrayMap& map, int threads) {
+  const auto call = [](std::string_view option, std::string_view value) {
+    return (option == "cells" ? "hexhex.extract(map, quantize=True, " : "hexhex.quantize(map, ") +
+           std::string(option) + "=" + std::string(value) + ")";
+  };
+  return run(threads, {},
+             [&](Context& context) { return withAdvice(error, map.view(), call, context); });
+}
+
 namespace {
 
 nb::tuple quantizeMap(const ArrayMap& map, double cells, double scale, double edgeLength,

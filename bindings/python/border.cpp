@@ -16,6 +16,7 @@ TetMapView ArrayMap::view() const {
   TetMapView view(elements<Vec3>(points), elements<Tet>(tets), elements<TetParameters>(igm));
   view.features = {elements<FeatureVertex>(featureVertices), elements<FeatureEdge>(featureEdges),
                    elements<FeatureFace>(featureFaces)};
+  view.features.names = names;
   view.regions = elements<std::int32_t>(regions);
   view.edgeValences = elements<EdgeValence>(edgeValences);
   view.rotations = elements<std::array<std::int8_t, 4>>(rotations);
@@ -32,6 +33,18 @@ TetMap ArrayMap::copy() const {
           .rotations = copied(from.rotations),
           .features = from.features.copy(),
           .regions = copied(from.regions)};
+}
+
+std::vector<NameRow> rowsOf(const std::vector<TagName>& names) {
+  std::vector<NameRow> rows;
+  for (const TagName& known : names) rows.emplace_back(known.dimension, known.tag, known.name);
+  return rows;
+}
+
+std::vector<TagName> namesOf(const std::vector<NameRow>& rows) {
+  std::vector<TagName> names;
+  for (const auto& [dimension, tag, name] : rows) names.push_back({dimension, tag, name});
+  return names;
 }
 
 TetMesh tetMeshOf(const InPoints& points, const InTets& tets) {

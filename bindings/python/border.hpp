@@ -6,15 +6,20 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/quality.hpp>
@@ -58,6 +63,7 @@ struct ArrayMap {
   In1<std::int32_t> regions;            ///< one per tet, or none
   In<std::int32_t, 3> edgeValences;     ///< vertices, offset
   In<std::int8_t, 4> rotations;         ///< one per tet, or none
+  std::vector<TagName> names = {};
 
   [[nodiscard]] TetMapView view() const;
   [[nodiscard]] TetMap copy() const;
@@ -84,6 +90,11 @@ auto ownedArray(List&& list, const std::array<std::size_t, kRank>& shape) {
 /// @param stages  what ran and how long, if not null
 void runWork(int threads, const Progress& progress, const std::function<void(Context&)>& work,
              std::vector<StageTime>* stages = nullptr);
+
+/// Names of tags, as Python has them: (dimension, tag, name) each.
+using NameRow = std::tuple<int, std::int32_t, std::string>;
+[[nodiscard]] std::vector<NameRow> rowsOf(const std::vector<TagName>& names);
+[[nodiscard]] std::vector<TagName> namesOf(const std::vector<NameRow>& rows);
 
 /// The same with a result.
 template <class Work>
@@ -123,6 +134,8 @@ struct Options {
   [[nodiscard]] ExtractOptions get() const;
 };
 
+[[nodiscard]] Error adviceOn(const Error& error, const ArrayMap& map, int threads);
+
 /// (statistics, report of the repair or None, repaired map or None)
 [[nodiscard]] nb::tuple asTuple(const Notes& notes);
 
@@ -138,6 +151,16 @@ nb::tuple runNoted(int threads, const Progress& progress, const Work& work) {
   } else {
     auto made = run(threads, progress, noted, &notes.stages);
     return nb::make_tuple(std::move(made), asTuple(notes));
+  }
+}
+
+/// work(), whose error for a map that is not integer says how Python quantizes it.
+template <class Work>
+auto advising(const ArrayMap& map, int threads, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw adviceOn(error, map, threads);
   }
 }
 

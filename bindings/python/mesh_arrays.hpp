@@ -14,6 +14,7 @@ struct GivenArrays {
   const In<std::int32_t, 3>& featureEdges;
   const In<std::int32_t, 5>& featureQuads;
   const In1<std::int32_t>& regions;
+  const std::vector<NameRow>& names;
 
   template <class Mesh>
   void copyTo(Mesh& mesh) const {
@@ -24,6 +25,7 @@ struct GivenArrays {
     assign(mesh.features.edges, elements<FeatureEdge>(featureEdges));
     assign(mesh.features.quads, elements<FeatureQuad>(featureQuads));
     assign(mesh.regions, elements<std::int32_t>(regions));
+    mesh.features.names = namesOf(names);
   }
 };
 
@@ -61,6 +63,7 @@ void defineArrays(nb::class_<Mesh>& binding) {
                      auto& list = unwrapped<Mesh>(self).features.quads;
                      return viewOn<std::int32_t, 2>(list, self, {list.size(), 5});
                    })
+      .def_prop_ro("tag_names", [](const Mesh& self) { return rowsOf(self.features.names); })
       .def_prop_ro("regions", [](nb::handle self) {
         auto& regions = unwrapped<Mesh>(self).regions;
         return viewOn<std::int32_t, 1>(regions, self, {regions.size()});

@@ -1,6 +1,7 @@
 // Everything at once.
 #pragma once
 
+#include <hexhex/base_complex.hpp>   // IWYU pragma: export
 #include <hexhex/check.hpp>          // IWYU pragma: export
 #include <hexhex/context.hpp>        // IWYU pragma: export
 #include <hexhex/curved.hpp>         // IWYU pragma: export

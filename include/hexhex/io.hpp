@@ -213,6 +213,10 @@ void requireHexMeshFormat(const std::filesystem::path& file, const WriteOptions&
 void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format = {});
 void requireMapFormat(const std::filesystem::path& file, const WriteOptions& options);
 
+/// Whether writeHexMesh() puts boundary quads into groups there, as namedPatches() has them.
+/// @throws Error  as requireHexMeshFormat()
+[[nodiscard]] bool writesPatches(const std::filesystem::path& file, const WriteOptions& options);
+
 /// A file format and what this library does with it.
 struct FileFormat {
   std::string_view name;         ///< for ReadOptions and WriteOptions

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>
@@ -78,6 +80,21 @@ struct SeamlessReport {
 /// nearly so; a seamless map has no flipped tets.
 /// @pre canQuantize()
 [[nodiscard]] SeamlessReport examineSeamless(const TetMapView& map, Context& context);
+
+/// Whether a map is worth a look at whether it is seamless, by the defect that was found first.
+[[nodiscard]] bool mayBeSeamless(ErrorCode code) noexcept;
+
+/// How a caller quantizes: "`hexhex quantize map.hexex --cells 1000`" for ("cells", "1000"); the
+/// other option is "scale".
+using QuantizeCall = std::function<std::string(std::string_view option, std::string_view value)>;
+
+/// What a map that is not integer lacks, and the call to go on with; empty if it is neither.
+[[nodiscard]] std::string adviceFor(const SeamlessReport& report, const QuantizeCall& call);
+
+/// The error of an extraction, with that advice in place of its sentence where the map is seamless,
+/// and otherwise with why it is not. Other errors, and those of builds that cannot quantize, stay.
+[[nodiscard]] Error withAdvice(const Error& error, const TetMapView& map, const QuantizeCall& call,
+                               Context& context);
 
 /// Whether this build can quantize (it was made with Eigen).
 [[nodiscard]] bool canQuantize() noexcept;

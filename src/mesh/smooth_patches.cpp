@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <compare>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <adjacency/corner_range.hpp>
@@ -16,6 +16,7 @@
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <mesh/numbered_sets.hpp>
 #include <mesh/smooth_patches.hpp>
 
 namespace hexhex::mesh {
@@ -69,18 +70,6 @@ Array<Vec3> normalsOf(std::span<const Vec3> points, std::span<const Quad> quads,
   return normals;
 }
 
-/// Numbers the sets in order of their smallest elements.
-SmoothPatches numbered(DisjointSets& sets, std::size_t quads) {
-  SmoothPatches patches;
-  patches.patchOf.resize(quads);
-  for (std::size_t q = 0; q < quads; ++q) {
-    const Index first = sets.find(static_cast<Index>(q));
-    assert(first <= q);  // so that it has its number
-    patches.patchOf[q] = first == q ? patches.count++ : patches.patchOf[first];
-  }
-  return patches;
-}
-
 }  // namespace
 
 void requirePatchAngle(double angle) {
@@ -110,7 +99,8 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
   };
   parallelFor(stage, points.size(), kSmoothPatchesGrain,
               [&](std::size_t v) { adjacency::forEachRun(sides(v), isSameEdge, join); });
-  return numbered(sets, quads.size());
+  NumberedSets patches = numberSets(sets, quads.size());
+  return {std::move(patches.setOf), patches.count};
 }
 
 }  // namespace hexhex::mesh

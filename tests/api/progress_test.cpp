@@ -102,6 +102,8 @@ class Calls {
         {"certify", [&](Context& c) { static_cast<void>(certify(mesh_, c)); }},
         {"certify, curved", [&](Context& c) { static_cast<void>(certify(lagrange_, c)); }},
         {"boundaryPatches", [&](Context& c) { static_cast<void>(boundaryPatches(mesh_, 40, c)); }},
+        {"namedPatches", [&](Context& c) { static_cast<void>(namedPatches(mesh_, 40, c)); }},
+        {"findBaseComplex", [&](Context& c) { static_cast<void>(findBaseComplex(mesh_, c)); }},
         {"findStructure", [&](Context& c) { static_cast<void>(findStructure(mesh_, c)); }}};
   }
 

@@ -61,7 +61,7 @@ End
 KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"]
 
 REPORT_KEYS = {
-    "hexhex_version", "input", "output", "extract_seconds", "seconds", "cells", "vertices", "tets", "points",
+    "boundary",    "hexhex_version", "input", "output", "extract_seconds", "seconds", "cells", "vertices", "tets", "points",
     "scale", "threads", "engine", "epsilon", "epsilon_fallback", "stages", "peak_memory_bytes",
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
@@ -511,6 +511,48 @@ class Pipeline(CommandTest):
                     self.assertNotIn("FAILED", table)
                     information = self.run_command("info", mesh).stdout
                     self.assertRegex(information, rf"cells +{report['cells']}\n")
+
+    def test_the_boundary_is_listed(self):
+        row = r"{} +{} +{} +\({}\) +\({}\)\n"
+        top = row.format("patch_6", 16, 4, "1, 1, 2", "0, 0, 1")
+        box = self.generate("box", "--cells", "2", "--refine", "1")
+        run = self.run_command("extract", box, "-o", "a.msh", "--report", "a.json")
+        self.assertRegex(run.stdout, top)
+        self.assertRegex(run.stdout, "boundary +quads +area +centre +normal\n    patch_1 ")
+        self.assertRegex(self.run_command("info", "a.msh").stdout, top)
+        # What a mesh has in the file is what is listed, in JSON, too.
+        for listed in (json.loads((self.folder / "a.json").read_text())["boundary"],
+                       json.loads(self.run_command("info", "a.msh", "--json").stdout)["boundary"]):
+            self.assertEqual([p["name"] for p in listed], [f"patch_{n}" for n in range(1, 7)])
+            self.assertEqual(sum(p["quads"] for p in listed), 96)
+            self.assertEqual(sum(p["area"] for p in listed), 24)
+        # Twenty at most.
+        ball = self.generate("sphere", "--cells", "12")
+        lines = self.run_command("extract", ball, "-o", "b.msh", "--patch-angle", "0.5").stdout.splitlines()
+        self.assertEqual(sum(line.startswith("    patch_") for line in lines), 20)
+        self.assertEqual(sum(bool(re.match("    and +[0-9]+ more patches$", line)) for line in lines), 1)
+        self.assertNotIn("patch", self.run_command("extract", ball, "-o", "c.vtu", "--stream").stdout)
+        self.assertIn("excludes", self.run_command("info", "a.msh", "--pieces", "--patch-angle", "3",
+                                                   expect=BAD_USAGE).stderr)
+
+    def test_a_patch_angle_that_does_nothing_says_so(self):
+        box, tagged = self.generate("box"), "tagged.vtu"
+        self.run_command("generate", "box", "--features", "-o", tagged)
+        for command, sentence in (
+                (["extract", box, "-o", "a.msh"], ""), (["extract", box, "-o", "b.vtu"], "b.vtu holds no groups"),
+                (["extract", tagged, "-o", "c.msh"], "are tagged"), (["convert", "b.vtu", "d.msh"], ""),
+                (["extract", box, "-o", "e.vtu", "--stream"], "leave out --stream"),
+                (["extract", box, "-o", "f.pvtu", "--parts", "2"], "leave out --stream and --parts"),
+                (["convert", "b.vtu", "g.vtk"], "g.vtk holds no groups"), (["convert", box, "h.vtu"], "no quads"),
+                (["improve", "b.vtu", "-o", "i.ovm"], "i.ovm holds no groups"),
+                (["extract", box, "-o", "j.vtu", "--order", "2"], "j.vtu holds no groups"),
+                (["convert", "j.vtu", "k.msh"], "")):
+            told = self.run_command(*command, "--patch-angle", "30").stderr
+            self.assertIn(sentence, told)
+            self.assertEqual(told.count("--patch-angle does nothing here"), 1 if sentence else 0, command)
+            self.assertNotIn("--patch-angle", self.run_command(*command).stderr)
+        told = self.run_command("extract", box, "-o", "a.msh", "--patch-angle", "95").stderr
+        self.assertIn("turns by more than 95 degrees", told)
 
     def test_info_in_pieces(self):
         map_file = self.generate("sphere", "--jitter", "0.3")

@@ -14,15 +14,17 @@ they work, and Ctrl-C cancels them.
 
 from __future__ import annotations
 
+import html
 import importlib.util
 import os
 import pathlib
 import sys
+import tempfile
 from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, TypeVar, Union
 
 import numpy as np
 
-from . import _hexhex, _npz
+from . import _compare, _hexhex, _npz
 from ._errors import (
     ArgumentError,
     CancelledError,
@@ -36,12 +38,15 @@ from ._errors import (
 from ._progress import TqdmProgress
 from ._types import (
     Arcs,
+    BaseComplex,
+    BoundaryPatch,
     CheckReport,
     Defect,
     Features,
     FileFormat,
     Hole,
     ImproveReport,
+    IrregularVertices,
     LagrangeMesh,
     Map,
     MapStructure,
@@ -60,6 +65,7 @@ from ._types import (
     SampleKind,
     SeamlessReport,
     ShapeReport,
+    SingularCurve,
     Survey,
     VerifyItem,
     VerifyReport,
@@ -81,19 +87,20 @@ AnyMesh = TypeVar("AnyMesh", Mesh, LagrangeMesh)
 __version__: str = _hexhex.version()
 
 __all__ = [
-    "Arcs", "ArgumentError", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
+    "Arcs", "ArgumentError", "BaseComplex", "BoundaryPatch", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
     "FileError", "FileFormat", "HexhexError", "Hole", "ImproveReport", "InternalError",
+    "IrregularVertices",
     "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
     "MeshWriter", "MeshedPart", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
     "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "ShapeReport",
-    "Survey", "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "WayReport", "can_quantize", "can_repair",
+    "SingularCurve", "Survey", "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "ViewPage", "WayReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
     "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
     "improve",
     "map_from_flags", "map_from_pair", "map_from_tets", "map_structure", "mesh", "quality", "quantize", "read",
     "read_curved", "read_flags", "read_map", "read_mesh", "read_pair", "read_tets", "read_to",
-    "repair", "require_format", "sample_kinds", "scaled_jacobian", "survey", "verify", "write",
+    "repair", "require_format", "same_mesh", "sample_kinds", "scaled_jacobian", "survey", "verify", "view", "write",
 ]
 
 
@@ -154,14 +161,15 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             igm: npt.ArrayLike | None = None, *, scale: int = 1, threads: int | None = None,
             order: int = 1, arcs: bool = False, patches: bool = False, repair: bool = False,
             round: bool = False, engine: str = "atlas", tolerance: float = 1e-2,
-            epsilon: float = 1e-6, progress: Progress | None = None) -> Mesh:
+            epsilon: float = 1e-6, quantize: bool = False, cells: float | None = None,
+            edge_length: float | None = None, progress: Progress | None = None) -> Mesh:
     """Extracts the hexahedral mesh that an integer-grid map implies.
 
     Args:
         points: a Map, or positions: float64 of shape (n, 3).
         tets: vertices of each tet, from 0: integers of shape (m, 4).
         igm: parameters of the corners of each tet, in units of one hexahedron: float64 of shape
-            (m, 4, 3) or (m, 12).
+            (m, 4, 3) or (m, 12); or of vertices, (n, 3), where there is one chart.
         scale: multiplies all parameters: scale**3 times as many cells.
         threads: None for all cores. The result does not depend on it, bit for bit.
         order: of cells, 1 to 9: above 1, ``mesh.curved`` has cells of that order, too.
@@ -173,6 +181,9 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
         engine: "atlas", or "propeller" for the algorithm of the paper; the same mesh.
         tolerance: how far the map may be from its integer conditions, below 0.25.
         epsilon: of the propeller engine; changes the time, never the result.
+        quantize: the map is seamless, and is made an integer-grid map first, as quantize() does: see
+            ``mesh.quantization`` and ``mesh.quantized_map``.
+        cells, edge_length: of that, as in quantize().
         progress: called with the name of the stage and its finished share in [0, 1], from any
             thread; a TqdmProgress shows a bar. What it raises ends the extraction and is raised here.
 
@@ -192,12 +203,21 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
     >>> mesh.curved, len(mesh.arcs), mesh.patches
     (<hexhex.LagrangeMesh: 64 cells of order 2>, 300, None)
     """
-    arrays = _map_of(points, tets, igm)._arrays()
+    given, made = _map_of(points, tets, igm), None
+    if quantize:
+        given, made = _quantize(given, cells=cells, edge_length=edge_length, threads=threads,
+                                progress=progress)
+    elif cells is not None or edge_length is not None:
+        raise ArgumentError("The arguments cells and edge_length are of quantizations: add "
+                            "quantize=True. An integer-grid map has a scale.", "InvalidArgument")
+    arrays = given._arrays()
     last = (_options(scale, engine, tolerance, epsilon, repair, round), _threads(threads), progress)
-    return _assembled(
+    mesh = _assembled(
         order, arcs, patches, lambda: _hexhex.extract(arrays, *last),
         lambda: _hexhex.extract_piecewise(arrays, patches, *last),
         lambda: _hexhex.extract_lagrange(arrays, _whole(order, "order"), *last))
+    mesh.quantization, mesh.quantized_map = made, given if quantize else None
+    return mesh
 
 
 def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable[[], Any],
@@ -606,6 +626,9 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
 def _densities(*values: float | None) -> list[float]:
     """0 is what stands for None there, and is no number of cells."""
     return [0.0 if value is None else float(value) or float("nan") for value in values]
+
+
+_quantize = quantize  # where an argument has that name
 
 
 def examine_seamless(map: Map, *, threads: int | None = None,
@@ -1019,6 +1042,7 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
             (.vtu, .msh, .inp, MFEM's .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
             meshes also as .npz: their arrays by name, for numpy.load().
+            A Mesh and ``mesh.curved`` also as .html: the page of view().
         format: of a map or mesh, whatever the extension is: see formats(), or "npz"; or the solver
             that shall read a mesh: "dealii", "ngsolve" and so on (``hexhex formats`` lists them).
         compress: arrays of .vtu and .npz files, with zlib; of a map or mesh.
@@ -1038,6 +1062,8 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
     name, workers = os.fspath(file), _threads(threads)
     if _npz.is_npz(name, format):
         return _npz.write(what, name, compress)
+    if isinstance(what, (Mesh, LagrangeMesh)) and format is None and name.lower().endswith(".html"):
+        return _hexhex.write_page(what._handle, name, pathlib.Path(name).stem, workers, progress)
     tets = None if map is None else map._arrays()
     jacobians = _floats([] if scaled_jacobians is None else scaled_jacobians, (),
                         "scaled_jacobians")
@@ -1059,6 +1085,38 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         _hexhex.write_patches(what._handle, tets, name, workers, progress)
     else:
         raise ArgumentError(f"A {type(what).__name__} cannot be written.", "InvalidArgument")
+
+
+class ViewPage:
+    """A page that shows a mesh: inline in notebooks, or as a file by write().
+
+    Attributes:
+        html: the page, complete in itself.
+    """
+
+    def __init__(self, html: str) -> None:
+        self.html = html
+
+    def __repr__(self) -> str:
+        return f"<hexhex.ViewPage: {len(self.html)} characters>"
+
+    def _repr_html_(self) -> str:
+        return ('<iframe style="width: 100%; height: 600px; border: 0" sandbox="allow-scripts '
+                f'allow-downloads" srcdoc="{html.escape(self.html)}"></iframe>')
+
+
+def view(mesh: Mesh | LagrangeMesh, *, title: str = "mesh", threads: int | None = None,
+         progress: Progress | None = None) -> ViewPage:
+    """A page with a mesh to turn, cut and colour, as ``hexhex view`` makes it: the last line of a
+    notebook's cell shows it. Needs no other package, no server and no network.
+
+    Raises:
+        FileError: if this hexhex was built without the viewer; wheels have it.
+    """
+    with tempfile.TemporaryDirectory(prefix="hexhex-view-") as folder:
+        file = os.path.join(folder, "view.html")
+        _hexhex.write_page(mesh._handle, file, title, _threads(threads), progress)
+        return ViewPage(pathlib.Path(file).read_text(encoding="utf-8"))
 
 
 def require_format(what: str, file: Path, *, format: str | None = None, compress: bool = False,
@@ -1168,6 +1226,18 @@ def scaled_jacobian(corners: npt.ArrayLike) -> float:
     1.0
     """
     return float(_hexhex.scaled_jacobian(_floats(corners, (3,), "corners")))
+
+
+def same_mesh(a: Mesh, b: Mesh) -> bool:
+    """Whether two meshes are the same up to numbers: of vertices, of cells, and of corners of cells as
+    they are turned. Positions are compared bit for bit; tags, names and regions are, too.
+
+    >>> mesh = hexhex.extract(hexhex.generate("torus"))
+    >>> other = hexhex.Mesh(mesh.points[::-1], len(mesh.points) - 1 - mesh.cells[::-1].astype(int))
+    >>> mesh == other, hexhex.same_mesh(mesh, other), mesh.diff(other)
+    (False, True, 'the same mesh with other numbers')
+    """
+    return _compare.canonical(a) == _compare.canonical(b)
 
 
 def survey(mesh: Mesh | Path, *, format: str | None = None, threads: int | None = None,

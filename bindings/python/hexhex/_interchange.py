@@ -4,6 +4,7 @@ Arrays have the names of .vtu files (docs/formats.md)."""
 from __future__ import annotations
 
 import dataclasses
+import re
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -154,6 +155,111 @@ def from_meshio(mesh: Any, name: str, what: str) -> Grid:
     return Grid(np.asarray(mesh.points, dtype=np.float64),
                 np.concatenate([np.asarray(mesh.cells[i].data) for i in blocks]),
                 {key: np.asarray(array) for key, array in mesh.point_data.items()}, of_cells, {})
+
+
+_OWN_SETS = re.compile(r"boundary|hexahedra|patch_\d+|region_m?\d+|curve_m?\d+|surface_m?\d+")
+
+
+def _tag_in(name: str) -> int | None:
+    """7 of "surface_7", -7 of "surface_m7"; 0 of what stands for none; None of a name."""
+    if not _OWN_SETS.fullmatch(name):
+        return None
+    word, _, number = name.partition("_")
+    return 0 if word in ("boundary", "hexahedra", "patch") else int(number.replace("m", "-"))
+
+
+def meshio_of_mesh(mesh: Mesh, patch_angle: float) -> Any:
+    """The hexahedra, then quads and lines, and groups of them as cell sets."""
+    import meshio
+
+    grid, f = grid_of_mesh(mesh, False), mesh.features
+    patches = mesh.boundary_patches(patch_angle)
+    boundary = np.concatenate([np.empty((0, 4), dtype=np.uint32), *(p.quads for p in patches)])
+    at_boundary = {tuple(sorted(quad)) for quad in boundary.tolist()}
+    inside = [i for i, quad in enumerate(f.faces[:, :4].tolist())
+              if tuple(sorted(quad)) not in at_boundary]
+    tags = [np.full(len(p.quads), p.tag, dtype=np.int32) for p in patches]
+    blocks = [("hexahedron", mesh.cells, mesh.regions if len(mesh.regions) else
+               np.zeros(len(mesh.cells), dtype=np.int32), 3, "region"),
+              ("quad", np.concatenate((boundary, f.faces[inside, :4])),
+               np.concatenate((*tags, f.faces[inside, 4])), 2, "surface"),
+              ("line", f.edges[:, :2], f.edges[:, 2], 1, "curve")]
+    blocks = [block for block in blocks if len(block[1]) or block[0] == "hexahedron"]
+    sets: dict[str, list[Any]] = {}
+
+    def add(name: str, block: int, rows: Any) -> None:
+        own = sets.setdefault(name, [np.empty(0, dtype=np.int64) for _ in blocks])
+        own[block] = np.concatenate((own[block], rows)).astype(np.int64)
+
+    for number, (kind, _, values, dimension, word) in enumerate(blocks):
+        begin = 0
+        for patch in patches if kind == "quad" else []:  # with the names that files have
+            add(patch.name, number, np.arange(begin, begin + len(patch.quads)))
+            begin += len(patch.quads)
+        for tag in np.unique(values[begin:]):
+            named = next((p.name for p in patches if kind == "quad" and p.tag == tag), None)
+            given = named or f.names.get((dimension, int(tag)))
+            if tag:
+                add(given or f"{word}_{tag}".replace("-", "m"), number,
+                    begin + np.flatnonzero(values[begin:] == tag))
+    of_cells = {name: [block[2] if (block[3] == 3) == (name == "region") else np.zeros_like(block[2])
+                       for block in blocks] for name in ("region", "tag")}
+    return meshio.Mesh(grid.points, [(block[0], block[1].astype(np.int64)) for block in blocks],
+                       point_data=grid.of_points, cell_data=of_cells, cell_sets=sets)
+
+
+def _sets_of(mesh: Any, kind: str, numbers: Any) -> tuple[Any, dict[int, str]] | None:
+    """A tag for each element of a kind by the sets that have it, and names; None without sets.
+
+    Args:
+        numbers: of elements, which name sets where they agree in all of a set; or None.
+    """
+    begins, total = {}, 0
+    for i, block in enumerate(mesh.cells):
+        if block.type == kind:
+            begins[i] = total
+            total += len(block.data)
+    tags, names, found = np.zeros(total, dtype=np.int32), {}, False
+    known = {name: _tag_in(name) for name in mesh.cell_sets}
+    free = iter(sorted(set(range(1, len(known) + 1)) - set(known.values())))
+    for name, lists in mesh.cell_sets.items():
+        rows = [begins[i] + np.asarray(lists[i], dtype=np.int64) for i in begins
+                if lists[i] is not None and len(lists[i])]
+        if not rows or name.startswith("gmsh:"):
+            continue
+        chosen, tag, found = np.concatenate(rows), known[name], True
+        if tag is None:
+            same = [] if numbers is None else np.unique(numbers[chosen]).tolist()
+            tag = int(same[0]) if len(same) == 1 and same[0] else next(free)
+            names[tag] = name
+        tags[chosen] = tag
+    return (tags, names) if found else None
+
+
+def mesh_of_meshio(mesh: Any) -> Mesh:
+    """The inverse of meshio_of_mesh(), and what other files have."""
+    from ._types import Features, Mesh
+
+    made = mesh_of_grid(from_meshio(mesh, "hexahedron", "hexahedra"))
+    names, rows = {}, {}
+    for kind, dimension, arrays in (("hexahedron", 3, ("region",)), ("quad", 2, ("tag",)),
+                                    ("line", 1, ("tag",))):
+        blocks = [i for i, block in enumerate(mesh.cells) if block.type == kind]
+        numbers = next((np.concatenate([np.asarray(mesh.cell_data[name][i]) for i in blocks])
+                        for name in (*arrays, "gmsh:physical", "medit:ref")
+                        if blocks and name in mesh.cell_data), None)
+        tags, named = _sets_of(mesh, kind, numbers) or (numbers, {})
+        if not blocks or tags is None:
+            continue
+        elements = np.concatenate([np.asarray(mesh.cells[i].data) for i in blocks])
+        names.update({(dimension, tag): name for tag, name in named.items()})
+        rows[kind] = np.column_stack((elements, tags))[tags != 0].astype(np.int32)
+        if kind == "hexahedron":
+            rows[kind] = tags.astype(np.int32) if tags.any() else None
+    f = made.features
+    return Mesh(made.points, made.cells, generator_tet=made.generator_tet,
+                generator_corners=made.generator_corners, regions=rows.get("hexahedron"),
+                features=Features(f.vertices, rows.get("line"), rows.get("quad"), corners=4, names=names))
 
 
 # VTK and PyVista ------------------------------------------------------------------------------

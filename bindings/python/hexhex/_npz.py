@@ -32,6 +32,8 @@ def write(what: object, file: str, compress: bool) -> None:
     names = _OF_MAP if isinstance(what, Map) else _OF_MESH
     arrays: dict[str, Any] = {name: getattr(what, name) for name in names}
     arrays.update((f"feature_{name}", getattr(what.features, name)) for name in _FEATURES)
+    arrays["feature_names"] = np.array([(str(dimension), str(tag), name) for dimension, tag, name
+                                        in what.features._name_rows()], dtype=str)
     # What is not known has no rows, and no place in the file.
     always = ("points", "tets", "cells", "igm")
     arrays = {name: array for name, array in arrays.items() if len(array) or name in always}
@@ -70,13 +72,15 @@ def read(file: str) -> Map | Mesh:
     except Exception as error:  # of numpy, zipfile and zlib, about ten kinds
         raise fail(f"it is no .npz file, or damaged ({error})") from error
     rows = {name: arrays.pop(f"feature_{name}", None) for name in _FEATURES}
+    named = arrays.pop("feature_names", np.empty((0, 3), dtype=str))
     for kind, needed, names, corners in ((Map, {"points", "tets", "igm"}, _OF_MAP, 3),
                                          (Mesh, {"points", "cells"}, _OF_MESH, 4)):
         if needed <= arrays.keys():
             try:
                 return kind(**{name: array for name, array in arrays.items() if name in names},
-                            features=Features(**rows, corners=corners))
-            except ArgumentError as error:
+                            features=Features(**rows, corners=corners, names={
+                                (int(d), int(tag)): str(name) for d, tag, name in named}))
+            except (ArgumentError, ValueError) as error:
                 raise fail(str(error).rstrip(".")) from error
     raise fail("a map has the arrays points, tets and igm, a mesh points and cells; there are "
                f"{', '.join(sorted(arrays)) or 'none'}")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from . import _hexhex, _interchange, _picture
+from . import _compare, _hexhex, _interchange, _picture
 from ._errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -32,6 +32,18 @@ def _floats(values: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
         raise ArgumentError(f"The array {name} has shape {array.shape}; it needs one of "
                             f"(n, {', '.join(map(str, shape))}).", "InvalidArgument")
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _igm(values: npt.ArrayLike, points: Floats, tets: Indices) -> Floats:
+    """Parameters per corner; those of vertices are those of all corners there."""
+    array = np.asarray(values)
+    if array.ndim == 2 and array.shape[1] == 3 and len(array) == len(points) > 0:
+        # Tets that name no vertex are refused with their numbers later.
+        array = array[np.minimum(tets, len(points) - 1)]
+    elif array.ndim == 2 and array.shape[1] == 3:
+        raise ArgumentError(f"The array igm has shape {array.shape}, which is one per vertex; there are "
+                            f"{len(points)} vertices.", "InvalidArgument")
+    return _floats(array, (4, 3), "igm")
 
 
 def _indices(values: npt.ArrayLike, width: int, name: str) -> Indices:
@@ -106,6 +118,10 @@ def _kind(corners: Corners) -> Corners:
     return bits - np.uint8(1)
 
 
+def _names_of(handle: Any) -> dict[tuple[int, int], str]:
+    return {(dimension, tag): name for dimension, tag, name in handle.tag_names}
+
+
 class Features:
     """Tagged vertices, edges, and triangles of tets or quads of a mesh, as sharp curves and named
     surfaces. A row has the vertices, in any order but that of quads, and then the tag.
@@ -114,16 +130,33 @@ class Features:
         vertices: int32 of shape (k, 2): vertex, tag.
         edges: int32 of shape (k, 3): two vertices, tag.
         faces: of a Map, int32 of shape (k, 4): three vertices, tag. Of a Mesh, (k, 5).
+        names: what files call tags: (dimension, tag) to name; dimensions are 0 for vertices, 1 for
+            edges, 2 for faces and 3 for regions.
 
     Raises:
         ArgumentError: shapes or types that do not fit.
     """
 
     def __init__(self, vertices: npt.ArrayLike | None = None, edges: npt.ArrayLike | None = None,
-                 faces: npt.ArrayLike | None = None, *, corners: int = 3) -> None:
+                 faces: npt.ArrayLike | None = None, *, corners: int = 3,
+                 names: dict[tuple[int, int], str] | None = None) -> None:
         self.vertices: Ints = _ints(vertices, 2, "features.vertices")
         self.edges: Ints = _ints(edges, 3, "features.edges")
         self.faces: Ints = _ints(faces, corners + 1, "features.faces")
+        self.names: dict[tuple[int, int], str] = dict(names or {})
+
+    @classmethod
+    def _of_mesh(cls, h: Any) -> Features:
+        return cls(h.feature_vertices, h.feature_edges, h.feature_quads, corners=4,
+                   names=_names_of(h))
+
+    def _name_rows(self) -> list[tuple[int, int, str]]:
+        return [(dimension, tag, name) for (dimension, tag), name in self.names.items()]
+
+    def __eq__(self, other: object) -> bool:
+        """The same rows in the same order, and names."""
+        return isinstance(other, Features) and self.names == other.names and _compare.same_arrays(
+            self, other, ("vertices", "edges", "faces"))
 
     def __repr__(self) -> str:
         return (f"<hexhex.Features: {len(self.vertices)} vertices, {len(self.edges)} edges, "
@@ -140,8 +173,7 @@ class Map(_interchange.Wrappable):
         points: positions, float64 of shape (n, 3).
         tets: vertices of each tet from 0, uint32 of shape (m, 4).
         igm: parameters (u, v, w) of the four corners of each tet, in units of one hexahedron,
-            float64 of shape (m, 4, 3).
-
+            float64 of shape (m, 4, 3). May be given per vertex, (n, 3), where there is one chart.
         features: tagged vertices, edges and triangles: Features.
         regions: a number for each tet, which the cells inherit: int32 (m,); empty without.
         edge_valences: what is known of singular edges, int32 (k, 3): two vertices, and the number
@@ -170,7 +202,7 @@ class Map(_interchange.Wrappable):
                  rotations: npt.ArrayLike | None = None) -> None:
         self.points: Floats = _floats(points, (3,), "points")
         self.tets: Indices = _indices(tets, 4, "tets")
-        self.igm: Floats = _floats(igm, (4, 3), "igm")
+        self.igm: Floats = _igm(igm, self.points, self.tets)
         self.features: Features = Features() if features is None else features
         self.regions: Ints = _ints(regions, 0, "regions")
         self.edge_valences: Ints = _ints(edge_valences, 3, "edge_valences")
@@ -179,7 +211,8 @@ class Map(_interchange.Wrappable):
 
     @classmethod
     def _from_handle(cls, handle: _hexhex.Map) -> Map:
-        features = Features(handle.feature_vertices, handle.feature_edges, handle.feature_faces)
+        features = Features(handle.feature_vertices, handle.feature_edges, handle.feature_faces,
+                            names=_names_of(handle))
         return cls(handle.points, handle.tets, handle.igm, features=features,
                    regions=handle.regions, edge_valences=handle.edge_valences,
                    rotations=handle.rotations)
@@ -192,7 +225,12 @@ class Map(_interchange.Wrappable):
             _floats(self.igm, (4, 3), "igm"), _ints(f.vertices, 2, "features.vertices"),
             _ints(f.edges, 3, "features.edges"), _ints(f.faces, 4, "features.faces"),
             _ints(self.regions, 0, "regions"), _ints(self.edge_valences, 3, "edge_valences"),
-            _ints(self.rotations, 4, "rotations", np.int8))
+            _ints(self.rotations, 4, "rotations", np.int8), f._name_rows())
+
+    def __eq__(self, other: object) -> bool:
+        """The same arrays and tags, bit for bit."""
+        return isinstance(other, Map) and self.features == other.features and _compare.same_arrays(
+            self, other, ("points", "tets", "igm", "regions", "edge_valences", "rotations"))
 
     def __repr__(self) -> str:
         return f"<hexhex.Map: {len(self.tets)} tets, {len(self.points)} points>"
@@ -431,13 +469,19 @@ class LagrangeMesh(_interchange.Wrappable):
             order, places, _indices(nodes, (order + 1)**3, "nodes"), vertex_count,
             *_generators(generator_tet, generator_corners, len(places)),
             _ints(f.vertices, 2, "features.vertices"), _ints(f.edges, 3, "features.edges"),
-            _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions"))
+            _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions"),
+            f._name_rows())
 
     @classmethod
     def _from_handle(cls, handle: _hexhex.LagrangeMesh) -> LagrangeMesh:
         mesh = cls.__new__(cls)
         mesh._handle = handle
         return mesh
+
+    def __eq__(self, other: object) -> bool:
+        """The same nodes, cells, tags and regions, bit for bit."""
+        return isinstance(other, LagrangeMesh) and self.features == other.features and (
+            _compare.same_arrays(self, other, ("order", "vertex_count", "points", "nodes", "regions")))
 
     def __repr__(self) -> str:
         return f"<hexhex.LagrangeMesh: {len(self.nodes)} cells of order {self.order}>"
@@ -480,8 +524,7 @@ class LagrangeMesh(_interchange.Wrappable):
     @property
     def features(self) -> Features:
         """Of the straight mesh, as of a Mesh."""
-        h = self._handle
-        return Features(h.feature_vertices, h.feature_edges, h.feature_quads, corners=4)
+        return Features._of_mesh(self._handle)
 
     @property
     def regions(self) -> Ints:
@@ -512,6 +555,61 @@ class LagrangeMesh(_interchange.Wrappable):
         return _interchange.to_pyvista(self._grid(), _interchange.LAGRANGE_HEXAHEDRON)
 
 
+@dataclasses.dataclass(frozen=True)
+class BoundaryPatch:
+    """A part of the boundary with the name that files give it."""
+
+    name: str  #: "inlet", "surface_7" for a tag 7, "patch_1", or "boundary"
+    tag: int  #: of its quads; 0: none
+    quads: Indices  #: facing outwards, uint32 (k, 4)
+    area: float
+    centre: tuple[float, ...]
+    normal: tuple[float, ...]  #: mean of unit normals by area: of length 1 where flat, 0 if closed
+
+    def __repr__(self) -> str:
+        return f"<hexhex.BoundaryPatch: {self.name}, {len(self.quads)} quads, area {self.area:.4g}>"
+
+
+@dataclasses.dataclass(frozen=True)
+class SingularCurve:
+    """A chain of singular edges of one valence; closed if its last vertex is the first."""
+
+    vertices: Indices  #: uint32 (k,)
+    valence: int  #: number of cells around each edge
+    boundary: bool  #: all edges are on the boundary, or none
+
+
+@dataclasses.dataclass(frozen=True)
+class IrregularVertices:
+    """Vertices with the same singular edges."""
+
+    boundary: bool  #: whether they are on the boundary
+    inner_valences: list[int]  #: of their singular edges inside, ascending
+    boundary_valences: list[int]  #: and on the boundary
+    vertices: Indices  #: ascending, uint32 (k,)
+
+
+@dataclasses.dataclass(frozen=True)
+class BaseComplex:
+    """What a mesh is made of; numbers are in order of first cells. Edges are in one sheet if they are
+    across from each other in a face, faces in one chord if they are so in a cell."""
+
+    cell_sheets: Indices  #: of the edges from corner 0 to 1, 3 and 4, uint32 (m, 3)
+    sheets: int  #: how many
+    cell_chords: Indices  #: that pass a cell along these axes, uint32 (m, 3)
+    chords: int
+    cell_blocks: Indices  #: uint32 (m,)
+    block_sizes: npt.NDArray[np.uint64]  #: cells along the axes of the first cell, uint64 (b, 3);
+    #: 0, 0, 0 of a block that is no box
+    block_cells: npt.NDArray[np.uint64]  #: uint64 (b,)
+    curves: list[SingularCurve]
+    irregular: list[IrregularVertices]
+
+    def __repr__(self) -> str:
+        return (f"<hexhex.BaseComplex: {self.sheets} sheets, {self.chords} chords, "
+                f"{len(self.block_cells)} blocks, {len(self.curves)} singular curves>")
+
+
 class Mesh(_interchange.Wrappable):
     """A hexahedral mesh.
 
@@ -523,6 +621,8 @@ class Mesh(_interchange.Wrappable):
             empty for other meshes.
         repair: what a repair of the map did: RepairReport, or None.
         repaired_map: the map that this is the mesh of, if it had to be repaired; or None.
+        quantization: what a quantization of the map did: QuantizeReport, or None.
+        quantized_map: the integer-grid map that it made; or None.
         arcs: the exact shapes of edges: Arcs, if asked for; or None.
         patches: the exact shapes of faces: Patches, if asked for; or None.
         curved: the cells of higher order: LagrangeMesh, if asked for; or None.
@@ -541,7 +641,8 @@ class Mesh(_interchange.Wrappable):
             places, _indices(cells, 8, "cells"),
             *_generators(generator_tet, generator_corners, len(places)),
             _ints(f.vertices, 2, "features.vertices"), _ints(f.edges, 3, "features.edges"),
-            _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions")))
+            _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions"),
+            f._name_rows()))
 
     def _set(self, handle: _hexhex.Mesh, notes: tuple[Any, Any, Any] = ({}, None, None)) -> None:
         statistics, report, repaired = notes
@@ -549,6 +650,8 @@ class Mesh(_interchange.Wrappable):
         self.statistics: dict[str, Any] = statistics
         self.repair: RepairReport | None = None if report is None else RepairReport._of(report)
         self.repaired_map: Map | None = None if repaired is None else Map._from_handle(repaired)
+        self.quantization: QuantizeReport | None = None
+        self.quantized_map: Map | None = None
         self.arcs: Arcs | None = None
         self.patches: Patches | None = None
         self.curved: LagrangeMesh | None = None
@@ -559,6 +662,24 @@ class Mesh(_interchange.Wrappable):
         mesh = cls.__new__(cls)
         mesh._set(handle, notes)
         return mesh
+
+    def __eq__(self, other: object) -> bool:
+        """The same points, cells, tags, names and regions, in the same order and bit for bit, wherever
+        they come from. hexhex.same_mesh() compares whatever the numbers are."""
+        return isinstance(other, Mesh) and self.features == other.features and _compare.same_arrays(
+            self, other, ("points", "cells", "regions"))
+
+    def diff(self, other: Mesh) -> str:
+        """How another mesh differs: a few lines with counts and the first differences; empty for one
+        that is equal.
+
+        >>> mesh = hexhex.extract(hexhex.generate("box"))
+        >>> moved = hexhex.Mesh(mesh.points, mesh.cells)
+        >>> moved.points[7, 0] += 0.5
+        >>> mesh.diff(moved)[:51]
+        'points: 1 of 729 differ, by up to 0.5; the first is'
+        """
+        return _compare.difference(self, other)
 
     def __repr__(self) -> str:
         return f"<hexhex.Mesh: {len(self.cells)} cells, {len(self.points)} points>"
@@ -595,24 +716,41 @@ class Mesh(_interchange.Wrappable):
     @property
     def features(self) -> Features:
         """What of the mesh is tagged, with quads as faces; views."""
-        h = self._handle
-        return Features(h.feature_vertices, h.feature_edges, h.feature_quads, corners=4)
+        return Features._of_mesh(self._handle)
 
     @property
     def regions(self) -> Ints:
         """Per cell its region, int32 (m,); empty if unknown."""
         return self._handle.regions
 
-    def boundary_patches(self, angle: float = 40) -> Ints:
-        """Quads on the boundary, each with the number of its smooth patch, int32 (k, 5).
+    def boundary_patches(self, angle: float = 40) -> list[BoundaryPatch]:
+        """The boundary by name, as write() groups it: by tags, or else its smooth patches.
 
         Args:
-            angle: in degrees: where the boundary turns by more, a patch ends.
+            angle: in degrees: where a boundary without tags turns by more, a patch ends; 0: one.
 
-        >>> len(set(hexhex.extract(hexhex.generate("box")).boundary_patches()[:, 4].tolist()))
-        6
+        >>> patches = hexhex.extract(hexhex.generate("box")).boundary_patches()
+        >>> [(p.name, len(p.quads), p.area, p.normal) for p in patches][0]
+        ('patch_1', 64, 4.0, (-1.0, 0.0, 0.0))
         """
-        return _hexhex.boundary_patches(self._handle, angle, 0)
+        return [BoundaryPatch(name, tag, quads, area, tuple(centre), tuple(normal))
+                for name, tag, quads, area, centre, normal
+                in _hexhex.named_patches(self._handle, angle, 0)]
+
+    def base_complex(self) -> BaseComplex:
+        """Sheets, chords, blocks between the walls that go straight on from singular edges, singular
+        curves, and irregular vertices by type. Raises ArgumentError for cells that do not fit
+        together.
+
+        >>> complex = hexhex.extract(hexhex.generate("sphere")).base_complex()
+        >>> complex.sheets, complex.chords, complex.block_sizes.tolist()[0], len(complex.curves)
+        (16, 96, [4, 4, 4], 20)
+        """
+        (sheets, sheet_count, chords, chord_count, blocks, sizes, curves,
+         types) = _hexhex.base_complex(self._handle, 0, None)
+        return BaseComplex(sheets, sheet_count, chords, chord_count, blocks, sizes[:, :3], sizes[:, 3],
+                           [SingularCurve(*curve) for curve in curves],
+                           [IrregularVertices(*kind) for kind in types])
 
     def structure(self) -> dict[str, int]:
         """Numbers of faces, edges, boundary_quads, components, boundary_components, and the
@@ -651,14 +789,22 @@ class Mesh(_interchange.Wrappable):
 
     @classmethod
     def from_meshio(cls, mesh: Any) -> Mesh:
-        """The hexahedra of a ``meshio.Mesh``, likewise."""
-        return _interchange.mesh_of_grid(
-            _interchange.from_meshio(mesh, "hexahedron", "hexahedra"))
+        """The hexahedra of a ``meshio.Mesh``, likewise. Its lines and quads are tagged, and its cells in
+        regions, by cell sets with their names, or else by the arrays ``tag`` and ``region``,
+        ``gmsh:physical`` or ``medit:ref``. Sets called ``boundary``, ``patch_1`` and so on are no
+        tags. Raises ArgumentError without hexahedra."""
+        return _interchange.mesh_of_meshio(mesh)
 
-    def to_meshio(self) -> Any:
-        """The mesh as a ``meshio.Mesh`` with generators, regions, and tags of vertices as arrays.
-        Raises ImportError without meshio."""
-        return _interchange.to_meshio(_interchange.grid_of_mesh(self, False), "hexahedron")
+    def to_meshio(self, patch_angle: float = 40) -> Any:
+        """The mesh as a ``meshio.Mesh``: hexahedra with the array ``region``; quads of the boundary,
+        tagged quads inside, and tagged edges as lines, with the array ``tag``. All groups that
+        write() makes are cell sets by their names. Generators and tags of vertices are arrays.
+        Raises ImportError without meshio.
+
+        Args:
+            patch_angle: as in boundary_patches().
+        """
+        return _interchange.meshio_of_mesh(self, patch_angle)
 
     def to_vtk(self, *, quality: bool = True) -> Any:
         """The mesh as a ``vtkUnstructuredGrid`` on the same memory: what is written to points there
@@ -944,7 +1090,7 @@ class MeshedPart:
 # How to pickle what the library holds: by the arrays that it is made of. Everything else is a plain
 # object.
 _of_hexes = operator.attrgetter("generator_tet", "generator_corners", "feature_vertices",
-                                "feature_edges", "feature_quads", "regions")
+                                "feature_edges", "feature_quads", "regions", "tag_names")
 copyreg.pickle(_hexhex.Mesh, lambda h: (_hexhex.Mesh, (h.points, h.cells, *_of_hexes(h))))
 copyreg.pickle(_hexhex.LagrangeMesh, lambda h: (
     _hexhex.LagrangeMesh, (h.order, h.points, h.nodes, h.vertex_count, *_of_hexes(h))))

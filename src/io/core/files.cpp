@@ -355,6 +355,10 @@ void requireHexMeshFormat(const std::filesystem::path& file, std::string_view fo
   requireHexMeshFormat(file, WriteOptions{.format = format});
 }
 
+bool writesPatches(const std::filesystem::path& file, const WriteOptions& options) {
+  return io::writableFormat(file, options, io::FileContent::HexMesh).groups;
+}
+
 void requireMapFormat(const std::filesystem::path& file, const WriteOptions& options) {
   static_cast<void>(io::writableFormat(file, options, io::FileContent::Map));
 }

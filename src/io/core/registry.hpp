@@ -62,6 +62,7 @@ struct Format {
   WritePiecewise* writePatches = nullptr;
 
   bool compresses = false;  ///< heeds WriteOptions::compress
+  bool groups = true;       ///< of boundary quads: heeds WriteOptions::patchAngle
   /// Writing takes requireHdf5(); in builds without HDF5 all functions are null.
   bool overHdf5 = false;
 };
