@@ -51,8 +51,8 @@ class Blender {
         exact_(mesh.points),
         owner_(mesh.points.size(), kNone),
         isOnSurface_(mesh.points.size(), 0),
-        halvings_(mesh.points.size(), 0),
-        isDrawn_(mesh.points.size(), 0) {}
+        steps_(mesh.points.size(), 0),
+        isMoving_(mesh.points.size(), 0) {}
 
   std::vector<Index> run() {
     findSurface();
@@ -60,18 +60,21 @@ class Blender {
     std::iota(cells.begin(), cells.end(), Index{0});
     stage_.setTotal(4 * cells.size());
     placeNodes(cells);
-    // Of these alone there is more to do: the others are straight.
-    cells = thoseWith(cells, isOnSurface_);
-    for (std::vector<Index> changed = cells; !changed.empty();) {
-      std::fill(isDrawn_.begin(), isDrawn_.end(), std::uint8_t{0});
-      for (const Index cell : findFolded(changed)) drawBack(cell);
-      changed = thoseWith(cells, isDrawn_);
-      for (std::size_t node = 0; node < isDrawn_.size(); ++node) {
-        if (isDrawn_[node] != 0) ++halvings_[node];
+    // At first, all others are straight.
+    std::vector<Index> changed = thoseWith(cells, isOnSurface_);
+    while (!changed.empty()) {
+      std::fill(isMoving_.begin(), isMoving_.end(), std::uint8_t{0});
+      for (const Index cell : findFolded(changed)) takeNextStep(cell);
+      changed = thoseWith(cells, isMoving_);
+      for (std::size_t node = 0; node < steps_.size(); ++node) {
+        if (isMoving_[node] != 0) ++steps_[node];
       }
-      if (!changed.empty()) placeNodes(cells);
+      placeNodes(changed);
     }
-    return thoseWith(cells, halvings_);
+    for (std::size_t node = 0; node < steps_.size(); ++node) {
+      if (isOnSurface_[node] == 0) steps_[node] = 0;
+    }
+    return thoseWith(cells, steps_);
   }
 
  private:
@@ -79,14 +82,21 @@ class Blender {
     return mesh_.nodes[cell * mesh_.nodesPerCell() + place];
   }
 
-  /// Cells with a mark at a node inside an edge or a face.
+  /// Whether a node of a cell that is no corner has a property: is(node, whether inside a face).
+  template <class Is>
+  [[nodiscard]] bool any(Index cell, const Is& is) const {
+    for (const auto* const nodes : blended_.all()) {
+      for (const BlendedNode& b : *nodes) {
+        if (is(nodeOf(cell, b.node), nodes == &blended_.ofFaces)) return true;
+      }
+    }
+    return false;
+  }
   [[nodiscard]] std::vector<Index> thoseWith(const std::vector<Index>& cells,
                                              const std::vector<std::uint8_t>& marks) const {
     std::vector<Index> result;
     for (const Index cell : cells) {
-      const auto isMarked = [&](const BlendedNode& b) { return marks[nodeOf(cell, b.node)] != 0; };
-      if (std::any_of(blended_.ofEdges.begin(), blended_.ofEdges.end(), isMarked) ||
-          std::any_of(blended_.ofFaces.begin(), blended_.ofFaces.end(), isMarked)) {
+      if (any(cell, [&](Index node, bool /*isInFace*/) { return marks[node] != 0; })) {
         result.push_back(cell);
       }
     }
@@ -143,7 +153,7 @@ class Blender {
   /// Puts nodes where they belong now: inside edges, then faces, then cells. What cells share is
   /// placed by the first of them, as its orientation decides on rounding.
   void placeNodes(const std::vector<Index>& cells) {
-    for (const auto* const nodes : {&blended_.ofEdges, &blended_.ofFaces, &blended_.ofCell}) {
+    for (const auto* const nodes : blended_.all()) {
       parallelFor(stage_, cells.size(), kBlendingGrain, [&](std::size_t i) {
         for (const BlendedNode& b : *nodes) {
           const Index node = nodeOf(cells[i], b.node);
@@ -155,11 +165,17 @@ class Blender {
 
   [[nodiscard]] Vec3 placeOf(Index node, Index cell, const BlendedNode& b) const {
     const Vec3 blended = blend(mesh_.points, cell, b);
-    if (isOnSurface_[node] == 0 || halvings_[node] > kMostHalvings) return blended;
+    const double share = shareOf(node);
+    if (share == 0) return blended;
     const Vec3 before = blend(exact_, cell, b);
-    if (halvings_[node] == 0 && blended == before) return exact_[node];
-    const double share = 1.0 / static_cast<double>(1U << halvings_[node]);
+    if (share == 1 && blended == before) return exact_[node];
     return plus(blended, times(share, minus(exact_[node], before)));
+  }
+
+  /// How far a node is on its way from where it is blended to the image of the map.
+  [[nodiscard]] double shareOf(Index node) const {
+    if (isOnSurface_[node] == 0) return steps_[node] == 1 ? 1 : 0;
+    return steps_[node] > kMostHalvings ? 0 : 1.0 / static_cast<double>(1U << steps_[node]);
   }
 
   [[nodiscard]] Vec3 blend(const Array<Vec3>& points, Index cell, const BlendedNode& b) const {
@@ -207,23 +223,35 @@ class Blender {
     return corners;
   }
 
-  /// Marks the nodes of a cell that go half the way back. At first those inside faces alone: those
+  /// Marks the nodes of a folded cell that move next. Those inside go to the image of the map:
+  /// thin layers of cells have to be curved together. If that does not help, they come back for
+  /// good, and those of the surface leave it by halves: at first those inside faces alone, as those
   /// of an edge belong to more cells.
-  void drawBack(Index cell) {
-    bool isFirst = false;
-    for (const BlendedNode& b : blended_.ofFaces) {
-      const Index node = nodeOf(cell, b.node);
-      if (isOnSurface_[node] == 0 || halvings_[node] > 0) continue;
-      isDrawn_[node] = 1;
-      isFirst = true;
-    }
-    if (isFirst) return;
-    for (const auto* const nodes : {&blended_.ofEdges, &blended_.ofFaces}) {
-      for (const BlendedNode& b : *nodes) {
-        const Index node = nodeOf(cell, b.node);
-        if (isOnSurface_[node] != 0 && halvings_[node] <= kMostHalvings) isDrawn_[node] = 1;
+  void takeNextStep(Index cell) {
+    const auto move = [&](const auto& isNext) {
+      bool isAny = false;
+      static_cast<void>(any(cell, [&](Index node, bool isInFace) {
+        if (!isNext(node, isInFace)) return false;
+        isMoving_[node] = 1;
+        isAny = true;
+        return false;
+      }));
+      return isAny;
+    };
+    for (const int step : {0, 1}) {
+      if (move([&](Index node, bool) { return isOnSurface_[node] == 0 && steps_[node] == step; })) {
+        return;
       }
     }
+    const auto isLeft = [&](Index node) {
+      return isOnSurface_[node] != 0 && steps_[node] <= kMostHalvings;
+    };
+    if (move([&](Index node, bool isInFace) {
+          return isInFace && isLeft(node) && steps_[node] == 0;
+        })) {
+      return;
+    }
+    move([&](Index node, bool) { return isLeft(node); });
   }
 
   LagrangeMesh& mesh_;
@@ -233,9 +261,9 @@ class Blender {
   mesh::CellValidity straightValidity_;
   Array<Vec3> exact_;                      ///< per node: on the image of the map
   std::vector<Index> owner_;               ///< per node: its first cell
-  std::vector<std::uint8_t> isOnSurface_;  ///< per node: unless it is drawn back
-  std::vector<std::uint8_t> halvings_;     ///< per node
-  std::vector<std::uint8_t> isDrawn_;      ///< per node: in this round
+  std::vector<std::uint8_t> isOnSurface_;  ///< per node: until it has to leave it
+  std::vector<std::uint8_t> steps_;        ///< per node
+  std::vector<std::uint8_t> isMoving_;     ///< per node: in this round
 };
 
 }  // namespace

@@ -36,6 +36,11 @@ struct BlendedNodes {
     }
   }
 
+  /// In the order in which they are blended.
+  [[nodiscard]] std::array<const std::vector<BlendedNode>*, 3> all() const {
+    return {&ofEdges, &ofFaces, &ofCell};
+  }
+
  private:
   /// The Boolean sum of linear interpolations along the axes: that along each, less that along each
   /// two, and so on. Per axis a choice is to stay, or to go to its first or second end.

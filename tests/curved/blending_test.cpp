@@ -56,25 +56,30 @@ std::array<double, 2> lagrangeAt(int p, int i, double x) {
   return {value, slope};
 }
 
-/// The least determinant of a cell at places that are so many steps apart along each axis.
-double leastDeterminant(const LagrangeMesh& mesh, std::size_t cell, int steps = 12) {
-  const int p = mesh.order;
+/// The least determinant of a cell, at places kSteps apart along each axis.
+double leastDeterminant(const LagrangeMesh& mesh, std::size_t cell) {
+  constexpr int kSteps = 7;
+  const int n = mesh.order + 1;
+  std::vector<std::array<double, 2>> weights;  // per place along an axis and node
+  for (int i = 0; i < (kSteps + 1) * n; ++i) {
+    weights.push_back(lagrangeAt(mesh.order, i % n, static_cast<double>(i / n) / kSteps));
+  }
   double least = 1e300;
-  for (int at = 0; at < (steps + 1) * (steps + 1) * (steps + 1); ++at) {
-    const std::array<int, 3> place = {at % (steps + 1), at / (steps + 1) % (steps + 1),
-                                      at / (steps + 1) / (steps + 1)};
+  for (int at = 0; at < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++at) {
+    const auto* const u = &weights[static_cast<std::size_t>(at % (kSteps + 1) * n)];
+    const auto* const v = &weights[static_cast<std::size_t>(at / (kSteps + 1) % (kSteps + 1) * n)];
+    const auto* const w = &weights[static_cast<std::size_t>(at / (kSteps + 1) / (kSteps + 1) * n)];
     std::array<Vec3, 3> columns{};
-    for (int n = 0; n < static_cast<int>(mesh.nodesPerCell()); ++n) {
-      const std::array<int, 3> node = {n % (p + 1), n / (p + 1) % (p + 1), n / (p + 1) / (p + 1)};
+    for (int i = 0; i < n * n * n; ++i) {
+      const auto& [x, dx] = u[i % n];
+      const auto& [y, dy] = v[i / n % n];
+      const auto& [z, dz] = w[i / n / n];
       const Vec3& point =
-          mesh.points[mesh.nodes[cell * mesh.nodesPerCell() + static_cast<std::size_t>(n)]];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        double weight = 1;
-        for (std::size_t k = 0; k < 3; ++k) {
-          weight *=
-              lagrangeAt(p, node[k], static_cast<double>(place[k]) / steps)[k == axis ? 1 : 0];
-        }
-        for (std::size_t k = 0; k < 3; ++k) columns[axis][k] += weight * point[k];
+          mesh.points[mesh.nodes[cell * mesh.nodesPerCell() + static_cast<std::size_t>(i)]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        columns[0][k] += dx * y * z * point[k];
+        columns[1][k] += x * dy * z * point[k];
+        columns[2][k] += x * y * dz * point[k];
       }
     }
     const auto& [a, b, c] = columns;
@@ -163,7 +168,7 @@ TEST(Blending, RealMaps) {
   }
 }
 
-/// A box of 2 x 2 x 2 cells whose tets are half as long, with points where a function puts them.
+/// A box of 2 x 2 x 2 blocks with points where a function puts them; cells are of size 1.
 TetMap bentBox(const std::function<Vec3(const Vec3&)>& place, int cells = 1, int refine = 2) {
   SampleOptions options;
   options.cells = cells;
@@ -277,20 +282,19 @@ double distanceFromCylinder(const LagrangeMesh& mesh) {
 }
 
 TEST(Blending, AThinPlateFollowsItsCylinderMoreCloselyWithEachOrder) {
-  // A quarter of a cylinder, four cells along it and 0.04 thick: the chord of a straight cell is
-  // 0.19 below the arc, and inner and outer nodes have to move together.
+  // A quarter of a cylinder, four cells long and 0.04 thick, in four layers: the chord of a
+  // straight cell is 0.19 below the arc, so that nodes of all layers have to move together.
   constexpr double kQuarter = 1.5707963267948966;
-  const TetMap map = bentBox(
-      [](const Vec3& x) {
-        const double angle = kQuarter * (1 - x[0] / 4);
-        const double radius = 10 + 0.01 * x[2];
-        return Vec3{radius * std::cos(angle), x[1], radius * std::sin(angle)};
-      },
-      2, 6);
+  const auto onCylinder = [](const Vec3& x) {
+    const double angle = kQuarter * (1 - x[0] / 4);
+    const double radius = 10 + 0.01 * x[2];
+    return Vec3{radius * std::cos(angle), x[1], radius * std::sin(angle)};
+  };
   Context context(2);
   std::array<double, 4> distance{};
   for (int order = 1; order <= 3; ++order) {
-    const Blended found = blended(map, order);
+    // Nodes are vertices of tets, and on the cylinder.
+    const Blended found = blended(bentBox(onCylinder, 2, 2 * order), order);
     EXPECT_TRUE(certify(found.mesh, context).allPositive());
     EXPECT_TRUE(found.straightened.empty());
     distance[static_cast<std::size_t>(order)] = distanceFromCylinder(found.mesh);
