@@ -13,7 +13,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-import meshio
 import numpy as np
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "improve"))
@@ -22,21 +21,21 @@ import boundaries  # noqa: E402
 SIDE = 4  # points along each side of a quad
 
 
-def lattice(p):
-    """Of the nodes of a cell of VTK, in its order: places in the grid of its nodes."""
-    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
-    inner = range(1, p)
-    places = [(p * x, p * y, p * z) for z in (0, 1) for x, y in corners]
-    for z in (0, p):
-        places += [(i, 0, z) for i in inner] + [(p, i, z) for i in inner]
-        places += [(i, p, z) for i in inner] + [(0, i, z) for i in inner]
-    for x, y in corners:
-        places += [(p * x, p * y, i) for i in inner]
-    places += [(x, i, j) for x in (0, p) for j in inner for i in inner]
-    places += [(i, y, j) for y in (0, p) for j in inner for i in inner]
-    places += [(i, j, z) for z in (0, p) for j in inner for i in inner]
-    places += [(i, j, k) for k in inner for j in inner for i in inner]
-    return np.array(places)
+def read_mfem(file, p):
+    """Corners of cells, and their nodes as [cell, z, y, x]."""
+    words = iter(file.read_text().split())
+    while next(words) != "elements":
+        pass
+    corners = np.array([[int(next(words)) for _ in range(10)][2:] for _ in range(int(next(words)))])
+    while next(words) != "Ordering:":
+        pass
+    assert next(words) == "1"  # x, y and z of a node together
+    return corners, np.array(list(words), dtype=float).reshape(len(corners), p + 1, p + 1, p + 1, 3)
+
+
+def read_straight(file):
+    points, corners = boundaries.read_medit(file)
+    return corners, points[corners[:, [0, 1, 3, 2, 4, 5, 7, 6]]].reshape(-1, 2, 2, 2, 3)
 
 
 def weights(p, places):
@@ -47,20 +46,23 @@ def weights(p, places):
     return np.array(factors)
 
 
-def boundary_points(mesh, p):
-    (block,) = mesh.cells
-    grid = np.empty((len(block.data), p + 1, p + 1, p + 1), dtype=int)
-    grid[:, *lattice(p).T] = block.data
-    faces = np.concatenate([np.moveaxis(grid, axis + 1, 1)[:, side] for axis in range(3) for side in (0, p)])
-    corners = faces[:, [0, 0, -1, -1], [0, -1, 0, -1]]
-    _, first, counts = np.unique(np.sort(corners, axis=1), axis=0, return_index=True, return_counts=True)
+def boundary_points(corners, nodes):
+    """16 points of each face that one cell has."""
+    p = nodes.shape[1] - 1
+    number = corners[:, [0, 1, 3, 2, 4, 5, 7, 6]].reshape(-1, 2, 2, 2)
+
+    def faces(grid):
+        return np.concatenate([np.moveaxis(grid, axis, 1)[:, side] for axis in (1, 2, 3) for side in (0, -1)])
+
+    _, first, counts = np.unique(np.sort(faces(number).reshape(-1, 4), axis=1), axis=0, return_index=True,
+                                 return_counts=True)
     own = weights(p, (np.arange(SIDE) + 0.5) / SIDE)
-    return np.einsum("ai,bj,fijx->fabx", own, own, mesh.points[faces[first[counts == 1]]]).reshape(-1, 3)
+    return np.einsum("ai,bj,fijx->fabx", own, own, faces(nodes)[first[counts == 1]]).reshape(-1, 3)
 
 
 def made(hexhex, folder, map_file, scale, order, nodes="blended"):
     run = [hexhex, "extract", map_file, "--scale", str(scale), "--order", str(order), "--curved", nodes, "--threads", "1",
-           "--quiet", "-o", folder / "mesh.vtu", "--report", folder / "report.json"]
+           "--quiet", "-o", folder / "mesh.mesh", "--report", folder / "report.json"]
     subprocess.run(run, check=True, stderr=subprocess.DEVNULL)
     return json.loads((folder / "report.json").read_text())
 
@@ -92,8 +94,9 @@ def main():
                     report = made(hexhex, Path(folder), map_file, scale, order)
                     if report["cells"] > most:
                         break
-                    mesh = meshio.read(Path(folder) / "mesh.vtu")
-                    found = boundaries.to_pieces(boundary_points(mesh, order), pieces)
+                    file = Path(folder) / "mesh.mesh"
+                    mesh = read_straight(file) if order == 1 else read_mfem(file, order)
+                    found = boundaries.to_pieces(boundary_points(*mesh), pieces)
                     distances.append(np.sqrt(np.mean(found**2)) / diagonal)
                     counts.append(bad(report))
                     if order == 1:
