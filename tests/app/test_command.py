@@ -1140,7 +1140,7 @@ class Repair(CommandTest):
                               code="InvalidArgument")
         # Curved cells, in two steps and in one.
         self.run_command("generate", "sphere", "--jitter", "0.5", "--cells", "1", "--quiet", "-o", "ball.hexex")
-        curved = ["--order", "2", "--quiet"]
+        curved = ["--order", "2", "--curved", "exact", "--quiet"]
         self.run_command("extract", "ball.hexex", "-o", "curved.vtu", *curved)
         self.run_command("extract", "ball.hexex", "-o", "one.vtu", "--improve", "--passes", "1", *curved)
         run = self.run_command("improve", "curved.vtu", "--map", "ball.hexex", "--passes", "1", "-o", "two.vtu")

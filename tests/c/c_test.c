@@ -312,7 +312,7 @@ static void test_errors(const char* folder) {
   hexhex_mesh_destroy(mesh);
   newer.unknown = 1;
   CHECK(hexhex_extract(good, &newer.known, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
-  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1, 0, 0};
+  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1, 0, 0, HEXHEX_NODES_BLENDED};
   older.size = offsetof(hexhex_extract_options, epsilon); /* so those two are defaults */
   CHECK_OK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error));
   hexhex_mesh_destroy(mesh);
