@@ -293,6 +293,7 @@ void fillRecord(const ExtractArguments& arguments, const TetMap& map, LongRun& l
   const auto bytes = std::filesystem::file_size(arguments.output, unknown);
   if (!unknown) record.output.bytes = bytes;  // the files of parts may have other names
   record.order = arguments.order;
+  record.curvedNodes = arguments.options.curvedNodes;
   record.scale = arguments.options.scale;
   record.engine = arguments.options.engine;
   record.points = map.points.size();

@@ -31,12 +31,14 @@ Command addView(CLI::App& app) {
   addHexesOnly(*parser, arguments->hexesOnly);
   addScale(*parser, arguments->options.scale,
            "The scale that the mesh was extracted with, or shall be");
-  parser
-      ->add_option("--order", arguments->order,
-                   "Order of the cells that are extracted: curved from 2 on,\nup to 9")
-      ->check(wholeNumberFrom(1))
-      ->check(CLI::Range(1, kMaxOrder))
-      ->option_text("INTEGER [1]");
+  CLI::Option* const order =
+      parser
+          ->add_option("--order", arguments->order,
+                       "Order of the cells that are extracted: curved from 2 on,\nup to 9")
+          ->check(wholeNumberFrom(1))
+          ->check(CLI::Range(1, kMaxOrder))
+          ->option_text("INTEGER [1]");
+  addCurvedNodes(*parser, arguments->curvedNodes, order);
   addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
   addTolerance(*parser, arguments->options.tolerance);
   CLI::Option* const serve =

@@ -152,13 +152,14 @@ void addMethod(CLI::App& parser, ExtractArguments& arguments) {
 
 /// Meshes that follow the map more closely.
 void addCurved(CLI::App& parser, ExtractArguments& arguments) {
-  parser
-      .add_option(
-          "--order", arguments.order,
-          "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
-          ".msh, .inp (order 2), or .mesh (MFEM)")
-      ->check(CLI::Range(1, kMaxOrder))
-      ->option_text("P [1]");
+  CLI::Option* const order =
+      parser
+          .add_option("--order", arguments.order,
+                      "Write cells of this order, curved as the surface is: .vtu,\n"
+                      ".msh, .inp (order 2), or .mesh (MFEM)")
+          ->check(CLI::Range(1, kMaxOrder))
+          ->option_text("P [1]");
+  addCurvedNodes(parser, arguments.options.curvedNodes, order);
   parser
       .add_option("--arcs", arguments.arcs,
                   "Also write hex edges as polylines through the tets,\n.vtu, .vtp or .ovmb")

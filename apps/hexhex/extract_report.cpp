@@ -94,6 +94,12 @@ Json curvesAsJson(const CurvesRecord& parts, const char* pieces) {
   return {{"file", parts.file.string()}, {"count", parts.count}, {pieces, parts.pieces}};
 }
 
+Json curvedAsJson(const ExtractionRecord& record) {
+  if (record.order == 1) return nullptr;
+  return {{"nodes", record.curvedNodes == CurvedNodes::Exact ? "exact" : "blended"},
+          {"straightened_cells", record.statistics.straightenedCells}};
+}
+
 /// JSON knows no infinity.
 Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -136,6 +142,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"scale", record.scale},
       {"order", record.order},
       {"nodes", record.order > 1 ? record.nodes : record.vertices},
+      {"curved", curvedAsJson(record)},
       {"arcs", curvesAsJson(record.arcs, "inner_points")},
       {"patches", curvesAsJson(record.patches, "polygons")},
       {"threads", statistics.threads},
@@ -237,7 +244,12 @@ void printSummary(const ExtractionRecord& record) {
   }
   if (record.boundary) printPatches(*record.boundary);
   if (record.order > 1) {
-    printLine("order", fmt::format("{}, {} nodes", record.order, record.nodes));
+    const std::size_t straightened = statistics.straightenedCells.size();
+    printLine("order",
+              fmt::format("{}, {} nodes{}", record.order, record.nodes,
+                          straightened == 0 ? ""
+                                            : fmt::format("; {} nearer to straight, to be positive",
+                                                          counted(straightened, "cell"))));
   }
   for (const auto& [what, part] :
        {std::pair("arcs", &record.arcs), std::pair("patches", &record.patches)}) {

@@ -46,6 +46,7 @@ struct ExtractionRecord {
   int scale = 1;
   Engine engine = Engine::Atlas;
   int order = 1;
+  CurvedNodes curvedNodes = CurvedNodes::Blended;
   std::uint64_t nodes = 0;  ///< of cells of higher order
   CurvesRecord arcs;
   CurvesRecord patches;

@@ -350,6 +350,18 @@ void addScale(CLI::App& parser, int& scale, const std::string& description) {
       ->option_text("INTEGER [1]");
 }
 
+void addCurvedNodes(CLI::App& parser, CurvedNodes& nodes, CLI::Option* order) {
+  addChoice<CurvedNodes>(parser, "--curved", nodes,
+                         {{"blended", CurvedNodes::Blended}, {"exact", CurvedNodes::Exact}},
+                         "blended: nodes on the surface and on tagged edges and quads\n"
+                         "are where the map has them, others between these; cells are\n"
+                         "positive wherever straight ones are, if need be off the\n"
+                         "surface (counted). exact: all nodes are where the map has\n"
+                         "them, and cells may fold over")
+      ->needs(order)
+      ->option_text("MODE [blended]");
+}
+
 void addTolerance(CLI::App& parser, double& tolerance) {
   parser
       .add_option("--tolerance", tolerance,

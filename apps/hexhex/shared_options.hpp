@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <hexhex/context.hpp>
+#include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/types.hpp>
 
@@ -116,6 +117,9 @@ void addQuiet(CLI::App& parser, bool& quiet,
               const std::string& description = "Print nothing but errors");
 
 void addScale(CLI::App& parser, int& scale, const std::string& description);
+/// Of cells of higher order.
+/// @param order  the option that says which
+void addCurvedNodes(CLI::App& parser, CurvedNodes& nodes, CLI::Option* order);
 void addTolerance(CLI::App& parser, double& tolerance);
 void addRound(CLI::App& parser, bool& round);
 

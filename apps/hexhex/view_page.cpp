@@ -59,6 +59,7 @@ Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& cont
   options.scale = arguments.options.scale;
   options.tolerance = arguments.options.tolerance;
   options.repair = RepairMode::Auto;
+  options.curvedNodes = arguments.curvedNodes;
   ExtractStatistics statistics;
   Subject subject;
   if (arguments.order == 1) {

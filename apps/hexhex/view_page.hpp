@@ -4,6 +4,7 @@
 #include <string>
 
 #include <hexhex/curved.hpp>
+#include <hexhex/extract.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
@@ -19,6 +20,7 @@ struct ViewArguments {
   std::string map;   ///< empty: none
   VerifyOptions options;
   int order = 1;  ///< of the cells that are extracted
+  CurvedNodes curvedNodes = CurvedNodes::Blended;
   bool quantize = false;
   QuantizeOptions quantizeOptions;
   bool serve = false;

@@ -89,18 +89,20 @@ def to_triangle(points, triangles):
     return np.where(inside, height, least)
 
 
+def to_pieces(points, pieces):
+    """Of each point to a surface, which comes with what divided() makes of it."""
+    triangles, _, centres, owners = pieces
+    _, near = cKDTree(centres).query(points, k=min(CANDIDATES, len(centres)))
+    columns = near.reshape(len(points), -1).T
+    return np.min([to_triangle(points, triangles[owners[column]]) for column in columns], axis=0)
+
+
 def distances(first, second):
     """The largest from points on the first surface to the second, and the other way round, in diagonals of the second."""
-    corners = second.reshape(-1, 3)
-    diagonal = np.linalg.norm(corners.max(axis=0) - corners.min(axis=0))
+    diagonal = np.linalg.norm(np.ptp(second.reshape(-1, 3), axis=0))
     pieces = [(surface, *divided(surface, SPACING * diagonal)) for surface in (first, second)]
 
     def largest(start, end):
-        points = np.unique(start[1], axis=0)
-        triangles, _, centres, owners = end
-        _, near = cKDTree(centres).query(points, k=min(CANDIDATES, len(centres)))
-        columns = near.reshape(len(points), -1).T
-        each = [to_triangle(points, triangles[owners[column]]) for column in columns]
-        return float(np.min(each, axis=0).max()) / diagonal
+        return float(to_pieces(np.unique(start[1], axis=0), end).max()) / diagonal
 
     return largest(*pieces), largest(*reversed(pieces))

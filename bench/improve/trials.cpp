@@ -72,6 +72,7 @@ void tryMap(const std::filesystem::path& file, int order, double most, Count& co
     if (order == 1) {
       report = improve(straight, map, {}, context);
     } else {
+      options.curvedNodes = CurvedNodes::Exact;  // which leaves something to improve
       LagrangeMesh mesh = extractLagrange(map, order, options, context);
       report = improve(mesh, map, {}, context);
     }

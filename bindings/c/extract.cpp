@@ -10,12 +10,17 @@ ExtractOptions extractOptions(const hexhex_extract_options* options) {
   if (given.engine != HEXHEX_ENGINE_ATLAS && given.engine != HEXHEX_ENGINE_PROPELLER) {
     throw Error(ErrorCode::InvalidArgument, "There is no such engine.");
   }
+  if (given.curved_nodes != HEXHEX_NODES_BLENDED && given.curved_nodes != HEXHEX_NODES_EXACT) {
+    throw Error(ErrorCode::InvalidArgument,
+                "There are no such nodes. Choose HEXHEX_NODES_BLENDED or HEXHEX_NODES_EXACT.");
+  }
   return {.engine = static_cast<Engine>(given.engine),
           .scale = given.scale,
           .epsilon = given.epsilon,
           .tolerance = given.tolerance,
           .repair = given.repair != 0 ? RepairMode::Auto : RepairMode::Off,
-          .round = given.round != 0};
+          .round = given.round != 0,
+          .curvedNodes = static_cast<CurvedNodes>(given.curved_nodes)};
 }
 
 void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out) {
@@ -41,6 +46,7 @@ void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out
   result.overlapping_tets = statistics.overlappingTets;
   result.traced_cells = statistics.tracedCells;
   result.repaired = statistics.repair.changed ? 1 : 0;
+  result.straightened_cells = statistics.straightenedCells.size();
   writeStruct(result, *out, "statistics");
 }
 

@@ -214,10 +214,11 @@ void bindExtract(nb::module_& module) {
       .def(
           "__init__",
           [](Options* self, int scale, bool propeller, double tolerance, double epsilon,
-             bool repair, bool round) {
-            new (self) Options{scale, propeller, tolerance, epsilon, repair, round};
+             bool repair, bool round, bool exactNodes) {
+            new (self) Options{scale, propeller, tolerance, epsilon, repair, round, exactNodes};
           },
-          "scale"_a, "propeller"_a, "tolerance"_a, "epsilon"_a, "repair"_a, "round"_a);
+          "scale"_a, "propeller"_a, "tolerance"_a, "epsilon"_a, "repair"_a, "round"_a,
+          "exact_nodes"_a);
   module.def("extract", &extractMesh, "map"_a, "options"_a, "threads"_a, "progress"_a.none());
   module.def("extract_to", &extractInto, "sink"_a, "map"_a, "options"_a, "threads"_a,
              "progress"_a.none());

@@ -104,7 +104,8 @@ ExtractOptions Options::get() const {
           .epsilon = epsilon,
           .tolerance = tolerance,
           .repair = repair ? RepairMode::Auto : RepairMode::Off,
-          .round = round};
+          .round = round,
+          .curvedNodes = exactNodes ? CurvedNodes::Exact : CurvedNodes::Blended};
 }
 
 Dict asDict(const RepairReport& report) {
@@ -166,6 +167,9 @@ nb::tuple asTuple(const Notes& notes) {
   d["cut_faces"] = s.cutFaces;
   d["overlapping_tets"] = s.overlappingTets;
   d["traced_cells"] = s.tracedCells;
+  nb::list straightened;
+  for (const Index cell : s.straightenedCells) straightened.append(cell);
+  d["straightened_cells"] = straightened;
   d["stages"] = asList(notes.stages);
   if (!s.repairedMap) return nb::make_tuple(d, nb::none(), nb::none());
   // Nobody else holds it; Python has no const.

@@ -131,6 +131,7 @@ struct Options {
   double epsilon = 1e-6;
   bool repair = false;
   bool round = false;
+  bool exactNodes = false;
   [[nodiscard]] ExtractOptions get() const;
 };
 

@@ -2,7 +2,7 @@
 //
 // A map bends hex edges and faces at every tet that they cross. Arcs and patches are these images
 // as they are, piece by piece (Section 5.5 of the paper); Lagrange cells follow them with
-// polynomials through the preimages of a refined grid.
+// polynomials through the preimages of a refined grid, on the boundary or everywhere.
 #pragma once
 
 #include <array>
@@ -108,9 +108,9 @@ enum class PiecewiseLinearParts : std::uint8_t {
 /// The highest order of Lagrange cells.
 inline constexpr int kMaxOrder = 9;
 
-/// Hexahedra of an order p: each has (p + 1)^3 nodes, the preimages of the grid refined by p.
-/// Neighbours share the nodes of their common face. Nodes 0, 1, ... are the hex vertices in the
-/// numbering of extract().
+/// Hexahedra of an order p: each has (p + 1)^3 nodes, the preimages of the grid refined by p, from
+/// which CurvedNodes::Blended moves those inside. Neighbours share the nodes of their common face.
+/// Nodes 0, 1, ... are the hex vertices in the numbering of extract().
 struct LagrangeMesh {
   int order = 1;
   Array<Vec3> points;  ///< one per node
@@ -119,7 +119,7 @@ struct LagrangeMesh {
   Array<Index> nodes;
   std::uint64_t vertexCount = 0;  ///< of the nodes, those that are hex vertices
 
-  // Per node, as in HexMesh:
+  // Per node, as in HexMesh: where its preimage is, also if it was moved from there.
   Array<Index> generatorTet;
   Array<CornerSet> generatorCorners;
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
@@ -27,6 +28,15 @@ enum class RepairMode : std::uint8_t {
   Auto  ///< it is repaired first, if this build can
 };
 
+/// Where the nodes of cells of higher order are that are no hex vertices (extractLagrange()).
+enum class CurvedNodes : std::uint8_t {
+  /// Those of the boundary, between regions and of tagged edges and quads on the image of the map,
+  /// all others blended between them; cells are positive wherever straight ones are, for which some
+  /// may leave the surface: ExtractStatistics::straightenedCells.
+  Blended,
+  Exact  ///< all on the image of the map, also where cells fold over
+};
+
 struct ExtractOptions {
   Engine engine = Engine::Atlas;
   /// Multiplies all parameters before extraction: scale^3 times as many cells. At least 1.
@@ -40,6 +50,7 @@ struct ExtractOptions {
   double tolerance = 1e-2;
   RepairMode repair = RepairMode::Off;
   bool round = false;  ///< as RepairOptions::round, if there is a repair
+  CurvedNodes curvedNodes = CurvedNodes::Blended;
 };
 
 /// What happened during an extraction.
@@ -66,6 +77,10 @@ struct ExtractStatistics {
   std::uint64_t cutFaces = 0;         ///< inner faces of the tet mesh at which a chart ends
   std::uint64_t overlappingTets = 0;  ///< that did not fit their first chart
   std::uint64_t tracedCells = 0;      ///< cells with a corner that their chart does not show
+
+  /// Of cells of higher order, ascending: those whose nodes on the boundary, between regions or of
+  /// tags were moved off the image of the map, as the cell or a neighbour was not positive.
+  std::vector<Index> straightenedCells;
 
   RepairReport repair;  ///< changed is false for a map that was valid
   /// The map that was extracted instead, whose mesh it is, and whose tets `generatorTet` means;

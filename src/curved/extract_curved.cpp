@@ -9,6 +9,7 @@
 
 #include <base/parallel.hpp>
 #include <curved/arcs.hpp>
+#include <curved/blending.hpp>
 #include <curved/element_numbers.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/patches.hpp>
@@ -63,10 +64,15 @@ void requireOrder(int order) {
 }
 
 /// @param map  scaled for the mesh; receives the scale of the nodes
-LagrangeMesh withNodes(HexMesh mesh, igm::PreparedMap& map, int order, Context& context) {
+LagrangeMesh withNodes(HexMesh mesh, igm::PreparedMap& map, int order, CurvedNodes nodes,
+                       Context& context, ExtractStatistics& statistics) {
   LagrangeMesh result = groupNodes(mesh, map, order, context);
   result.features = std::move(mesh.features);
   result.regions = std::move(mesh.regions);
+  if (nodes == CurvedNodes::Blended) {
+    Stage stage(context, "blending");
+    statistics.straightenedCells = blendNodes(result, stage);
+  }
   return result;
 }
 
@@ -102,7 +108,7 @@ LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOpti
     extraction::ScaledMap scaled =
         extraction::prepareScaled(map, options, {order}, context, filled);
     result = curved::withNodes(extraction::extractScaled(scaled, options, context, filled),
-                               scaled.map, order, context);
+                               scaled.map, order, options.curvedNodes, context, filled);
   });
   return result;
 }
@@ -130,8 +136,8 @@ LagrangeMesh Extractor::extractLagrange(int order, const ExtractOptions& options
   prepared_->run({"Extractor::extractLagrange", extraction::kLagrangeSteps}, options, {order},
                  context, statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
                    HexMesh mesh = prepared_->mesh(cells, options, context, filled);
-                   result =
-                       curved::withNodes(std::move(mesh), prepared_->mapToScale(), order, context);
+                   result = curved::withNodes(std::move(mesh), prepared_->mapToScale(), order,
+                                              options.curvedNodes, context, filled);
                  });
   return result;
 }

@@ -103,14 +103,15 @@ inline constexpr std::array<WorkStep, 8> kPiecewiseSteps = {{{"prepare", 0.1},
                                                              {"arcs", 6},
                                                              {"patches", 12}}};
 /// ... with the nodes of order 2.
-inline constexpr std::array<WorkStep, 8> kLagrangeSteps = {{{"prepare", 0.1},
+inline constexpr std::array<WorkStep, 9> kLagrangeSteps = {{{"prepare", 0.1},
                                                             {"repair", 0.3},
                                                             {"prepare", 0.1},
                                                             {"scaling", 0.1},
                                                             {"engine", 4},
                                                             {"features", 0.5},
                                                             {"cell centres", 1},
-                                                            {"nodes", 10}}};
+                                                            {"nodes", 10},
+                                                            {"blending", 4}}};
 
 /// What a public function reports.
 struct ReportedCall {

@@ -67,7 +67,7 @@ REPORT_KEYS = {
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
     "validity", "verification", "streamed", "checksums", "repair", "quantization", "improvement", "order",
-    "nodes", "arcs", "patches", "parts",
+    "nodes", "curved", "arcs", "patches", "parts",
 }
 
 
@@ -469,8 +469,14 @@ class Pipeline(CommandTest):
             self.assertEqual(report["nodes"], 16 + 32 * 2 + 24 * 4 + 7 * 8)
             self.assertEqual(report["order"], 3)
             self.assertTrue(report["verification"]["passed"])
+            self.assertEqual(report["curved"], {"nodes": "blended", "straightened_cells": []})
+        self.run_command("extract", map_file, "-o", "exact.mesh", "--order", "3", "--curved", "exact", "--report",
+                         "r.json")
+        self.assertEqual(json.loads((self.folder / "r.json").read_text())["curved"]["nodes"], "exact")
+        self.assertNotEqual(self.files()["c.mesh"], self.files()["exact.mesh"])
         self.run_command("extract", map_file, "-o", "first.mesh")
-        self.run_command("extract", map_file, "-o", "again.mesh", "--order", "1")
+        self.run_command("extract", map_file, "-o", "again.mesh", "--order", "1", "--report", "r.json")
+        self.assertIsNone(json.loads((self.folder / "r.json").read_text())["curved"])
         files = self.files()
         self.assertEqual(files["first.mesh"], files["again.mesh"])
         self.assertIn(b"L2_T4_3D_P3", files["c.mesh"])
@@ -481,6 +487,8 @@ class Pipeline(CommandTest):
             (["--order", "3", "--arcs", "b.vtu"], BAD_USAGE),
             (["--stream", "--arcs", "b.vtu"], BAD_USAGE),
             (["--stream", "--order", "2"], BAD_USAGE),
+            (["--curved", "exact"], BAD_USAGE),
+            (["--order", "2", "--curved", "straight"], BAD_USAGE),
             (["--arcs", "a.vtu"], BAD_USAGE),
             (["--arcs", "b.vtu", "--patches", "b.vtu"], BAD_USAGE),
             (["--arcs", "b.mesh"], FILE_PROBLEM),
@@ -1174,7 +1182,7 @@ class Repair(CommandTest):
                               code="InvalidArgument")
         # Curved cells, in two steps and in one.
         self.run_command("generate", "sphere", "--jitter", "0.5", "--cells", "1", "--quiet", "-o", "ball.hexex")
-        curved = ["--order", "2", "--quiet"]
+        curved = ["--order", "2", "--curved", "exact", "--quiet"]
         self.run_command("extract", "ball.hexex", "-o", "curved.vtu", *curved)
         self.run_command("extract", "ball.hexex", "-o", "one.vtu", "--improve", "--passes", "1", *curved)
         run = self.run_command("improve", "curved.vtu", "--map", "ball.hexex", "--passes", "1", "-o", "two.vtu")

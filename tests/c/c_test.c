@@ -312,7 +312,7 @@ static void test_errors(const char* folder) {
   hexhex_mesh_destroy(mesh);
   newer.unknown = 1;
   CHECK(hexhex_extract(good, &newer.known, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
-  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1, 0, 0};
+  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1, 0, 0, HEXHEX_NODES_BLENDED};
   older.size = offsetof(hexhex_extract_options, epsilon); /* so those two are defaults */
   CHECK_OK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error));
   hexhex_mesh_destroy(mesh);
@@ -694,9 +694,21 @@ static void test_improve_curved(const char* folder) {
   options.passes = 1;
   for (int order = 2; order <= 4; ++order) {
     hexhex_improve_report report = HEXHEX_IMPROVE_REPORT_INIT;
-    CHECK_OK(hexhex_extract_lagrange(map, order, NULL, NULL, &mesh, NULL, &error));
     hexhex_certificate before = HEXHEX_CERTIFICATE_INIT;
     hexhex_certificate after = HEXHEX_CERTIFICATE_INIT;
+    hexhex_extract_options nodes = HEXHEX_EXTRACT_OPTIONS_INIT;
+    hexhex_statistics statistics = HEXHEX_STATISTICS_INIT;
+    CHECK_OK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, &statistics, &error));
+    CHECK_OK(hexhex_lagrange_mesh_certify(mesh, NULL, NULL, NULL, &before, &error));
+    CHECK(before.refuted + before.undecided == 0 &&
+          statistics.straightened_cells < before.positive);
+    hexhex_lagrange_mesh_destroy(mesh);
+    nodes.curved_nodes = (hexhex_curved_nodes)2;
+    CHECK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, NULL, &error) ==
+          HEXHEX_INVALID_ARGUMENT);
+    nodes.curved_nodes = HEXHEX_NODES_EXACT;
+    CHECK_OK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, &statistics, &error));
+    CHECK(statistics.straightened_cells == 0);
     CHECK_OK(hexhex_lagrange_mesh_certify(mesh, NULL, NULL, NULL, &before, &error));
     if (order == 4) {
       CHECK(hexhex_lagrange_mesh_improve(mesh, map, &options, NULL, &report, &error) ==

@@ -69,7 +69,7 @@ export default function makePages(): void {
   hexhex("improve", "rough.vtu", "--map", "rough.hexex", "-o", "improved.vtu", "--view", "improved.html", "--quiet");
   hexhex("view", "improved.vtu", "-o", "after.html", "--quiet");
   hexhex("generate", "sphere", "--cells", "2", "--jitter", "0.9", "-o", "rough-ball.hexex", "--quiet");
-  hexhex("extract", "rough-ball.hexex", "--order", "2", "-o", "improved-ball.vtu", "--improve", "--passes", "1",
+  hexhex("extract", "rough-ball.hexex", "--order", "2", "--curved", "exact", "-o", "improved-ball.vtu", "--improve", "--passes", "1",
     "--view", "improved-curved.html", "--quiet");
 
   // One cell, in a file that somebody has named who means harm.

@@ -679,6 +679,12 @@ typedef enum hexhex_engine HEXHEX_AS_INT {
   HEXHEX_ENGINE_PROPELLER = 1 /**< the paper's algorithm: the same mesh, bit for bit */
 } hexhex_engine;
 
+/** Where nodes of cells of higher order are: CurvedNodes in <hexhex/extract.hpp>. */
+typedef enum hexhex_curved_nodes {
+  HEXHEX_NODES_BLENDED = 0, /**< on the surface; inside between these, so that no cell folds over */
+  HEXHEX_NODES_EXACT = 1    /**< all where the map has them */
+} hexhex_curved_nodes;
+
 typedef struct hexhex_extract_options {
   size_t size;
   hexhex_engine engine;
@@ -687,9 +693,10 @@ typedef struct hexhex_extract_options {
   double tolerance; /**< how far the map may be from its integer conditions, below 0.25 */
   int repair;       /**< 1: a map with flipped or flat tets is repaired first */
   int round;        /**< as in hexhex_repair_options, if there is a repair */
+  hexhex_curved_nodes curved_nodes;
 } hexhex_extract_options;
 #define HEXHEX_EXTRACT_OPTIONS_INIT \
-  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2, 0, 0 }
+  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2, 0, 0, HEXHEX_NODES_BLENDED }
 
 /** What happened on the way. ExtractStatistics in <hexhex/extract.hpp> explains the fields; array
  * indices are kinds of generators: vertex, edge, face, cell. */
@@ -714,10 +721,11 @@ typedef struct hexhex_statistics {
   uint64_t cut_faces;
   uint64_t overlapping_tets;
   uint64_t traced_cells;
-  int repaired; /**< 1 if the map was repaired: see hexhex_mesh_get_repair() */
+  int repaired;                /**< 1 if the map was repaired: see hexhex_mesh_get_repair() */
+  uint64_t straightened_cells; /**< so many have left the surface to be positive */
 } hexhex_statistics;
 #define HEXHEX_STATISTICS_INIT \
-  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /** Extracts the hexahedral mesh of a map.
  * @param[out] statistics  made with HEXHEX_STATISTICS_INIT, or NULL */

@@ -141,10 +141,11 @@ def _one_of(names: tuple[str, ...], name: str, what: str) -> str:
 
 
 def _options(scale: int, engine: str, tolerance: float, epsilon: float, repair: bool,
-             round: bool) -> _hexhex.Options:
+             round: bool, curved_nodes: str = "blended") -> _hexhex.Options:
     _one_of(("atlas", "propeller"), engine, "engine")
+    _one_of(("blended", "exact"), curved_nodes, "place of curved nodes")
     return _hexhex.Options(_whole(scale, "scale"), engine == "propeller", tolerance, epsilon, repair,
-                           round)
+                           round, curved_nodes == "exact")
 
 
 def _threads(threads: Optional[int]) -> int:
@@ -159,9 +160,10 @@ def _threads(threads: Optional[int]) -> int:
 
 def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             igm: npt.ArrayLike | None = None, *, scale: int = 1, threads: int | None = None,
-            order: int = 1, arcs: bool = False, patches: bool = False, repair: bool = False,
-            round: bool = False, engine: str = "atlas", tolerance: float = 1e-2,
-            epsilon: float = 1e-6, quantize: bool = False, cells: float | None = None,
+            order: int = 1, curved_nodes: str = "blended", arcs: bool = False,
+            patches: bool = False, repair: bool = False, round: bool = False,
+            engine: str = "atlas", tolerance: float = 1e-2, epsilon: float = 1e-6,
+            quantize: bool = False, cells: float | None = None,
             edge_length: float | None = None, progress: Progress | None = None) -> Mesh:
     """Extracts the hexahedral mesh that an integer-grid map implies.
 
@@ -173,6 +175,10 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
         scale: multiplies all parameters: scale**3 times as many cells.
         threads: None for all cores. The result does not depend on it, bit for bit.
         order: of cells, 1 to 9: above 1, ``mesh.curved`` has cells of that order, too.
+        curved_nodes: "blended": nodes of these on the surface are where the map has them, others
+            between those; cells are positive wherever straight ones are, and those that have left
+            the surface for it are in ``mesh.statistics["straightened_cells"]``. "exact": all nodes
+            are where the map has them, and cells may fold over.
         arcs: ``mesh.arcs`` gets the exact shapes of edges.
         patches: ``mesh.patches`` gets those of faces, and ``mesh.arcs`` those of edges.
         repair: a map with flipped or flat tets is repaired first: see ``mesh.repair`` and
@@ -211,7 +217,8 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
         raise ArgumentError("The arguments cells and edge_length are of quantizations: add "
                             "quantize=True. An integer-grid map has a scale.", "InvalidArgument")
     arrays = given._arrays()
-    last = (_options(scale, engine, tolerance, epsilon, repair, round), _threads(threads), progress)
+    last = (_options(scale, engine, tolerance, epsilon, repair, round, curved_nodes),
+            _threads(threads), progress)
     mesh = _assembled(
         order, arcs, patches, lambda: _hexhex.extract(arrays, *last),
         lambda: _hexhex.extract_piecewise(arrays, patches, *last),
@@ -522,11 +529,13 @@ class Extractor:
         return self._extractor.cells()
 
     def extract(self, *, scale: int = 1, threads: int | None = None, order: int = 1,
-                arcs: bool = False, patches: bool = False, engine: str = "atlas",
-                epsilon: float = 1e-6, progress: Progress | None = None) -> Mesh:
+                curved_nodes: str = "blended", arcs: bool = False, patches: bool = False,
+                engine: str = "atlas", epsilon: float = 1e-6,
+                progress: Progress | None = None) -> Mesh:
         """The mesh at a scale: the same as that of hexhex.extract(). The scale times the order is at
         most ``max_scale``."""
-        last = (_options(scale, engine, 0, epsilon, False, False), _threads(threads), progress)
+        last = (_options(scale, engine, 0, epsilon, False, False, curved_nodes), _threads(threads),
+                progress)
         return _assembled(
             order, arcs, patches, lambda: self._extractor.extract(*last),
             lambda: self._extractor.extract_piecewise(patches, *last),
