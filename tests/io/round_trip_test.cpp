@@ -220,7 +220,7 @@ TEST(Formats, NamesAreUniqueAndOtherNamesAreUnderstood) {
     names.push_back(format.name);
     EXPECT_FALSE(format.description.empty());
     EXPECT_TRUE(format.readsMaps || format.writesMaps || format.readsHexMeshes ||
-                format.writesHexMeshes || format.readsSurfaces)
+                format.writesHexMeshes || format.readsSurfaces || format.readsTets)
         << format.name;
   }
   EXPECT_NO_THROW(requireHexMeshFormat("out.dat", "gmsh22"));

@@ -68,7 +68,9 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
   const Format& format = findFormat(file, options.format, content);
   if (content == FileContent::HexMesh && format.meshes.write == nullptr && !format.overHdf5) {
     refuse(file, "files of the format \"" + std::string(format.label.name) +
-                     "\" are read; they are written by `hexhex extract --parts` alone.");
+                     (format.parts.open == nullptr
+                          ? "\" are read, but not written."
+                          : "\" are read; they are written by `hexhex extract --parts` alone."));
   }
   if (options.compress && !format.compresses) {
     refuse(file, "the format \"" + std::string(format.label.name) +

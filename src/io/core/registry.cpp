@@ -129,6 +129,12 @@ constexpr std::array kFormatTable = {
            .readTets = AbaqusFormat::readTets,
            .meshes = {AbaqusFormat::readMesh, writeAbaqus},
            .curved = {AbaqusFormat::holdsCurved, AbaqusFormat::readCurved}},
+    Format{.label = {"unv", ".unv", "I-deas universal, text"},
+           .readTets = UnvFormat::readTets,
+           .meshes = {.read = UnvFormat::readMesh},
+           .curved = {UnvFormat::holdsCurved, UnvFormat::readCurved}},
+    Format{.label = {"tetgen", ".ele", "TetGen: tets, and points in NAME.node"},
+           .readTets = readTetgen},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
            .meshes = {.write = writeMfem},
            .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
@@ -310,7 +316,8 @@ std::span<const FileFormat> fileFormats() {
                               format.compresses && io::hasZlib(),
                               format.readTriangles != nullptr};
       // Not in this build, or for parts, arcs and patches alone.
-      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces) {
+      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces ||
+          row.readsTets) {
         result.push_back(row);
       }
     }

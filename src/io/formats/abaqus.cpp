@@ -238,7 +238,6 @@ class AbaqusReader {
       lists_.points.push_back(point);
       if (items != nullptr) items->push_back(nodeNumbers_.back());
     }
-    if (lists_.points.size() > kNone) fail("the file has too many nodes", ErrorCode::TooLarge);
   }
 
   void readElements(const AbaqusKeyword& keyword) {
@@ -357,14 +356,11 @@ class AbaqusReader {
     if (nodeNumbers_.empty()) {
       throw Error(ErrorCode::FileUnsupported, input_.name() + ": the file has no *NODE section.");
     }
-    const NodeTags nodes(nodeNumbers_);
-    if (const Index repeated = nodes.repeated(); repeated != kNone) {
-      throw Error(ErrorCode::FileSyntax,
-                  input_.name() + ": two nodes have the number " +
-                      std::to_string(nodeNumbers_[repeated]) +
-                      ". If the file has several parts, export it as one mesh, without parts.");
+    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
+    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
+      nameNodes(lists_.blocks[b], std::exchange(blockNodes_[b], {}), nodes, input_,
+                "*NODE section");
     }
-    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) resolve(lists_.blocks[b], b, nodes);
     tagRegions();
     tagSurfaces();
     for (auto& [name, set] : nodeSets_) {
@@ -376,21 +372,6 @@ class AbaqusReader {
       }
       set.items = {};
     }
-  }
-
-  void resolve(ElementBlock& block, std::size_t b, const NodeTags& nodes) {
-    std::vector<std::uint64_t>& numbers = blockNodes_[b];
-    block.nodes.resize(numbers.size());
-    block.regions.assign(block.count(), 0);
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      block.nodes[i] = nodes.find(numbers[i]);
-      if (block.nodes[i] != kNone) continue;
-      throw Error(ErrorCode::IndexOutOfRange,
-                  input_.name() + ": element " +
-                      std::to_string(block.numbers[i / block.nodesEach]) + " names node " +
-                      std::to_string(numbers[i]) + ", which is in no *NODE section.");
-    }
-    numbers = {};
   }
 
   /// Without the letter and '_' that the writer puts in front.
@@ -409,7 +390,7 @@ class AbaqusReader {
       if (ownName(name) != name) names.push_back(name);
     }
     std::map<std::string, std::int64_t> numbers;
-    std::vector<std::pair<std::uint64_t, std::int32_t>> regions;
+    ElementTags regions;
     for (const std::string& name : names) {
       const auto set = elementSets_.find(name);
       if (set == elementSets_.end()) continue;
@@ -417,18 +398,12 @@ class AbaqusReader {
           numbers.emplace(name, static_cast<std::int64_t>(numbers.size()) + 1);
       if (!isNew) continue;
       const std::int32_t tag = tagOfGroup(ownName(name), known->second);
-      for (const std::uint64_t element : set->second.items) regions.emplace_back(element, tag);
+      for (const std::uint64_t element : set->second.items) regions.add(element, tag);
     }
-    // Of several sets with one element, the last one counts.
-    std::stable_sort(regions.begin(), regions.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    regions.sort();
     for (ElementBlock& block : lists_.blocks) {
-      for (std::size_t i = 0; i < block.count(); ++i) {
-        const auto behind = std::upper_bound(
-            regions.begin(), regions.end(), block.numbers[i],
-            [](std::uint64_t number, const auto& entry) { return number < entry.first; });
-        if (behind == regions.begin() || std::prev(behind)->first != block.numbers[i]) continue;
-        block.regions[i] = std::prev(behind)->second;
+      for (const std::uint64_t number : block.numbers) {
+        block.regions.push_back(regions.find(number));
       }
     }
   }
@@ -452,12 +427,9 @@ class AbaqusReader {
     }
     fail("expected " + std::string(what) + ", found " + quoted(word));
   }
-  /// Exponents may be spelled as in Fortran: 1.5D+01.
   [[nodiscard]] double real(std::string_view word) const {
-    std::string spelled = lowerCase(word);
-    std::replace(spelled.begin(), spelled.end(), 'd', 'e');
     double value = 0;
-    const NumberProblem problem = parseNumber(spelled, value);
+    const NumberProblem problem = parseNumber(word, value);
     if (problem == NumberProblem::None) return value;
     const bool infinite = problem == NumberProblem::NotFinite || problem == NumberProblem::Overflow;
     fail("expected a coordinate of a node, found " + quoted(word),

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -68,7 +69,7 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
 template <class CellAt>
 std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
                                  const CellAt& cellAt) {
-  std::vector<FeatureQuad> quads;
+  std::vector<FeatureQuad> quads = lists.quads;
   const NodeTags cells(numbers);
   for (const ElementSide& side : lists.sides) {
     const Index cell = cells.find(side.element);
@@ -123,10 +124,16 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::vector<FeatureEdge> features;
-  features.reserve(found.size());
+  std::vector<FeatureEdge> features = lists.edges;
   for (const auto& [tag, edge] : found) features.push_back({edge, tag});
   return features;
+}
+
+template <class CellAt>
+HexFeatures featuresOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
+                       const CellAt& cellAt) {
+  return {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt),
+          quadsOf(lists, numbers, cellAt)};
 }
 
 /// A face without a node of its own: its corners, sorted, and where it is.
@@ -230,12 +237,48 @@ std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {
   return std::in_range<std::int32_t>(number) ? static_cast<std::int32_t>(number) : 0;
 }
 
+NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) {
+  requireIndexable(numbers.size(), input.name());
+  NodeTags nodes(numbers);
+  if (const Index repeated = nodes.repeated(); repeated != kNone) {
+    throw Error(ErrorCode::FileSyntax,
+                input.name() + ": two nodes have the number " + std::to_string(numbers[repeated]) +
+                    ". If the file has several parts, export it as one mesh, without parts.");
+  }
+  return nodes;
+}
+
+void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
+               const NodeTags& nodes, const Input& input, std::string_view place) {
+  block.nodes.resize(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    block.nodes[i] = nodes.find(numbers[i]);
+    if (block.nodes[i] != kNone) continue;
+    throw Error(ErrorCode::IndexOutOfRange, input.name() + ": element " +
+                                                std::to_string(block.numbers[i / block.nodesEach]) +
+                                                " names node " + std::to_string(numbers[i]) +
+                                                ", which is in no " + std::string(place) + ".");
+  }
+}
+
+void ElementTags::sort() {
+  std::stable_sort(tags_.begin(), tags_.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+std::int32_t ElementTags::find(std::uint64_t element) const {
+  const auto behind =
+      std::upper_bound(tags_.begin(), tags_.end(), element,
+                       [](std::uint64_t number, const auto& tag) { return number < tag.first; });
+  const bool found = behind != tags_.begin() && std::prev(behind)->first == element;
+  return found ? std::prev(behind)->second : 0;
+}
+
 HexMesh hexMeshOf(ElementLists&& lists, const Input& input) {
   HexMesh mesh;
   const Array<std::uint64_t> numbers = takeCells<8>(lists, input, mesh);
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) { return mesh.cells[cell][k]; };
-  mesh.features = {verticesOf(lists), edgesOf(lists, mesh.cells.size(), cellAt),
-                   quadsOf(lists, numbers, cellAt)};
+  mesh.features = featuresOf(lists, numbers, cellAt);
   return mesh;
 }
 
@@ -279,8 +322,7 @@ LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
     return mesh.nodes[kNodesOfQuadratic * cell + k];
   };
-  mesh.features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt),
-                   quadsOf(lists, numbers, cellAt)};
+  mesh.features = featuresOf(lists, numbers, cellAt);
   fromVtkOrder(mesh, stage);
   return mesh;
 }

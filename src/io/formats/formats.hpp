@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -113,6 +114,9 @@ OpenSink openMeditSink, openMeshbSink;
 // if the mesh knows where its vertices came from, the point arrays `generator_kind` (UInt8: 0
 // vertex, 1 edge, 2 face, 3 cell), `generator_tet` (UInt32) and `generator_corners` (UInt8), as in
 // HexMesh; then tags and regions as addTags() describes them. These are read, other arrays ignored.
+//
+// Of several pieces in one file, points at the same position are one, and cells that vtkGhostType
+// marks as another piece's are left out. Field arrays are left out, too: they name points.
 //
 // The map of tets is an array: one of 12 numbers per cell (as it is written) or 3 per point, with
 // the name that ReadOptions and WriteOptions tell.
@@ -250,6 +254,21 @@ OpenPartSink openGmshPartSink, openSplitGmshPartSink;
 [[nodiscard]] ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage);
 using AbaqusFormat = ElementFormat<readAbaqus>;
 WriteMesh writeAbaqus;
+
+// `.unv`: I-deas universal files, as SALOME and Gmsh write them; read only. Nodes are data sets
+// 2411 and 781, elements 2412, groups 2467, 2477, 2452 and 2435. Groups of hexahedra are regions,
+// those of quads and beams tags of these, and those of nodes as hexMeshOf() has them. The tag is
+// what a name of this library says, or the number. Hexahedra with 20 nodes are curved cells; other
+// volume elements are counted.
+[[nodiscard]] ElementLists readUnv(const Input& input, ElementParts parts, Stage& stage);
+using UnvFormat = ElementFormat<readUnv>;
+
+// `.ele`: TetGen's tets, with their points in the file of the same name and the extension `.node`;
+// read only. Numbered from 0 or 1. Attributes and marks of the boundary are ignored.
+ReadTets readTetgen;
+/// The same of a text of points.
+[[nodiscard]] TetCells parseTetgen(std::string_view nodes, const std::string& nodesName,
+                                   const Input& input, Stage& stage);
 
 // `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts. Written
 // are an element block HEX8 for each region, a side set for each group of boundary quads, and node
