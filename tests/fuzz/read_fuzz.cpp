@@ -127,12 +127,18 @@ HexMesh parseGzip(std::string_view text, const std::string& fileName, Context& c
   return readGmsh({asText(bytes), fileName}, context);
 }
 
-/// Both files in one: a line of '=' is between points and tets.
+/// All files in one: '=' is between points, faces and tets.
 TetCells parseTetgenFiles(std::string_view text, const std::string& fileName, Context& context) {
-  const std::size_t end = std::min(text.find('='), text.size());
-  const Input tets(text.substr(std::min(end + 1, text.size())), fileName);
+  const auto take = [&text] {
+    const std::size_t end = std::min(text.find('='), text.size());
+    const std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    return part;
+  };
+  const TetgenText points{take(), "points"};
+  const TetgenText faces{take(), "faces"};
   Stage stage(context, "read tets");
-  return parseTetgen(text.substr(0, end), "points", tets, stage);
+  return parseTetgen(points, faces, {text, fileName}, stage);
 }
 
 /// Changes a file such that it keeps its structure.

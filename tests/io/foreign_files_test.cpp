@@ -439,6 +439,15 @@ TEST(ForeignFiles, TetsOfTetgen) {
   writeText(folder / "a.1.ele", tets);
   EXPECT_EQ(read().tets, (std::vector<Tet>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
   EXPECT_EQ(read().points[4], (Vec3{1, 1, 1}));
+  EXPECT_EQ(read().regions, (std::vector<std::int32_t>{9, 8}));
+  EXPECT_TRUE(read().features.faces.empty());
+  writeText(folder / "a.1.face", "3 1\n1 1 2 3 7\n2 2 3 4 0\n3 3 4 5 -2\n");
+  ASSERT_EQ(read().features.faces.size(), 2U);
+  EXPECT_EQ(read().features.faces[1].vertices, (std::array<Index, 3>{2, 3, 4}));
+  EXPECT_EQ(read().features.faces[1].tag, -2);
+  writeText(folder / "a.1.face", "2 1\n1 1 2 3 -1\n2 2 3 4 -1\n");  // as TetGen marks them
+  EXPECT_TRUE(read().features.faces.empty());
+  std::filesystem::remove(folder / "a.1.face");
   writeText(folder / "a.1.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
   writeText(folder / "a.1.ele", "1 4 0\n0 0 1 2 3\n");
   EXPECT_EQ(read().tets, (std::vector<Tet>{{0, 1, 2, 3}}));
@@ -452,7 +461,7 @@ TEST(ForeignFiles, TetsOfTetgen) {
     EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
   };
   expectFailure(points, replaced(tets, "4 5 8", "4 6 8"), ErrorCode::IndexOutOfRange,
-                "a.1.ele, line 3: there is no point 6 in ");
+                "a.1.ele, line 3: there is no point 6 in the .node file");
   expectFailure(points, replaced(tets, "2 2 3", "3 2 3"), ErrorCode::FileSyntax,
                 "line 3: rows are numbered one after the other, from 0 or 1; found 3.");
   expectFailure(points, "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n", ErrorCode::FileUnsupported,

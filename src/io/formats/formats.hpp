@@ -222,8 +222,8 @@ WritePiecewise writePatchesOvmb;
 // Written are MSH 4.1 (binary or ASCII) and MSH 2.2 (ASCII). Node i has the tag i + 1. Elements are
 // tagged vertices (type 15), tagged edges (type 1), boundary and tagged quads (type 3), then all
 // cells (type 5), numbered from 1 in this order. Each group is an entity (of vertices: each vertex
-// is one) and a physical group, both with the group's number; the cells are volume 1, physical
-// group "hexahedra".
+// is one) and a physical group, both with the group's number, which no other group has, of whatever
+// dimension; cells without regions are the physical group "hexahedra".
 ReadMesh readGmsh;
 ReadTets readGmshTets;
 WriteMesh writeGmsh41Binary, writeGmsh41Text, writeGmsh22Text;
@@ -254,20 +254,29 @@ OpenPartSink openGmshPartSink, openSplitGmshPartSink;
 [[nodiscard]] ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage);
 using AbaqusFormat = ElementFormat<readAbaqus>;
 WriteMesh writeAbaqus;
+/// Order 2 only: elements C3D20, without the nodes in faces and inside. Node sets have the nodes in
+/// the middle of edges, too.
+WriteCurved writeQuadraticAbaqus;
 
 // `.unv`: I-deas universal files, as SALOME and Gmsh write them; read only. Nodes are data sets
 // 2411 and 781, elements 2412, groups 2467, 2477, 2452 and 2435. Groups of hexahedra are regions,
-// those of quads and beams tags of these, and those of nodes as hexMeshOf() has them. The tag is
-// what a name of this library says, or the number. Hexahedra with 20 nodes are curved cells; other
-// volume elements are counted.
+// those of quads, triangles and beams tags of these, and those of nodes as hexMeshOf() has them.
+// The tag is what a name of this library says, or the number. Hexahedra with 20 nodes are curved
+// cells; other volume elements are counted.
 [[nodiscard]] ElementLists readUnv(const Input& input, ElementParts parts, Stage& stage);
 using UnvFormat = ElementFormat<readUnv>;
 
 // `.ele`: TetGen's tets, with their points in the file of the same name and the extension `.node`;
-// read only. Numbered from 0 or 1. Attributes and marks of the boundary are ignored.
+// read only. Numbered from 0 or 1. The first attribute of tets is their region, where all are whole
+// numbers; marks of the triangles in a file with the extension `.face` are their tags, unless all
+// are the same of -1, 0 and 1. Other attributes are ignored.
 ReadTets readTetgen;
-/// The same of a text of points.
-[[nodiscard]] TetCells parseTetgen(std::string_view nodes, const std::string& nodesName,
+struct TetgenText {
+  std::string_view text;
+  std::string name;
+};
+/// @param faces  may be empty
+[[nodiscard]] TetCells parseTetgen(const TetgenText& nodes, const TetgenText& faces,
                                    const Input& input, Stage& stage);
 
 // `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts. Written

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,7 +24,7 @@ namespace hexhex::io {
 namespace {
 
 /// What the numbers of an element's type ("FE descriptor") mean.
-enum class UnvKind : std::uint8_t { Other, Edge, Quad, Volume };
+enum class UnvKind : std::uint8_t { Other, Line, Triangle, Quad, Volume };
 
 struct UnvType {
   UnvKind kind = UnvKind::Other;
@@ -32,10 +35,11 @@ struct UnvType {
 bool isBeam(std::int64_t type) { return type == 11 || (type >= 21 && type <= 24); }
 
 UnvType unvType(std::int64_t type, std::size_t nodes) {
-  if (isBeam(type)) return {nodes <= 3 ? UnvKind::Edge : UnvKind::Other};
+  if (isBeam(type)) return {nodes <= 3 ? UnvKind::Line : UnvKind::Other};
   constexpr std::int64_t kFirstPlane = 41;  // plane stress, plane strain, plates, membranes, shells
   constexpr std::int64_t kLastPlane = 96;
   if (type >= kFirstPlane && type <= kLastPlane) {
+    if (nodes == 3 || nodes == 6) return {UnvKind::Triangle};
     return {nodes == 4 || nodes == 8 ? UnvKind::Quad : UnvKind::Other};
   }
   constexpr std::array<std::pair<std::int64_t, std::string_view>, 11> kVolumes = {
@@ -161,10 +165,13 @@ class UnvReader {
 
   void addElement(std::uint64_t element, const UnvType& type,
                   std::span<const std::uint64_t> nodes) {
-    if (type.kind == UnvKind::Edge && nodes.size() >= 2) {
+    if (type.kind == UnvKind::Line && nodes.size() >= 2) {
       edges_.push_back({element, {nodes.front(), nodes.back()}});
+    } else if (type.kind == UnvKind::Triangle) {
+      const std::size_t step = nodes.size() / 3;  // nodes of edges stand between the corners
+      triangles_.push_back({element, {nodes[0], nodes[step], nodes[2 * step]}});
     } else if (type.kind == UnvKind::Quad) {
-      const std::size_t step = nodes.size() / 4;  // nodes of edges stand between the corners
+      const std::size_t step = nodes.size() / 4;
       quads_.push_back({element, {nodes[0], nodes[step], nodes[2 * step], nodes[3 * step]}});
     } else if (type.kind == UnvKind::Volume) {
       const std::size_t b = blockOf(*type.cells, nodes.size());
@@ -226,12 +233,31 @@ class UnvReader {
       nameNodes(block, std::exchange(blockNodes_[b], {}), nodes, input_, "data set of nodes");
       for (const std::uint64_t number : block.numbers) block.regions.push_back(tags_.find(number));
     }
-    addFlat(edges_, nodes, lists_.edges);
+    addFlat(edges_, nodes, lists_.lines);
+    addFlat(triangles_, nodes, lists_.triangles);
     addFlat(quads_, nodes, lists_.quads);
+    addNames();
     for (std::size_t s = 0; s < nodeSets_.size(); ++s) {
       for (const std::uint64_t number : nodeSets_[s]) {
         const Index node = nodes.find(number);
         if (node != kNone) lists_.nodeSets[s].nodes.push_back(node);
+      }
+    }
+  }
+
+  /// A group may have elements of several kinds.
+  void addNames() {
+    std::set<std::pair<int, std::int32_t>> used;
+    for (const ElementBlock& block : lists_.blocks) {
+      for (const std::int32_t region : block.regions) used.emplace(3, region);
+    }
+    for (const FeatureEdge& line : lists_.lines) used.emplace(1, line.tag);
+    for (const FeatureFace& triangle : lists_.triangles) used.emplace(2, triangle.tag);
+    for (const FeatureQuad& quad : lists_.quads) used.emplace(2, quad.tag);
+    for (const NodeSet& group : lists_.nodeSets) {
+      for (int dimension = 1; dimension <= 3; ++dimension) {
+        if (!used.contains({dimension, group.number})) continue;
+        lists_.addName(dimension, group.number, group.name);
       }
     }
   }
@@ -261,6 +287,7 @@ class UnvReader {
   std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block, by their numbers
   std::vector<std::vector<std::uint64_t>> nodeSets_;    ///< per group, by their numbers
   std::vector<Flat<2>> edges_;
+  std::vector<Flat<3>> triangles_;
   std::vector<Flat<4>> quads_;
   ElementTags tags_;
 };

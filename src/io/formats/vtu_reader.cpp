@@ -227,7 +227,7 @@ auto* lookUp(const Table& table, std::string_view name) {
   return found == table.end() ? nullptr : &found->second;
 }
 
-VtkNumbers numbersOf(std::string_view type) {
+VtkNumbers vtkNumbersOf(std::string_view type) {
   if (type.starts_with("Float")) return VtkNumbers::Reals;
   if (type.starts_with("Int") || type.starts_with("UInt")) return VtkNumbers::Integers;
   return VtkNumbers::Others;
@@ -367,7 +367,7 @@ class VtuFile final : public VtkSource {
     array.name = tag.attribute("Name");
     // Of arrays without a name, only the last one of the points is looked for.
     if (section != VtkSection::Points && array.name.empty()) return;
-    array.numbers = numbersOf(tag.attribute("type"));
+    array.numbers = vtkNumbersOf(tag.attribute("type"));
     const std::string_view components = tag.attribute("NumberOfComponents");
     std::from_chars(components.data(), components.data() + components.size(), array.components);
     array.appended = tag.attribute("format") == "appended";
@@ -594,7 +594,7 @@ class VtuFile final : public VtkSource {
     }
     const std::string_view type = tag.attribute("type");
     const VtkScalar* const scalar = lookUp(kScalars, type);
-    if (scalar == nullptr || numbersOf(type) != numbers) {
+    if (scalar == nullptr || vtkNumbersOf(type) != numbers) {
       tags_.fail(ErrorCode::FileUnsupported,
                  "the number type " + quoted(type) + " is not supported for this array.", tag);
     }
