@@ -44,6 +44,7 @@ constexpr std::array<WorkStep, 1> kWritePatches = {{{"write patches", 1}}};
 }
 
 [[noreturn]] void failToRead(const std::filesystem::path& file, const Format& format) {
+  if (format.overHdf5) requireHdf5(file);
   refuse(file, "files of the format \"" + std::string(format.label.name) +
                    "\" are written, but not read.");
 }
@@ -404,7 +405,8 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
   const io::Format* const format = io::curvedFormat(file);
   if (format == nullptr) {
     io::refuse(file,
-               "cells of higher order are read from .vtu, .vtk, .inp, .exo and .e files only.");
+               "cells of higher order are read from .vtu, .vtk, .inp, .unv, .cgns, .exo and .e "
+               "files only.");
   }
   return inSteps(context, "readLagrangeMesh", io::kReadMesh,
                  [&] { return format->curved.read(io::openInput(file, context), context); });

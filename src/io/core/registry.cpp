@@ -42,11 +42,19 @@ TetCells readHexexTets(const Input& input, Context& context) {
 #if defined(HEXHEX_HAS_HDF5)
 constexpr WriteMesh* kWriteVtkHdf = writeVtkHdf;
 constexpr WriteMesh* kWriteCgns = writeCgns;
+constexpr ReadMesh* kReadCgns = CgnsFormat::readMesh;
+constexpr ReadTets* kReadCgnsTets = CgnsFormat::readTets;
+constexpr HoldsCurved* kHoldsCurvedCgns = CgnsFormat::holdsCurved;
+constexpr ReadCurved* kReadCurvedCgns = CgnsFormat::readCurved;
 constexpr OpenPartSink* kOpenVtkHdf = openVtkHdfPartSink;
 constexpr OpenPartSink* kOpenCgns = openCgnsPartSink;
 #else
 constexpr WriteMesh* kWriteVtkHdf = nullptr;
 constexpr WriteMesh* kWriteCgns = nullptr;
+constexpr ReadMesh* kReadCgns = nullptr;
+constexpr ReadTets* kReadCgnsTets = nullptr;
+constexpr HoldsCurved* kHoldsCurvedCgns = nullptr;
+constexpr ReadCurved* kReadCurvedCgns = nullptr;
 constexpr OpenPartSink* kOpenVtkHdf = nullptr;
 constexpr OpenPartSink* kOpenCgns = nullptr;
 #endif
@@ -152,7 +160,9 @@ constexpr std::array kFormatTable = {
            .parts = {kOpenVtkHdf, "VTKHDF: one file"},
            .overHdf5 = true},
     Format{.label = {"cgns", ".cgns", "CGNS"},
-           .meshes = {.write = kWriteCgns},
+           .readTets = kReadCgnsTets,
+           .meshes = {kReadCgns, kWriteCgns},
+           .curved = {kHoldsCurvedCgns, kReadCurvedCgns},
            .parts = {kOpenCgns, "CGNS: one file with a zone for each part", false},
            .overHdf5 = true},
     exodusFormat("exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"),

@@ -100,27 +100,6 @@ std::size_t nodesOfFacet(std::string_view name) {
   return isIn(kLines) ? 2 : 0;
 }
 
-/// Tags of groups: what a name of this library says, or the number of the group in its order, if
-/// no name says it.
-class GroupTags {
- public:
-  /// Before tags of others are asked for.
-  void reserve(const std::string& name) {
-    if (const auto tag = tagInGroupName(name)) taken_.insert(*tag);
-  }
-  [[nodiscard]] std::int32_t next(const std::string& name) {
-    if (const auto tag = tagInGroupName(name)) return *tag;
-    do {
-      ++last_;
-    } while (taken_.contains(last_));
-    return last_;
-  }
-
- private:
-  std::set<std::int32_t> taken_;
-  std::int32_t last_ = 0;
-};
-
 /// Reads a file and those that it includes.
 class AbaqusReader {
  public:

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -97,7 +98,7 @@ std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uin
 }
 
 std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
-  std::vector<FeatureVertex> vertices;
+  std::vector<FeatureVertex> vertices = lists.vertices;
   for (const NodeSet& set : lists.nodeSets) {
     if (set.nodes.size() != 1 && !set.name.starts_with("point_")) continue;
     const std::int32_t tag = tagOfGroup(set.name, set.number);
@@ -255,6 +256,49 @@ const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes) {
 void ElementLists::addName(int dimension, std::int32_t tag, std::string_view name) {
   if (tag == 0 || name.empty() || tagInGroupName(name)) return;
   names.push_back({dimension, tag, std::string(name)});
+}
+
+void ElementLists::addNamesInUse(const std::vector<TagName>& known) {
+  std::set<std::pair<int, std::int32_t>> used;
+  for (const ElementBlock& block : blocks) {
+    for (const std::int32_t region : block.regions) used.emplace(3, region);
+  }
+  for (const FeatureEdge& line : lines) used.emplace(1, line.tag);
+  for (const FeatureFace& triangle : triangles) used.emplace(2, triangle.tag);
+  for (const FeatureQuad& quad : quads) used.emplace(2, quad.tag);
+  for (const TagName& each : known) {
+    if (used.contains({each.dimension, each.tag})) addName(each.dimension, each.tag, each.name);
+  }
+}
+
+void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
+                    const std::vector<double>& numbers, const Input& input) {
+  requireIndexable(first + numbers.size(), input.name());
+  if (axis == 0) lists.points.resize(first + numbers.size());
+  if (first + numbers.size() != lists.points.size()) {
+    throw Error(ErrorCode::FileSyntax,
+                input.name() + ": the axes have different numbers of coordinates.");
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    lists.points[first + i][axis] = numbers[i];
+    if (std::isfinite(numbers[i])) continue;
+    throw Error(
+        ErrorCode::NotFinite,
+        input.name() + ": a coordinate of node " + std::to_string(i + 1) + " is not finite.",
+        Place{PlaceKind::Vertex, first + i});
+  }
+}
+
+void GroupTags::reserve(std::string_view name) {
+  if (const auto tag = tagInGroupName(name)) taken_.insert(*tag);
+}
+
+std::int32_t GroupTags::next(std::string_view name) {
+  if (const auto tag = tagInGroupName(name)) return *tag;
+  do {
+    ++last_;
+  } while (taken_.contains(last_));
+  return last_;
 }
 
 std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {

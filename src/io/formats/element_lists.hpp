@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -95,6 +96,7 @@ struct ElementLists {
   std::vector<ElementBlock> blocks;
   std::vector<ElementSide> sides;
   // Elements with a tag that are no volumes.
+  std::vector<FeatureVertex> vertices;
   std::vector<FeatureFace> triangles;
   std::vector<FeatureQuad> quads;
   std::vector<FeatureEdge> lines;
@@ -103,7 +105,14 @@ struct ElementLists {
 
   /// Notes what another program calls a group.
   void addName(int dimension, std::int32_t tag, std::string_view name);
+  /// The same of those names whose tag an element of their dimension has, from 1 to 3.
+  void addNamesInUse(const std::vector<TagName>& known);
 };
+
+/// Sets one coordinate of all points from number `first` on; that of the first axis makes room.
+/// @throws Error FileSyntax for another number of them than of the first axis; NotFinite; TooLarge
+void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
+                    const std::vector<double>& numbers, const Input& input);
 
 /// The type of volume cells with this name in kVolumeCells.
 [[nodiscard]] const VolumeCells* volumeCells(std::string_view plural);
@@ -113,6 +122,19 @@ struct ElementLists {
 
 /// What groups of elements are tagged with: what a name of this library says, or a number.
 [[nodiscard]] std::int32_t tagOfGroup(std::string_view name, std::int64_t number);
+
+/// Tags of groups: what a name of this library says, or the number of the group in its order, if
+/// no name says it.
+class GroupTags {
+ public:
+  /// Before tags of others are asked for.
+  void reserve(std::string_view name);
+  [[nodiscard]] std::int32_t next(std::string_view name);
+
+ private:
+  std::set<std::int32_t> taken_;
+  std::int32_t last_ = 0;
+};
 
 /// Finds nodes by the numbers that a file gives them.
 /// @throws Error FileSyntax if two have one number

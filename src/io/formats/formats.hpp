@@ -279,7 +279,8 @@ struct TetgenText {
 [[nodiscard]] TetCells parseTetgen(const TetgenText& nodes, const TetgenText& faces,
                                    const Input& input, Stage& stage);
 
-// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts. Written
+// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts, and read
+// also in its newer one, over HDF5. Written
 // are an element block HEX8 for each region, a side set for each group of boundary quads, and node
 // sets for the tags of edges and vertices; sets and blocks are named as their groups. Side sets and
 // blocks have the numbers of their groups. Tagged quads inside the mesh are left out. The cells are
@@ -305,6 +306,14 @@ OpenPartSink openExodusPartSink;
 // groups; and a boundary condition, of the type FamilySpecified, for each group of boundary quads.
 // The cells are in order of their regions. An empty mesh is an error.
 WriteMesh writeCgns;
+/// Unstructured zones; several only where 1-to-1 connections say which vertices they share.
+/// Sections of cells are regions where there are several, or this library named them. Boundary
+/// conditions of faces and edges tag these, and those of cells are regions; the name of their
+/// family, or their own, is the group's, and the tag is what a name of this library says, or the
+/// number of the group in its order. Conditions of vertices are as sets of nodes in hexMeshOf().
+/// Hexahedra with 20 and 27 nodes are curved cells; other volume elements are counted.
+[[nodiscard]] ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage);
+using CgnsFormat = ElementFormat<readCgns>;
 /// A zone for each part that has cells, with 1-to-1 connections of shared vertices and global
 /// numbers, from 1 on, as solutions. No ghosts.
 OpenPartSink openCgnsPartSink;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -236,28 +235,17 @@ class UnvReader {
     addFlat(edges_, nodes, lists_.lines);
     addFlat(triangles_, nodes, lists_.triangles);
     addFlat(quads_, nodes, lists_.quads);
-    addNames();
+    std::vector<TagName> names;  // a group may have elements of several kinds
+    for (const NodeSet& group : lists_.nodeSets) {
+      for (const int dimension : {1, 2, 3}) {
+        names.push_back({dimension, group.number, group.name});
+      }
+    }
+    lists_.addNamesInUse(names);
     for (std::size_t s = 0; s < nodeSets_.size(); ++s) {
       for (const std::uint64_t number : nodeSets_[s]) {
         const Index node = nodes.find(number);
         if (node != kNone) lists_.nodeSets[s].nodes.push_back(node);
-      }
-    }
-  }
-
-  /// A group may have elements of several kinds.
-  void addNames() {
-    std::set<std::pair<int, std::int32_t>> used;
-    for (const ElementBlock& block : lists_.blocks) {
-      for (const std::int32_t region : block.regions) used.emplace(3, region);
-    }
-    for (const FeatureEdge& line : lists_.lines) used.emplace(1, line.tag);
-    for (const FeatureFace& triangle : lists_.triangles) used.emplace(2, triangle.tag);
-    for (const FeatureQuad& quad : lists_.quads) used.emplace(2, quad.tag);
-    for (const NodeSet& group : lists_.nodeSets) {
-      for (int dimension = 1; dimension <= 3; ++dimension) {
-        if (!used.contains({dimension, group.number})) continue;
-        lists_.addName(dimension, group.number, group.name);
       }
     }
   }
