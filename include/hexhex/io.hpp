@@ -56,8 +56,7 @@ struct ReadOptions {
 [[nodiscard]] TetMap readMap(const std::filesystem::path& file);
 
 /// Reads a tetrahedral mesh, without a map, whether there is one or not: the formats above,
-/// `.mesh`,
-/// `.meshb` and `.msh`.
+/// `.mesh`, `.meshb`, `.msh`, `.inp`, `.unv`, `.exo`, `.e`, and TetGen's `.ele` beside its `.node`.
 /// @throws Error  as readMap()
 [[nodiscard]] TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);
@@ -98,9 +97,9 @@ struct FlagsFile {
 
 /// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
 /// VTK, ASCII and binary), `.msh` (Gmsh 1 to 4.1, ASCII and binary), `.ovm`, `.ovmb`, `.inp`
-/// (Abaqus), `.exo` and `.e` (Exodus II); each of them also compressed, as `.msh.gz`. Points,
-/// lines, triangles and other sections are ignored, quads may be features; generators are restored
-/// from `.vtu`, `.ovm` and `.ovmb`.
+/// (Abaqus), `.unv` (I-deas universal), `.cgns`, `.exo` and `.e` (Exodus II); each of them also
+/// compressed, as `.msh.gz`. Points, lines, triangles and other sections are ignored, quads may be
+/// features; generators are restored from `.vtu`, `.ovm` and `.ovmb`.
 /// @throws Error  as readMap(); FileUnsupported for other volume cells, see ReadOptions::hexesOnly
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);

@@ -127,6 +127,20 @@ HexMesh parseGzip(std::string_view text, const std::string& fileName, Context& c
   return readGmsh({asText(bytes), fileName}, context);
 }
 
+/// All files in one: '=' is between points, faces and tets.
+TetCells parseTetgenFiles(std::string_view text, const std::string& fileName, Context& context) {
+  const auto take = [&text] {
+    const std::size_t end = std::min(text.find('='), text.size());
+    const std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    return part;
+  };
+  const TetgenText points{take(), "points"};
+  const TetgenText faces{take(), "faces"};
+  Stage stage(context, "read tets");
+  return parseTetgen(points, faces, {text, fileName}, stage);
+}
+
 /// Changes a file such that it keeps its structure.
 using Change = std::string (*)(const std::string& file, fuzz::Dice& dice,
                                const fuzz::ChangeBytes& change);
@@ -162,6 +176,9 @@ constexpr std::array kReaders = {
     Reader{"inp-curved", read<parse<AbaqusFormat::readCurved>>},
     Reader{"exodus", read<parse<ExodusFormat::readMesh>>},
     Reader{"exodus-curved", read<parse<ExodusFormat::readCurved>>},
+    Reader{"unv", read<parse<UnvFormat::readMesh>>},
+    Reader{"unv-curved", read<parse<UnvFormat::readCurved>>},
+    Reader{"tetgen", read<parseTetgenFiles>},
     Reader{"stl", read<parse<readStl>>},
     Reader{"obj", read<parse<readObj>>},
     Reader{"off", read<parse<readOff>>},

@@ -307,7 +307,7 @@ TEST(Vtu, UnsupportedAndBrokenFilesSaySo) {
       {replaced(good, "version=\"0.1\"", "compressor=\"vtkLZ4DataCompressor\""),
        ErrorCode::FileUnsupported, 3, "compressed"},
       {replaced(good, "Little", "Middle"), ErrorCode::FileUnsupported, 3, "byte order"},
-      {replaced(good, "</Piece>", "</Piece><Piece>"), ErrorCode::FileUnsupported, 14, "pieces"},
+      {replaced(good, "</Piece>", "</Piece><Piece>"), ErrorCode::FileSyntax, 14, "NumberOfPoints"},
       {replaced(good, "\"9\"", "\"nine\""), ErrorCode::FileSyntax, 5, "\"nine\""},
       {replaced(good, "\"9\"", "\"10\""), ErrorCode::FileSyntax, 7, "found the end"},
       {replaced(good, "\"9\"", "\"8\""), ErrorCode::FileSyntax, 7, "expected the end"},

@@ -128,7 +128,7 @@ void addByteOrderMark(const std::filesystem::path& file) {
 /// Whether files of a format are text, which the mark may precede.
 bool isText(const Way& way) {
   return way.format != "meshb" && way.format != "ovmb" && way.format != "vtk-binary" &&
-         way.format != "msh" && !way.format.starts_with("exodus");
+         way.format != "msh" && way.format != "cgns" && !way.format.starts_with("exodus");
 }
 
 TEST(RoundTrips, OfTextsWithAByteOrderMark) {
@@ -220,7 +220,7 @@ TEST(Formats, NamesAreUniqueAndOtherNamesAreUnderstood) {
     names.push_back(format.name);
     EXPECT_FALSE(format.description.empty());
     EXPECT_TRUE(format.readsMaps || format.writesMaps || format.readsHexMeshes ||
-                format.writesHexMeshes || format.readsSurfaces)
+                format.writesHexMeshes || format.readsSurfaces || format.readsTets)
         << format.name;
   }
   EXPECT_NO_THROW(requireHexMeshFormat("out.dat", "gmsh22"));

@@ -44,6 +44,7 @@ constexpr std::array<WorkStep, 1> kWritePatches = {{{"write patches", 1}}};
 }
 
 [[noreturn]] void failToRead(const std::filesystem::path& file, const Format& format) {
+  if (format.overHdf5) requireHdf5(file);
   refuse(file, "files of the format \"" + std::string(format.label.name) +
                    "\" are written, but not read.");
 }
@@ -69,7 +70,9 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
   const Format& format = findFormat(file, options.format, content);
   if (content == FileContent::HexMesh && format.meshes.write == nullptr && !format.overHdf5) {
     refuse(file, "files of the format \"" + std::string(format.label.name) +
-                     "\" are read; they are written by `hexhex extract --parts` alone.");
+                     (format.parts.open == nullptr
+                          ? "\" are read, but not written."
+                          : "\" are read; they are written by `hexhex extract --parts` alone."));
   }
   if (options.compress && !format.compresses) {
     refuse(file, "the format \"" + std::string(format.label.name) +
@@ -406,7 +409,8 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
   const io::Format* const format = io::curvedFormat(file);
   if (format == nullptr) {
     io::refuse(file,
-               "cells of higher order are read from .vtu, .vtk, .inp, .exo and .e files only.");
+               "cells of higher order are read from .vtu, .vtk, .inp, .unv, .cgns, .exo and .e "
+               "files only.");
   }
   return inSteps(context, "readLagrangeMesh", io::kReadMesh,
                  [&] { return format->curved.read(io::openInput(file, context), context); });

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdlib>
@@ -7,6 +8,7 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
 #if defined(HEXHEX_HAS_HDF5)
 #include <dlfcn.h>
 
@@ -59,9 +61,23 @@ void requireHdf5(const std::filesystem::path& /*file*/) {}
 void requireHdf5(const std::filesystem::path& file) {
   throw Error(ErrorCode::FileUnsupported,
               file.string() +
-                  ": this build of hexhex cannot write such files. Install HDF5 "
+                  ": this build of hexhex cannot read or write such files. Install HDF5 "
                   "(libhdf5-dev) and build it anew.");
 }
+std::unique_ptr<HdfReader> HdfReader::open(const Input& input) {
+  requireHdf5(input.name());
+  return nullptr;
+}
 #endif
+
+std::string firstBytes(const Input& input) {
+  constexpr std::size_t kCount = 8;
+  if (input.bytes()) return std::string(input.bytes()->substr(0, kCount));
+  const InputFile file(input.path());
+  if (!file.isRegular()) return {};
+  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kCount)), '\0');
+  file.readAt(0, head.data(), head.size());
+  return head;
+}
 
 }  // namespace hexhex::io

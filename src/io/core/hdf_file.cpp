@@ -5,6 +5,8 @@
 #include <limits>
 #include <new>
 
+#include <hexhex/error.hpp>
+
 #include <io/core/hdf_file.hpp>
 #if __has_include(<H5FDdevelop.h>)
 #include <H5FDdevelop.h>
@@ -67,14 +69,14 @@ herr_t readBytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t 
   const std::size_t there =
       from < open.written ? std::min<std::size_t>(size, open.written - from) : 0;
   std::fill_n(static_cast<char*>(bytes), size, char{0});
-  guarded(*open.target, [&] { open.target->output.readBytesAt(from, bytes, there); });
+  guarded(*open.target, [&] { open.target->output->readBytesAt(from, bytes, there); });
   return 0;
 }
 
 herr_t writeBytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t to,
                   std::size_t size, const void* bytes) {
   OpenFile& open = fileOf(file);
-  guarded(*open.target, [&] { open.target->output.writeBytesAt(to, bytes, size); });
+  guarded(*open.target, [&] { open.target->output->writeBytesAt(to, bytes, size); });
   open.written = std::max<haddr_t>(open.written, to + size);
   return 0;
 }
@@ -132,7 +134,12 @@ hid_t registerDriver() {
 
 void HdfTarget::require(std::int64_t status) const {
   if (failure) std::rethrow_exception(failure);
-  if (status < 0) output.fail("HDF5 could not make it; perhaps memory is exhausted");
+  if (status >= 0) return;
+  if (output != nullptr) output->fail("HDF5 could not make it; perhaps memory is exhausted");
+  throw Error(ErrorCode::FileSyntax,
+              name +
+                  ": HDF5 cannot read the file: it is damaged or incomplete, or memory is "
+                  "exhausted.");
 }
 
 void HdfObject::close() {
@@ -141,15 +148,14 @@ void HdfObject::close() {
   require(close_(id));
 }
 
-HdfFile::QuietErrors::QuietErrors() {
-  HDF5(H5Eget_auto2)(H5E_DEFAULT, &function, &data);
+HdfSession::HdfSession() : lock_((requireSpareMemory(), hdf5Lock())) {
+  HDF5(H5Eget_auto2)(H5E_DEFAULT, &function_, &data_);
   HDF5(H5Eset_auto2)(H5E_DEFAULT, nullptr, nullptr);
 }
-HdfFile::QuietErrors::~QuietErrors() { HDF5(H5Eset_auto2)(H5E_DEFAULT, function, data); }
+HdfSession::~HdfSession() { HDF5(H5Eset_auto2)(H5E_DEFAULT, function_, data_); }
 
 HdfFile::HdfFile(const OutputFile& output, Order order)
-    : lock_((requireSpareMemory(), hdf5Lock())),
-      target_{output},
+    : target_{.output = &output},
       driver_(target_, registerDriver(), HDF5(H5FDunregister)),
       ofFiles_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_FILE_CREATE_ID_g)), HDF5(H5Pclose)),
       ofGroups_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_GROUP_CREATE_ID_g)), HDF5(H5Pclose)),

@@ -1,4 +1,4 @@
-// HDF5 files that are written through OutputFile.
+// HDF5 files that are written through OutputFile, and what reading takes as well (hdf_reader.cpp).
 //
 // HDF5 cannot close a file that it could not write, and crashes when the process ends. So to it,
 // writing never fails here: what went wrong is kept and thrown by the next function of this header,
@@ -34,9 +34,10 @@
 
 namespace hexhex::io {
 
-/// Where HDF5 writes, and what went wrong there.
+/// Where HDF5 writes or reads, and what went wrong there.
 struct HdfTarget {
-  const OutputFile& output;
+  const OutputFile* output = nullptr;  ///< null of a file that is read
+  std::string name = {};               ///< of that
   std::exception_ptr failure = nullptr;
 
   /// Throws what went wrong, if anything.
@@ -72,8 +73,23 @@ class HdfObject {
   Close close_;
 };
 
-/// A file that is being written. Its bytes follow from what is written, not from when. While it
-/// lives, no other thread uses HDF5 through this library, and HDF5 prints no errors.
+/// While it lives, no other thread uses HDF5 through this library, and HDF5 prints no errors.
+class HdfSession {
+ public:
+  /// @throws std::bad_alloc
+  HdfSession();
+  ~HdfSession();
+  HdfSession(const HdfSession&) = delete;
+  HdfSession& operator=(const HdfSession&) = delete;
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// A file that is being written, in a session. Its bytes follow from what is written, not from
+/// when.
 class HdfFile {
  public:
   /// Whether groups know the order of their members; a newer layout then.
@@ -110,16 +126,9 @@ class HdfFile {
   void close() { file_.close(); }
 
  private:
-  struct QuietErrors {
-    QuietErrors();
-    ~QuietErrors();
-    H5E_auto2_t function = nullptr;
-    void* data = nullptr;
-  };
   [[nodiscard]] hid_t create(Order order);
 
-  std::lock_guard<std::mutex> lock_;
-  QuietErrors quiet_;
+  HdfSession session_;
   HdfTarget target_;
   HdfObject driver_;
   HdfObject ofFiles_;  ///< how they are created, as the next two

@@ -42,11 +42,19 @@ TetCells readHexexTets(const Input& input, Context& context) {
 #if defined(HEXHEX_HAS_HDF5)
 constexpr WriteMesh* kWriteVtkHdf = writeVtkHdf;
 constexpr WriteMesh* kWriteCgns = writeCgns;
+constexpr ReadMesh* kReadCgns = CgnsFormat::readMesh;
+constexpr ReadTets* kReadCgnsTets = CgnsFormat::readTets;
+constexpr HoldsCurved* kHoldsCurvedCgns = CgnsFormat::holdsCurved;
+constexpr ReadCurved* kReadCurvedCgns = CgnsFormat::readCurved;
 constexpr OpenPartSink* kOpenVtkHdf = openVtkHdfPartSink;
 constexpr OpenPartSink* kOpenCgns = openCgnsPartSink;
 #else
 constexpr WriteMesh* kWriteVtkHdf = nullptr;
 constexpr WriteMesh* kWriteCgns = nullptr;
+constexpr ReadMesh* kReadCgns = nullptr;
+constexpr ReadTets* kReadCgnsTets = nullptr;
+constexpr HoldsCurved* kHoldsCurvedCgns = nullptr;
+constexpr ReadCurved* kReadCurvedCgns = nullptr;
 constexpr OpenPartSink* kOpenVtkHdf = nullptr;
 constexpr OpenPartSink* kOpenCgns = nullptr;
 #endif
@@ -138,6 +146,12 @@ constexpr std::array kFormatTable = {
                       .read = AbaqusFormat::readCurved,
                       .write = writeQuadraticAbaqus,
                       .onlyOrder = 2}},
+    Format{.label = {"unv", ".unv", "I-deas universal, text"},
+           .readTets = UnvFormat::readTets,
+           .meshes = {.read = UnvFormat::readMesh},
+           .curved = {UnvFormat::holdsCurved, UnvFormat::readCurved}},
+    Format{.label = {"tetgen", ".ele", "TetGen: tets, and points in NAME.node"},
+           .readTets = readTetgen},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
            .meshes = {.write = writeMfem},
            .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
@@ -152,7 +166,9 @@ constexpr std::array kFormatTable = {
            .groups = false,
            .overHdf5 = true},
     Format{.label = {"cgns", ".cgns", "CGNS"},
-           .meshes = {.write = kWriteCgns},
+           .readTets = kReadCgnsTets,
+           .meshes = {kReadCgns, kWriteCgns},
+           .curved = {kHoldsCurvedCgns, kReadCurvedCgns},
            .parts = {kOpenCgns, "CGNS: one file with a zone for each part", false},
            .overHdf5 = true},
     exodusFormat("exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"),
@@ -341,7 +357,8 @@ std::span<const FileFormat> fileFormats() {
                               format.compresses && io::hasZlib(),
                               format.readTriangles != nullptr};
       // Not in this build, or for parts, arcs and patches alone.
-      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces) {
+      if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces ||
+          row.readsTets) {
         result.push_back(row);
       }
     }

@@ -90,6 +90,12 @@ NumberProblem parseDecimal(std::string_view decimal, double& value) {
 }  // namespace
 
 NumberProblem parseNumber(std::string_view token, double& value) {
+  const std::size_t exponent = token.find_first_of("dDeE");
+  if (exponent != std::string_view::npos && lowerCase(token[exponent]) == 'd') {
+    std::string usual(token);
+    usual[exponent] = 'e';
+    return parseNumber(usual, value);
+  }
   const bool negative = takeSign(token);
   if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
     return NumberProblem::NotANumber;

@@ -49,8 +49,8 @@ enum class NumberProblem {
 inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
 
 /// Parses one whole token: an optional sign; then a decimal number with or without a point and an
-/// exponent, or two integers with '/' between them. The result is the nearest double, ties to even;
-/// numbers too small for a double become 0.
+/// exponent (also as Fortran spells it, 1.5D+01), or two integers with '/' between them. The result
+/// is the nearest double, ties to even; numbers too small for a double become 0.
 /// @param[out] value  set if the result is None
 [[nodiscard]] NumberProblem parseNumber(std::string_view token, double& value);
 

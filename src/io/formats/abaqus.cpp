@@ -100,27 +100,6 @@ std::size_t nodesOfFacet(std::string_view name) {
   return isIn(kLines) ? 2 : 0;
 }
 
-/// Tags of groups: what a name of this library says, or the number of the group in its order, if
-/// no name says it.
-class GroupTags {
- public:
-  /// Before tags of others are asked for.
-  void reserve(const std::string& name) {
-    if (const auto tag = tagInGroupName(name)) taken_.insert(*tag);
-  }
-  [[nodiscard]] std::int32_t next(const std::string& name) {
-    if (const auto tag = tagInGroupName(name)) return *tag;
-    do {
-      ++last_;
-    } while (taken_.contains(last_));
-    return last_;
-  }
-
- private:
-  std::set<std::int32_t> taken_;
-  std::int32_t last_ = 0;
-};
-
 /// Reads a file and those that it includes.
 class AbaqusReader {
  public:
@@ -287,7 +266,6 @@ class AbaqusReader {
       lists_.points.push_back(point);
       if (items != nullptr) items->push_back(nodeNumbers_.back());
     }
-    if (lists_.points.size() > kNone) fail("the file has too many nodes", ErrorCode::TooLarge);
   }
 
   void readElements(const AbaqusKeyword& keyword) {
@@ -421,14 +399,11 @@ class AbaqusReader {
     if (nodeNumbers_.empty()) {
       throw Error(ErrorCode::FileUnsupported, input_.name() + ": the file has no *NODE section.");
     }
-    const NodeTags nodes(nodeNumbers_);
-    if (const Index repeated = nodes.repeated(); repeated != kNone) {
-      throw Error(ErrorCode::FileSyntax,
-                  input_.name() + ": two nodes have the number " +
-                      std::to_string(nodeNumbers_[repeated]) +
-                      ". If the file has several parts, export it as one mesh, without parts.");
+    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
+    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
+      nameNodes(lists_.blocks[b], std::exchange(blockNodes_[b], {}), nodes, input_,
+                "*NODE section");
     }
-    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) resolve(lists_.blocks[b], b, nodes);
     tagRegions();
     tagSurfaces();
     tagFacets(3, nodes);
@@ -442,21 +417,6 @@ class AbaqusReader {
       }
       set.items = {};
     }
-  }
-
-  void resolve(ElementBlock& block, std::size_t b, const NodeTags& nodes) {
-    std::vector<std::uint64_t>& numbers = blockNodes_[b];
-    block.nodes.resize(numbers.size());
-    block.regions.assign(block.count(), 0);
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      block.nodes[i] = nodes.find(numbers[i]);
-      if (block.nodes[i] != kNone) continue;
-      throw Error(ErrorCode::IndexOutOfRange,
-                  input_.name() + ": element " +
-                      std::to_string(block.numbers[i / block.nodesEach]) + " names node " +
-                      std::to_string(numbers[i]) + ", which is in no *NODE section.");
-    }
-    numbers = {};
   }
 
   /// Without the letter and '_' that the writer puts in front.
@@ -477,25 +437,19 @@ class AbaqusReader {
     GroupTags tags;
     for (const std::string& name : names) tags.reserve(ownName(name));
     std::set<std::string> done;
-    std::vector<std::pair<std::uint64_t, std::int32_t>> regions;
+    ElementTags regions;
     for (const std::string& name : names) {
       const auto set = elementSets_.find(name);
       if (set == elementSets_.end()) continue;
       if (!done.insert(name).second) continue;
       const std::int32_t tag = tags.next(ownName(name));
       lists_.addName(3, tag, ownName(name));
-      for (const std::uint64_t element : set->second.items) regions.emplace_back(element, tag);
+      for (const std::uint64_t element : set->second.items) regions.add(element, tag);
     }
-    // Of several sets with one element, the last one counts.
-    std::stable_sort(regions.begin(), regions.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    regions.sort();
     for (ElementBlock& block : lists_.blocks) {
-      for (std::size_t i = 0; i < block.count(); ++i) {
-        const auto behind = std::upper_bound(
-            regions.begin(), regions.end(), block.numbers[i],
-            [](std::uint64_t number, const auto& entry) { return number < entry.first; });
-        if (behind == regions.begin() || std::prev(behind)->first != block.numbers[i]) continue;
-        block.regions[i] = std::prev(behind)->second;
+      for (const std::uint64_t number : block.numbers) {
+        block.regions.push_back(regions.find(number));
       }
     }
   }
@@ -554,12 +508,9 @@ class AbaqusReader {
     }
     fail("expected " + std::string(what) + ", found " + quoted(word));
   }
-  /// Exponents may be spelled as in Fortran: 1.5D+01.
   [[nodiscard]] double real(std::string_view word) const {
-    std::string spelled = lowerCase(word);
-    std::replace(spelled.begin(), spelled.end(), 'd', 'e');
     double value = 0;
-    const NumberProblem problem = parseNumber(spelled, value);
+    const NumberProblem problem = parseNumber(word, value);
     if (problem == NumberProblem::None) return value;
     const bool infinite = problem == NumberProblem::NotFinite || problem == NumberProblem::Overflow;
     fail("expected a coordinate of a node, found " + quoted(word),

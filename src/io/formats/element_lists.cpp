@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -81,7 +83,7 @@ std::vector<FeatureFace> trianglesOf(const ElementLists& lists, const Array<std:
 template <class CellAt>
 std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
                                  const CellAt& cellAt) {
-  std::vector<FeatureQuad> quads;
+  std::vector<FeatureQuad> quads = lists.quads;
   const NodeTags cells(numbers);
   for (const ElementSide& side : lists.sides) {
     const Index cell = cells.find(side.element);
@@ -96,7 +98,7 @@ std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uin
 }
 
 std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
-  std::vector<FeatureVertex> vertices;
+  std::vector<FeatureVertex> vertices = lists.vertices;
   for (const NodeSet& set : lists.nodeSets) {
     if (set.nodes.size() != 1 && !set.name.starts_with("point_")) continue;
     const std::int32_t tag = tagOfGroup(set.name, set.number);
@@ -147,6 +149,13 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, c
   std::vector<FeatureEdge> features = lists.lines;
   for (const auto& [tag, edge] : found) features.push_back({edge, tag});
   return features;
+}
+
+template <class CellAt>
+HexFeatures hexFeaturesOf(ElementLists& lists, const Array<std::uint64_t>& numbers,
+                          const CellAt& cellAt) {
+  return {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt, adjacency::kHexEdges),
+          quadsOf(lists, numbers, cellAt), namesOf(lists)};
 }
 
 /// A face without a node of its own: its corners, sorted, and where it is.
@@ -249,19 +258,97 @@ void ElementLists::addName(int dimension, std::int32_t tag, std::string_view nam
   names.push_back({dimension, tag, std::string(name)});
 }
 
+void ElementLists::addNamesInUse(const std::vector<TagName>& known) {
+  std::set<std::pair<int, std::int32_t>> used;
+  for (const ElementBlock& block : blocks) {
+    for (const std::int32_t region : block.regions) used.emplace(3, region);
+  }
+  for (const FeatureEdge& line : lines) used.emplace(1, line.tag);
+  for (const FeatureFace& triangle : triangles) used.emplace(2, triangle.tag);
+  for (const FeatureQuad& quad : quads) used.emplace(2, quad.tag);
+  for (const TagName& each : known) {
+    if (used.contains({each.dimension, each.tag})) addName(each.dimension, each.tag, each.name);
+  }
+}
+
+void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
+                    const std::vector<double>& numbers, const Input& input) {
+  requireIndexable(first + numbers.size(), input.name());
+  if (axis == 0) lists.points.resize(first + numbers.size());
+  if (first + numbers.size() != lists.points.size()) {
+    throw Error(ErrorCode::FileSyntax,
+                input.name() + ": the axes have different numbers of coordinates.");
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    lists.points[first + i][axis] = numbers[i];
+    if (std::isfinite(numbers[i])) continue;
+    throw Error(
+        ErrorCode::NotFinite,
+        input.name() + ": a coordinate of node " + std::to_string(i + 1) + " is not finite.",
+        Place{PlaceKind::Vertex, first + i});
+  }
+}
+
+void GroupTags::reserve(std::string_view name) {
+  if (const auto tag = tagInGroupName(name)) taken_.insert(*tag);
+}
+
+std::int32_t GroupTags::next(std::string_view name) {
+  if (const auto tag = tagInGroupName(name)) return *tag;
+  do {
+    ++last_;
+  } while (taken_.contains(last_));
+  return last_;
+}
+
 std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {
   const auto tag = tagInGroupName(name);
   if (tag) return *tag;
   return std::in_range<std::int32_t>(number) ? static_cast<std::int32_t>(number) : 0;
 }
 
+NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) {
+  requireIndexable(numbers.size(), input.name());
+  NodeTags nodes(numbers);
+  if (const Index repeated = nodes.repeated(); repeated != kNone) {
+    throw Error(ErrorCode::FileSyntax,
+                input.name() + ": two nodes have the number " + std::to_string(numbers[repeated]) +
+                    ". If the file has several parts, export it as one mesh, without parts.");
+  }
+  return nodes;
+}
+
+void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
+               const NodeTags& nodes, const Input& input, std::string_view place) {
+  block.nodes.resize(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    block.nodes[i] = nodes.find(numbers[i]);
+    if (block.nodes[i] != kNone) continue;
+    throw Error(ErrorCode::IndexOutOfRange, input.name() + ": element " +
+                                                std::to_string(block.numbers[i / block.nodesEach]) +
+                                                " names node " + std::to_string(numbers[i]) +
+                                                ", which is in no " + std::string(place) + ".");
+  }
+}
+
+void ElementTags::sort() {
+  std::stable_sort(tags_.begin(), tags_.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+std::int32_t ElementTags::find(std::uint64_t element) const {
+  const auto behind =
+      std::upper_bound(tags_.begin(), tags_.end(), element,
+                       [](std::uint64_t number, const auto& tag) { return number < tag.first; });
+  const bool found = behind != tags_.begin() && std::prev(behind)->first == element;
+  return found ? std::prev(behind)->second : 0;
+}
+
 HexMesh hexMeshOf(ElementLists&& lists, const Input& input) {
   HexMesh mesh;
   const Array<std::uint64_t> numbers = takeCells<8>(lists, input, mesh);
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) { return mesh.cells[cell][k]; };
-  mesh.features = {verticesOf(lists),
-                   edgesOf(lists, mesh.cells.size(), cellAt, adjacency::kHexEdges),
-                   quadsOf(lists, numbers, cellAt), namesOf(lists)};
+  mesh.features = hexFeaturesOf(lists, numbers, cellAt);
   return mesh;
 }
 
@@ -308,8 +395,7 @@ LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
     return mesh.nodes[kNodesOfQuadratic * cell + k];
   };
-  mesh.features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt, adjacency::kHexEdges),
-                   quadsOf(lists, numbers, cellAt), namesOf(lists)};
+  mesh.features = hexFeaturesOf(lists, numbers, cellAt);
   fromVtkOrder(mesh, stage);
   return mesh;
 }

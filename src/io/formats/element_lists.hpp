@@ -2,10 +2,13 @@
 // Readers of such formats fill the lists; one place makes meshes of them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <hexhex/curved.hpp>
@@ -16,6 +19,51 @@
 #include <io/core/input_file.hpp>
 
 namespace hexhex::io {
+
+/// Finds nodes, or elements, by the numbers that a file gives them.
+class NodeTags {
+ public:
+  NodeTags() = default;
+  /// @param tags  of the nodes in their order; fewer than kNone
+  explicit NodeTags(const Array<std::uint64_t>& tags) : count_(tags.size()) {
+    if (tags.empty()) return;
+    first_ = tags[0];
+    std::size_t i = 0;
+    while (i < tags.size() && tags[i] == first_ + i) ++i;
+    if (i < tags.size()) sortTags(tags);
+  }
+
+  /// The node with a tag, or kNone.
+  [[nodiscard]] Index find(std::uint64_t tag) const {
+    if (sorted_.empty()) {
+      return tag - first_ < count_ ? static_cast<Index>(tag - first_) : kNone;
+    }
+    const auto found = std::lower_bound(sorted_.begin(), sorted_.end(), Entry{tag, 0});
+    return found == sorted_.end() || found->first != tag ? kNone : found->second;
+  }
+
+  /// A node whose tag an earlier node has, too; kNone if there is none.
+  [[nodiscard]] Index repeated() const {
+    for (std::size_t i = 1; i < sorted_.size(); ++i) {
+      if (sorted_[i].first == sorted_[i - 1].first) return sorted_[i].second;
+    }
+    return kNone;
+  }
+
+ private:
+  using Entry = std::pair<std::uint64_t, Index>;
+
+  void sortTags(const Array<std::uint64_t>& tags) {
+    sorted_.resize(tags.size());
+    for (std::size_t i = 0; i < tags.size(); ++i) sorted_[i] = {tags[i], static_cast<Index>(i)};
+    std::sort(sorted_.begin(), sorted_.end());
+  }
+
+  // The usual case needs no table: consecutive tags from first_ on.
+  std::uint64_t first_ = 0;
+  std::size_t count_ = 0;
+  Array<Entry> sorted_;
+};
 
 /// Elements of one type. Nodes are in the order of VTK.
 struct ElementBlock {
@@ -47,14 +95,24 @@ struct ElementLists {
   Array<Vec3> points;
   std::vector<ElementBlock> blocks;
   std::vector<ElementSide> sides;
-  std::vector<FeatureFace> triangles;  ///< with tags: elements of shells
-  std::vector<FeatureEdge> lines;      ///< with tags: elements of beams
+  // Elements with a tag that are no volumes.
+  std::vector<FeatureVertex> vertices;
+  std::vector<FeatureFace> triangles;
+  std::vector<FeatureQuad> quads;
+  std::vector<FeatureEdge> lines;
   std::vector<NodeSet> nodeSets;
   std::vector<TagName> names;
 
   /// Notes what another program calls a group.
   void addName(int dimension, std::int32_t tag, std::string_view name);
+  /// The same of those names whose tag an element of their dimension has, from 1 to 3.
+  void addNamesInUse(const std::vector<TagName>& known);
 };
+
+/// Sets one coordinate of all points from number `first` on; that of the first axis makes room.
+/// @throws Error FileSyntax for another number of them than of the first axis; NotFinite; TooLarge
+void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
+                    const std::vector<double>& numbers, const Input& input);
 
 /// The type of volume cells with this name in kVolumeCells.
 [[nodiscard]] const VolumeCells* volumeCells(std::string_view plural);
@@ -64,6 +122,42 @@ struct ElementLists {
 
 /// What groups of elements are tagged with: what a name of this library says, or a number.
 [[nodiscard]] std::int32_t tagOfGroup(std::string_view name, std::int64_t number);
+
+/// Tags of groups: what a name of this library says, or the number of the group in its order, if
+/// no name says it.
+class GroupTags {
+ public:
+  /// Before tags of others are asked for.
+  void reserve(std::string_view name);
+  [[nodiscard]] std::int32_t next(std::string_view name);
+
+ private:
+  std::set<std::int32_t> taken_;
+  std::int32_t last_ = 0;
+};
+
+/// Finds nodes by the numbers that a file gives them.
+/// @throws Error FileSyntax if two have one number
+[[nodiscard]] NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input);
+/// Gives a block its nodes.
+/// @param numbers  of the nodes, element by element
+/// @param place  where nodes are listed, for messages: "*NODE section"
+/// @throws Error IndexOutOfRange
+void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
+               const NodeTags& nodes, const Input& input, std::string_view place);
+
+/// Tags of elements by their numbers. Of several tags of one element, the last one counts.
+class ElementTags {
+ public:
+  void add(std::uint64_t element, std::int32_t tag) { tags_.emplace_back(element, tag); }
+  /// After the last add().
+  void sort();
+  /// 0 of elements without a tag.
+  [[nodiscard]] std::int32_t find(std::uint64_t element) const;
+
+ private:
+  std::vector<std::pair<std::uint64_t, std::int32_t>> tags_;
+};
 
 /// Hexahedra with 8 nodes. Sides of a tag are tagged quads. Sets of nodes that this library calls
 /// "point_7" and those of one node are tagged vertices, and the edges between nodes of a set

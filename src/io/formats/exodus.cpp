@@ -15,6 +15,7 @@
 #include <hexhex/version.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
@@ -250,8 +251,8 @@ constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  
 
 class ExodusReader {
  public:
-  ExodusReader(std::string_view bytes, const std::string& name, ElementParts parts)
-      : file_(bytes, name), name_(name), parts_(parts) {}
+  ExodusReader(NetcdfReader file, const Input& input, ElementParts parts)
+      : file_(std::move(file)), input_(input), parts_(parts) {}
 
   ElementLists read() {
     if (parts_ == ElementParts::Types) {
@@ -267,7 +268,7 @@ class ExodusReader {
 
  private:
   [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    throw Error(code, name_ + ": " + sentence);
+    throw Error(code, input_.name() + ": " + sentence);
   }
 
   void readPoints() {
@@ -288,17 +289,7 @@ class ExodusReader {
         const auto begin = numbers.begin() + each * static_cast<std::ptrdiff_t>(axis);
         numbers = std::vector<double>(begin, begin + each);
       }
-      if (axis == 0) lists_.points.resize(numbers.size());
-      if (numbers.size() != lists_.points.size() || numbers.size() > kNone) {
-        fail(ErrorCode::FileSyntax, "the axes have different numbers of coordinates.");
-      }
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        lists_.points[i][axis] = numbers[i];
-        if (std::isfinite(numbers[i])) continue;
-        throw Error(ErrorCode::NotFinite,
-                    name_ + ": a coordinate of node " + std::to_string(i + 1) + " is not finite.",
-                    Place{PlaceKind::Vertex, i});
-      }
+      setCoordinates(lists_, 0, axis, numbers, input_);
     }
   }
 
@@ -440,28 +431,25 @@ class ExodusReader {
   }
 
   NetcdfReader file_;
-  const std::string& name_;
+  const Input& input_;
   ElementParts parts_;
   ElementLists lists_;
 };
 
-/// What is no such file at all is refused before it is read as a whole.
-void requireExodus(const Input& input) {
-  if (input.bytes()) return;
-  const InputFile file(input.path());
-  if (!file.isRegular()) return;  // a pipe can be opened but once
-  std::array<char, 8> head{};
-  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), head.size()));
-  file.readAt(0, head.data(), size);
-  requireNetcdf({head.data(), size}, input.name());
-}
-
 }  // namespace
 
 ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
-  requireExodus(input);
+  const auto readNewer = [&](const Input& file) {
+    return ExodusReader({HdfReader::open(file), input.name()}, input, parts).read();
+  };
+  // What is no such file at all is refused before it is read as a whole.
+  const std::string head = firstBytes(input);
+  if (head == kHdfMark) return readNewer(input);
+  if (!head.empty()) requireNetcdf(head, input.name());
   Array<char> room;
-  return ExodusReader(input.text(room, stage, ""), input.name(), parts).read();
+  const std::string_view bytes = input.text(room, stage, "");
+  if (bytes.starts_with(kHdfMark)) return readNewer({bytes, input.name()});
+  return ExodusReader({bytes, input.name()}, input, parts).read();
 }
 
 namespace {

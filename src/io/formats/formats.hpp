@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -113,6 +114,9 @@ OpenSink openMeditSink, openMeshbSink;
 // if the mesh knows where its vertices came from, the point arrays `generator_kind` (UInt8: 0
 // vertex, 1 edge, 2 face, 3 cell), `generator_tet` (UInt32) and `generator_corners` (UInt8), as in
 // HexMesh; then tags and regions as addTags() describes them. These are read, other arrays ignored.
+//
+// Of several pieces in one file, points at the same position are one, and cells that vtkGhostType
+// marks as another piece's are left out. Field arrays are left out, too: they name points.
 //
 // The map of tets is an array: one of 12 numbers per cell (as it is written) or 3 per point, with
 // the name that ReadOptions and WriteOptions tell.
@@ -254,7 +258,29 @@ WriteMesh writeAbaqus;
 /// the middle of edges, too.
 WriteCurved writeQuadraticAbaqus;
 
-// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts. Written
+// `.unv`: I-deas universal files, as SALOME and Gmsh write them; read only. Nodes are data sets
+// 2411 and 781, elements 2412, groups 2467, 2477, 2452 and 2435. Groups of hexahedra are regions,
+// those of quads, triangles and beams tags of these, and those of nodes as hexMeshOf() has them.
+// The tag is what a name of this library says, or the number. Hexahedra with 20 nodes are curved
+// cells; other volume elements are counted.
+[[nodiscard]] ElementLists readUnv(const Input& input, ElementParts parts, Stage& stage);
+using UnvFormat = ElementFormat<readUnv>;
+
+// `.ele`: TetGen's tets, with their points in the file of the same name and the extension `.node`;
+// read only. Numbered from 0 or 1. The first attribute of tets is their region, where all are whole
+// numbers; marks of the triangles in a file with the extension `.face` are their tags, unless all
+// are the same of -1, 0 and 1. Other attributes are ignored.
+ReadTets readTetgen;
+struct TetgenText {
+  std::string_view text;
+  std::string name;
+};
+/// @param faces  may be empty
+[[nodiscard]] TetCells parseTetgen(const TetgenText& nodes, const TetgenText& faces,
+                                   const Input& input, Stage& stage);
+
+// `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts, and read
+// also in its newer one, over HDF5. Written
 // are an element block HEX8 for each region, a side set for each group of boundary quads, and node
 // sets for the tags of edges and vertices; sets and blocks are named as their groups. Side sets and
 // blocks have the numbers of their groups. Tagged quads inside the mesh are left out. The cells are
@@ -280,6 +306,14 @@ OpenPartSink openExodusPartSink;
 // groups; and a boundary condition, of the type FamilySpecified, for each group of boundary quads.
 // The cells are in order of their regions. An empty mesh is an error.
 WriteMesh writeCgns;
+/// Unstructured zones; several only where 1-to-1 connections say which vertices they share.
+/// Sections of cells are regions where there are several, or this library named them. Boundary
+/// conditions of faces and edges tag these, and those of cells are regions; the name of their
+/// family, or their own, is the group's, and the tag is what a name of this library says, or the
+/// number of the group in its order. Conditions of vertices are as sets of nodes in hexMeshOf().
+/// Hexahedra with 20 and 27 nodes are curved cells; other volume elements are counted.
+[[nodiscard]] ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage);
+using CgnsFormat = ElementFormat<readCgns>;
 /// A zone for each part that has cells, with 1-to-1 connections of shared vertices and global
 /// numbers, from 1 on, as solutions. No ghosts.
 OpenPartSink openCgnsPartSink;

@@ -241,15 +241,14 @@ class NetcdfHeadReader {
   std::vector<std::uint64_t> lengths_;
 };
 
+void sortByName(std::vector<NetcdfValues>& variables) {
+  std::sort(variables.begin(), variables.end(),
+            [](const NetcdfValues& a, const NetcdfValues& b) { return a.name < b.name; });
+}
+
 }  // namespace
 
 void requireNetcdf(std::string_view head, const std::string& fileName) {
-  if (head.starts_with("\x89HDF")) {
-    throw Error(ErrorCode::FileUnsupported,
-                fileName +
-                    ": the file is over HDF5 (NetCDF 4), of which only the classic "
-                    "layouts are read. Convert it: nccopy -k cdf5 IN OUT");
-  }
   const bool known =
       head.size() > 4 && head.starts_with("CDF") && (head[3] == 1 || head[3] == 2 || head[3] == 5);
   if (!known) {
@@ -262,15 +261,32 @@ void requireNetcdf(std::string_view head, const std::string& fileName) {
 
 NetcdfReader::NetcdfReader(std::string_view bytes, const std::string& fileName)
     : bytes_(bytes), fileName_(fileName), variables_(NetcdfHeadReader(bytes, fileName).read()) {
-  std::sort(variables_.begin(), variables_.end(),
-            [](const NetcdfValues& a, const NetcdfValues& b) { return a.name < b.name; });
+  sortByName(variables_);
+}
+
+NetcdfReader::NetcdfReader(std::unique_ptr<HdfReader> file, const std::string& fileName)
+    : hdf_(std::move(file)), fileName_(fileName) {
+  for (const std::string& name : hdf_->members("/")) {
+    if (!hdf_->has(name)) continue;
+    // A dimension is a dataset, too.
+    if (hdf_->attribute(name, "NAME").starts_with("This is a netCDF dimension")) continue;
+    NetcdfValues& values = variables_.emplace_back();
+    values.name = name;
+    values.lengths = hdf_->shape(name);
+    values.elementType = hdf_->attribute(name, "elem_type");
+    values.count = 1;
+    for (const std::uint64_t length : values.lengths) values.count *= length;
+  }
+  sortByName(variables_);
 }
 
 const NetcdfValues* NetcdfReader::find(std::string_view name) const {
   const auto found =
       std::lower_bound(variables_.begin(), variables_.end(), name,
                        [](const NetcdfValues& a, std::string_view b) { return a.name < b; });
-  return found == variables_.end() || found->name != name ? nullptr : &*found;
+  if (found == variables_.end() || found->name != name) return nullptr;
+  if (hdf_ != nullptr) hdf_->requireStored(found->name);
+  return &*found;
 }
 
 const NetcdfValues& NetcdfReader::get(std::string_view name) const {
@@ -281,6 +297,7 @@ const NetcdfValues& NetcdfReader::get(std::string_view name) const {
 }
 
 std::vector<std::int64_t> NetcdfReader::integers(const NetcdfValues& values) const {
+  if (hdf_ != nullptr) return hdf_->integers(values.name);
   constexpr std::uint32_t kInt = 4;
   constexpr std::uint32_t kWideInt = 10;
   if (values.type != kInt && values.type != kWideInt) {
@@ -297,6 +314,7 @@ std::vector<std::int64_t> NetcdfReader::integers(const NetcdfValues& values) con
 }
 
 std::vector<double> NetcdfReader::reals(const NetcdfValues& values) const {
+  if (hdf_ != nullptr) return hdf_->reals(values.name);
   constexpr std::uint32_t kFloat = 5;
   constexpr std::uint32_t kDouble = 6;
   if (values.type != kFloat && values.type != kDouble) {
@@ -314,11 +332,16 @@ std::vector<double> NetcdfReader::reals(const NetcdfValues& values) const {
 
 std::vector<std::string> NetcdfReader::texts(const NetcdfValues& values) const {
   std::vector<std::string> texts;
-  if (values.type != kChar || values.lengths.size() != 2 || values.count == 0) return texts;
+  const bool areTexts = hdf_ != nullptr || values.type == kChar;
+  if (!areTexts || values.lengths.size() != 2 || values.count == 0) return texts;
+  const std::string own = hdf_ != nullptr ? hdf_->text(values.name) : std::string();
+  const std::string_view all = hdf_ != nullptr
+                                   ? own
+                                   : bytes_.substr(static_cast<std::size_t>(values.begin),
+                                                   static_cast<std::size_t>(values.count));
   const auto width = static_cast<std::size_t>(values.lengths[1]);
-  for (std::uint64_t i = 0; i < values.lengths[0]; ++i) {
-    const std::string_view row =
-        bytes_.substr(static_cast<std::size_t>(values.begin + i * width), width);
+  for (std::size_t begin = 0; begin < all.size(); begin += width) {
+    const std::string_view row = all.substr(begin, width);
     texts.emplace_back(row.substr(0, row.find('\0')));
   }
   return texts;

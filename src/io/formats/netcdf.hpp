@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,6 +12,7 @@
 
 #include <hexhex/types.hpp>
 
+#include <io/core/hdf_reader.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 
@@ -53,10 +55,11 @@ struct NetcdfFile {
   void write(OutputFile& output, int threads, std::uint64_t mostBytes) const;
 };
 
-// Reads files in NetCDF's classic layouts: "CDF-1", "CDF-2" and "CDF-5".
+// Reads files in NetCDF's classic layouts, "CDF-1", "CDF-2" and "CDF-5", and its newer files, which
+// are HDF5 files with a dataset for each variable ("NetCDF-4").
 
 /// Of a file, or its first bytes, whether it is in one of these layouts.
-/// @throws Error FileSyntax; FileUnsupported for NetCDF's newer files, over HDF5
+/// @throws Error FileSyntax
 void requireNetcdf(std::string_view head, const std::string& fileName);
 
 /// A variable of a file: where its values are, and how many.
@@ -73,8 +76,10 @@ class NetcdfReader {
  public:
   /// Reads the head.
   /// @param bytes  of the whole file; outlive this, and so does the name
-  /// @throws Error FileSyntax with the byte; FileUnsupported for NetCDF's newer files, over HDF5
+  /// @throws Error FileSyntax with the byte
   NetcdfReader(std::string_view bytes, const std::string& fileName);
+  /// Of a newer file.
+  NetcdfReader(std::unique_ptr<HdfReader> file, const std::string& fileName);
 
   /// Null if there is none.
   [[nodiscard]] const NetcdfValues* find(std::string_view name) const;
@@ -89,8 +94,9 @@ class NetcdfReader {
 
  private:
   std::string_view bytes_;
+  std::unique_ptr<HdfReader> hdf_;  ///< of a newer file; null: it is in bytes_
   const std::string& fileName_;
-  std::vector<NetcdfValues> variables_;
+  std::vector<NetcdfValues> variables_;  ///< by name
 };
 
 }  // namespace hexhex::io

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -232,21 +233,45 @@ VtkNumbers vtkNumbersOf(std::string_view type) {
   return VtkNumbers::Others;
 }
 
+/// A tag Piece and its arrays.
+struct VtuPiece {
+  XmlTag tag;
+  std::uint64_t points = 0;
+  std::uint64_t cells = 0;
+  std::vector<VtkSourceArray> arrays = {};
+
+  /// How many numbers an array has, if it has so many of each point or cell.
+  [[nodiscard]] std::uint64_t numbersOf(VtkSection section, std::size_t each) const {
+    const bool ofPoints = section == VtkSection::Points || section == VtkSection::PointData;
+    return each * (ofPoints ? points : cells);
+  }
+};
+
 /// An open `.vtu` file. Functions throw Error FileSyntax or FileUnsupported.
+///
+/// Of several pieces, arrays are in memory one behind the other. Points of different pieces at the
+/// same position are one, as pieces repeat those that they share.
 class VtuFile final : public VtkSource {
  public:
   /// @param stage  for parallel decoding
   VtuFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
       : VtkSource(std::move(bytes), fileName), stage_(stage), tags_(text(), fileName) {
     readTags();
-    if (points > 0) {
-      coordinates = loadNeeded(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3 * points);
+    leaveOutEmpty();
+    for (const VtuPiece& piece : pieces_) {
+      pointsBefore_.push_back(std::exchange(points, points + piece.points));
+      cells += piece.cells;
     }
-    if (cells == 0) return;
-    types = loadNeeded(VtkSection::Cells, "types", "cell types", VtkNumbers::Integers, cells);
-    offsets = loadNeeded(VtkSection::Cells, "offsets", "cell offsets", VtkNumbers::Integers, cells);
-    connectivity =
-        loadNeeded(VtkSection::Cells, "connectivity", "cell corners", VtkNumbers::Integers, {});
+    if (points > 0) {
+      coordinates = joined(columnsOf(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3),
+                           VtkNumbers::Reals);
+    }
+    if (cells > 0) readCells();
+    if (pieces_.size() == 1) {
+      arrays.insert(arrays.end(), pieces_[0].arrays.begin(), pieces_[0].arrays.end());
+    } else {
+      joinPieces();
+    }
   }
 
   void requireIndexable() const override {
@@ -255,7 +280,7 @@ class VtuFile final : public VtkSource {
       tags_.fail(ErrorCode::TooLarge,
                  "the file holds " + std::to_string(count) + " points or cells; at most " +
                      std::to_string(kNone) + " are supported.",
-                 *piece_);
+                 pieces_[0].tag);
     }
   }
 
@@ -278,7 +303,8 @@ class VtuFile final : public VtkSource {
       }
     }
     if (!hasFileTag_) fail(ErrorCode::FileSyntax, "this is no VTK XML file: no tag VTKFile.");
-    if (!piece_) fail(ErrorCode::FileSyntax, "the file has no tag Piece: it is incomplete.");
+    if (pieces_.empty())
+      fail(ErrorCode::FileSyntax, "the file has no tag Piece: it is incomplete.");
   }
 
   void readFileTag(const XmlTag& tag) {
@@ -308,13 +334,7 @@ class VtuFile final : public VtkSource {
   }
 
   void readPieceTag(const XmlTag& tag) {
-    if (piece_) {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the file has several pieces; merge them into one and save it again.", tag);
-    }
-    piece_ = tag;
-    points = readCount(tag, "NumberOfPoints");
-    cells = readCount(tag, "NumberOfCells");
+    pieces_.push_back({tag, readCount(tag, "NumberOfPoints"), readCount(tag, "NumberOfCells")});
   }
 
   std::uint64_t readCount(const XmlTag& tag, std::string_view attribute) const {
@@ -327,15 +347,18 @@ class VtuFile final : public VtkSource {
           "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
           tag);
     }
-    // Each point or cell takes some bytes, which zlib makes smaller at most by its ratio. Besides,
-    // products of this count cannot overflow then.
-    if (count / (compressed_ ? kLargestZlibRatio : 1) > fileSize()) {
-      tags_.fail(ErrorCode::FileSyntax,
-                 std::string(attribute) + " is " + std::to_string(count) +
-                     ", more than the file has room for: it is wrong or the file is incomplete.",
-                 tag);
-    }
+    requireRoom(count, tag, std::string(attribute) + " is");
     return count;
+  }
+
+  /// Each point, cell or number takes some bytes, which zlib makes smaller at most by its ratio.
+  /// Besides, products of this count cannot overflow then.
+  void requireRoom(std::uint64_t count, const XmlTag& tag, const std::string& what) const {
+    if (count / (compressed_ ? kLargestZlibRatio : 1) <= fileSize()) return;
+    tags_.fail(ErrorCode::FileSyntax,
+               what + " " + std::to_string(count) +
+                   ", more than the file has room for: it is wrong or the file is incomplete.",
+               tag);
   }
 
   void readArrayTag(const XmlTag& tag, VtkSection section) {
@@ -344,9 +367,6 @@ class VtuFile final : public VtkSource {
     array.name = tag.attribute("Name");
     // Of arrays without a name, only the last one of the points is looked for.
     if (section != VtkSection::Points && array.name.empty()) return;
-    if (section == VtkSection::Points && !arrays.empty() && arrays.back().section == section) {
-      arrays.pop_back();
-    }
     array.numbers = vtkNumbersOf(tag.attribute("type"));
     const std::string_view components = tag.attribute("NumberOfComponents");
     std::from_chars(components.data(), components.data() + components.size(), array.components);
@@ -354,9 +374,13 @@ class VtuFile final : public VtkSource {
     array.load = [this, tag](VtkNumbers numbers, std::optional<std::uint64_t> count) {
       return loadArray(tag, numbers, count);
     };
+    if (section == VtkSection::FieldData) return arrays.push_back(std::move(array));
+    if (pieces_.empty()) return;
     const bool ofCells = section == VtkSection::CellData;
-    if (ofCells || section == VtkSection::PointData) see(array.name, ofCells, array.components);
-    arrays.push_back(std::move(array));
+    if ((ofCells || section == VtkSection::PointData) && pieces_.size() == 1) {
+      see(array.name, ofCells, array.components);
+    }
+    pieces_.back().arrays.push_back(std::move(array));
   }
 
   void readAppendedTag(const XmlTag& tag) {
@@ -376,15 +400,186 @@ class VtuFile final : public VtkSource {
     appended_ = mark + 1;
   }
 
-  /// The numbers of an array that no file can do without. That of the points may have any name.
-  VtkColumn loadNeeded(VtkSection section, std::string_view name, const char* what,
-                       VtkNumbers numbers, std::optional<std::uint64_t> count) const {
-    const auto found =
-        std::find_if(arrays.rbegin(), arrays.rend(), [&](const VtkSourceArray& array) {
-          return array.section == section && (name.empty() || array.name == name);
-        });
-    if (found != arrays.rend()) return found->load(numbers, count);
-    fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
+  /// The numbers of an array that no file can do without, of each piece. That of the points may
+  /// have any name.
+  /// @param each  how many numbers there are of each point or cell; 0: not known
+  std::vector<VtkColumn> columnsOf(VtkSection section, std::string_view name, const char* what,
+                                   VtkNumbers numbers, std::size_t each) const {
+    std::vector<VtkColumn> columns;
+    for (const VtuPiece& piece : pieces_) {
+      VtkColumn& column = columns.emplace_back();
+      if (piece.numbersOf(section, 1) == 0) continue;
+      const auto found = std::find_if(
+          piece.arrays.rbegin(), piece.arrays.rend(), [&](const VtkSourceArray& array) {
+            return array.section == section && (name.empty() || array.name == name);
+          });
+      if (found == piece.arrays.rend()) {
+        fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
+      }
+      std::optional<std::uint64_t> count;
+      if (each > 0) count = piece.numbersOf(section, each);
+      column = found->load(numbers, count);
+    }
+    return columns;
+  }
+
+  /// Columns one behind the other.
+  /// @param shifts  what is added to the numbers of each, which are integers; empty: nothing
+  VtkColumn joined(std::vector<VtkColumn> columns, VtkNumbers numbers,
+                   std::span<const std::uint64_t> shifts = {}) const {
+    if (columns.size() == 1) return std::move(columns[0]);
+    std::uint64_t count = 0;
+    for (const VtkColumn& column : columns) count += column.count;
+    requireRoom(count, pieces_.back().tag, "the numbers of one array of all pieces are");
+    VtkColumn all = textColumn(numbers, memorySize(count));
+    char* to = all.decoded.data();
+    for (std::size_t p = 0; p < columns.size(); ++p) {
+      const std::size_t size = memorySize(columns[p].count);
+      auto* const integers = reinterpret_cast<std::int64_t*>(to);
+      if (numbers == VtkNumbers::Reals) {
+        copy(columns[p], 0, size, reinterpret_cast<double*>(to));
+      } else {
+        copy(columns[p], 0, size, integers);
+      }
+      for (std::size_t i = 0; i < size && !shifts.empty(); ++i) {
+        integers[i] += static_cast<std::int64_t>(shifts[p]);
+      }
+      to += size * sizeof(double);
+    }
+    return all;
+  }
+
+  void readCells() {
+    const auto load = [this](std::string_view name, const char* what, std::size_t each) {
+      return columnsOf(VtkSection::Cells, name, what, VtkNumbers::Integers, each);
+    };
+    types = joined(load("types", "cell types", 1), VtkNumbers::Integers);
+    std::vector<VtkColumn> corners = load("connectivity", "cell corners", 0);
+    std::vector<std::uint64_t> cornersBefore;
+    std::uint64_t cornerCount = 0;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      cornersBefore.push_back(std::exchange(cornerCount, cornerCount + corners[p].count));
+      if (pieces_.size() > 1) requireCorners(corners[p], p);
+    }
+    offsets = joined(load("offsets", "cell offsets", 1), VtkNumbers::Integers, cornersBefore);
+    connectivity = joined(std::move(corners), VtkNumbers::Integers, pointsBefore_);
+  }
+
+  /// A number that is no point of its piece could be one of the next.
+  void requireCorners(const VtkColumn& corners, std::size_t p) const {
+    Array<std::int64_t> numbers(memorySize(corners.count));
+    copy(corners, 0, numbers.size(), numbers.data());
+    for (const std::int64_t number : numbers) {
+      if (number >= 0 && static_cast<std::uint64_t>(number) < pieces_[p].points) continue;
+      tags_.fail(ErrorCode::IndexOutOfRange,
+                 "a cell of this piece names point " + std::to_string(number) + ", but its " +
+                     std::to_string(pieces_[p].points) + " points are numbered from 0.",
+                 pieces_[p].tag);
+    }
+  }
+
+  /// Pieces without points and cells need no arrays. Of a file with nothing else, one stays.
+  void leaveOutEmpty() {
+    const VtuPiece first = pieces_.front();
+    std::erase_if(pieces_,
+                  [](const VtuPiece& piece) { return piece.points == 0 && piece.cells == 0; });
+    if (pieces_.empty()) pieces_.push_back(first);
+  }
+
+  /// Arrays that all pieces have become one each. Those of the whole file name points of no piece.
+  void joinPieces() {
+    arrays.clear();
+    joinPoints();
+    for (const VtkSourceArray& first : pieces_[0].arrays) {
+      std::vector<const VtkSourceArray*> parts;
+      for (const VtuPiece& piece : pieces_) {
+        for (const VtkSourceArray& array : piece.arrays) {
+          const bool same = array.section == first.section && array.name == first.name &&
+                            array.components == first.components && array.numbers == first.numbers;
+          if (same) {
+            parts.push_back(&array);
+            break;
+          }
+        }
+      }
+      const bool data =
+          first.section == VtkSection::PointData || first.section == VtkSection::CellData;
+      if (!data || parts.size() < pieces_.size() || first.numbers == VtkNumbers::Others) continue;
+      VtkSourceArray& all = arrays.emplace_back(first);
+      all.appended = false;
+      all.load = [this, parts](VtkNumbers numbers, std::optional<std::uint64_t> /*count*/) {
+        std::vector<VtkColumn> columns;
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+          columns.push_back(parts[p]->load(
+              numbers, pieces_[p].numbersOf(parts[p]->section, parts[p]->components)));
+        }
+        VtkColumn column = joined(std::move(columns), numbers);
+        if (parts[0]->section == VtkSection::PointData) keep(column, kept_, parts[0]->components);
+        return column;
+      };
+    }
+    leaveOutGhosts();
+  }
+
+  /// Rows of a column with numbers of 64 bits, ascending.
+  static void keep(VtkColumn& column, const Array<std::size_t>& rows, std::size_t components) {
+    const std::size_t size = components * sizeof(double);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      std::memmove(column.decoded.data() + size * i, column.decoded.data() + size * rows[i], size);
+    }
+    column.count = components * rows.size();
+  }
+
+  void joinPoints() {
+    using Key = std::array<std::uint64_t, 3>;
+    const auto bits = reinterpret_cast<const double*>(coordinates.decoded.data());
+    std::vector<std::pair<Key, std::size_t>> places(memorySize(points));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        places[i].first[k] = std::bit_cast<std::uint64_t>(bits[3 * i + k] + 0.0);  // no -0
+      }
+      places[i].second = i;
+    }
+    std::sort(places.begin(), places.end());
+    Array<std::size_t> firsts(places.size());
+    for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+      while (end < places.size() && places[end].first == places[begin].first) ++end;
+      // Where a piece has several points, nobody knows which of them another one's is.
+      bool unique = true;
+      for (std::size_t i = begin + 1; i < end; ++i) {
+        unique = unique && pieceOf(places[i - 1].second) != pieceOf(places[i].second);
+      }
+      for (std::size_t i = begin; i < end; ++i) {
+        firsts[places[i].second] = places[unique ? begin : i].second;
+      }
+    }
+    for (std::size_t i = 0; i < firsts.size(); ++i) {
+      if (firsts[i] == i) kept_.push_back(i);
+      firsts[i] = firsts[i] == i ? kept_.size() - 1 : firsts[firsts[i]];
+    }
+    auto* const corners = reinterpret_cast<std::int64_t*>(connectivity.decoded.data());
+    for (std::size_t i = 0; i < connectivity.count; ++i) {
+      corners[i] = static_cast<std::int64_t>(firsts[static_cast<std::size_t>(corners[i])]);
+    }
+    keep(coordinates, kept_, 3);
+    points = kept_.size();
+  }
+  [[nodiscard]] std::size_t pieceOf(std::uint64_t point) const {
+    const auto behind = std::upper_bound(pointsBefore_.begin(), pointsBefore_.end(), point);
+    return static_cast<std::size_t>(behind - pointsBefore_.begin()) - 1;
+  }
+
+  /// Cells that another piece has, too, become VTK's empty ones.
+  void leaveOutGhosts() {
+    const VtkSourceArray* const ghosts =
+        find(VtkSection::CellData, kVtkGhosts, 1, VtkNumbers::Integers);
+    if (ghosts == nullptr || cells == 0) return;
+    const VtkColumn marks = load(*ghosts);
+    const auto* const mark = reinterpret_cast<const std::int64_t*>(marks.decoded.data());
+    auto* const type = reinterpret_cast<std::int64_t*>(types.decoded.data());
+    for (std::size_t i = 0; i < cells; ++i) {
+      if ((mark[i] & kVtkDuplicate) != 0) type[i] = 0;
+    }
   }
 
   /// The numbers of an array, exactly `count` of them if that is known.
@@ -497,8 +692,10 @@ class VtuFile final : public VtkSource {
   Stage& stage_;
   XmlTags tags_;
   bool hasFileTag_ = false;
-  std::optional<XmlTag> piece_;
-  std::size_t lengthBytes_ = 4;  ///< of the numbers in front of encoded arrays
+  std::vector<VtuPiece> pieces_;
+  Array<std::size_t> kept_;  ///< of several pieces: points that are no other piece's, too
+  std::vector<std::uint64_t> pointsBefore_;  ///< of each piece, in those before it
+  std::size_t lengthBytes_ = 4;              ///< of the numbers in front of encoded arrays
   bool compressed_ = false;
   bool appendedBase64_ = false;
   std::optional<std::uint64_t> appended_;  ///< position behind the '_' of AppendedData

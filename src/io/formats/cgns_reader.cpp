@@ -1,0 +1,470 @@
+// Reads CGNS files (see formats.hpp) over HDF5: zones with sections of elements, conditions that
+// name elements, and connections of zones.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/hdf_reader.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
+#include <io/formats/formats.hpp>
+#include <io/formats/gmsh_elements.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+constexpr std::int64_t kCgnsMixed = 20;
+constexpr std::int64_t kCgnsPolygons = 22;
+constexpr std::int64_t kCgnsPolyhedra = 23;
+
+/// A type of elements of the standard.
+struct CgnsType {
+  std::int64_t number;
+  std::size_t nodes;
+  std::size_t corners;         ///< of those that are no volumes: up to 4
+  std::string_view noun = {};  ///< of volumes
+};
+
+constexpr std::array<CgnsType, 20> kCgnsTypes = {{{2, 1, 1},
+                                                  {3, 2, 2},
+                                                  {4, 3, 2},
+                                                  {5, 3, 3},
+                                                  {6, 6, 3},
+                                                  {7, 4, 4},
+                                                  {8, 8, 4},
+                                                  {9, 9, 4},
+                                                  {10, 4, 4, "tetrahedra"},
+                                                  {11, 10, 4, "tetrahedra"},
+                                                  {12, 5, 5, "pyramids"},
+                                                  {13, 14, 5, "pyramids"},
+                                                  {14, 6, 6, "prisms"},
+                                                  {15, 15, 6, "prisms"},
+                                                  {16, 18, 6, "prisms"},
+                                                  {17, 8, 8, "hexahedra"},
+                                                  {18, 20, 8, "hexahedra"},
+                                                  {19, 27, 8, "hexahedra"},
+                                                  {21, 13, 5, "pyramids"},
+                                                  {24, 4, 2}}};
+
+/// VTK's place k is this place of CGNS, which lists upright edges before those of the top, and
+/// faces from the bottom on around the cell.
+constexpr std::array<std::uint8_t, 27> kCgnsPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                      9,  10, 11, 16, 17, 18, 19, 12, 13,
+                                                      14, 15, 24, 22, 21, 23, 20, 25, 26};
+
+class CgnsReader {
+ public:
+  CgnsReader(const Input& input, ElementParts parts)
+      : input_(input), parts_(parts), file_(HdfReader::open(input)) {}
+
+  ElementLists read() {
+    for (const std::string& base : nodes("", "CGNSBase_t")) {
+      for (const std::string& path : nodes(base, "Zone_t")) zones_.push_back({path});
+    }
+    if (zones_.empty()) fail(ErrorCode::FileUnsupported, "the file has no zones.");
+    for (Zone& zone : zones_) readZone(zone);
+    if (parts_ == ElementParts::All) {
+      connect();
+      tagElements();
+    }
+    return std::move(lists_);
+  }
+
+ private:
+  struct Zone {
+    std::string path;
+    std::size_t firstPoint = 0;
+    std::size_t points = 0;
+    std::uint64_t before = 0;  ///< added to the numbers of its elements
+    std::uint64_t last = 0;    ///< the largest of these in the file
+  };
+  /// Elements with a name; numbers of all zones are different.
+  struct Group {
+    std::string name;
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;  ///< first and last
+  };
+  /// An element that is no volume.
+  struct Flat {
+    std::uint64_t number;
+    std::size_t corners;
+    std::array<Index, 4> nodes;
+  };
+
+  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
+    throw Error(code, input_.name() + ": " + sentence);
+  }
+
+  // The tree: a node is a group, with a label that says what it is.
+
+  /// The paths of the nodes with a label in another one.
+  [[nodiscard]] std::vector<std::string> nodes(const std::string& parent, std::string_view label,
+                                               std::string_view name = {}) const {
+    std::vector<std::string> found;
+    for (const std::string& member : file_->members(parent.empty() ? "/" : parent)) {
+      if (member.starts_with(' ') || (!name.empty() && member != name)) continue;
+      const std::string path = parent.empty() ? member : parent + '/' + member;
+      if (file_->attribute(path, "type") == "LK") {
+        fail(ErrorCode::FileUnsupported,
+             "\"" + path + "\" is a link into another file. Save the mesh as one file.");
+      }
+      if (file_->attribute(path, "label") == label) found.push_back(path);
+    }
+    return found;
+  }
+  [[nodiscard]] static std::string nameOf(const std::string& path) {
+    return path.substr(path.rfind('/') + 1);
+  }
+  [[nodiscard]] std::string textOf(const std::string& path) const {
+    std::string text = file_->text(path + "/ data");
+    text.resize(std::min(text.find('\0'), text.size()));
+    return text.substr(0, text.find_last_not_of(' ') + 1);
+  }
+  /// The text of the first such node; empty without one.
+  [[nodiscard]] std::string textIn(const std::string& parent, std::string_view label) const {
+    const std::vector<std::string> found = nodes(parent, label);
+    return found.empty() ? std::string() : textOf(found[0]);
+  }
+  /// The integers of a node with this label and name; empty without one.
+  [[nodiscard]] std::vector<std::int64_t> integersIn(const std::string& parent,
+                                                     std::string_view label,
+                                                     std::string_view name) const {
+    const std::vector<std::string> found = nodes(parent, label, name);
+    if (found.empty()) return {};
+    return file_->integers(found[0] + "/ data");
+  }
+
+  void readZone(Zone& zone) {
+    if (const std::string type = textIn(zone.path, "ZoneType_t"); type != "Unstructured") {
+      fail(ErrorCode::FileUnsupported, "the zone \"" + zone.path +
+                                           "\" is not unstructured. Convert it to lists of "
+                                           "elements first.");
+    }
+    zone.before = lastNumber_;
+    zone.firstPoint = lists_.points.size();
+    if (parts_ == ElementParts::All) readPoints(zone);
+    for (const std::string& section : nodes(zone.path, "Elements_t")) readSection(zone, section);
+    lastNumber_ = zone.before + zone.last;
+    if (parts_ == ElementParts::All) readConditions(zone);
+  }
+
+  void readPoints(Zone& zone) {
+    const std::vector<std::string> grids = nodes(zone.path, "GridCoordinates_t");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string name = std::string("Coordinate") + "XYZ"[axis];
+      const std::vector<std::string> found =
+          grids.empty() ? std::vector<std::string>() : nodes(grids[0], "DataArray_t", name);
+      if (found.empty()) {
+        fail(ErrorCode::FileUnsupported,
+             "the zone \"" + zone.path + "\" has no array \"" + name + "\".");
+      }
+      setCoordinates(lists_, zone.firstPoint, axis, file_->reals(found[0] + "/ data"), input_);
+    }
+    zone.points = lists_.points.size() - zone.firstPoint;
+  }
+
+  void readSection(Zone& zone, const std::string& section) {
+    const std::vector<std::int64_t> kind = file_->integers(section + "/ data");
+    const std::vector<std::int64_t> range = integersIn(section, "IndexRange_t", "ElementRange");
+    if (kind.empty() || range.size() != 2 || range[0] < 1 || range[1] < range[0] ||
+        range[1] > kMostElements) {
+      fail(ErrorCode::FileSyntax, "the section \"" + section + "\" has no range of elements.");
+    }
+    const auto first = static_cast<std::uint64_t>(range[0]);
+    const auto last = static_cast<std::uint64_t>(range[1]);
+    const bool isKnown = kind[0] == kCgnsMixed || typeOf(kind[0], section) != nullptr;
+    if (kind[0] == kCgnsPolyhedra) {
+      input_.counts()->add(*volumeCells("polyhedra"), last - first + 1);
+    }
+    if (!isKnown) return;
+    const std::vector<std::int64_t> values =
+        integersIn(section, "DataArray_t", "ElementConnectivity");
+    std::map<const CgnsType*, std::size_t> blocks;
+    std::size_t place = 0;
+    for (std::uint64_t number = first; number <= last; ++number) {
+      const bool tellsType = kind[0] == kCgnsMixed && place < values.size();
+      const CgnsType* const type = typeOf(tellsType ? values[place++] : kind[0], section);
+      if (type == nullptr || type->nodes > values.size() - place) {
+        fail(ErrorCode::FileSyntax, "the section \"" + section +
+                                        "\" lists too few nodes, or "
+                                        "elements of a type that a mixed one cannot have.");
+      }
+      addElement(zone, section, *type, number, values.data() + place, blocks);
+      place += type->nodes;
+    }
+    zone.last = std::max(zone.last, last);
+    const std::string name = nameOf(section);
+    const bool isOwn = tagInGroupName(name).has_value();
+    if (blocks.empty() && !isOwn) return;  // conditions say what other flat elements are
+    (blocks.empty() ? flatGroups_ : volumeGroups_)
+        .push_back({name, {{zone.before + first, zone.before + last}}});
+  }
+
+  /// Null for polygons and polyhedra, whose sections have another form.
+  [[nodiscard]] const CgnsType* typeOf(std::int64_t number, const std::string& section) const {
+    if (number == kCgnsPolygons || number == kCgnsPolyhedra) return nullptr;
+    const auto* const found =
+        std::find_if(kCgnsTypes.begin(), kCgnsTypes.end(),
+                     [number](const CgnsType& type) { return type.number == number; });
+    if (found != kCgnsTypes.end()) return found;
+    fail(ErrorCode::FileUnsupported,
+         "the section \"" + section + "\" has elements of the type " + std::to_string(number) +
+             ", which are not supported: none of more than 27 nodes are.");
+  }
+
+  /// @param blocks  of the section
+  void addElement(const Zone& zone, const std::string& section, const CgnsType& type,
+                  std::uint64_t number, const std::int64_t* values,
+                  std::map<const CgnsType*, std::size_t>& blocks) {
+    const auto nodeAt = [&](std::size_t k) {
+      if (values[k] >= 1 && static_cast<std::uint64_t>(values[k]) <= zone.points) {
+        return static_cast<Index>(zone.firstPoint + static_cast<std::size_t>(values[k]) - 1);
+      }
+      fail(ErrorCode::IndexOutOfRange, "the section \"" + section + "\" names vertex " +
+                                           std::to_string(values[k]) + ", but its zone has " +
+                                           std::to_string(zone.points) + ", numbered from 1.");
+    };
+    const bool needsNodes = parts_ == ElementParts::All;
+    if (type.noun.empty()) {
+      if (!needsNodes) return;
+      Flat& flat = flats_.emplace_back(Flat{zone.before + number, type.corners, {}});
+      for (std::size_t k = 0; k < type.corners; ++k) flat.nodes[k] = nodeAt(k);
+      return;
+    }
+    const auto [known, isNew] = blocks.emplace(&type, lists_.blocks.size());
+    if (isNew) {
+      ElementBlock& added = lists_.blocks.emplace_back();
+      added.type = volumeCells(type.noun, type.nodes);
+      added.nodesEach = type.nodes;
+    }
+    ElementBlock& block = lists_.blocks[known->second];
+    block.numbers.push_back(zone.before + number);
+    const bool isCurved = type.noun == "hexahedra" && type.nodes > type.corners;
+    for (std::size_t k = 0; k < type.nodes && needsNodes; ++k) {
+      block.nodes.push_back(nodeAt(isCurved ? kCgnsPlaces[k] : k));
+    }
+  }
+
+  /// Conditions name elements or vertices, by lists or ranges; those of one family are one group.
+  void readConditions(const Zone& zone) {
+    for (const std::string& all : nodes(zone.path, "ZoneBC_t")) {
+      for (const std::string& condition : nodes(all, "BC_t")) {
+        const std::string family = textIn(condition, "FamilyName_t");
+        const std::string location = textIn(condition, "GridLocation_t");
+        Group group{family.empty() ? nameOf(condition) : family, {}};
+        const bool ofVertices = location.empty() || location == "Vertex";
+        readRanges(condition, "Point", ofVertices ? zone.points : zone.last, group);
+        if (ofVertices && !group.ranges.empty()) {
+          addNodes(zone, group);
+        } else {
+          readRanges(condition, "Element", zone.last, group);
+          for (auto& [first, last] : group.ranges) {
+            first += zone.before;
+            last += zone.before;
+          }
+          (location == "CellCenter" ? volumeGroups_ : flatGroups_).push_back(std::move(group));
+        }
+      }
+    }
+  }
+
+  void readRanges(const std::string& condition, const std::string& what, std::uint64_t most,
+                  Group& group) {
+    const auto add = [&](std::int64_t first, std::int64_t last) {
+      const auto end = static_cast<std::uint64_t>(last);
+      if (first < 1 || last < first || end > most) {
+        fail(ErrorCode::IndexOutOfRange, "the condition \"" + condition +
+                                             "\" names elements or vertices that its zone does "
+                                             "not have.");
+      }
+      group.ranges.emplace_back(static_cast<std::uint64_t>(first), end);
+      members_ += end - static_cast<std::uint64_t>(first) + 1;
+    };
+    const std::vector<std::int64_t> range = integersIn(condition, "IndexRange_t", what + "Range");
+    if (range.size() == 2) add(range[0], range[1]);
+    for (const std::int64_t i : integersIn(condition, "IndexArray_t", what + "List")) add(i, i);
+    // A range takes few bytes, whatever is in it.
+    constexpr std::uint64_t kMostTimes = 8;
+    if (members_ > kMostTimes * (lastNumber_ + lists_.points.size())) {
+      fail(ErrorCode::TooLarge, "conditions have far more members than the file has elements.");
+    }
+  }
+
+  void addNodes(const Zone& zone, const Group& group) {
+    NodeSet& set = lists_.nodeSets.emplace_back(
+        NodeSet{group.name, static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
+    for (const auto& [first, last] : group.ranges) {
+      for (std::uint64_t i = first; i <= last; ++i) {
+        set.nodes.push_back(static_cast<Index>(zone.firstPoint + i - 1));
+      }
+    }
+  }
+
+  // Several zones.
+
+  /// Vertices that connections name in two zones become one.
+  void connect() {
+    if (zones_.size() == 1) return;
+    std::vector<Index> same(lists_.points.size());
+    std::iota(same.begin(), same.end(), Index{0});
+    const auto rootOf = [&same](Index v) {
+      while (same[v] != v) v = same[v] = same[same[v]];
+      return v;
+    };
+    for (const Zone& zone : zones_) {
+      std::size_t found = 0;
+      for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
+        for (const std::string& to : nodes(all, "GridConnectivity_t")) {
+          for (const auto& [a, b] : sharedBy(zone, to)) {
+            ++found;
+            const Index first = rootOf(a);
+            const Index second = rootOf(b);
+            same[std::max(first, second)] = std::min(first, second);
+          }
+        }
+      }
+      if (found > 0) continue;
+      fail(ErrorCode::FileUnsupported,
+           "the file has several zones, and nothing says which vertices \"" + zone.path +
+               "\" shares with others (Abutting1to1). Merge them into one zone.");
+    }
+    Array<Index> numbers(same.size());
+    std::size_t kept = 0;
+    for (std::size_t v = 0; v < same.size(); ++v) {
+      const Index root = rootOf(static_cast<Index>(v));
+      if (root != v) {
+        numbers[v] = numbers[root];  // a smaller one
+        continue;
+      }
+      lists_.points[kept] = lists_.points[v];
+      numbers[v] = static_cast<Index>(kept++);
+    }
+    lists_.points.resize(kept);
+    const auto renumber = [&numbers](auto& list) {
+      for (Index& v : list) v = numbers[v];
+    };
+    for (ElementBlock& block : lists_.blocks) renumber(block.nodes);
+    for (NodeSet& set : lists_.nodeSets) renumber(set.nodes);
+    for (Flat& flat : flats_) renumber(flat.nodes);
+  }
+
+  /// Pairs of vertices that a connection says are the same; none of a periodic one.
+  [[nodiscard]] std::vector<std::pair<Index, Index>> sharedBy(const Zone& zone,
+                                                              const std::string& path) const {
+    const std::string location = textIn(path, "GridLocation_t");
+    const bool ofVertices = location.empty() || location == "Vertex";
+    if (!ofVertices || textIn(path, "GridConnectivityType_t") != "Abutting1to1") return {};
+    for (const std::string& property : nodes(path, "GridConnectivityProperty_t")) {
+      if (!nodes(property, "Periodic_t").empty()) return {};
+    }
+    const std::string donor = nameOf(textOf(path));
+    const auto other = std::find_if(zones_.begin(), zones_.end(),
+                                    [&](const Zone& each) { return nameOf(each.path) == donor; });
+    const std::vector<std::int64_t> here = integersIn(path, "IndexArray_t", "PointList");
+    const std::vector<std::int64_t> there = integersIn(path, "IndexArray_t", "PointListDonor");
+    const auto isIn = [](const std::vector<std::int64_t>& list, const Zone& of) {
+      return std::all_of(list.begin(), list.end(), [&of](std::int64_t i) {
+        return i >= 1 && static_cast<std::uint64_t>(i) <= of.points;
+      });
+    };
+    if (other == zones_.end() || here.size() != there.size() || !isIn(here, zone) ||
+        !isIn(there, *other)) {
+      fail(ErrorCode::FileSyntax,
+           "the connection \"" + path + "\" does not name vertices of two zones in pairs.");
+    }
+    std::vector<std::pair<Index, Index>> pairs;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      pairs.emplace_back(zone.firstPoint + static_cast<std::size_t>(here[i]) - 1,
+                         other->firstPoint + static_cast<std::size_t>(there[i]) - 1);
+    }
+    return pairs;
+  }
+
+  // Tags.
+
+  void tagElements() {
+    // One section of cells means nothing, unless this library named it.
+    if (volumeGroups_.size() == 1 && !tagInGroupName(volumeGroups_[0].name)) volumeGroups_.clear();
+    ElementTags tags;
+    std::vector<TagName> names;
+    addTags(volumeGroups_, {3}, tags, names);
+    addTags(flatGroups_, {1, 2}, tags, names);
+    tags.sort();
+    for (ElementBlock& block : lists_.blocks) {
+      for (const std::uint64_t number : block.numbers) block.regions.push_back(tags.find(number));
+    }
+    for (const auto& [number, corners, v] : flats_) {
+      const std::int32_t tag = tags.find(number);
+      if (tag == 0) continue;
+      if (corners == 1) lists_.vertices.push_back({v[0], tag});
+      if (corners == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
+      if (corners == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
+      if (corners == 4) lists_.quads.push_back({v, tag});
+    }
+    lists_.addNamesInUse(names);
+  }
+
+  static void addTags(const std::vector<Group>& groups, std::initializer_list<int> dimensions,
+                      ElementTags& tags, std::vector<TagName>& names) {
+    GroupTags numbers;
+    for (const Group& group : groups) numbers.reserve(group.name);
+    std::map<std::string, std::int32_t> known;
+    for (const Group& group : groups) {
+      const auto place = known.find(group.name);
+      const std::int32_t tag = place == known.end() ? numbers.next(group.name) : place->second;
+      if (place == known.end()) {
+        known.emplace(group.name, tag);
+        for (const int dimension : dimensions) names.push_back({dimension, tag, group.name});
+      }
+      for (const auto& [first, last] : group.ranges) {
+        for (std::uint64_t i = first; i <= last; ++i) tags.add(i, tag);
+      }
+    }
+  }
+
+  static constexpr std::int64_t kMostElements = std::int64_t{1} << 40;
+
+  const Input& input_;
+  ElementParts parts_;
+  std::unique_ptr<HdfReader> file_;
+  ElementLists lists_;
+  std::vector<Zone> zones_;
+  std::uint64_t lastNumber_ = 0;
+  std::uint64_t members_ = 0;  ///< of all conditions
+  std::vector<Flat> flats_;
+  std::vector<Group> volumeGroups_;
+  std::vector<Group> flatGroups_;
+};
+
+}  // namespace
+
+ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage) {
+  const std::string head = firstBytes(input);
+  if (head.starts_with("@(#)")) {
+    throw Error(ErrorCode::FileUnsupported,
+                input.name() +
+                    ": the file is in ADF, an older form of CGNS. Convert it to HDF5: "
+                    "adf2hdf FILE");
+  }
+  if (head == kHdfMark) return CgnsReader(input, parts).read();
+  Array<char> room;
+  if (head.empty()) {  // a pipe
+    const std::string_view bytes = input.text(room, stage, "");
+    if (bytes.starts_with(kHdfMark)) return CgnsReader({bytes, input.name()}, parts).read();
+  }
+  throw Error(ErrorCode::FileSyntax,
+              input.name() + ": the file does not begin as HDF5 files do. Is its extension right?");
+}
+
+}  // namespace hexhex::io

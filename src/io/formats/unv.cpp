@@ -1,0 +1,289 @@
+// `.unv` files (see formats.hpp): data sets between lines of "-1", each with a number that says
+// what its records are.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hexhex/error.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
+#include <io/formats/formats.hpp>
+
+namespace hexhex::io {
+
+namespace {
+
+/// What the numbers of an element's type ("FE descriptor") mean.
+enum class UnvKind : std::uint8_t { Other, Line, Triangle, Quad, Volume };
+
+struct UnvType {
+  UnvKind kind = UnvKind::Other;
+  const VolumeCells* cells = nullptr;  ///< of volumes; null if they are not known
+};
+
+/// Rods and beams, whose elements have a record more.
+bool isBeam(std::int64_t type) { return type == 11 || (type >= 21 && type <= 24); }
+
+UnvType unvType(std::int64_t type, std::size_t nodes) {
+  if (isBeam(type)) return {nodes <= 3 ? UnvKind::Line : UnvKind::Other};
+  constexpr std::int64_t kFirstPlane = 41;  // plane stress, plane strain, plates, membranes, shells
+  constexpr std::int64_t kLastPlane = 96;
+  if (type >= kFirstPlane && type <= kLastPlane) {
+    if (nodes == 3 || nodes == 6) return {UnvKind::Triangle};
+    return {nodes == 4 || nodes == 8 ? UnvKind::Quad : UnvKind::Other};
+  }
+  constexpr std::array<std::pair<std::int64_t, std::string_view>, 11> kVolumes = {
+      {{111, "tetrahedra"},
+       {112, "prisms"},
+       {113, "prisms"},
+       {114, "prisms"},
+       {115, "hexahedra"},
+       {116, "hexahedra"},
+       {117, "hexahedra"},
+       {118, "tetrahedra"},
+       {119, "hexahedra"},
+       {312, "pyramids"},
+       {313, "pyramids"}}};
+  for (const auto& [number, noun] : kVolumes) {
+    if (number == type) return {UnvKind::Volume, volumeCells(noun, nodes)};
+  }
+  return {};
+}
+
+/// Hexahedra with 20 nodes list those of edges between the corners.
+constexpr std::array<std::size_t, 20> kNodesInVtkOrder = {0, 2, 4,  6,  12, 14, 16, 18, 1,  3,
+                                                          5, 7, 13, 15, 17, 19, 8,  9,  10, 11};
+
+class UnvReader {
+ public:
+  UnvReader(const Input& input, ElementParts parts, Stage& stage) : input_(input), parts_(parts) {
+    scanner_.emplace(input.text(room_, stage, "-"), input.name());
+  }
+
+  ElementLists read() {
+    while (scanner_->skipSpace() && !isFound()) {
+      requireMark("\"-1\", with which a data set begins");
+      readDataSet();
+    }
+    if (parts_ == ElementParts::All) finish();
+    return std::move(lists_);
+  }
+
+ private:
+  /// An edge or a quad that may get a tag.
+  template <std::size_t n>
+  struct Flat {
+    std::uint64_t number;
+    std::array<std::uint64_t, n> nodes;
+  };
+
+  void requireMark(const char* what) {
+    if (scanner_->readToken() != "-1") scanner_->failToken(what);
+  }
+  /// Whether a data set ends here, or the file.
+  bool isEnd() { return scanner_->peekToken() == "-1" || scanner_->peekToken().empty(); }
+  /// Whether it is known that there are curved cells, if that is all that is asked for.
+  [[nodiscard]] bool isFound() const { return parts_ == ElementParts::Types && areCurved(lists_); }
+
+  void readDataSet() {
+    const std::string_view kind = scanner_->readToken();
+    scanner_->takeLine();
+    const bool all = parts_ == ElementParts::All;
+    if (kind == "2412") {
+      while (!isEnd()) {
+        readElement();
+        if (isFound()) return;
+      }
+    } else if (all && (kind == "2411" || kind == "781")) {
+      while (!isEnd()) readNode();
+    } else if (all && (kind == "2467" || kind == "2477" || kind == "2452" || kind == "2435")) {
+      while (!isEnd()) readGroup();
+    } else {
+      skipDataSet();
+    }
+    requireMark("\"-1\", with which a data set ends");
+  }
+
+  /// Text lines may hold a "-1", too, but not alone.
+  void skipDataSet() {
+    while (scanner_->skipSpace()) {
+      const std::size_t begin = scanner_->position();
+      TextScanner line(scanner_->takeLine(), input_.name());
+      const bool mark = line.readToken() == "-1" && !line.skipSpace();
+      if (mark) return scanner_->moveTo(begin);
+    }
+  }
+
+  std::uint64_t number(const char* what) {
+    const std::int64_t value = scanner_->integer(what);
+    if (value < 0) scanner_->failInteger(what);
+    return static_cast<std::uint64_t>(value);
+  }
+  void skipNumbers(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) static_cast<void>(scanner_->integer("a whole number"));
+  }
+
+  void readNode() {
+    nodeNumbers_.push_back(number("the number of a node"));
+    skipNumbers(3);  // coordinate systems and a color
+    Vec3& point = lists_.points.emplace_back();
+    for (double& coordinate : point) coordinate = scanner_->number("a coordinate of a node");
+  }
+
+  void readElement() {
+    const std::uint64_t element = number("the number of an element");
+    const std::int64_t typeNumber = scanner_->integer("the type of an element");
+    skipNumbers(3);  // tables of properties and a color
+    const std::uint64_t count = number("the number of nodes of an element");
+    if (isBeam(typeNumber)) skipNumbers(3);
+    constexpr std::uint64_t kMost = 64;
+    if (count > kMost) {
+      scanner_->fail(ErrorCode::FileSyntax,
+                     "element " + std::to_string(element) + " has " + std::to_string(count) +
+                         " nodes; no element of this format has more than 64.");
+    }
+    const UnvType type = unvType(typeNumber, count);
+    if (type.kind == UnvKind::Volume && type.cells == nullptr) {
+      scanner_->fail(ErrorCode::FileUnsupported,
+                     "elements of the type " + std::to_string(typeNumber) + " with " +
+                         std::to_string(count) + " nodes are not known.");
+    }
+    std::array<std::uint64_t, kMost> nodes{};
+    for (std::size_t k = 0; k < count; ++k) nodes[k] = number("a node of an element");
+    addElement(element, type, {nodes.data(), count});
+  }
+
+  void addElement(std::uint64_t element, const UnvType& type,
+                  std::span<const std::uint64_t> nodes) {
+    if (type.kind == UnvKind::Line && nodes.size() >= 2) {
+      edges_.push_back({element, {nodes.front(), nodes.back()}});
+    } else if (type.kind == UnvKind::Triangle) {
+      const std::size_t step = nodes.size() / 3;  // nodes of edges stand between the corners
+      triangles_.push_back({element, {nodes[0], nodes[step], nodes[2 * step]}});
+    } else if (type.kind == UnvKind::Quad) {
+      const std::size_t step = nodes.size() / 4;
+      quads_.push_back({element, {nodes[0], nodes[step], nodes[2 * step], nodes[3 * step]}});
+    } else if (type.kind == UnvKind::Volume) {
+      const std::size_t b = blockOf(*type.cells, nodes.size());
+      lists_.blocks[b].numbers.push_back(element);
+      const bool quadratic = lists_.blocks[b].nodesEach == 20;
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        blockNodes_[b].push_back(nodes[quadratic ? kNodesInVtkOrder[k] : k]);
+      }
+    }
+  }
+
+  /// The index of the block of such elements.
+  std::size_t blockOf(const VolumeCells& cells, std::size_t nodes) {
+    std::size_t b = 0;
+    while (b < lists_.blocks.size() && lists_.blocks[b].type != &cells) ++b;
+    if (b == lists_.blocks.size()) {
+      ElementBlock& added = lists_.blocks.emplace_back();
+      added.type = &cells;
+      added.nodesEach = nodes;
+      blockNodes_.emplace_back();
+    }
+    return b;
+  }
+
+  void readGroup() {
+    const std::uint64_t group = number("the number of a group");
+    skipNumbers(6);  // sets of loads and the like
+    const std::uint64_t count = number("the number of members of a group");
+    scanner_->takeLine();
+    TextScanner name(scanner_->takeLine(), input_.name());
+    NodeSet nodes;
+    nodes.name = name.readToken();
+    nodes.number = std::in_range<std::int32_t>(group) ? static_cast<std::int32_t>(group) : 0;
+    const std::int32_t tag = tagOfGroup(nodes.name, nodes.number);
+    std::vector<std::uint64_t> members;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      constexpr std::int64_t kNodes = 7;
+      constexpr std::int64_t kElements = 8;
+      const std::int64_t kind = scanner_->integer("the kind of a group's member");
+      const std::uint64_t member = number("a member of a group");
+      skipNumbers(2);  // part of an assembly
+      if (kind == kNodes) members.push_back(member);
+      if (kind == kElements) tags_.add(member, tag);
+    }
+    nodeSets_.push_back(std::move(members));
+    lists_.nodeSets.push_back(std::move(nodes));
+  }
+
+  /// Numbers become nodes; groups become tags.
+  void finish() {
+    if (nodeNumbers_.empty()) {
+      throw Error(ErrorCode::FileUnsupported,
+                  input_.name() + ": the file has no nodes: no data set 2411 or 781.");
+    }
+    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
+    tags_.sort();
+    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
+      ElementBlock& block = lists_.blocks[b];
+      nameNodes(block, std::exchange(blockNodes_[b], {}), nodes, input_, "data set of nodes");
+      for (const std::uint64_t number : block.numbers) block.regions.push_back(tags_.find(number));
+    }
+    addFlat(edges_, nodes, lists_.lines);
+    addFlat(triangles_, nodes, lists_.triangles);
+    addFlat(quads_, nodes, lists_.quads);
+    std::vector<TagName> names;  // a group may have elements of several kinds
+    for (const NodeSet& group : lists_.nodeSets) {
+      for (const int dimension : {1, 2, 3}) {
+        names.push_back({dimension, group.number, group.name});
+      }
+    }
+    lists_.addNamesInUse(names);
+    for (std::size_t s = 0; s < nodeSets_.size(); ++s) {
+      for (const std::uint64_t number : nodeSets_[s]) {
+        const Index node = nodes.find(number);
+        if (node != kNone) lists_.nodeSets[s].nodes.push_back(node);
+      }
+    }
+  }
+
+  template <std::size_t n, class Feature>
+  void addFlat(const std::vector<Flat<n>>& flats, const NodeTags& nodes,
+               std::vector<Feature>& features) const {
+    for (const Flat<n>& flat : flats) {
+      Feature feature;
+      feature.tag = tags_.find(flat.number);
+      if (feature.tag == 0) continue;
+      bool known = true;
+      for (std::size_t k = 0; k < n; ++k) {
+        feature.vertices[k] = nodes.find(flat.nodes[k]);
+        known = known && feature.vertices[k] != kNone;
+      }
+      if (known) features.push_back(feature);
+    }
+  }
+
+  const Input& input_;
+  ElementParts parts_;
+  Array<char> room_;
+  std::optional<TextScanner> scanner_;
+  ElementLists lists_;
+  Array<std::uint64_t> nodeNumbers_;
+  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block, by their numbers
+  std::vector<std::vector<std::uint64_t>> nodeSets_;    ///< per group, by their numbers
+  std::vector<Flat<2>> edges_;
+  std::vector<Flat<3>> triangles_;
+  std::vector<Flat<4>> quads_;
+  ElementTags tags_;
+};
+
+}  // namespace
+
+ElementLists readUnv(const Input& input, ElementParts parts, Stage& stage) {
+  return UnvReader(input, parts, stage).read();
+}
+
+}  // namespace hexhex::io

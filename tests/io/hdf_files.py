@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Writes meshes over HDF5 as other programs do.
+
+usage: hdf_files.py KIND FILE
+
+KIND is exodus: by the library of NetCDF (netCDF4), a file of NetCDF-4 with names, blocks, a side set
+and node sets, compressed as SEACAS does; exodus27: a block of HEX27; exodus-lies: a block whose
+elements are not in the file. cgns: by h5py, a file as the CGNS library maps it to HDF5: two cubes with
+conditions; cgns-mixed: in one section of all; cgns20, cgns27: a cell of order 2; cgns-zones, cgns-apart:
+a zone for each cube, with and without a connection; cgns-structured, cgns-beyond: to be refused. Exit
+code 77: a package is not installed.
+"""
+
+import sys
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+
+
+def write_exodus(file, kind):
+    import netCDF4
+    import numpy
+
+    data = netCDF4.Dataset(file, "w", format="NETCDF4")
+    # Two cubes beside each other along x, and a shell in between; the numbers of blocks are not in order.
+    points = numpy.array(CORNERS + [(2, 0, 0), (2, 1, 0), (2, 0, 1), (2, 1, 1)], dtype=float)
+    cells = [[1, 2, 3, 4, 5, 6, 7, 8], [2, 9, 10, 3, 6, 11, 12, 7]]
+    if kind == "exodus27":
+        # Corners, edges at the bottom, upright, at the top; inside; bottom, top, x-, x+, y-, y+.
+        edges = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 5), (2, 6), (3, 7), (4, 5), (5, 6), (6, 7), (7, 4)]
+        cube = 2 * numpy.array(CORNERS, dtype=float)
+        middles = [cube[[a, b]].mean(axis=0) for a, b in edges]
+        rest = [(1, 1, 1), (1, 1, 0), (1, 1, 2), (0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1)]
+        points = numpy.array([*cube, *middles, *rest])
+        cells = [list(range(1, 28))]
+    data.createDimension("len_name", 33)
+    data.createDimension("time_step", None)
+    data.createDimension("num_nodes", len(points))
+    data.createVariable("time_whole", "f8", ("time_step",))
+    for axis, letter in enumerate("xyz"):
+        variable = data.createVariable("coord" + letter, "f8", ("num_nodes",), zlib=True)
+        variable[:] = points[:, axis]
+    data.createDimension("num_el_blk", len(cells))
+    data.createVariable("eb_prop1", "i4", ("num_el_blk",))[:] = [30, 20][: len(cells)]
+    names = data.createVariable("eb_names", "S1", ("num_el_blk", "len_name"))
+    for i, name in enumerate(["steel", "region_7"][: len(cells)]):
+        names[i, :] = netCDF4.stringtochar(numpy.array(name, "S33"))
+    for i, cell in enumerate(cells):
+        data.createDimension(f"num_el_in_blk{i + 1}", 1)
+        data.createDimension(f"num_nod_per_el{i + 1}", len(cell))
+        variable = data.createVariable(f"connect{i + 1}", "i8" if i else "i4",
+                                       (f"num_el_in_blk{i + 1}", f"num_nod_per_el{i + 1}"), zlib=True)
+        variable.elem_type = "HEX" if kind == "exodus27" else "HEX8"
+        if kind != "exodus-lies":
+            variable[:] = [cell]
+    data.createDimension("num_side_sets", 1)
+    data.createVariable("ss_prop1", "i4", ("num_side_sets",))[:] = [5]
+    names = data.createVariable("ss_names", "S1", ("num_side_sets", "len_name"))
+    names[0, :] = netCDF4.stringtochar(numpy.array("inlet", "S33"))
+    data.createDimension("num_side_ss1", 1)
+    data.createVariable("elem_ss1", "i4", ("num_side_ss1",))[:] = [1]
+    data.createVariable("side_ss1", "i4", ("num_side_ss1",))[:] = [4]  # x = 0
+    data.createDimension("num_node_sets", 1)
+    data.createVariable("ns_prop1", "i4", ("num_node_sets",))[:] = [9]
+    data.createDimension("num_nod_ns1", 1)
+    data.createVariable("node_ns1", "i4", ("num_nod_ns1",))[:] = [7]
+    data.close()
+
+
+def write_cgns(file, kind):
+    import h5py
+    import numpy
+
+    def node(parent, name, label, kind="MT", data=None):
+        group = parent.create_group(name, track_order=True)
+        for key, value, size in (("name", name, 33), ("label", label, 33), ("type", kind, 3)):
+            group.attrs.create(key, numpy.bytes_(value), dtype=f"S{size}")
+        if data is not None:
+            if kind == "C1":
+                data = numpy.frombuffer(data.encode(), dtype=numpy.int8)
+            group.create_dataset(" data", data=data)
+        return group
+
+    def zone_of(base, name, points, sections):
+        zone = node(base, name, "Zone_t", "I8", numpy.array([[len(points)], [len(sections)], [0]], dtype=numpy.int64))
+        node(zone, "ZoneType", "ZoneType_t", "C1", "Structured" if kind == "cgns-structured" else "Unstructured")
+        grid = node(zone, "GridCoordinates", "GridCoordinates_t")
+        for axis in range(3):
+            column = numpy.array(points, dtype=float)[:, axis]
+            node(grid, "Coordinate" + "XYZ"[axis], "DataArray_t", "R8", column)
+        first = 1
+        for title, number, rows in sections:
+            section = node(zone, title, "Elements_t", "I4", numpy.array([number, 0], dtype=numpy.int32))
+            last = first + len(rows) - 1
+            node(section, "ElementRange", "IndexRange_t", "I8", numpy.array([first, last], dtype=numpy.int64))
+            node(section, "ElementConnectivity", "DataArray_t", "I8",
+                 numpy.array([v for row in rows for v in row], dtype=numpy.int64))
+            first = last + 1
+        return zone
+
+    def condition(parent, name, location, points=None, span=None, family=None):
+        bc = node(parent, name, "BC_t", "C1", "BCWall")
+        node(bc, "GridLocation", "GridLocation_t", "C1", location)
+        if points is not None:
+            node(bc, "PointList", "IndexArray_t", "I4", numpy.array([[p] for p in points], dtype=numpy.int32))
+        if span is not None:
+            node(bc, "PointRange", "IndexRange_t", "I4", numpy.array([[p] for p in span], dtype=numpy.int32))
+        if family is not None:
+            node(bc, "FamilyName", "FamilyName_t", "C1", family)
+
+    def connect(zone, donor, here, there):
+        all_of_it = node(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
+        to = node(all_of_it, "to", "GridConnectivity_t", "C1", donor)
+        node(to, "GridConnectivityType", "GridConnectivityType_t", "C1", "Abutting1to1")
+        node(to, "PointList", "IndexArray_t", "I4", numpy.array([[p] for p in here], dtype=numpy.int32))
+        node(to, "PointListDonor", "IndexArray_t", "I4", numpy.array([[p] for p in there], dtype=numpy.int32))
+
+    points = CORNERS + [(2, 0, 0), (2, 1, 0), (2, 0, 1), (2, 1, 1)]
+    cells = [[1, 2, 3, 4, 5, 6, 7, 8], [2, 9, 10, 3, 6, 11, 12, 7]]
+    with h5py.File(file, "w", track_order=True) as data:
+        base = node(data, "Base", "CGNSBase_t", "I4", numpy.array([3, 3], dtype=numpy.int32))
+        node(base, "inflow", "Family_t")
+        if kind in ("cgns20", "cgns27"):
+            # As the standard (SIDS) numbers the nodes: corners, edges at the bottom, upright and at the
+            # top, faces from the bottom on around the cell to the top, and the middle.
+            edges = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 5), (2, 6), (3, 7), (4, 5), (5, 6), (6, 7), (7, 4)]
+            cube = 2 * numpy.array(CORNERS, dtype=float)
+            nodes = [*cube, *(cube[[a, b]].mean(axis=0) for a, b in edges)]
+            nodes += [numpy.array(p, dtype=float)
+                      for p in [(1, 1, 0), (1, 0, 1), (2, 1, 1), (1, 2, 1), (0, 1, 1), (1, 1, 2), (1, 1, 1)]]
+            nodes = nodes[: int(kind[4:])]
+            zone_of(base, "Zone", nodes, [("Cells", {20: 18, 27: 19}[len(nodes)], [range(1, len(nodes) + 1)])])
+        elif kind in ("cgns-zones", "cgns-apart"):
+            first = zone_of(base, "First", CORNERS, [("Left", 17, [range(1, 9)])])
+            there = [(1, 0, 0), (2, 0, 0), (2, 1, 0), (1, 1, 0), (1, 0, 1), (2, 0, 1), (2, 1, 1), (1, 1, 1)]
+            second = zone_of(base, "Second", there, [("Right", 17, [range(1, 9)])])
+            if kind == "cgns-zones":
+                connect(first, "Second", [2, 3, 6, 7], [1, 4, 5, 8])
+                connect(second, "First", [1, 4, 5, 8], [2, 3, 6, 7])
+        else:
+            if kind == "cgns-beyond":
+                cells[1][0] = 13
+            quads = [[1, 5, 8, 4], [9, 10, 12, 11]]
+            sections = [("Quads", 7, quads), ("Cells", 17, cells)]
+            if kind == "cgns-mixed":
+                sections = [("All", 20, [[7, *q] for q in quads] + [[17, *c] for c in cells])]
+            zone = zone_of(base, "Zone", points, sections)
+            conditions = node(zone, "ZoneBC", "ZoneBC_t")
+            condition(conditions, "BC-1", "FaceCenter", points=[1], family="inflow")
+            condition(conditions, "BC-2", "FaceCenter", span=[2, 2])
+            condition(conditions, "BC-3", "Vertex", points=[1, 2, 3])
+
+
+if __name__ == "__main__":
+    try:
+        (write_cgns if sys.argv[1].startswith("cgns") else write_exodus)(sys.argv[2], sys.argv[1])
+    except ImportError:
+        sys.exit(77)
