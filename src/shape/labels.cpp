@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <span>
+#include <vector>
 
 #include <shape/labels.hpp>
 
@@ -61,8 +61,8 @@ std::vector<CheckedLabels> cutAll(const Surface& surface, const LabelCosts& cost
 
 }  // namespace
 
-std::vector<CheckedLabels> labelsOf(const Surface& surface, std::uint64_t seed, Stage& stage) {
-  const LabelCosts costs(surface);
+CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs, std::uint64_t seed,
+                       Stage& stage) {
   stage.setTotal(kStarts.size() + kLabelSearches * kLabelRounds);
   std::vector<CheckedLabels> found = cutAll(surface, costs, seed, stage);
   sortByMerit(found);
@@ -78,7 +78,7 @@ std::vector<CheckedLabels> labelsOf(const Surface& surface, std::uint64_t seed, 
     sortByMerit(found);
     if (found.front().verdict.report.isValid()) break;
   }
-  return found;
+  return found.front();
 }
 
 }  // namespace hexhex::shape

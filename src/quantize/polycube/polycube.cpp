@@ -10,6 +10,7 @@
 //    (polycube_bend, polycube_problem). What decides whether it gets there are boundary triangles
 //    and edges in its energy: tets alone do not see triangles that fold over in their plane.
 // 5. Where that fails, tets are refined, and all begins anew: from there, maps do not get better.
+//    Unless there are fewer flips then, it is the labels that have no map.
 #include <string>
 
 #include <hexhex/quantize.hpp>
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -123,11 +125,16 @@ class PolycubeMaker {
         tets_(polycubeTets(given_, scale_)) {}
 
   TetMap run() {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (int refinements = 0;; ++refinements) {
       makeRoom(tets_);
       std::optional<BentTets> best;
       if (bend(refinements < kMostRefinements, best)) break;
-      if (refinements == kMostRefinements || work_ > kMostWork) fail(*best, tets_);
+      const std::size_t flips = best->flipped.size();
+      if (refinements == kMostRefinements || work_ > kMostWork || flips >= fewest) {
+        fail(*best, tets_);
+      }
+      fewest = flips;
       refineAt(tets_, verticesAt(*best));
     }
     return mapOf(given_.input.view, std::move(tets_), std::move(parameters_), scale_);
