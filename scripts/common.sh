@@ -57,7 +57,7 @@ install_python_programs() {
   if [[ -n "${HEXHEX_PYTHON:-}" ]]; then return 0; fi
   local python=$PWD/build/python wanted=tests/io/requirements.txt
   if ! cmp -s "$wanted" "$python/installed.txt"; then
-    say "Installing meshio, gmsh, h5py, vtk, mfem and pytetwild from PyPI ..."
+    say "Installing meshio, gmsh, h5py, vtk, solvers and pytetwild from PyPI ..."
     if ! { rm -rf "$python" && python3 -m venv "$python" &&
            "$python/bin/pip" install --quiet --disable-pip-version-check -r "$wanted" &&
            cp "$wanted" "$python/installed.txt"; } >"$logs/python.log" 2>&1; then
@@ -88,6 +88,8 @@ optional_packages=(libhdf5-dev libeigen3-dev python3-venv)
 # ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)
+# ... and solvers that docs/solvers has pages of.
+solver_packages=(calculix-ccx python3-getfem)
 # What builds the ParaView plugin (its CMake files look for the three libraries), and what tests it:
 # Debian's ParaView draws with X only.
 paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdouble-conversion-dev

@@ -79,8 +79,8 @@ bool isCurved(const ConvertArguments& arguments, Context& context) {
 
 std::string convertCurved(const ConvertArguments& arguments, Context& context) {
   requireFor(arguments, "cells of higher order",
-             [](const std::filesystem::path& file, const WriteOptions& /*options*/) {
-               requireLagrangeFormat(file);
+             [](const std::filesystem::path& file, const WriteOptions& options) {
+               requireLagrangeFormat(file, options.format);
              });
   if (arguments.reorient) {
     throw Error(ErrorCode::InvalidArgument,
@@ -176,7 +176,7 @@ Command addConvert(CLI::App& app) {
   addMapSourceBefore(*parser, arguments->input, "INPUT", arguments->output, "OUTPUT",
                      "The file to write");
   addKeepWalls(*parser, arguments->input);
-  addOutputChoice(*parser, arguments->choice);
+  addMeshChoice(*parser, arguments->choice, arguments->output);
   parser
       ->add_option("--input-format", arguments->input.format,
                    "Read this format, whatever the extension")

@@ -150,7 +150,7 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
   verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
   extractor.reset();
   const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
-  WriteOptions options;
+  WriteOptions options = arguments.choice.options();
   options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
@@ -356,7 +356,7 @@ int run(const ExtractArguments& given, const CLI::App& parser) {
     });
   } catch (const Error& error) {
     // Here, where all are still there: when one has ended so, mpirun stops the others.
-    if (speaks) printError(error);
+    if (speaks) printError(error, sentenceOf(error));
     return exitCodeOf(error.code());
   }
   return kSuccess;

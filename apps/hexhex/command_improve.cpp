@@ -86,7 +86,7 @@ ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun)
       longRun.part("reading", [&] { return readLagrangeMesh(arguments.mesh, context); });
   const Array<Vec3> before = pointsForPage(arguments, mesh.points);
   ImproveReport report = improveMesh(arguments, mesh, longRun);
-  WriteOptions writing;
+  WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle;
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
@@ -100,12 +100,7 @@ bool requireFormats(const ImproveArguments& arguments, Context& context) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
     return false;
   }
-  if (!arguments.choice.format.empty() || arguments.choice.compress) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The extension alone decides on the format of a mesh of higher order. Leave out "
-                "--format and --compress.");
-  }
-  requireLagrangeFormat(arguments.output);
+  arguments.choice.requireForCurved(arguments.output);
   return true;
 }
 
@@ -152,7 +147,7 @@ Command addImprove(CLI::App& app) {
       ->option_text("FILE");
   addImproveOptions(*parser, arguments->options);
   addHexesOnly(*parser, arguments->hexesOnly);
-  addOutputChoice(*parser, arguments->choice);
+  addMeshChoice(*parser, arguments->choice, arguments->output);
   addPatchAngle(*parser, arguments->patchAngle);
   addReport(*parser, arguments->report,
             "Write in JSON: quality and certificates before and after,\n"

@@ -98,6 +98,9 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Fil
   if (part.tagsReleased) {
     printLine("sharp edges", "vertices left some, as cells were not positive otherwise");
   }
+  if (part.missingCurves > 0) {
+    printLine("tagged curves", "no edges run along " + counted(part.missingCurves, "piece"));
+  }
   printLine("time", run.partsAsText());
 }
 
@@ -142,7 +145,7 @@ void addOutputs(CLI::App& parser, MeshArguments& arguments) {
                   "The mesh to write; `hexhex formats` lists the formats")
       ->required()
       ->option_text("FILE REQUIRED");
-  addOutputChoice(parser, arguments.choice);
+  addMeshChoice(parser, arguments.choice, arguments.output);
   parser
       .add_option("--keep-map", arguments.map,
                   "Write the integer-grid map, too, for `extract` and `verify`")

@@ -30,10 +30,8 @@ void requireCurvedOutputs(const ExtractArguments& arguments) {
                 "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
                 "--patches.");
   }
-  if (arguments.order > 1 && (!arguments.choice.format.empty() || arguments.choice.compress)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "The extension alone decides on the format of a mesh of higher order. Leave out "
-                "--format and --compress.");
+  if (arguments.order > 1 && !arguments.parts.parts) {
+    arguments.choice.requireForCurved(arguments.output, arguments.order);
   }
   if (!arguments.arcs.empty()) {
     requireArcFormat(arguments.arcs);
@@ -158,7 +156,7 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
       .add_option(
           "--order", arguments.order,
           "Write cells of this order, whose nodes are on the images\nof a finer grid: .vtu, "
-          ".msh, or .mesh (MFEM)")
+          ".msh, .inp (order 2), or .mesh (MFEM)")
       ->check(CLI::Range(1, kMaxOrder))
       ->option_text("P [1]");
   parser
@@ -178,7 +176,7 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   addMapSource(parser, arguments.input);
   addKeepWalls(parser, arguments.input);
   addMeshOutput(parser, arguments.output);
-  addOutputChoice(parser, arguments.choice);
+  addMeshChoice(parser, arguments.choice, arguments.output);
   addScale(parser, arguments.options.scale,
            "Multiply all parameters by this integer: its cube as\nmany cells");
   addCurved(parser, arguments);
@@ -215,12 +213,11 @@ void requireOutputs(const ExtractArguments& arguments) {
   }
   if (arguments.parts.parts) {
     requirePartsOutputs(arguments);
-  } else if (arguments.order > 1) {
-    requireLagrangeFormat(arguments.output);
-  } else {
+  } else if (arguments.order == 1) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
-  requireWritable(arguments.output);
+  // Several processes would each make a folder of their own.
+  requireWritable(arguments.output, !arguments.parts.parts);
   if (arguments.stream && !arguments.parts.parts) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
   }

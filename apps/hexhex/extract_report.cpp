@@ -197,7 +197,9 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
                  "cells there may be inverted, too.");
   }
   if (record.certificate && record.certificate->refuted > 0 && !record.improved) {
-    printWarning(refutationAsText(*record.certificate));
+    const bool canImprove = record.order <= 3;
+    printWarning(refutationAsText(*record.certificate) +
+                 (canImprove ? " --improve makes such cells positive where it can." : ""));
   }
   if (statistics.mirrored) {
     printWarning("The map reverses orientation; it was mirrored before the extraction.");

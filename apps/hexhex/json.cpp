@@ -213,6 +213,8 @@ Json shapeAsJson(const ShapeReport& report) {
           {"added_tets", report.addedTets},
           {"feature_edges", report.featureEdges},
           {"tagged_edges", report.taggedEdges},
+          {"inner_faces", report.innerFaces},
+          {"aligned_faces", report.alignedFaces},
           {"scaled_jacobian", distortionAsJson(report.distortion)}};
 }
 
@@ -223,7 +225,8 @@ Json partAsJson(const MeshedPart& part) {
           {"quantization", quantizeAsJson(part.quantization)},
           {"verification", verificationAsJson(part.verification)},
           {"improvement", improvementAsJson(part.improvement)},
-          {"tags_released", part.tagsReleased}};
+          {"tags_released", part.tagsReleased},
+          {"missing_curves", part.missingCurves}};
 }
 
 const char* kindName(const SeamlessReport& report) noexcept {

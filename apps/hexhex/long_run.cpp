@@ -19,12 +19,22 @@ namespace {
 std::atomic<Context*> contextToCancel{nullptr};
 static_assert(std::atomic<Context*>::is_always_lock_free, "signal handlers may not lock");
 
+std::atomic<int> signalThatCame{0};
+
 extern "C" void cancelContext(int signal) {
+  signalThatCame = signal;
   if (Context* const context = contextToCancel.load()) context->cancel();
   std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
+
+std::string_view sentenceOf(const Error& error) noexcept {
+  const int signal = signalThatCame;
+  if (error.code() != ErrorCode::Cancelled || signal == 0) return error.what();
+  if (signal == SIGINT) return "Interrupted.";
+  return signal == SIGTERM ? "Terminated." : "Its terminal was closed.";
+}
 
 CancelOnSignal::CancelOnSignal(Context& context) {
   contextToCancel = &context;

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
 
 namespace hexhex::command {
 
@@ -24,6 +25,9 @@ class CancelOnSignal {
   CancelOnSignal(const CancelOnSignal&) = delete;
   CancelOnSignal& operator=(const CancelOnSignal&) = delete;
 };
+
+/// What to tell of an error: where a signal cancelled the run, what that means ("Terminated.").
+[[nodiscard]] std::string_view sentenceOf(const Error& error) noexcept;
 
 /// Progress on the standard error output: one bar for a whole run on a terminal, or a line per
 /// stage.

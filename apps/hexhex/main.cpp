@@ -18,6 +18,7 @@
 #include <hexhex/version.hpp>
 
 #include "command.hpp"
+#include "long_run.hpp"
 #include "output.hpp"
 #include "suggestions.hpp"
 
@@ -97,7 +98,7 @@ int runGuarded(const Command& command) {
   try {
     return command.run();
   } catch (const Error& error) {
-    printError(error);
+    printError(error, sentenceOf(error));
     return exitCodeOf(error.code());
   } catch (const std::bad_alloc&) {
     return failForMemory();

@@ -55,9 +55,11 @@ void printWarning(std::string_view sentence) {
   printToStderr("hexhex: warning: {}\n", printable(sentence));
 }
 
-void printError(const Error& error) {
+void printError(const Error& error) { printError(error, error.what()); }
+
+void printError(const Error& error, std::string_view sentence) {
   const std::string place = toString(error.place());
-  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(error.what()), name(error.code()),
+  printToStderr("hexhex: error: {} [{}{}{}]\n", printable(sentence), name(error.code()),
                 place.empty() ? "" : ", ", place);
 }
 
@@ -117,9 +119,13 @@ void requireAllDifferent(std::vector<std::filesystem::path> files,
   }
 }
 
-void requireWritable(const std::filesystem::path& file) {
-  // Opening a pipe twice would end it.
+void requireWritable(const std::filesystem::path& file, bool makesFolders) {
   std::error_code missing;
+  // OpenFOAM's case is made with its folders, or replaced as a folder.
+  const bool makesFolder = makesFolders && file.extension() == ".foam" && file.has_parent_path() &&
+                           !std::filesystem::exists(file.parent_path(), missing);
+  if (makesFolder || file.filename() == "polyMesh") return;
+  // Opening a pipe twice would end it.
   if (!std::filesystem::is_other(file, missing)) static_cast<void>(TextFile(file));
 }
 

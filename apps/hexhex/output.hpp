@@ -53,6 +53,8 @@ void printWarning(std::string_view sentence);
 /// The sentence, and in brackets what a script or a bug report wants to know, on the standard error
 /// output.
 void printError(const Error& error);
+/// @param sentence  in place of the error's
+void printError(const Error& error, std::string_view sentence);
 
 /// 16 hexadecimal digits.
 [[nodiscard]] std::string checksumAsText(std::uint64_t checksum);
@@ -73,7 +75,8 @@ void requireAllDifferent(std::vector<std::filesystem::path> files,
 
 /// Throws FileWrite if the file is a folder or a link to nowhere, or no file can be created in its
 /// folder: to fail before long work.
-void requireWritable(const std::filesystem::path& file);
+/// @param makesFolders  whether folders of a case of OpenFOAM are made with it
+void requireWritable(const std::filesystem::path& file, bool makesFolders = true);
 
 /// A report that is asked for: a file, or "-" for the standard output, which then holds nothing
 /// else; or none.

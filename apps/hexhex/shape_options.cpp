@@ -87,6 +87,16 @@ void printShape(const ShapeReport& report) {
     printLine("sharp edges", fmt::format("{} of {} are edges of the map", report.taggedEdges,
                                          report.featureEdges));
   }
+  if (report.innerFaces > 0) {
+    const std::uint64_t others = report.innerFaces - report.alignedFaces;
+    printLine("faces inside",
+              others == 0
+                  ? fmt::format("all {} with a tag or between regions are planes of the map",
+                                report.innerFaces)
+                  : fmt::format("{} of {} with a tag or between regions are not followed: "
+                                "each cell is in the region of its centre",
+                                others, report.innerFaces));
+  }
 }
 
 Json filledAsJson(const std::string& file, const FilledPart& part) {

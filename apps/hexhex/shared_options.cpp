@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/parts.hpp>
 #include <hexhex/quantize.hpp>
@@ -199,10 +200,18 @@ void addMeshOutput(CLI::App& parser, std::string& file) {
 
 WriteOptions OutputChoice::options() const {
   WriteOptions options;
-  options.format = format;
+  options.format = solver.empty() ? format : solver;
   options.compress = compress;
   options.mapArray = mapArray;
   return options;
+}
+
+void OutputChoice::requireForCurved(const std::string& output, int order) const {
+  if (compress) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Files of meshes of higher order are not compressed. Leave out --compress.");
+  }
+  requireLagrangeFormat(output, options().format, order);
 }
 
 CLI::Validator formatName() {
@@ -217,13 +226,58 @@ CLI::Validator formatName() {
   return CLI::Validator(check, "");
 }
 
-void addOutputChoice(CLI::App& parser, OutputChoice& choice) {
-  parser
-      .add_option("--format", choice.format,
-                  "Write this format, whatever the extension;\n`hexhex formats` lists them")
-      ->check(formatName())
-      ->option_text("NAME");
+CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice) {
+  CLI::Option* const format =
+      parser
+          .add_option("--format", choice.format,
+                      "Write this format, whatever the extension;\n`hexhex formats` lists them")
+          ->check(formatName())
+          ->option_text("NAME");
   parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
+  return format;
+}
+
+namespace {
+
+std::vector<std::string> solverNames() {
+  std::vector<std::string> names;
+  for (const SolverFormat& each : solverFormats()) names.emplace_back(each.name);
+  return names;
+}
+
+/// What a solver does not take for its format is of no use, whatever is in it.
+void requireExtension(const SolverFormat& solver, std::string& output) {
+  const std::filesystem::path file = output;
+  std::error_code missing;
+  // Pipes have any name, and so has the folder that OpenFOAM's files are in.
+  if (std::filesystem::is_other(file, missing) || file.filename() == "polyMesh") return;
+  if (file.extension() == solver.extension) return;
+  std::filesystem::path other = file;
+  other.replace_extension(solver.extension);
+  if (file.extension().empty()) {
+    output = other.string();
+    return;
+  }
+  throw CLI::ValidationError(
+      "--for", fmt::format("{} reads {} files: write {} in place of {}.", solver.program,
+                           solver.extension, other.string(), output));
+}
+
+}  // namespace
+
+void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output) {
+  // Asked for by its name, CLI11 would end the program where memory does not suffice.
+  CLI::Option* const format = addOutputChoice(parser, choice);
+  parser
+      .add_option("--for", choice.solver,
+                  "Write what this solver reads (calculix, dealii, mfem, ...:\n"
+                  "`hexhex formats` lists them); gives FILE its extension")
+      ->check(oneOf(solverNames()))
+      ->excludes(format)
+      ->option_text("SOLVER");
+  parser.final_callback([&choice, &output] {
+    if (!choice.solver.empty()) requireExtension(*findSolver(choice.solver), output);
+  });
 }
 
 void addHexesOnly(CLI::App& parser, bool& hexesOnly) {

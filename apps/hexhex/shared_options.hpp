@@ -66,17 +66,25 @@ void addMeshOutput(CLI::App& parser, std::string& file);
 /// How a subcommand writes its result.
 struct OutputChoice {
   std::string format;
+  std::string solver;  ///< that chooses the format, or empty
   std::string mapArray = "igm";
   bool compress = false;
 
   [[nodiscard]] WriteOptions options() const;
+  /// @param order  0: not known yet
+  /// @throws Error InvalidArgument, FileUnsupported if cells of higher order are not written so
+  void requireForCurved(const std::string& output, int order = 0) const;
 };
 
 /// Accepts names of formats.
 [[nodiscard]] CLI::Validator formatName();
 
 /// Adds --format and --compress.
-void addOutputChoice(CLI::App& parser, OutputChoice& choice);
+/// @return the former
+CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice);
+/// Adds these, and --for.
+/// @param output  gets the extension that the solver expects, if it has none
+void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output);
 
 /// Adds --hexes-only.
 void addHexesOnly(CLI::App& parser, bool& hexesOnly);

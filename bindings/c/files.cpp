@@ -33,6 +33,15 @@ WriteOptions writeOptions(const hexhex_write_options* options, std::size_t cells
   return result;
 }
 
+void give(TetMesh&& tets, hexhex_map** map) {
+  give(TetMap{.points = std::move(tets.points),
+              .tets = std::move(tets.tets),
+              .parameters = {},
+              .features = std::move(tets.features),
+              .regions = std::move(tets.regions)},
+       map);
+}
+
 }  // namespace hexhex::c
 
 hexhex_status hexhex_map_read(const char* file, const hexhex_read_options* options,
@@ -51,11 +60,7 @@ hexhex_status hexhex_map_read_tets(const char* file, const hexhex_read_options* 
   return guarded(error, [&] {
     require(map, "map");
     ContextOrDefault used(context);
-    hexhex::TetMesh mesh = hexhex::readTetMesh(&require(file, "file"), readOptions(options), *used);
-    give(
-        hexhex::TetMap{
-            .points = std::move(mesh.points), .tets = std::move(mesh.tets), .parameters = {}},
-        map);
+    give(hexhex::readTetMesh(&require(file, "file"), readOptions(options), *used), map);
   });
 }
 
@@ -183,7 +188,7 @@ hexhex_status hexhex_require_format(hexhex_output output, const char* file,
       case HEXHEX_OUTPUT_PATCHES:
         return hexhex::requirePatchFormat(name);
       case HEXHEX_OUTPUT_LAGRANGE:
-        return hexhex::requireLagrangeFormat(name);
+        return hexhex::requireLagrangeFormat(name, how.format);
     }
     throw Error(ErrorCode::InvalidArgument, "There is no such kind of output.");
   });

@@ -40,7 +40,8 @@ void writeReport(const ImproveReport& r, hexhex_improve_report* out) {
       .off_creases = r.offCreases,
       .added_cells = r.addedCells,
       .curve_length = r.curveLength,
-      .curves_followed = r.curvesFollowed};
+      .curves_followed = r.curvesFollowed,
+      .snapped_curves = r.snappedCurves};
   writeStruct(result, *out, "report");
 }
 
@@ -54,7 +55,8 @@ ImproveOptions improveOptions(const hexhex_improve_options* options) {
           .fixBoundary = o.fix_boundary != 0,
           .featureAngle = o.feature_angle,
           .slack = o.slack,
-          .pillow = static_cast<PillowMode>(o.pillow)};
+          .pillow = static_cast<PillowMode>(o.pillow),
+          .snapCurves = o.snap_curves != 0};
 }
 
 }  // namespace hexhex::c

@@ -21,10 +21,18 @@ hexhex::TetMap owned(const hexhex::TetMapView& view) {
           .parameters = {view.parameters.begin(), view.parameters.end()},
           .edgeValences = {view.edgeValences.begin(), view.edgeValences.end()},
           .rotations = {view.rotations.begin(), view.rotations.end()},
-          .features = {.vertices = {view.features.vertices.begin(), view.features.vertices.end()},
-                       .edges = {view.features.edges.begin(), view.features.edges.end()},
-                       .faces = {view.features.faces.begin(), view.features.faces.end()}},
+          .features = view.features.copy(),
           .regions = {view.regions.begin(), view.regions.end()}};
+}
+
+hexhex::FeaturesView featuresOf(const hexhex_map_arrays& given) {
+  using hexhex::c::borrowed;
+  return {
+      borrowed<hexhex::FeatureVertex>(given.feature_vertices, given.feature_vertex_count,
+                                      "feature_vertices"),
+      borrowed<hexhex::FeatureEdge>(given.feature_edges, given.feature_edge_count, "feature_edges"),
+      borrowed<hexhex::FeatureFace>(given.feature_faces, given.feature_face_count,
+                                    "feature_faces")};
 }
 
 hexhex::TetMapView viewOf(const hexhex_map_arrays& given) {
@@ -39,12 +47,7 @@ hexhex::TetMapView viewOf(const hexhex_map_arrays& given) {
     view.rotations =
         borrowed<std::array<std::int8_t, 4>>(given.rotations, given.tet_count, "rotations");
   }
-  view.features = {
-      borrowed<hexhex::FeatureVertex>(given.feature_vertices, given.feature_vertex_count,
-                                      "feature_vertices"),
-      borrowed<hexhex::FeatureEdge>(given.feature_edges, given.feature_edge_count, "feature_edges"),
-      borrowed<hexhex::FeatureFace>(given.feature_faces, given.feature_face_count,
-                                    "feature_faces")};
+  view.features = featuresOf(given);
   if (given.regions != nullptr) view.regions = {given.regions, given.tet_count};
   return view;
 }
@@ -69,7 +72,11 @@ TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument) {
       readStruct(&require(arrays, argument), HEXHEX_MAP_ARRAYS_INIT, argument);
   const auto points = borrowed<Vec3>(given.points, given.point_count, "points");
   const auto tets = borrowed<Tet>(given.tets, given.tet_count, "tets");
-  return {.points = {points.begin(), points.end()}, .tets = {tets.begin(), tets.end()}};
+  const std::size_t regions = given.regions == nullptr ? 0 : given.tet_count;
+  return {.points = {points.begin(), points.end()},
+          .tets = {tets.begin(), tets.end()},
+          .features = featuresOf(given).copy(),
+          .regions = {given.regions, given.regions + regions}};
 }
 
 TetMap copyOf(const hexhex_map& map) { return map.owned ? *map.owned : owned(map.view); }

@@ -25,8 +25,11 @@ namespace hexhex::c {
 void writeReport(const QuantizeReport& report, hexhex_quantize_report* out);
 void writeReport(const ImproveReport& report, hexhex_improve_report* out);
 
-/// Points and tets of the caller's arrays.
+/// Points and tets of the caller's arrays, with tags.
 [[nodiscard]] TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument);
+
+/// With tags, and without parameters.
+void give(TetMesh&& tets, hexhex_map** map);
 
 [[nodiscard]] Repaired repairedBy(ExtractStatistics&& statistics);
 /// @param map, report  may be null

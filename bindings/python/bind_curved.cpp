@@ -180,16 +180,18 @@ void bindCurved(nb::module_& module) {
       "mesh"_a, "map"_a.none(), "file"_a, "threads"_a, "progress"_a.none());
   module.def(
       "write_lagrange",
-      [](const LagrangeMesh& mesh, const std::string& file, double patchAngle,
-         const In1<double>& scaledJacobians, int threads, const Progress& progress) {
+      [](const LagrangeMesh& mesh, const std::string& file, const std::string& format,
+         double patchAngle, const In1<double>& scaledJacobians, int threads,
+         const Progress& progress) {
         WriteOptions writing;
+        writing.format = format;
         writing.patchAngle = patchAngle;
         writing.scaledJacobians = elements<double>(scaledJacobians);
         run(threads, progress,
             [&](Context& context) { writeLagrangeMesh(mesh, file, writing, context); });
       },
-      "mesh"_a, "file"_a, "patch_angle"_a, "scaled_jacobians"_a.noconvert(), "threads"_a,
-      "progress"_a.none());
+      "mesh"_a, "file"_a, "format"_a, "patch_angle"_a, "scaled_jacobians"_a.noconvert(),
+      "threads"_a, "progress"_a.none());
   module.def(
       "read_lagrange",
       [](const std::string& file, int threads, const Progress& progress) {

@@ -70,7 +70,7 @@ void requireFormat(const std::string& what, const std::string& file, const std::
   if (what == "mesh") return requireHexMeshFormat(file, options);
   if (what == "arcs") return requireArcFormat(file);
   if (what == "patches") return requirePatchFormat(file);
-  if (what == "curved") return requireLagrangeFormat(file);
+  if (what == "curved") return requireLagrangeFormat(file, format);
   throw Error(ErrorCode::InvalidArgument,
               "A \"" + what +
                   "\" is nothing that can be written. Choose map, mesh, arcs, patches or curved.");

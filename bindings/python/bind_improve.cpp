@@ -39,6 +39,7 @@ nb::tuple asTuple(ImproveReport&& report) {
   d["added_cells"] = report.addedCells;
   d["curve_length"] = report.curveLength;
   d["curves_followed"] = report.curvesFollowed;
+  d["snapped_curves"] = report.snappedCurves;
   d["seconds"] = report.seconds;
   return nb::make_tuple(asTuple(std::move(report.before)), asTuple(std::move(report.after)), d);
 }
@@ -69,10 +70,12 @@ void bindImprove(nb::module_& module) {
       .def(
           "__init__",
           [](ImproveOptions* self, double target, int passes, bool fixBoundary, double featureAngle,
-             double slack, PillowMode pillow) {
-            new (self) ImproveOptions{target, passes, fixBoundary, featureAngle, slack, pillow};
+             double slack, PillowMode pillow, bool snapCurves) {
+            new (self) ImproveOptions{target, passes, fixBoundary, featureAngle,
+                                      slack,  pillow, snapCurves};
           },
-          "target"_a, "passes"_a, "fix_boundary"_a, "feature_angle"_a, "slack"_a, "pillow"_a);
+          "target"_a, "passes"_a, "fix_boundary"_a, "feature_angle"_a, "slack"_a, "pillow"_a,
+          "snap_curves"_a);
   const auto define = [&module](auto function) {
     module.def("improve", function, "mesh"_a, "map"_a.none(), "options"_a, "threads"_a,
                "progress"_a.none());

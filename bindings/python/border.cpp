@@ -30,9 +30,7 @@ TetMap ArrayMap::copy() const {
           .parameters = copied(from.parameters),
           .edgeValences = copied(from.edgeValences),
           .rotations = copied(from.rotations),
-          .features = {.vertices = copied(from.features.vertices),
-                       .edges = copied(from.features.edges),
-                       .faces = copied(from.features.faces)},
+          .features = from.features.copy(),
           .regions = copied(from.regions)};
 }
 

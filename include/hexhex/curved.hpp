@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
@@ -189,7 +190,8 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 /// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and groups
 /// of the boundary are written as those of straight meshes: docs/features.md tells what formats
 /// hold.
-/// @param options  scaledJacobians: of the cells, by scaledJacobians(); empty: computed. patchAngle
+/// @param options  format, patchAngle; scaledJacobians: of the cells, by scaledJacobians(); empty:
+///                 computed
 /// @throws Error FileUnsupported, FileWrite; InvalidArgument for arrays that do not fit each
 ///         other, and for features that are not in the mesh
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
@@ -211,9 +213,12 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 ///         and for other extensions; TooLarge
 [[nodiscard]] LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context);
 
-/// Throw FileUnsupported unless the functions above know the extension: to fail before long work.
+/// Throw FileUnsupported unless the functions above know the extension, or the format: to fail
+/// before long work.
 void requireArcFormat(const std::filesystem::path& file);
 void requirePatchFormat(const std::filesystem::path& file);
-void requireLagrangeFormat(const std::filesystem::path& file);
+/// @param order  of the cells; 0: not known yet
+void requireLagrangeFormat(const std::filesystem::path& file, std::string_view format = {},
+                           int order = 0);
 
 }  // namespace HEXHEX_API_NAMESPACE

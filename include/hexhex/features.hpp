@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <hexhex/export.h>
@@ -40,11 +41,20 @@ struct FeatureQuad {
   bool operator==(const FeatureQuad&) const = default;
 };
 
+/// What a file calls the elements with a tag; those of other tags are called by their numbers.
+struct TagName {
+  int dimension = 0;  ///< of the elements: 0 vertices, 1 edges, 2 faces, 3 cells (their region)
+  std::int32_t tag = 0;
+  std::string name;
+  bool operator==(const TagName&) const = default;
+};
+
 /// Features of a tet mesh; each element is listed at most once.
 struct Features {
   std::vector<FeatureVertex> vertices;
   std::vector<FeatureEdge> edges;
   std::vector<FeatureFace> faces;
+  std::vector<TagName> names = {};
 
   [[nodiscard]] bool empty() const noexcept {
     return vertices.empty() && edges.empty() && faces.empty();
@@ -57,6 +67,7 @@ struct FeaturesView {
   std::span<const FeatureVertex> vertices = {};
   std::span<const FeatureEdge> edges = {};
   std::span<const FeatureFace> faces = {};
+  std::span<const TagName> names = {};
 
   FeaturesView() = default;
   FeaturesView(std::span<const FeatureVertex> vertices_, std::span<const FeatureEdge> edges_,
@@ -64,7 +75,17 @@ struct FeaturesView {
       : vertices(vertices_), edges(edges_), faces(faces_) {}
   // NOLINTNEXTLINE(google-explicit-constructor): features convert to a view of themselves.
   FeaturesView(const Features& features)
-      : vertices(features.vertices), edges(features.edges), faces(features.faces) {}
+      : vertices(features.vertices),
+        edges(features.edges),
+        faces(features.faces),
+        names(features.names) {}
+
+  [[nodiscard]] Features copy() const {
+    return {{vertices.begin(), vertices.end()},
+            {edges.begin(), edges.end()},
+            {faces.begin(), faces.end()},
+            {names.begin(), names.end()}};
+  }
 
   [[nodiscard]] bool empty() const noexcept {
     return vertices.empty() && edges.empty() && faces.empty();
@@ -76,6 +97,7 @@ struct HexFeatures {
   std::vector<FeatureVertex> vertices;
   std::vector<FeatureEdge> edges;
   std::vector<FeatureQuad> quads;
+  std::vector<TagName> names = {};
 
   [[nodiscard]] bool empty() const noexcept {
     return vertices.empty() && edges.empty() && quads.empty();

@@ -34,7 +34,8 @@ struct ImproveOptions {
   /// these, so are edges of the boundary with other than two cells.
   double featureAngle = 40;
   /// Where vertices on the surface cannot make cells positive, those without tags may leave it by
-  /// so much, in diagonals of the bounding box. 0 to 0.1.
+  /// so much, in diagonals of the bounding box; in such meshes also to raise cells below the
+  /// target. 0 to 0.1.
   double slack = 1e-3;
   PillowMode pillow = PillowMode::Never;  ///< of straight cells only
   /// Where edges of the mesh do not follow the curves of a map's surface: lays paths of edges of

@@ -119,8 +119,8 @@ struct WriteOptions {
   /// writers whose format holds it.
   std::span<const double> scaledJacobians = {};
 
-  /// A format by its name (see fileFormats()), whatever the file's extension. Empty: what the
-  /// extension means.
+  /// A format by its name (see fileFormats()), whatever the file's extension, or a solver that
+  /// shall read the file (see solverFormats()). Empty: what the extension means.
   std::string_view format = {};
 
   /// For formats with groups of boundary quads, if none of them is tagged: the angle in
@@ -231,5 +231,18 @@ struct FileFormat {
 /// All formats of this build. Of several with one extension, the first that fits is what a file
 /// name means.
 [[nodiscard]] std::span<const FileFormat> fileFormats();
+
+/// A program that computes on hexahedra, and what it reads of what this library writes.
+struct SolverFormat {
+  std::string_view name;         ///< for WriteOptions::format: "dealii"
+  std::string_view program;      ///< "deal.II"
+  std::string_view format;       ///< of straight cells: its name
+  std::string_view extension;    ///< that the program expects, with the dot
+  std::string_view curved = {};  ///< the format of cells of higher order; empty: there is none
+};
+/// In the order of their names.
+[[nodiscard]] std::span<const SolverFormat> solverFormats() noexcept;
+/// Null if there is no solver of this name.
+[[nodiscard]] const SolverFormat* findSolver(std::string_view name) noexcept;
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -1,6 +1,7 @@
 // From tets alone to a hexahedral mesh, in one go.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -41,16 +42,20 @@ struct MeshedPart {
   ImproveReport improvement;
   /// Whether vertices may have left edges that have a tag, as cells were not positive otherwise.
   bool tagsReleased = false;
+  /// Pieces of tagged curves of the part that no edges of the mesh were found along.
+  std::uint64_t missingCurves = 0;
   std::vector<WayReport> ways;  ///< with ShapeMethod::Auto: both
   std::string whyThisWay;       ///< with ShapeMethod::Auto: why this mesh was kept, half a sentence
 };
 
 /// Calls mapFromTets(), quantize(), extract(), verify() and improve(). Where vertices on tagged
 /// edges keep cells from being positive, it improves the mesh again and takes these edges for
-/// others. With ShapeMethod::Auto it goes both ways, at once if there are threads for it, and keeps
-/// the mesh that is certified, and better by its least scaled Jacobian (up to 0.3), its distance
-/// and the curves that it follows; unless a polycube is good in all of these: then no frames are
-/// needed. Whether cells are positive in the end, improvement.after says.
+/// others. Tags of the tets are those of the mesh: of boundary quads, by the triangles nearest to
+/// their centres; of cells, by the tet that holds their centre; of curves, by the edges that run
+/// along them, or nearest to them. With ShapeMethod::Auto it goes both ways, at once if there are
+/// threads for it, and keeps the mesh that is certified, and better by its least scaled Jacobian
+/// (up to 0.3), its distance and the curves that it follows; unless a polycube is good in all of
+/// these: then no frames are needed. Whether cells are positive in the end, improvement.after says.
 /// @throws Error  as these functions; NotMeshable with both reasons if neither way leads to a mesh;
 ///                VerificationFailed if the mesh is not that of the map
 [[nodiscard]] MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options,

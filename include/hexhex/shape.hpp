@@ -56,6 +56,8 @@ struct ShapeReport {
   std::uint64_t addedTets = 0;     ///< by splits
   std::uint64_t featureEdges = 0;  ///< of the tets, beyond the angle
   std::uint64_t taggedEdges = 0;   ///< of these: edges of the map
+  std::uint64_t innerFaces = 0;    ///< triangles inside, with a tag or between regions
+  std::uint64_t alignedFaces = 0;  ///< of these: in planes of the map, so that quads will be there
   MapDistortion distortion;
 };
 
@@ -66,8 +68,9 @@ struct ShapedMap {
 
 /// Makes a seamless map of a tet mesh, which quantize() takes. Parameters are in units of space. Of
 /// the map's points, the given ones come first; of its tets, those that were not split have the
-/// given corners, in another order if that was not positive. Deterministic, for any number of
-/// threads.
+/// given corners, in another order if that was not positive. Tags of the tets are those of the map;
+/// edges where the surface turns that have none get one of their own. Deterministic, for any number
+/// of threads.
 ///
 /// Along frames: the best meshes, but many fields are those of no mesh, which is known in seconds
 /// (Palmer et al. 2020). By a polycube: the object is turned (Gregson et al. 2011); each boundary

@@ -57,6 +57,8 @@ struct TetMap {
 struct TetMesh {
   std::vector<Vec3> points;
   std::vector<Tet> tets;
+  Features features = {};                  ///< tagged vertices, edges and triangles of the tets
+  std::vector<std::int32_t> regions = {};  ///< per tet: material or volume, 0 without; or empty
 };
 
 /// A map as a view on the caller's arrays, plus what the caller may know already.

@@ -46,6 +46,10 @@ inline constexpr std::array<std::array<std::uint8_t, 2>, 12> kHexEdges = {{{0, 1
                                                                            {3, 7},
                                                                            {2, 6}}};
 
+/// Local corners of the six edges of a tet.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 6> kTetEdges = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
 /// Local corners of the faces of a cell; face i of a tet is opposite corner i.
 template <class Cell>
 [[nodiscard]] constexpr const auto& facesOf() noexcept {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <base/sorted.hpp>
 #include <extract/features.hpp>
 #include <sweep/cell_centers.hpp>
 #include <sweep/cell_tracer.hpp>
@@ -68,10 +69,6 @@ class TagTable {
     Simplex simplex;
     std::int32_t tag;
   };
-  static Simplex sorted(Simplex simplex) {
-    std::sort(simplex.begin(), simplex.end());
-    return simplex;
-  }
 
   std::vector<Entry> entries_;  ///< ascending
 };
@@ -392,6 +389,7 @@ void carryTags(const TetMapView& given, const igm::PreparedMap& prepared, HexMes
   const bool byCells = !given.features.edges.empty() || !given.features.faces.empty();
   if (given.features.empty() && given.regions.empty()) return;
   Stage stage(context, "features");
+  mesh.features.names.assign(given.features.names.begin(), given.features.names.end());
   if (!given.features.vertices.empty()) mesh.features.vertices = tagVertices(given, mesh, stage);
   if (!byCells && given.regions.empty()) return;
   const sweep::CellCenters centers = sweep::findCells(prepared, stage);

@@ -2,7 +2,8 @@
 
 MESHERS are names with commas between them, best first. The first line of the output names the one
 that is there; exit code 3: none is. INPUT is part.stl, as text, or part.step, beside part.geo, which
-has Gmsh read it. The tets go into part.mesh (MEDIT). SIZE is the length of an edge; 0, for part.step
+has Gmsh read it. The tets go into part.msh (Gmsh), with named faces of STEP files as groups of
+triangles, and with solids as groups of tets if there are several. SIZE is the length of an edge; 0, for part.step
 alone: so that there are about TETS. THREADS 0: as many as there are cores.
 Ends when its standard input does, as that is when who started it has ended.
 """
@@ -19,14 +20,20 @@ MODULES = {"tetwild": "pytetwild", "netgen": "netgen", "gmsh": "gmsh"}
 NOT_THERE = 3
 
 
-def write(points, tets):
-    """Corners counted from 0."""
-    with open("part.mesh", "w") as out:
-        out.write(f"MeshVersionFormatted 2\nDimension 3\nVertices\n{len(points)}\n")
-        out.writelines("%.17g %.17g %.17g 0\n" % tuple(p) for p in points)
-        out.write(f"Tetrahedra\n{len(tets)}\n")
-        out.writelines("%d %d %d %d 0\n" % tuple(v + 1 for v in t) for t in tets)
-        out.write("End\n")
+def write(points, tets, regions=(), triangles=(), sides=(), names=()):
+    """Into part.msh (Gmsh 2.2). Corners are counted from 0; regions and sides are numbers of groups, 0
+    for none; names are of (dimension, group)."""
+    kinds = ((2, triangles, sides), (4, tets, regions or [0] * len(tets)))
+    rows = [(kind, group, element) for kind, elements, groups in kinds for element, group in zip(elements, groups)]
+    with open("part.msh", "w") as out:
+        out.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{len(names)}\n")
+        out.writelines('%d %d "%s"\n' % (*group, name.replace('"', "_")) for group, name in sorted(dict(names).items()))
+        out.write(f"$EndPhysicalNames\n$Nodes\n{len(points)}\n")
+        out.writelines("%d %.17g %.17g %.17g\n" % (i, *p) for i, p in enumerate(points, 1))
+        out.write(f"$EndNodes\n$Elements\n{len(rows)}\n")
+        for i, (kind, group, element) in enumerate(rows, 1):
+            out.write(f"{i} {kind} 2 {group} {group} {' '.join(str(v + 1) for v in element)}\n")
+        out.write("$EndElements\n")
 
 
 def tetwild(source, size, tets, threads):
@@ -57,17 +64,44 @@ def netgen(source, size, tets, threads):
         geometry = OCCGeometry(source)
         size = size or (6 * 2**0.5 * geometry.shape.mass / tets) ** (1 / 3)
     mesh = geometry.GenerateMesh(maxh=size)
-    tets = [[v.nr - 1 for v in element.vertices] for element in mesh.Elements3D()]
-    write([p.p for p in mesh.Points()], tets)
+    vertices = [[v.nr - 1 for v in element.vertices] for element in mesh.Elements3D()]
+    solids = [element.index for element in mesh.Elements3D()]
+    faces = [[v.nr - 1 for v in element.vertices] for element in mesh.Elements2D()]
+    names = {}
+    sides = [0] * len(faces)
+    if source.endswith(".step"):
+        called = mesh.GetRegionNames(codim=1)
+        numbers = {name: i for i, name in enumerate(dict.fromkeys(called), 1) if name not in ("", "default")}
+        names = {(2, i): name for name, i in numbers.items()}
+        descriptors = mesh.FaceDescriptors()
+        sides = [numbers.get(called[descriptors[e.index - 1].bc - 1], 0) for e in mesh.Elements2D()]
+    several = len(set(solids)) > 1
+    if several:
+        names |= {(3, i): name for i, name in enumerate(mesh.GetRegionNames(codim=0), 1) if name not in ("", "default")}
+    write([p.p for p in mesh.Points()], vertices, solids if several else (), faces, sides, names)
 
 
 def gmsh(source, size, tets, threads):
     import gmsh as program
 
     program.initialize(["gmsh", "-nopopup"], interruptible=False)
+    program.option.setNumber("Geometry.OCCImportLabels", 1)
     program.open("part.geo")
-    program.model.mesh.generate(3)
-    program.write("part.mesh")
+    model = program.model
+    for dimension in (2, 3):
+        entities = model.getEntities(dimension)
+        groups = {}
+        for _, tag in entities:
+            name = model.getEntityName(dimension, tag).split("/")[-1]
+            if dimension == 3 and len(entities) > 1:
+                groups.setdefault(name or f"region_{tag}", []).append(tag)
+            elif dimension == 2 and name:
+                groups.setdefault(name, []).append(tag)
+        for name, tags in groups.items():
+            model.addPhysicalGroup(dimension, tags, name=name)
+    program.option.setNumber("Mesh.SaveAll", 1)
+    model.mesh.generate(3)
+    program.write("part.msh")
 
 
 def end_with_parent():

@@ -81,6 +81,9 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
   out.close(file);
 }
 
+/// What the script writes; programs write no names.
+constexpr const char* kNamed = "part.msh";
+
 /// A way to run one or more meshers; the first that is there does it.
 struct Runner {
   std::vector<std::string> words;
@@ -174,8 +177,9 @@ std::string lastLines(std::string_view said) {
 }
 
 /// Each tet positive, and no point without a tet.
-TetMesh tidied(const TetMesh& read) {
+TetMesh tidied(TetMesh read) {
   TetMesh mesh;
+  mesh.regions = std::move(read.regions);
   std::vector<Index> vertices(read.points.size(), kNone);
   for (Tet tet : read.tets) {
     for (Index& v : tet) {
@@ -188,6 +192,15 @@ TetMesh tidied(const TetMesh& read) {
     if (volumeOf(mesh, tet) < 0) std::swap(tet[2], tet[3]);
     mesh.tets.push_back(tet);
   }
+  mesh.features = std::move(read.features);
+  const auto isLost = [&vertices](const auto& feature) {
+    return std::any_of(feature.vertices.begin(), feature.vertices.end(),
+                       [&](Index v) { return vertices[v] == kNone; });
+  };
+  std::erase_if(mesh.features.faces, isLost);
+  for (FeatureFace& face : mesh.features.faces) {
+    for (Index& v : face.vertices) v = vertices[v];
+  }
   return mesh;
 }
 
@@ -196,10 +209,19 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
   if (end.code != 0) {
     failBy(mesher, task, "failed with exit code " + std::to_string(end.code), end.said);
   }
-  const std::filesystem::path result = folder / runner.result;
+  const bool hasNames = std::filesystem::exists(folder / kNamed);
+  const std::filesystem::path result = folder / (hasNames ? kNamed : runner.result);
   if (!std::filesystem::exists(result)) failBy(mesher, task, "wrote no mesh", end.said);
   try {
-    TetMesh mesh = tidied(readTetMesh(result, {}, context));
+    TetMesh read = readTetMesh(result, {}, context);
+    // Names are those of faces and solids of a STEP file; what else is tagged is the mesher's.
+    if (task.surface != nullptr || read.features.names.empty()) {
+      read.regions.clear();
+      read.features = {};
+    }
+    read.features.vertices.clear();
+    read.features.edges.clear();
+    TetMesh mesh = tidied(std::move(read));
     if (!mesh.tets.empty()) return mesh;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;

@@ -40,7 +40,7 @@ void checkFeature(const TetMapView& map, std::span<const Index> corners, const c
 }
 
 void checkFeatures(const TetMapView& map) {
-  const auto& [vertices, edges, faces] = map.features;
+  const auto& [vertices, edges, faces, names] = map.features;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     checkFeature(map, {&vertices[i].vertex, 1}, "vertex", i);
   }

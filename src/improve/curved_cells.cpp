@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <curved/lagrange.hpp>
 #include <improve/curved_cells.hpp>
@@ -150,10 +151,6 @@ class FeatureFinder {
     std::int32_t tag;
     bool isTaken = false;
   };
-  static std::array<Index, n> sorted(std::array<Index, n> vertices) {
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
-  }
   std::vector<Entry> entries_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <adjacency/hex_topology.hpp>
 
+#include <improve/all_at_once.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/moving.hpp>
 #include <improve/sweeps.hpp>
@@ -12,6 +13,9 @@
 namespace hexhex::improvement {
 
 namespace {
+
+/// Where more cells are below the target, moving all at once takes too long: a minute and more.
+constexpr std::size_t kMostLowAtOnce = 5'000;
 
 /// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
 std::vector<Index> worsened(const ImproveReport& report) {
@@ -83,52 +87,172 @@ double meritOf(const ImproveReport& report) {
   return quality * nearness * size * (kUnfollowed + (1 - kUnfollowed) * report.curvesFollowed);
 }
 
+namespace {
+
+/// What moves points, and what it needs to know again and again.
+class Moving {
+ public:
+  Moving(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
+         const ImproveOptions& options, const Array<Vec3>& before, ImproveReport& report,
+         Stage& stage)
+      : subject_(subject),
+        boundary_(boundary),
+        places_(places),
+        options_(options),
+        before_(before),
+        report_(report),
+        stage_(stage),
+        simplices_(places.simplex),
+        limit_(farthestAllowed(report.distanceBefore)),
+        slack_(options.slack * report.diagonal) {
+    if (subject.curved != nullptr) curved_.emplace(*subject.curved);
+  }
+
+  [[nodiscard]] BoundaryDistance distance() const {
+    return boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_);
+  }
+
+  /// Makes cells as good as they get.
+  BoundaryDistance run() {
+    Sweeps sweeps = newSweeps();
+    const double target = options_.target;
+    const std::vector<Index> wereBad = verticesAtBad(sweeps);
+    const bool canAtOnce = !curved_ && canMoveAtOnce();
+    const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
+    if (isFolded)
+      sweeps.moveAtOnce(target, slack_, true, [&] { return quadsBeyond(distance().ofQuads); });
+    oneByOne(sweeps);
+    const double lowest = std::max(target, report_.before.quality.minimum);
+    double floor = lowest;
+    const Sweeps::Standing standing = sweeps.standing(target);
+    const std::size_t low = standing.bad + standing.below;
+    const bool isShort = canAtOnce && low > 0 && low <= kMostLowAtOnce;
+    if (isShort) atOnce(sweeps, wereBad);
+    if ((isFolded || isShort) && sweeps.standing(target).depth <= 1 - target) {
+      floor = std::max(floor, raiseFurther(sweeps));
+    }
+    sweeps.smooth(options_.passes, floor);
+    BoundaryDistance after = distance();
+    for (const double kept : {floor, lowest}) {
+      for (int i = 0; i < Sweeps::kReturns && after.largest.hausdorff() > limit_; ++i) {
+        sweeps.moveBack(quadsBeyond(after.ofQuads), before_, simplices_, kept);
+        after = distance();
+      }
+    }
+    return after;
+  }
+
+  /// Puts back what moved together with some cells.
+  void putBackAt(std::span<const Index> cells) {
+    putBack(newSweeps().cellPoints(), cells, before_, simplices_, subject_.mesh.points, places_);
+  }
+
+ private:
+  [[nodiscard]] Sweeps newSweeps() {
+    return {subject_.mesh, curved_ ? &*curved_ : nullptr, places_, report_.diagonal, stage_};
+  }
+
+  [[nodiscard]] Array<Quad> quadsBeyond(const std::vector<double>& distances) const {
+    Array<Quad> far;
+    for (Index q = 0; q < distances.size(); ++q) {
+      if (distances[q] > limit_) far.push_back(boundary_.quads[q]);
+    }
+    return far;
+  }
+
+  /// Vertices near cells that are bad at first, ascending. Layers of cells begin with bad ones
+  /// where the surface is as it should be.
+  [[nodiscard]] std::vector<Index> verticesAtBad(const Sweeps& sweeps) const {
+    constexpr int kRings = 2;
+    if (report_.addedCells > 0) return {};
+    std::vector<Index> vertices = sweeps.verticesBelow(-1, kRings);
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  }
+
+  /// Vertices left their creases: they go back to the surface, not to these.
+  void noteLoose(std::span<const Index> vertices) {
+    report_.offCreases += vertices.size();
+    for (const Index v : vertices) {
+      simplices_[v] = places_.surface.acrossCreases(before_[v], places_.simplex[v]).simplex;
+    }
+  }
+
+  void oneByOne(Sweeps& sweeps) {
+    sweeps.untangle(slack_);
+    noteLoose(
+        sweeps.untangleAcrossCreases(slack_, [&] { return quadsBeyond(distance().fromQuads); }));
+    sweeps.raiseWorst(options_.target, 0);
+  }
+
+  /// All vertices at once, where cells stay below the target. Around cells that were bad at first,
+  /// edges of folds are no features, and the surface is no more exact than its folds: creases are
+  /// let go, and vertices may leave it. What is no better afterwards is put back.
+  /// @param wereBad  vertices of these cells, ascending
+  void atOnce(Sweeps& sweeps, std::span<const Index> wereBad) {
+    const double target = options_.target;
+    const Sweeps::Standing standing = sweeps.standing(target);
+    const Array<double> qualities = sweeps.qualities();
+    const Array<Vec3> points = subject_.mesh.points;
+    std::vector<Index> low = sweeps.verticesBelow(target, 0);
+    std::erase_if(low,
+                  [&](Index v) { return !std::binary_search(wereBad.begin(), wereBad.end(), v); });
+    LooseVertices loose(places_, low, points);
+    const Array<Index> simplices = places_.simplex;
+    sweeps.moveAtOnce(target, slack_, false, [&] { return quadsBeyond(distance().ofQuads); });
+    oneByOne(sweeps);
+    if (!wereBad.empty()) sweeps.raiseWorst(target, slack_);
+    const Sweeps::Standing now = sweeps.standing(target);
+    const bool isMended = now.bad == 0 && standing.bad > 0;
+    const bool isBetter =
+        isMended || (now < standing && sweeps.fallenSince(qualities, target).empty());
+    if (!isBetter) sweeps.putBackAll(points, simplices);
+    noteLoose(loose.holdUnmoved(subject_.mesh.points));
+  }
+
+  /// Raises the worst until that brings little.
+  /// @return the least scaled Jacobian, or less if cells are bad
+  static double raiseFurther(Sweeps& sweeps) {
+    constexpr int kMost = 10;
+    constexpr double kAim = 0.05;
+    constexpr double kStall = 0.01;
+    const auto least = [&] { return 1 - sweeps.standing(0).depth; };
+    double now = least();
+    for (int i = 0; i < kMost; ++i) {
+      const double was = now;
+      sweeps.raiseWorst(std::min(was + kAim, 1.0), 0);
+      now = least();
+      if (now < was + kStall) break;
+    }
+    return now;
+  }
+
+  const Subject& subject_;
+  const Boundary& boundary_;
+  VertexPlaces& places_;
+  const ImproveOptions& options_;
+  const Array<Vec3>& before_;
+  ImproveReport& report_;
+  Stage& stage_;
+  std::optional<CurvedCells> curved_;
+  Array<Index> simplices_;  ///< where points were, in the beginning
+  double limit_;            ///< of distances
+  double slack_;
+};
+
+}  // namespace
+
 BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
                             const ImproveOptions& options, const Array<Vec3>& before,
                             ImproveReport& report, Context& context, Stage& stage) {
-  std::optional<CurvedCells> curved;
-  if (subject.curved != nullptr) curved.emplace(*subject.curved);
-  Array<Index> simplices = places.simplex;
-  const auto newSweeps = [&] {
-    return Sweeps(subject.mesh, curved ? &*curved : nullptr, places, report.diagonal, stage);
-  };
-  const auto distance = [&] {
-    return boundary.distanceTo(places, subject.mesh.points, report.diagonal, stage);
-  };
-  const double limit = farthestAllowed(report.distanceBefore);
-  const auto quadsBeyond = [&](const std::vector<double>& distances) {
-    Array<Quad> far;
-    for (Index q = 0; q < distances.size(); ++q) {
-      if (distances[q] > limit) far.push_back(boundary.quads[q]);
-    }
-    return far;
-  };
-  BoundaryDistance after;
-  {
-    Sweeps sweeps = newSweeps();
-    const double slack = options.slack * report.diagonal;
-    sweeps.untangle(slack);
-    const std::vector<Index> loose =
-        sweeps.untangleAcrossCreases(slack, [&] { return quadsBeyond(distance().fromQuads); });
-    report.offCreases += loose.size();
-    for (const Index v : loose) {
-      simplices[v] = places.surface.acrossCreases(before[v], places.simplex[v]).simplex;
-    }
-    sweeps.raiseWorst(options.target);
-    const double floor = std::max(options.target, report.before.quality.minimum);
-    sweeps.smooth(options.passes, floor);
-    after = distance();
-    for (int i = 0; i < Sweeps::kReturns && after.largest.hausdorff() > limit; ++i) {
-      sweeps.moveBack(quadsBeyond(after.ofQuads), before, simplices, floor);
-      after = distance();
-    }
-  }  // its memory is free for certificates
+  Moving moving(subject, boundary, places, options, before, report, stage);
+  BoundaryDistance after = moving.run();
   report.after = subject.certifyNow(context);
   const std::vector<Index> worse = worsened(report);
   if (worse.empty()) return after;
-  putBack(newSweeps().cellPoints(), worse, before, simplices, subject.mesh.points, places);
+  moving.putBackAt(worse);
   report.after = subject.certifyNow(context);
-  return distance();
+  return moving.distance();
 }
 
 }  // namespace hexhex::improvement

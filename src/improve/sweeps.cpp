@@ -6,6 +6,7 @@
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
+#include <improve/all_at_once.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
 
@@ -110,6 +111,21 @@ constexpr std::array<int, 2> kLooseRings = {0, 2};
 /// A step smaller than this share of the cells' size does not wake the neighbours.
 constexpr double kStill = 1e-3;
 
+/// Rings of cells around those below the target that move at once: as many as make whole models of
+/// thousands of cells, and fewer where that were more cells than take some seconds.
+constexpr int kMostRingsAtOnce = 20;
+constexpr int kLeastRingsAtOnce = 3;
+constexpr std::size_t kMostCellsAtOnce = 20'000;
+/// Rounds, at most, and the share of all that is missing to right angles that one must bring.
+constexpr int kMostRoundsAtOnce = 20;
+/// Rounds times cells, each of which takes a tenth of a millisecond: where cells are only below the
+/// target, and where most are bad, as nothing else mends these.
+constexpr std::size_t kMostWorkAtOnce = 100'000;
+constexpr std::size_t kMostWorkFolded = 300'000;
+constexpr double kStallAtOnce = 0.01;
+/// A round may be for nothing, as what goes back onto the surface folds: so many are the end.
+constexpr std::size_t kStallsAtOnce = 3;
+
 /// So far may boundary quads be from the surface, in diagonals: less than the 1e-3 that are
 /// promised for all of the surface, since only centres are looked at.
 constexpr double kChord = 3e-4;
@@ -139,11 +155,15 @@ Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, d
       boundary_(adjacency::findFaces(mesh, meshAround_, stage).boundary),
       chord_(kChord * diagonal) {
   boxes_.resize(cellPoints().cellCount());
-  parallelFor(stage, boxes_.size(), kSweepsGrain, [&](std::size_t c) {
-    boxes_[c] = boxOf(mesh.points, curved != nullptr ? curved->cornersOf(c) : mesh.cells[c]);
-  });
+  takeBoxes();
   qualities_.resize(boxes_.size());
   measureAll();
+}
+
+void Sweeps::takeBoxes() {
+  parallelFor(stage_, boxes_.size(), kSweepsGrain, [&](std::size_t c) {
+    boxes_[c] = boxOf(mesh_.points, curved_ != nullptr ? curved_->cornersOf(c) : mesh_.cells[c]);
+  });
 }
 
 CellPoints Sweeps::cellPoints() const {
@@ -193,7 +213,7 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
   const CellPoints cells = cellPoints();
   if (!colours_) colours_.emplace(cells);
   const Colours::Groups groups = colours_->groupsOf(vertices);
-  const ChordError chordError{mesh_, places_, meshAround_, boundary_, chord_};
+  const ChordError chordError{mesh_, places_, meshAround_, boundary_, std::max(chord_, slack)};
   const MovingMesh all{mesh_, curved_, cells, boxes_, places_, chordError, qualities_};
   std::size_t begin = 0;
   for (const std::size_t end : groups.ends) {
@@ -258,22 +278,113 @@ std::vector<Index> Sweeps::untangleAcrossCreases(double slack,
   return left;
 }
 
-void Sweeps::raiseWorst(double target) {
-  const Array<Vec3> points = mesh_.points;
-  const Array<Index> simplices = places_.simplex;
-  const Array<double> qualities = qualities_;
-  raise({target, true, kPrice});
+Sweeps::Standing Sweeps::standing(double target) const {
+  Standing standing;
+  for (const double quality : qualities_) {
+    if (!isCertified(quality)) ++standing.bad;
+    if (isCertified(quality) && quality < target) ++standing.below;
+    standing.depth = std::max(standing.depth, 1 - quality);
+  }
+  return standing;
+}
+
+std::vector<Index> Sweeps::fallenSince(const Array<double>& qualities, double target) const {
   std::vector<Index> fallen;
   for (Index cell = 0; cell < qualities_.size(); ++cell) {
     if (qualities[cell] >= target && qualities_[cell] < target) fallen.push_back(cell);
   }
+  return fallen;
+}
+
+double Sweeps::deficitOf(std::span<const Index> cells) const {
+  double sum = 0;
+  for (const Index cell : cells) sum += 1 - qualities_[cell];
+  return sum;
+}
+
+std::vector<Index> Sweeps::verticesBelow(double target, int rings) const {
+  std::vector<Index> cells = cellsThat([&](double quality) { return quality < target; });
+  return Neighbourhoods(cellPoints()).pointsOf(rings, cells);
+}
+
+void Sweeps::putBackAll(const Array<Vec3>& before, const Array<Index>& simplicesBefore) {
+  std::copy(before.begin(), before.end(), mesh_.points.begin());
+  places_.simplex = simplicesBefore;
+  measureAll();
+}
+
+void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
+                        const std::function<Array<Quad>()>& farQuads) {
+  const std::vector<Index> low = cellsThat([&](double quality) { return quality < target; });
+  Neighbourhoods near(cellPoints());
+  std::vector<Index> cells = low;
+  std::vector<Index> vertices = near.pointsOf(kLeastRingsAtOnce, cells);
+  for (int rings = kLeastRingsAtOnce + 1; rings <= kMostRingsAtOnce; ++rings) {
+    std::vector<Index> more = low;
+    std::vector<Index> around = near.pointsOf(rings, more);
+    if (more.size() > kMostCellsAtOnce) break;
+    const bool isAll = more.size() == cells.size();
+    cells = std::move(more);
+    vertices = std::move(around);
+    if (isAll) break;
+  }
+  if (cells.empty()) return;
+  const std::size_t rounds = std::min<std::size_t>(
+      kMostRoundsAtOnce, (isFolded ? kMostWorkFolded : kMostWorkAtOnce) / cells.size());
+  if (rounds <= kStallsAtOnce) return;  // too few to come to rest
+  std::sort(vertices.begin(), vertices.end());
+  std::sort(cells.begin(), cells.end());
+  std::vector<std::uint8_t> isHeld(mesh_.points.size(), 0);
+  for (const Quad& quad : places_.innerQuads) {  // nothing says when these are too far
+    for (const Index v : quad) isHeld[v] = 1;
+  }
+  if (isFolded) {
+    spreadAtOnce(mesh_, places_, {vertices, cells, boxes_}, stage_);
+    measureAll();
+  }
+  double least = deficitOf(cells);
+  Array<Vec3> best = mesh_.points;
+  Array<Index> bestSimplices = places_.simplex;
+  std::size_t stalls = 0;
+  for (std::size_t round = 0; round < rounds && stalls < kStallsAtOnce; ++round) {
+    const Array<Vec3> points = mesh_.points;
+    const Array<Index> simplices = places_.simplex;
+    takeBoxes();
+    improvement::moveAtOnce(mesh_, places_, {vertices, cells, boxes_}, isFolded && round == 0,
+                            isHeld, stage_);
+    for (const Quad& quad : farQuads()) {
+      for (const Index v : quad) {
+        isHeld[v] = 1;
+        mesh_.points[v] = points[v];
+        places_.simplex[v] = simplices[v];
+      }
+    }
+    measureAll();
+    untangle(slack);
+    raiseWorst(target, 0);  // from cells that are hardly positive, no step leads on
+    const double now = deficitOf(cells);
+    if (now > (1 - kStallAtOnce) * least) ++stalls;
+    if (now >= least) continue;
+    least = now;
+    best = mesh_.points;
+    bestSimplices = places_.simplex;
+  }
+  putBackAll(best, bestSimplices);
+}
+
+void Sweeps::raiseWorst(double target, double slack) {
+  const Array<Vec3> points = mesh_.points;
+  const Array<Index> simplices = places_.simplex;
+  const Array<double> qualities = qualities_;
+  raise({target, true, kPrice}, slack);
+  const std::vector<Index> fallen = fallenSince(qualities, target);
   if (fallen.empty()) return;
   putBack(cellPoints(), fallen, points, simplices, mesh_.points, places_);
   measureAll();
-  raise({target, false, kPrice});
+  raise({target, false, kPrice}, slack);
 }
 
-void Sweeps::raise(const Exchange& exchange) {
+void Sweeps::raise(const Exchange& exchange, double slack) {
   const double target = exchange.floor;
   const auto isLow = [target](double quality) { return isCertified(quality) && quality < target; };
   std::vector<Index> low = cellsThat(isLow);
@@ -300,7 +411,7 @@ void Sweeps::raise(const Exchange& exchange) {
       visits += vertices.size();
       ++round;
       const Exchange now = power > 1 ? exchange : Exchange{target, exchange.belowFloor};
-      sweep(vertices, 0, [&](VertexMover& mover, Index v) {
+      sweep(vertices, slack, [&](VertexMover& mover, Index v) {
         if (mover.smooth(v, power, now) > kStill) lastMove[v] = round;
       });
       low = cellsThat(std::move(cells), isLow);

@@ -110,6 +110,18 @@ void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
 
 class Sweeps {
  public:
+  /// How a mesh stands: the less the better.
+  struct Standing {
+    std::size_t bad = 0;    ///< cells that are not certified
+    std::size_t below = 0;  ///< and of the others those below the target
+    double depth = 0;       ///< 1 less the least scaled Jacobian
+    auto operator<=>(const Standing&) const = default;
+  };
+  [[nodiscard]] Standing standing(double target) const;
+  /// Per cell: the scaled Jacobian, or less than any if it is not certified.
+  [[nodiscard]] const Array<double>& qualities() const noexcept { return qualities_; }
+  /// Cells that were at the target and are below.
+  [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
   /// The first three must outlive this.
   /// @param mesh      whose points move; of curved cells the refined mesh
   /// @param curved    cells between the same points that are to be improved in place of the mesh's,
@@ -130,9 +142,25 @@ class Sweeps {
   std::vector<Index> untangleAcrossCreases(double slack,
                                            const std::function<Array<Quad>()>& farQuads);
 
+  /// Moves vertices of straight cells below the target, and many rings around, all at once, time
+  /// after time until angles come hardly nearer to right ones. Boundary quads that come too far
+  /// from the surface stay where they were from then on.
+  /// @param slack     as of untangle(), for what folds on the way back onto the surface
+  /// @param isFolded  whether most cells may be inside out
+  /// @param farQuads  of the boundary, which are too far
+  void moveAtOnce(double target, double slack, bool isFolded,
+                  const std::function<Array<Quad>()>& farQuads);
+
+  /// The vertices of cells that are not certified or below the target, and of rings around.
+  [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const;
+
+  /// Puts all vertices where they were.
+  void putBackAll(const Array<Vec3>& before, const Array<Index>& simplicesBefore);
+
   /// Moves vertices around cells whose scaled Jacobian is below the target. Those at the target
   /// stay there.
-  void raiseWorst(double target);
+  /// @param slack  so far may vertices without tags leave the surface
+  void raiseWorst(double target, double slack);
 
   /// Moves all vertices, so many times. No scaled Jacobian falls below the floor, and of those that
   /// are there, none below the least around.
@@ -154,13 +182,17 @@ class Sweeps {
   template <class CellAt>
   void measure(std::size_t n, const CellAt& cellAt);
   void measureAll();
+  /// Ideal cells get the shape that cells have.
+  void takeBoxes();
+  /// Of some cells: how far scaled Jacobians are from 1, added up.
+  [[nodiscard]] double deficitOf(std::span<const Index> cells) const;
   /// The cells whose quality is wanted, of all or of a list.
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(std::vector<Index> list, const Wanted& isWanted) const;
   /// Raises cells below the floor, which is the target.
-  void raise(const Exchange& exchange);
+  void raise(const Exchange& exchange, double slack);
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
 

@@ -52,11 +52,6 @@ constexpr double kVolume = 0.1;
 constexpr double kLeastEpsilon = 1e-4;
 constexpr double kRegularization = 0.2;
 
-Vec3 normalized(const Vec3& a) {
-  const double size = length(a);
-  return size > 0 ? times(1 / size, a) : Vec3{};
-}
-
 }  // namespace
 
 EnergyKind PointMover::untangling(const EnergyTerms& terms) {
@@ -75,26 +70,9 @@ bool PointMover::hasSlack(Index point) const {
 }
 
 std::size_t PointMover::directionsAt(Index point, std::array<Vec3, 3>& directions) const {
-  const ReferenceSurface& surface = places_.surface;
-  switch (hasSlack(point) ? Freedom::Free : places_.freedom[point]) {
-    case Freedom::Free:
-      directions = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-      return 3;
-    case Freedom::OnPatch: {
-      const std::array<Vec3, 3> t = surface.triangle(places_.simplex[point]);
-      const Vec3 first = minus(t[1], t[0]);
-      directions[0] = normalized(first);
-      directions[1] = normalized(cross(cross(first, minus(t[2], t[0])), first));
-      return 2;
-    }
-    case Freedom::OnCurve: {
-      const std::array<Vec3, 2> s = surface.segment(places_.simplex[point]);
-      directions[0] = normalized(minus(s[1], s[0]));
-      return 1;
-    }
-    default:
-      return 0;
-  }
+  if (!hasSlack(point)) return places_.directionsAt(point, directions);
+  directions = kAxes;
+  return directions.size();
 }
 
 PointMover::Step PointMover::stepBy(Index point, const Vec3& direction, double share) const {

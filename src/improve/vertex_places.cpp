@@ -6,10 +6,12 @@
 #include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 #include <adjacency/tet_topology.hpp>
+#include <tetmap/grid_planes.hpp>
 
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <igm/input.hpp>
 #include <improve/crease_chains.hpp>
@@ -22,13 +24,13 @@ namespace {
 
 constexpr std::size_t kVertexPlacesGrain = 4096;
 
-template <std::size_t n>
-std::array<Index, n> sorted(std::array<Index, n> vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
+Vec3 normalized(const Vec3& a) {
+  const double size = length(a);
+  return size > 0 ? times(1 / size, a) : Vec3{};
 }
 
-/// Triangles of the boundary, then tagged ones inside and those between regions.
+/// Triangles of the boundary, then tagged ones inside and those between regions, if they are in
+/// planes of the grid: in others there are no quads.
 void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
   const auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
   if (!topology) {
@@ -57,6 +59,11 @@ void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
         mate != kNone && !map.regions.empty() &&
         map.regions[adjacency::tetOf(face)] != map.regions[adjacency::tetOf(mate)];
     if (mate != kNone && triangle.tag == 0 && !betweenRegions) continue;
+    const auto corners = static_cast<lattice::CornerMask>(
+        lattice::kWholeTet ^ lattice::cornerBit(static_cast<int>(face % 4)));
+    if (mate != kNone && tetmap::gridPlanes(map.parameters[adjacency::tetOf(face)], corners) == 0) {
+      continue;
+    }
     triangle.vertices = {vertices[0], vertices[2], vertices[1]};  // facing outwards
     (mate == kNone ? parts.triangles : inner).push_back(triangle);
   }
@@ -115,8 +122,10 @@ std::vector<FeatureQuad> taggedQuads(const HexMesh& mesh) {
   return tagged;
 }
 
-/// Faces of several cells that are tagged or, where regions count, lie between them.
-std::vector<Quad> innerQuads(const HexMesh& mesh, bool regionsCount, Stage& stage) {
+/// Faces of several cells that are tagged or, where regions count, lie between them and on
+/// triangles between regions of the map.
+std::vector<Quad> innerQuads(const HexMesh& mesh, const Array<Freedom>& freedom, bool regionsCount,
+                             Stage& stage) {
   const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
   const bool byRegion = regionsCount && mesh.regions.size() == mesh.cells.size();
   if (tagged.empty() && !byRegion) return {};
@@ -128,8 +137,10 @@ std::vector<Quad> innerQuads(const HexMesh& mesh, bool regionsCount, Stage& stag
             std::span<const Hex>(mesh.cells), begin, end, around, [&](const auto& sides) {
               if (sides.size() < 2) return;
               const Quad quad = adjacency::faceVertices(mesh.cells[sides[0].cell], sides[0].face);
+              const bool isHeld = std::none_of(
+                  quad.begin(), quad.end(), [&](Index v) { return freedom[v] == Freedom::Free; });
               const bool betweenRegions =
-                  byRegion && mesh.regions[sides[0].cell] != mesh.regions[sides[1].cell];
+                  byRegion && isHeld && mesh.regions[sides[0].cell] != mesh.regions[sides[1].cell];
               if (betweenRegions || std::binary_search(tagged.begin(), tagged.end(),
                                                        FeatureQuad{quad, 1}, byVertices)) {
                 quads.push_back(quad);
@@ -239,7 +250,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
         return count;
       },
       places, stage);
-  places.innerQuads = innerQuads(mesh, !map.regions.empty(), stage);
+  places.innerQuads = innerQuads(mesh, places.freedom, !map.regions.empty(), stage);
   return places;
 }
 
@@ -262,8 +273,30 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isA
         return std::size_t{1};
       },
       places, stage);
-  places.innerQuads = innerQuads(mesh, false, stage);
+  places.innerQuads = innerQuads(mesh, places.freedom, false, stage);
   return places;
+}
+
+std::size_t VertexPlaces::directionsAt(Index vertex, std::array<Vec3, 3>& directions) const {
+  switch (freedom[vertex]) {
+    case Freedom::Free:
+      directions = kAxes;
+      return 3;
+    case Freedom::OnPatch: {
+      const std::array<Vec3, 3> t = surface.triangle(simplex[vertex]);
+      const Vec3 first = minus(t[1], t[0]);
+      directions[0] = normalized(first);
+      directions[1] = normalized(cross(cross(first, minus(t[2], t[0])), first));
+      return 2;
+    }
+    case Freedom::OnCurve: {
+      const std::array<Vec3, 2> s = surface.segment(simplex[vertex]);
+      directions[0] = normalized(minus(s[1], s[0]));
+      return 1;
+    }
+    default:
+      return 0;
+  }
 }
 
 }  // namespace hexhex::improvement

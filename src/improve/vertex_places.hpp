@@ -1,6 +1,8 @@
 // How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +13,8 @@
 #include <improve/reference_surface.hpp>
 
 namespace hexhex::improvement {
+
+inline constexpr std::array<Vec3, 3> kAxes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
 struct VertexPlaces {
   ReferenceSurface surface;
@@ -31,6 +35,11 @@ struct VertexPlaces {
     if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
     return {point, simplex[vertex]};
   }
+
+  /// Orthonormal directions in which a vertex may move: all axes, those of its triangle, that of
+  /// its segment, or none.
+  /// @return how many
+  std::size_t directionsAt(Index vertex, std::array<Vec3, 3>& directions) const;
 };
 
 /// The surface is that of the map: its boundary, tagged triangles, and those between regions. A

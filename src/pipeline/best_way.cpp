@@ -18,8 +18,11 @@
 namespace hexhex::pipeline {
 namespace {
 
-constexpr double kGood = 0.3;       // a scaled Jacobian that is above needs no better
-constexpr double kFollowed = 0.99;  // of the length of curves
+/// Of a mesh by a polycube that is good enough: scaled Jacobian, distance to the part in diagonals
+/// (coarse quads alone are some thousandths from a curved surface), followed share of curves.
+constexpr double kGood = 0.5;
+constexpr double kNear = 5e-3;
+constexpr double kFollowed = 0.99;
 
 /// The quicker one first.
 constexpr std::array<ShapeMethod, 2> kWays = {ShapeMethod::Polycube, ShapeMethod::Frames};
@@ -56,7 +59,7 @@ WayReport reportOf(ShapeMethod method, const Outcome& outcome) {
 bool isGoodEnough(const Outcome& outcome) {
   if (!outcome.part) return false;
   const WayReport report = reportOf(ShapeMethod::Auto, outcome);
-  return report.isCertified && report.minimum >= kGood && report.distance <= kSurfaceTolerance &&
+  return report.isCertified && report.minimum >= kGood && report.distance <= kNear &&
          report.curvesFollowed >= kFollowed;
 }
 

@@ -4,11 +4,13 @@
 #include <utility>
 
 #include <pipeline/best_way.hpp>
+#include <pipeline/groups.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/extractor.hpp>
 #include <hexhex/mesh.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 
 namespace hexhex {
@@ -40,11 +42,13 @@ ImproveReport improveWithoutTags(HexMesh& mesh, TetMapView map, const ImproveOpt
   return report;
 }
 
-void improvePart(MeshedPart& part, const ImproveOptions& options, Context& context) {
+/// @param map  of the part, with the tags that vertices are to stay on
+void improvePart(MeshedPart& part, const TetMapView& map, const ImproveOptions& options,
+                 Context& context) {
   HexMesh other = part.mesh;
-  part.improvement = improve(part.mesh, part.map, options, context);
+  part.improvement = improve(part.mesh, map, options, context);
   if (part.improvement.after.allPositive() || part.mesh.features.edges.empty()) return;
-  ImproveReport report = improveWithoutTags(other, part.map, options, context);
+  ImproveReport report = improveWithoutTags(other, map, options, context);
   if (report.notPositive.size() >= part.improvement.notPositive.size()) return;
   part.mesh = std::move(other);
   part.improvement = std::move(report);
@@ -63,18 +67,31 @@ void meshOf(MeshedPart& part, const TetMap& seamless, const MeshOptions& options
     part.verification = extractor.verify(part.mesh, {}, context);
   }
   requirePassed(part.verification);
-  improvePart(part, options.improve, context);
+  Features held;
+  withThreads(context.threads(), [&] {
+    Stage stage(context, "groups");
+    held = heldTags(part.map, stage);
+  });
+  TetMapView map(part.map);
+  map.features = held;
+  improvePart(part, map, options.improve, context);
+  withThreads(context.threads(), [&] {
+    Stage stage(context, "groups");
+    part.missingCurves = tagBoundary(part.map, held, part.mesh, stage);
+  });
 }
 
 /// @throws Refusal  if another way may lead to a mesh
 MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
                   Context& context) {
-  constexpr std::array<WorkStep, 6> kSteps = {{{"mapFromTets", 20},
+  constexpr std::array<WorkStep, 8> kSteps = {{{"mapFromTets", 20},
                                                {"quantize", 10},
                                                {"Extractor", 0.1},
                                                {"Extractor::extract", 0.5},
                                                {"Extractor::verify", 0.3},
-                                               {"improve", 10}}};
+                                               {"groups", 0.1},
+                                               {"improve", 10},
+                                               {"groups", 0.1}}};
   return inSteps(context, "meshFromTets", kSteps, [&] {
     MeshedPart part;
     bool hasMap = false;

@@ -52,9 +52,7 @@ TetMap inCanonicalOrder(const TetMapView& map, std::vector<Index>& order) {
     sorted.parameters.push_back(u);
     if (!map.regions.empty()) sorted.regions.push_back(map.regions[t]);
   }
-  sorted.features.vertices.assign(map.features.vertices.begin(), map.features.vertices.end());
-  sorted.features.edges.assign(map.features.edges.begin(), map.features.edges.end());
-  sorted.features.faces.assign(map.features.faces.begin(), map.features.faces.end());
+  sorted.features = map.features.copy();
   return sorted;
 }
 

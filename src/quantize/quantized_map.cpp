@@ -5,7 +5,7 @@
 
 #include <quantize/bend/edge_turns.hpp>
 #include <quantize/quantized_map.hpp>
-#include <tetmap/split_map.hpp>
+#include <tetmap/carried_tags.hpp>
 
 #include <hexhex/check.hpp>
 
@@ -83,20 +83,16 @@ QuantizedMap finishQuantization(FoundMap found, const TetMapView& given, Context
   result.report.distortionBefore = distortionOf(bent.points, bent.tets, bent.reference);
   std::vector<TetParameters>().swap(bent.reference);
   TetMap& map = result.map;
-  map.features = {{given.features.vertices.begin(), given.features.vertices.end()},
-                  {given.features.edges.begin(), given.features.edges.end()},
-                  {given.features.faces.begin(), given.features.faces.end()}};
+  tetmap::AddedVertices added(given.points.size());
   for (std::size_t s = 0; s < bent.splitEdges.size(); ++s) {
     const auto middle = static_cast<Index>(given.points.size() + s);
     splitIrregular(bent.splitEdges[s], middle, found.irregularEdges);
-    tetmap::splitFeatures(bent.splitEdges[s], middle, map.features);
-  }
-  if (!given.regions.empty()) {
-    for (const Index parent : bent.parentTet) map.regions.push_back(given.regions[parent]);
+    added.add(bent.splitEdges[s]);
   }
   map.points = std::move(bent.points);
   map.tets = std::move(bent.tets);
   map.parameters = std::move(bent.parameters);
+  tetmap::carryTags(given.features, given.regions, added, bent.parentTet, map);
   const CheckReport checked = check(map, {.tolerance = 0}, context);
   if (!checked.valid()) {
     throw Error(ErrorCode::Internal, "Quantization has made a map that is not valid (" +

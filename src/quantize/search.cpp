@@ -58,7 +58,7 @@ constexpr double kHopelessShare = 0.1;
 constexpr std::uint64_t kFewAttempts = 3;
 /// Steps of the solver in all, times tets, after which no further attempt begins: some seconds.
 /// Larger maps get so many steps, too, and take longer. To begin takes as long as some steps.
-constexpr double kMostWork = 4e6;
+constexpr double kMostSearchWork = 4e6;
 constexpr double kMostSteps = 400;
 constexpr double kStepsOfBeginning = 30;
 constexpr double kDenser = 1.5;
@@ -138,7 +138,7 @@ class Search {
  private:
   [[nodiscard]] bool isWorthIt(const Candidate& candidate) const {
     const auto tets = static_cast<double>(seamless_.corners.size());
-    if (steps_ > std::max(kMostSteps, kMostWork / tets)) return false;
+    if (steps_ > std::max(kMostSteps, kMostSearchWork / tets)) return false;
     const bool isHopeless = report_.attempts >= kFewAttempts && leastFlipped_ > kHopelessShare;
     if (candidate.kind == Candidate::Denser) return candidate.reduced || !isHopeless;
     if (candidate.kind == Candidate::WithSplit && leastFlipped_ > kMostMended) return false;

@@ -68,9 +68,7 @@ TetMap ownedCopy(const TetMapView& map) {
   copy.parameters.assign(map.parameters.begin(), map.parameters.end());
   copy.edgeValences.assign(map.edgeValences.begin(), map.edgeValences.end());
   copy.rotations.assign(map.rotations.begin(), map.rotations.end());
-  copy.features.vertices.assign(map.features.vertices.begin(), map.features.vertices.end());
-  copy.features.edges.assign(map.features.edges.begin(), map.features.edges.end());
-  copy.features.faces.assign(map.features.faces.begin(), map.features.faces.end());
+  copy.features = map.features.copy();
   copy.regions.assign(map.regions.begin(), map.regions.end());
   return copy;
 }

@@ -1,8 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <shape/features.hpp>
 #include <shape/surface.hpp>
+
+#include <hexhex/quantize.hpp>
+
+#include <base/sorted.hpp>
 
 namespace hexhex::shape {
 
@@ -14,6 +20,52 @@ int axisInMap(const TetMap& map, adjacency::HalfFace h) {
   const auto& face = lattice::kFaceCorners[h % 4];
   const auto at = [&](std::size_t i) { return corners[static_cast<std::size_t>(face[i])]; };
   return static_cast<int>(dominantAxis(cross(minus(at(1), at(0)), minus(at(2), at(0)))));
+}
+
+/// Whether the corners of a triangle have one coordinate, as far as quantize() looks.
+bool isLevel(const TetParameters& corners, adjacency::HalfFace h, double tolerance) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const int corner : lattice::kFaceCorners[h % 4]) {
+      const double u = corners[static_cast<std::size_t>(corner)][axis];
+      low = std::min(low, u);
+      high = std::max(high, u);
+    }
+    if (high - low <= tolerance) return true;
+  }
+  return false;
+}
+
+void countInnerFaces(const TetMap& map, const adjacency::TetTopology& topology,
+                     FoundFeatures& features) {
+  std::vector<std::array<Index, 3>> tagged;
+  for (const FeatureFace& face : map.features.faces) {
+    if (face.tag != 0) tagged.push_back(sorted(face.vertices));
+  }
+  std::sort(tagged.begin(), tagged.end());
+  if (tagged.empty() && map.regions.empty()) return;
+  double size = 0;
+  for (const TetParameters& corners : map.parameters) {
+    for (const Vec3& u : corners) {
+      for (const double x : u) size = std::max(size, std::abs(x));
+    }
+  }
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    const adjacency::HalfFace mate = topology.mate[h];
+    if (mate == kNone || mate < h) continue;
+    const Index tet = adjacency::tetOf(h);
+    const bool isBetween =
+        !map.regions.empty() && map.regions[tet] != map.regions[adjacency::tetOf(mate)];
+    if (!isBetween && !std::binary_search(tagged.begin(), tagged.end(),
+                                          sorted(adjacency::faceVertices(map.tets[tet], h % 4)))) {
+      continue;
+    }
+    ++features.innerFaces;
+    if (isLevel(map.parameters[tet], h, QuantizeOptions{}.tolerance * size)) {
+      ++features.alignedFaces;
+    }
+  }
 }
 
 }  // namespace
@@ -39,6 +91,7 @@ FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned, Stage
   }
   std::sort(features.aligned.begin(), features.aligned.end(),
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.vertices < b.vertices; });
+  countInnerFaces(map, *topology, features);
   return features;
 }
 

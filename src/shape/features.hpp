@@ -13,7 +13,9 @@ namespace hexhex::shape {
 struct FoundFeatures {
   std::size_t count = 0;  ///< edges of the tet mesh where its surface turns
   std::vector<FeatureEdge>
-      aligned;  ///< those between triangles of the map on different axes, ascending
+      aligned;                 ///< those between triangles of the map on different axes, ascending
+  std::size_t innerFaces = 0;  ///< with a tag, or between regions
+  std::size_t alignedFaces = 0;  ///< of these: those that quantize() takes for planes
 };
 
 /// @param map    whose boundary triangles are perpendicular to axes

@@ -214,9 +214,12 @@ class FramesMapper {
   }
 
   [[nodiscard]] TetMap mapOf(const untangle::Problem& problem) const {
-    return {.points = tets_.mesh().points,
-            .tets = tets_.mesh().tets,
-            .parameters = parametersOf(problem)};
+    TetMap map{.points = tets_.mesh().points,
+               .tets = tets_.mesh().tets,
+               .parameters = parametersOf(problem)};
+    const TetMapView& given = given_.input.view;
+    tetmap::carryTags(given.features, given.regions, tets_.added(), tets_.parents(), map);
+    return map;
   }
 
   /// In the caller's terms, if they know both vertices; else a tet there.

@@ -48,7 +48,7 @@ int leftCorner(int a, int b) {
 }  // namespace
 
 FrameTets::FrameTets(TetMesh mesh, double featureAngleInDegrees, Stage& stage)
-    : mesh_(std::move(mesh)) {
+    : mesh_(std::move(mesh)), added_(mesh_.points.size()) {
   for (Index t = 0; t < mesh_.tets.size(); ++t) parents_.push_back(t);
   buildTopology(stage);
   findFeatures(featureAngleInDegrees * std::numbers::pi / 180, stage);
@@ -169,6 +169,7 @@ void FrameTets::split(std::vector<tetmap::EdgeInTet> edges, Stage& stage) {
       mesh_, topology_.mate, std::move(edges),
       [&](const VertexPair& edge, Index middle, const std::vector<tetmap::Cut>& cuts) {
         stage.context().throwIfCancelled();
+        added_.add(edge);
         for (const tetmap::Cut& cut : cuts) {
           tetmap::carryTet(cut, parents_);
           if (frames.empty()) continue;
@@ -200,6 +201,7 @@ void FrameTets::splitTets(const std::vector<Index>& tets, Stage& stage) {
       for (std::size_t k = 0; k < 3; ++k) centre[k] += 0.25 * mesh_.points[v][k];
     }
     mesh_.points.push_back(centre);
+    added_.add(whole);
     static_cast<void>(mutableTets.splitTet(t));
     parents_.resize(mutableTets.tetCount(), Index{parents_[t]});
   }

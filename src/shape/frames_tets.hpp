@@ -9,6 +9,7 @@
 #include <quantize/seamless/cut_graph.hpp>
 #include <shape/frames_tensor.hpp>
 #include <tetmap/boundary_curves.hpp>
+#include <tetmap/carried_tags.hpp>
 
 #include <hexhex/types.hpp>
 
@@ -35,6 +36,8 @@ class FrameTets {
   [[nodiscard]] std::size_t size() const noexcept { return mesh_.tets.size(); }
   /// Of a tet of the mesh given, the number of which this is a part.
   [[nodiscard]] Index parentOf(Index tet) const { return parents_[tet]; }
+  [[nodiscard]] std::span<const Index> parents() const noexcept { return parents_; }
+  [[nodiscard]] const tetmap::AddedVertices& added() const noexcept { return added_; }
   /// Edges of the boundary at which it turns by more than the angle, ascending.
   [[nodiscard]] const std::vector<VertexPair>& features() const noexcept { return features_; }
   [[nodiscard]] bool isFeature(const VertexPair& edge) const;
@@ -75,6 +78,7 @@ class FrameTets {
 
   TetMesh mesh_;
   std::vector<Index> parents_;
+  tetmap::AddedVertices added_;
   std::vector<VertexPair> features_;
   adjacency::TetTopology topology_;
   double edgeLength_ = 0;

@@ -6,9 +6,12 @@
 #if defined(HEXHEX_HAS_QUANTIZE)
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include <quantize/quantized_map.hpp>
 #include <shape/features.hpp>
@@ -63,6 +66,22 @@ TetMap framesMap(const PositiveTets& tets, const ShapeOptions& options, Context&
   }
 }
 
+/// Edges that the part has no tag for get one of their own.
+void addSharpEdges(const std::vector<FeatureEdge>& sharp, Features& features) {
+  std::int32_t tag = 1;
+  std::set<std::array<Index, 2>> known;
+  for (const FeatureEdge& edge : features.edges) {
+    if (edge.tag == 0) continue;
+    const auto [a, b] = edge.vertices;
+    known.insert({std::min(a, b), std::max(a, b)});
+    if (edge.tag >= tag && edge.tag < std::numeric_limits<std::int32_t>::max()) tag = edge.tag + 1;
+  }
+  for (const FeatureEdge& edge : sharp) {
+    if (!known.contains(edge.vertices)) features.edges.push_back({edge.vertices, tag});
+  }
+  if (!known.empty()) features.names.push_back({1, tag, "sharp"});
+}
+
 ShapedMap finish(const TetMesh& given, TetMap map, const ShapeOptions& options, ShapeReport report,
                  Context& context) {
   Stage stage(context, "features");
@@ -73,7 +92,9 @@ ShapedMap finish(const TetMesh& given, TetMap map, const ShapeOptions& options, 
                                             report.method == ShapeMethod::Frames, stage);
   report.featureEdges = features.count;
   report.taggedEdges = features.aligned.size();
-  map.features.edges = features.aligned;
+  report.innerFaces = features.innerFaces;
+  report.alignedFaces = features.alignedFaces;
+  addSharpEdges(features.aligned, map.features);
   report.distortion = quantization::distortionOf(map.points, map.tets, map.parameters);
   return {std::move(map), report};
 }

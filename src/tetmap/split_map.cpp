@@ -69,11 +69,6 @@ std::vector<Fan> disjointFans(const adjacency::TetTopology& topology,
 
 }  // namespace
 
-void splitFeatures(const VertexPair& edge, Index middle, Features& features) {
-  splitEntries(edge, middle, features.edges);
-  splitEntries(edge, middle, features.faces);
-}
-
 std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
                        std::span<const EdgeInTet> edges) {
   // All of them first: the topology may see the map's own array, which is going to grow.
@@ -82,7 +77,8 @@ std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
     const auto middle = static_cast<Index>(map.points.size());
     map.points.push_back(middleOf(map.points[edge[0]], map.points[edge[1]]));
     for (const Index t : tets) splitTet(map, edgeOf(map.tets, t, edge), middle);
-    splitFeatures(edge, middle, map.features);
+    splitEntries(edge, middle, map.features.edges);
+    splitEntries(edge, middle, map.features.faces);
     splitValences(edge, middle, map.edgeValences);
   }
   return fans.size();

@@ -19,7 +19,4 @@ namespace hexhex::tetmap {
 std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
                        std::span<const EdgeInTet> edges);
 
-/// Both parts of a feature that contains the edge are what it was.
-void splitFeatures(const VertexPair& edge, Index middle, Features& features);
-
 }  // namespace hexhex::tetmap

@@ -1094,7 +1094,8 @@ class Repair(CommandTest):
 
     def test_improve(self):
         self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
-        self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2", "--quiet")
+        run = self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2")
+        self.assertRegex(run.stderr, "not positive everywhere.*--improve makes such cells positive")
         # With the map, in two steps and in one; without it.
         run = self.run_command("improve", "rough.vtu", "--map", "map.hexex", "-o", "two.vtu", "--report", "i.json")
         self.assertIn("certified positive everywhere", run.stdout)
@@ -1249,6 +1250,56 @@ class Convert(CommandTest):
         for name in ("hexex", "mesh", "meshb", "vtu", "vtk", "vtk-binary", "ovm", "ovmb", "msh",
                      "msh22-ascii", "inp", "mfem"):
             self.assertRegex(run.stdout, rf"(?m)^{name} ")
+        for solver in ("calculix", "dealii", "moose"):
+            self.assertRegex(run.stdout, rf"(?m)^{solver} ")
+
+    def test_solvers_choose_format_and_extension(self):
+        self.generate("cylinder")
+        for solver, file, begins in (("dealii", "a.msh", b"$MeshFormat\n2.2 0 8"), ("mfem", "a.mesh", b"MFEM mesh"),
+                                     ("calculix", "a.inp", b"*HEADING"), ("moose", "a.e", b"CDF")):
+            for name in ("a", file):
+                self.run_command("extract", "map.hexex", "-o", name, "--for", solver, "--quiet")
+                self.assertTrue((self.folder / file).read_bytes().startswith(begins), solver)
+                (self.folder / file).unlink()
+        self.run_command("extract", "map.hexex", "-o", "a", "--for", "calculix", "--order", "2")
+        self.assertIn("TYPE=C3D20", (self.folder / "a.inp").read_text())
+        self.run_command("convert", "a.inp", "b", "--for", "mfem")
+        self.assertIn("nodes", (self.folder / "b.mesh").read_text())
+        self.run_command("improve", "b.mesh", "-o", "c", "--for", "mfem", expect=FILE_PROBLEM)
+        for arguments, expect, sentence in (
+                (["-o", "a.vtu", "--for", "mfem"], BAD_USAGE, "MFEM reads .mesh files: write a.mesh in place of a.vtu."),
+                (["-o", "a", "--for", "fenics"], BAD_USAGE, "choose abaqus, calculix, code-aster, dealii, dolfinx,"),
+                (["-o", "a", "--for", "mfem", "--format", "vtu"], BAD_USAGE, "excludes"),
+                (["-o", "d", "--for", "dealii", "--order", "2"], FILE_PROBLEM, "for deal.II, straight cells"),
+                (["-o", "d", "--for", "calculix", "--order", "3"], FILE_PROBLEM, "these are of order 3")):
+            run = self.run_command("extract", "map.hexex", *arguments, expect=expect)
+            self.assertIn(sentence, run.stderr)
+        self.assertNotIn("d.inp", self.files())
+
+    def test_folders_are_made_for_openfoam_and_asked_for_otherwise(self):
+        self.generate("cylinder")
+        for output in ("new/case.foam", "new/constant/polyMesh"):  # the second replaces the folder
+            self.run_command("extract", "map.hexex", "-o", output, "--for", "openfoam", "--quiet")
+            self.assertTrue((self.folder / "new/constant/polyMesh/faces").exists())
+        run = self.run_command("extract", "map.hexex", "-o", "other/a.vtu", expect=FILE_PROBLEM)
+        self.assertIn("its folder does not exist; make it with `mkdir -p other`.", run.stderr)
+
+
+    def test_files_of_other_kinds_are_named(self):
+        self.write("a.mesh", POLYCUBE)
+        self.write("old.msh", "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n1\n"
+                              "1 4 1 1 4 1 2 3 4\n$ENDELM\n")
+        self.write("mfem.mesh", "MFEM mesh v1.0\n\ndimension\n3\n")
+        self.write("a.obj", "v 0 0 0\n")
+        self.write("a.fra", "FRA 1\n")
+        for arguments, sentence in (
+                (["info", "a.mesh"], "it holds 6 tetrahedra, of which `hexhex mesh` makes hexahedra"),
+                (["info", "old.msh"], "it holds 1 tetrahedron, of which `hexhex mesh` makes hexahedra"),
+                (["check", "a.mesh"], "Tets without a map: `hexhex mesh` makes hexahedra of them, or"),
+                (["info", "mfem.mesh"], "this is a mesh of MFEM, which is written, but not read."),
+                (["info", "a.obj"], ".obj files hold surfaces: `hexhex mesh` fills them"),
+                (["extract", "a.fra", "-o", "b.vtu"], ".fra files hold frame fields, not maps: `hexhex map`")):
+            self.assertIn(sentence, self.run_command(*arguments, expect=FILE_PROBLEM).stderr)
 
 
 class MixedCells(CommandTest):
@@ -1479,7 +1530,7 @@ class Stream(CommandTest):
 
 
 class Interruption(CommandTest):
-    def interrupt(self, last_line, *arguments):
+    def interrupt(self, last_line, *arguments, by=signal.SIGINT, sentence="Interrupted. [Cancelled]"):
         """Ctrl-C soon after a line of progress."""
         arguments = ["--verbose", *arguments]
         map_file = self.generate("box", "--cells", "40", "--refine", "8")
@@ -1492,14 +1543,17 @@ class Interruption(CommandTest):
                 if line == last_line:
                     break
             time.sleep(0.05)
-            process.send_signal(signal.SIGINT)
+            process.send_signal(by)
             _, errors = process.communicate(timeout=600)
         self.assertEqual(process.returncode, INTERRUPTED, errors)
-        self.assertIn("[Cancelled]", errors)
+        self.assertIn(f"hexhex: error: {sentence}\n", errors)
         self.assertEqual(set(self.files()), {"map.hexex"})
 
     def test_interrupt_ends_with_a_sentence_and_no_file(self):
         self.interrupt("hexhex: read map\n", "--scale", "2")  # the work takes seconds
+
+    def test_termination_is_called_so(self):
+        self.interrupt("hexhex: read map\n", "--scale", "2", by=signal.SIGTERM, sentence="Terminated. [Cancelled]")
 
     def test_interrupt_of_a_stream(self):
         self.interrupt("hexhex: cells\n", "--scale", "2", "--stream")

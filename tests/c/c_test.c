@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -815,8 +816,10 @@ static void test_shape(void) {
   fineness.cells = 300;
   fineness.densify = 1;
   shape.method = HEXHEX_METHOD_POLYCUBE;
+  hexhex_improve_options plain = HEXHEX_IMPROVE_OPTIONS_INIT; /* no more cells than the map's */
   options.quantize = &fineness;
   options.shape = &shape;
+  options.improve = &plain;
   hexhex_shape_report made = HEXHEX_SHAPE_REPORT_INIT;
   if (!hexhex_can_quantize()) {
     CHECK(hexhex_map_from_tets(&tets, &shape, context, &seamless, &made, &error) ==
@@ -855,7 +858,11 @@ static void test_shape(void) {
     reports.quantization = &quantized;
     reports.improvement = &improved;
     CHECK_OK(hexhex_mesh_from_tets(&tets, &options, context, &mesh, &integer, &reports, &error));
-    CHECK(memcmp(&again, &made, sizeof made) == 0 && reports.shape == &again);
+    /* Between method and rotation there may be bytes of nothing. */
+    const size_t behind = offsetof(hexhex_shape_report, rotation);
+    CHECK(again.size == made.size && again.method == made.method);
+    CHECK(memcmp(again.rotation, made.rotation, sizeof made - behind) == 0);
+    CHECK(reports.shape == &again);
     CHECK(quantized.cells_wanted == 300 && quantized.cells > 30 && quantized.cells < 3000);
     CHECK(improved.minimum_after > 0 && improved.not_positive_after == 0);
     hexhex_certificate certificate = HEXHEX_CERTIFICATE_INIT;
@@ -904,6 +911,37 @@ static void test_shape(void) {
   }
   hexhex_context_destroy(context);
   hexhex_map_destroy(given);
+}
+
+/* Tags of a file come along; a file of tets needs no mesher. */
+static void test_read_part(void) {
+  const char* const file = "tagged.mesh";
+  FILE* const out = fopen(file, "w");
+  CHECK(out != NULL);
+  if (out == NULL) return;
+  fputs(
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+      "Triangles\n1\n1 2 3 7\nTetrahedra\n1\n1 2 3 4 5\nEnd\n",
+      out);
+  fclose(out);
+  hexhex_error error;
+  hexhex_map* part = NULL;
+  hexhex_fill_report report = HEXHEX_FILL_REPORT_INIT;
+  CHECK_OK(hexhex_map_read_part(file, NULL, NULL, &part, &report, &error));
+  CHECK(report.size == sizeof report && report.mesher[0] == 0 && report.tets == 0);
+  hexhex_map_arrays arrays = HEXHEX_MAP_ARRAYS_INIT;
+  CHECK_OK(hexhex_map_get_arrays(part, &arrays, &error));
+  CHECK(arrays.tet_count == 1 && arrays.regions != NULL && arrays.regions[0] == 5);
+  CHECK(arrays.feature_face_count == 1 && arrays.feature_faces[0].tag == 7);
+  hexhex_map_destroy(part);
+  hexhex_fill_options options = HEXHEX_FILL_OPTIONS_INIT;
+  options.tet_size = 1;
+  CHECK(hexhex_map_read_part(file, &options, NULL, &part, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  options.mesher = (hexhex_mesher)9;
+  CHECK(hexhex_map_read_part(file, &options, NULL, &part, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_map_read_part("nothing.stl", NULL, NULL, &part, NULL, &error) ==
+        HEXHEX_FILE_NOT_FOUND);
+  remove(file);
 }
 
 static void test_curved(const char* folder) {
@@ -1719,6 +1757,7 @@ int main(void) {
   test_improve_curved(folder);
   test_quantize();
   test_shape();
+  test_read_part();
   test_curved(folder);
   test_numbers_that_are_none();
   test_answers();

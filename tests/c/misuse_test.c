@@ -167,6 +167,7 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
   }
   if (concerns(k_context)) {
     REFUSED(hexhex_map_read_tets(file, NULL, h->context, &made.map, &error));
+    REFUSED(hexhex_map_read_part(file, NULL, h->context, &made.map, NULL, &error));
   }
   if (concerns(k_context)) {
     REFUSED(hexhex_map_read_pair(file, file, h->context, &made.map, &error));
@@ -614,6 +615,10 @@ static void test_sizes_of_structs(const char* file) {
           hexhex_mesh_improve(h.mesh, NULL, &s, NULL, NULL, &error));
     WRONG(improve_report, HEXHEX_IMPROVE_REPORT_INIT,
           hexhex_mesh_improve(h.mesh, NULL, NULL, NULL, &s, &error));
+    WRONG(fill_options, HEXHEX_FILL_OPTIONS_INIT,
+          hexhex_map_read_part("part.stl", &s, NULL, &map, NULL, &error));
+    WRONG(fill_report, HEXHEX_FILL_REPORT_INIT,
+          hexhex_map_read_part("part.stl", NULL, NULL, &map, &s, &error));
     WRONG(map_arrays, one_tet, hexhex_map_from_tets(&s, NULL, NULL, &map, NULL, &error));
     WRONG(shape_options, HEXHEX_SHAPE_OPTIONS_INIT,
           hexhex_map_from_tets(&one_tet, &s, NULL, &map, NULL, &error));

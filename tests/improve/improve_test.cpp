@@ -19,6 +19,7 @@
 #include <hexhex/samples.hpp>
 
 #include <base/vector3.hpp>
+#include <improve/all_at_once.hpp>
 
 #include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
@@ -254,7 +255,7 @@ TEST(Improve, KeepsTaggedQuadsInsideWhereTheyAre) {
   EXPECT_LT(report.innerDistanceAfter, 1e-12);
 }
 
-/// Blocks are regions here, so there are faces between them.
+/// Blocks are regions here, so there are faces between them, which are moved off the grid.
 TEST(Improve, MeasuresTheBoundaryAndWhatIsInsideByThemselves) {
   for (const SampleKind kind : {SampleKind::Sphere, SampleKind::Shell, SampleKind::Torus}) {
     SCOPED_TRACE(static_cast<int>(kind));
@@ -266,8 +267,9 @@ TEST(Improve, MeasuresTheBoundaryAndWhatIsInsideByThemselves) {
     const ImproveReport report = improvedOn(mesh, map);
     expectSampled(report.distanceBefore, rough, map);
     expectSampled(report.distanceAfter, mesh, map);
-    EXPECT_GT(report.innerDistanceBefore, 0);
-    EXPECT_LT(report.innerDistanceAfter, 0.05);
+    // These are no planes of the grid, so no quads lie on them, and no vertices are held there.
+    EXPECT_EQ(report.innerDistanceBefore, 0);
+    EXPECT_EQ(report.innerDistanceAfter, 0);
     EXPECT_EQ(improvedOn(rough, plain).innerDistanceAfter, 0);
   }
 }
@@ -463,7 +465,8 @@ HexMesh crumpledBall(const HexMesh& ball, std::size_t count, double share, std::
   return mesh;
 }
 
-/// The folds are no creases, though the surface turns by half a circle there. While all of them
+/// The folds are no creases, though the surface turns by half a circle there, and the folded
+/// surface is left by the slack in untangling and in raising. While all of them
 /// were held, one of these meshes was mended; while they were let go as a last resort, four.
 TEST(Improve, MendsCrumpledBalls) {
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 3}).map;
@@ -475,9 +478,67 @@ TEST(Improve, MendsCrumpledBalls) {
     expectNoWorse(report);
     EXPECT_FALSE(report.before.allPositive());
     EXPECT_TRUE(report.after.allPositive()) << "seed " << seed;
-    EXPECT_EQ(report.offCreases, 0U) << "seed " << seed;
-    EXPECT_LE(sampledDistance(mesh, map).largest(), 1.2 * coarse) << "seed " << seed;
+    if (improvement::canMoveAtOnce()) {
+      EXPECT_GE(report.after.quality.minimum, 0.3) << "seed " << seed;
+    }
+    EXPECT_LE(sampledDistance(mesh, map).largest(), 1.2 * coarse + 2 * ImproveOptions{}.slack)
+        << "seed " << seed;
   }
+}
+
+/// A grid, or a ball, whose vertices inside are anywhere in its bounding box.
+HexMesh scrambled(HexMesh mesh, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<bool> isOutside(mesh.points.size(), false);
+  for (const Quad& quad : boundaryOf(mesh)) {
+    for (const Index v : quad) isOutside[v] = true;
+  }
+  Vec3 low = mesh.points[0];
+  Vec3 high = low;
+  for (const Vec3& point : mesh.points) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], point[k]);
+      high[k] = std::max(high[k], point[k]);
+    }
+  }
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (isOutside[v]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh.points[v][k] = low[k] + random.real() * (high[k] - low[k]);
+    }
+  }
+  return mesh;
+}
+
+/// Its boundary says where the inside has to be. One by one, vertices came to a minimum of 0.30.
+TEST(Improve, BringsAScrambledGridBack) {
+  if (!improvement::canMoveAtOnce()) GTEST_SKIP() << "without the solver";
+  HexMesh mesh = scrambled(gridMesh(12), 5);
+  const ImproveReport report = improved(mesh);
+  expectNoWorse(report);
+  EXPECT_GT(report.before.refuted + report.before.undecided, 1500U);
+  EXPECT_TRUE(report.after.allPositive());
+  EXPECT_GT(report.after.quality.minimum, 0.98);
+  EXPECT_LT(report.distanceAfter.hausdorff(), 1e-9);
+}
+
+/// One by one, vertices left it as it was.
+TEST(Improve, BringsAScrambledBallBack) {
+  if (!improvement::canMoveAtOnce()) GTEST_SKIP() << "without the solver";
+  const TetMap map = generateSample(SampleKind::Sphere, {.cells = 4}).map;
+  const HexMesh ball = extracted(map, 3);
+  HexMesh mesh = scrambled(ball, 6);
+  HexMesh other = mesh;
+  const ImproveReport report = improvedOn(mesh, map);
+  expectNoWorse(report);
+  EXPECT_GT(report.before.refuted + report.before.undecided, ball.cells.size() / 2);
+  EXPECT_TRUE(report.after.allPositive());
+  EXPECT_GT(report.after.quality.minimum, 0.45);
+  EXPECT_GT(report.after.quality.mean, 0.9);
+  EXPECT_LE(sampledDistance(mesh, map).largest(),
+            sampledDistance(ball, map).largest() + ImproveOptions{}.slack);
+  improvedOn(other, map, {}, 4);
+  EXPECT_EQ(mesh.points, other.points);
 }
 
 /// So many folds that some of their edges form chains.

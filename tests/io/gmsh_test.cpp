@@ -1,7 +1,9 @@
 // `.msh` files: exact content, what other programs write and ours does not, errors.
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -79,12 +81,12 @@ TEST(Gmsh, WritesExactlyTheSectionsOfVersion41) {
   writeGmsh41Text(mesh, folder / "a.msh", options, context);
   EXPECT_EQ(contentOf(folder / "a.msh"),
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
-            "$PhysicalNames\n2\n2 1 \"boundary\"\n3 1 \"hexahedra\"\n$EndPhysicalNames\n"
-            "$Entities\n0 0 1 1 \n1 0 0 0 1 1 1 1 1 0 \n1 0 0 0 1 1 1 1 1 0 \n$EndEntities\n"
-            "$Nodes\n1 8 1 8 \n3 1 0 8 \n1 \n2 \n3 \n4 \n5 \n6 \n7 \n8 \n"
+            "$PhysicalNames\n2\n2 1 \"boundary\"\n3 2 \"hexahedra\"\n$EndPhysicalNames\n"
+            "$Entities\n0 0 1 1 \n1 0 0 0 1 1 1 1 1 0 \n2 0 0 0 1 1 1 1 2 0 \n$EndEntities\n"
+            "$Nodes\n1 8 1 8 \n3 2 0 8 \n1 \n2 \n3 \n4 \n5 \n6 \n7 \n8 \n"
             "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n$EndNodes\n"
             "$Elements\n2 7 1 7 \n2 1 3 6 \n1 1 5 8 4 \n2 2 3 7 6 \n3 1 2 6 5 \n4 4 8 7 3 \n"
-            "5 1 4 3 2 \n6 5 6 7 8 \n3 1 5 1 \n7 1 2 3 4 5 6 7 8 \n$EndElements\n");
+            "5 1 4 3 2 \n6 5 6 7 8 \n3 2 5 1 \n7 1 2 3 4 5 6 7 8 \n$EndElements\n");
 }
 
 TEST(Gmsh, NamesOfGroupsHaveOneSign) {
@@ -155,6 +157,61 @@ TEST(Gmsh, BinaryOfVersion22) {
   text[20] = 0;
   text[23] = 1;
   EXPECT_EQ(failure(text).code, ErrorCode::FileUnsupported);
+}
+
+/// The groups of a file: "dimension name" by number, which no two have.
+std::map<int, std::string> groupsByNumber(const std::filesystem::path& file) {
+  std::istringstream lines(contentOf(file));
+  std::string line;
+  while (line != "$PhysicalNames" && std::getline(lines, line)) {
+  }
+  std::size_t count = 0;
+  lines >> count;
+  std::map<int, std::string> groups;
+  for (std::size_t i = 0; i < count; ++i) {
+    int dimension = 0;
+    int number = 0;
+    std::string name;
+    lines >> dimension >> number >> name;
+    groups[number] = std::to_string(dimension) + " " + name;
+  }
+  EXPECT_EQ(groups.size(), count) << "groups share numbers";
+  return groups;
+}
+
+// meshio and GetFEM make one group of those with one number.
+TEST(Gmsh, NoTwoGroupsHaveOneNumber) {
+  const TemporaryFolder folder;
+  Context context;
+  HexMesh mesh = gridMesh(2, 1, 1);
+  mesh.regions = {7, 3};
+  mesh.features.quads = {{{0, 6, 9, 3}, 7}};
+  mesh.features.edges = {{{0, 1}, 7}, {{1, 2}, 2}};
+  mesh.features.vertices = {{0, 1}};
+  for (const char* const format : {"msh", "msh41-ascii", "msh22-ascii"}) {
+    SCOPED_TRACE(format);
+    writeHexMesh(mesh, folder / "a.msh", {.format = format}, context);
+    const std::map<int, std::string> expected = {
+        {1, "0 \"point_1\""}, {2, "1 \"curve_2\""},   {3, "3 \"region_3\""}, {4, "3 \"region_7\""},
+        {5, "1 \"curve_7\""}, {7, "2 \"surface_7\""}, {8, "2 \"boundary\""}};
+    EXPECT_EQ(groupsByNumber(folder / "a.msh"), expected);
+    const HexMesh read = readHexMesh(folder / "a.msh");
+    EXPECT_EQ(read.features.edges.size(), 2U);
+    EXPECT_EQ(read.features.quads, mesh.features.quads);
+    Array<std::int32_t> regions = read.regions;
+    std::sort(regions.begin(), regions.end());  // cells are in order of their regions
+    EXPECT_EQ(regions, (Array<std::int32_t>{3, 7}));
+  }
+  // Patches, which have no tags, come behind regions, which have.
+  mesh.features = {};
+  mesh.regions = {1, 2};
+  writeHexMesh(mesh, folder / "a.msh");
+  const std::map<int, std::string> groups = groupsByNumber(folder / "a.msh");
+  EXPECT_EQ(groups.at(1), "3 \"region_1\"");
+  EXPECT_EQ(groups.at(3), "2 \"patch_1\"");
+  mesh.regions.clear();
+  writeHexMesh(mesh, folder / "a.msh");
+  EXPECT_EQ(groupsByNumber(folder / "a.msh").at(7), "3 \"hexahedra\"");
 }
 
 /// The same file of version 2.2 with bytes for the numbers of nodes and elements, and a block for

@@ -1,5 +1,6 @@
 // What all formats of hexahedral meshes have in common, and the exact text of those for
 // simulations: `.vtk`, `.inp`, MFEM.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 
 #include <io/core/mesh_groups.hpp>
@@ -302,6 +304,76 @@ TEST(Abaqus, WritesSetsAndSurfaces) {
       "*NSET, NSET=N_POINT_M3\n7\n*SURFACE, TYPE=ELEMENT, NAME=S_SURFACE_2\n1, S2\n"
       "*SURFACE, TYPE=ELEMENT, NAME=S_BOUNDARY\n1, S6\n1, S4\n1, S3\n1, S5\n1, S1\n";
   EXPECT_EQ(text.substr(text.find("*ELEMENT")), tail);
+}
+
+/// A straight cell of order 2 in the box from 0 to (2, 4, 6).
+LagrangeMesh boxOfOrder2() {
+  LagrangeMesh mesh;
+  mesh.order = 2;
+  mesh.vertexCount = 8;
+  mesh.points.resize(8);
+  mesh.nodes.resize(27);
+  for (Index i = 0; i < 27; ++i) {
+    const std::array<Index, 3> at = {i % 3, i / 3 % 3, i / 9};
+    const Vec3 point = {1.0 * at[0], 2.0 * at[1], 3.0 * at[2]};
+    const bool isCorner = at[0] != 1 && at[1] != 1 && at[2] != 1;
+    const Index node = isCorner ? at[0] / 2 + 2 * (at[1] / 2) + 4 * (at[2] / 2)
+                                : static_cast<Index>(mesh.points.size());
+    if (!isCorner) mesh.points.push_back({});
+    mesh.points[node] = point;
+    mesh.nodes[i] = node;
+  }
+  return mesh;
+}
+
+TEST(Abaqus, CellsOfOrder2HaveTwentyNodes) {
+  const TemporaryFolder folder;
+  Context context;
+  LagrangeMesh mesh = boxOfOrder2();
+  mesh.features.quads = {{{4, 5, 7, 6}, 2}};
+  writeLagrangeMesh(mesh, folder / "a.inp", {}, context);
+  const LagrangeMesh read = readLagrangeMesh(folder / "a.inp", context);
+  ASSERT_EQ(read.cellCount(), 1U);
+  for (std::size_t i = 0; i < 27; ++i) {  // what is left out is where a straight cell has it
+    EXPECT_EQ(read.points[read.nodes[i]], mesh.points[mesh.nodes[i]]) << i;
+  }
+  EXPECT_EQ(read.features.quads.size(), 1U);
+  const std::string text = contentOf(folder / "a.inp");
+  std::string line;
+  std::istringstream set(text.substr(text.find("*NSET, NSET=N_SURFACE_2")));
+  std::getline(set, line);
+  std::getline(set, line);  // at z = 6: four corners, and four in the middle of edges
+  EXPECT_EQ(std::count(line.begin(), line.end(), ','), 7) << line;
+  EXPECT_TRUE(line.starts_with("5, 6, 7, 8, ")) << line;
+  EXPECT_NE(text.find("*SURFACE, TYPE=ELEMENT, NAME=S_SURFACE_2\n1, S2\n"), std::string::npos);
+  mesh.order = 1;
+  mesh.nodes = {0, 1, 2, 3, 4, 5, 6, 7};
+  mesh.points.resize(8);
+  EXPECT_EQ(failureOf([&] { writeLagrangeMesh(mesh, folder / "b.inp", {}, context); }).code,
+            ErrorCode::FileUnsupported);
+}
+
+TEST(HexFormats, SolversChooseTheirs) {
+  const TemporaryFolder folder;
+  Context context;
+  writeHexMesh(cube(), folder / "a.msh", {.format = "dealii"}, context);
+  EXPECT_TRUE(contentOf(folder / "a.msh").starts_with("$MeshFormat\n2.2 0"));
+  for (const SolverFormat& solver : solverFormats()) {
+    SCOPED_TRACE(solver.name);
+    const std::filesystem::path file = folder / ("a" + std::string(solver.extension));
+    EXPECT_EQ(findSolver(solver.name)->program, solver.program);
+    EXPECT_NO_THROW(writeHexMesh(cube(), file, {.format = solver.name}, context));
+    const auto writeCurved = [&] {
+      writeLagrangeMesh(boxOfOrder2(), file, {.format = solver.name}, context);
+    };
+    if (solver.curved.empty()) {
+      EXPECT_NE(failureOf(writeCurved).sentence.find(std::string(solver.program)),
+                std::string::npos);
+    } else {
+      EXPECT_NO_THROW(writeCurved());
+    }
+  }
+  EXPECT_EQ(findSolver("vtu"), nullptr);
 }
 
 TEST(Abaqus, FacesHaveAbaqusNumbers) {

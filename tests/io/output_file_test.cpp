@@ -96,6 +96,9 @@ TEST(OutputFile, UnusableFolders) {
     EXPECT_EQ(failure.code, ErrorCode::FileWrite);
     EXPECT_NE(failure.sentence.find(target.string()), std::string::npos) << failure.sentence;
   }
+  const std::string advice = "`mkdir -p " + (folder / "missing").string() + "`";
+  EXPECT_NE(failureOf([&] { OutputFile file(folder / "missing/a.txt"); }).sentence.find(advice),
+            std::string::npos);
   EXPECT_EQ(folder.fileCount(), 1U);
 }
 

@@ -1,8 +1,11 @@
-"""What the tests of files of parts have in common: running commands, and reading Gmsh's files."""
+"""What the tests of files of parts have in common: running commands, finding modules, and reading Gmsh's files."""
 
+import os
 import struct
 import subprocess
 import sys
+
+PYTHONS = [p for p in (os.environ.get("HEXHEX_PYTHON"), "/usr/bin/python3", sys.executable) if p]
 
 
 def check(condition, message):
@@ -15,6 +18,15 @@ def run(*command, **options):
                           stderr=subprocess.STDOUT, text=True, check=False, **options)
     check(done.returncode == 0, f"{' '.join(map(str, command))}:\n{done.stdout[-3000:]}")
     return done.stdout
+
+
+def python_with(module):
+    """A Python that has a module, or None."""
+    for python in PYTHONS:
+        if os.access(python, os.X_OK) and subprocess.run(
+                [python, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0:
+            return python
+    return None
 
 
 def read_gmsh(file):

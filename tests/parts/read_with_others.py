@@ -19,19 +19,9 @@ import subprocess
 import sys
 import tempfile
 
-from common import check, read_gmsh, run
+from common import check, python_with, read_gmsh, run
 
 JUDGES = pathlib.Path(__file__).parent / "judges"
-PYTHONS = [p for p in (os.environ.get("HEXHEX_PYTHON"), "/usr/bin/python3", sys.executable) if p]
-
-
-def python_with(module):
-    """A Python that has a module, or None."""
-    for python in PYTHONS:
-        if os.access(python, os.X_OK) and subprocess.run(
-                [python, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0:
-            return python
-    return None
 
 
 class Mesh:

@@ -542,8 +542,8 @@ def test_mesh_of_tets(kind, tmp_path):
     needs_quantization()
     tets = hexhex.generate(kind)
     told = set()
-    part = hexhex.mesh(tets.points, tets.tets, cells=500, method="polycube",
-                       progress=lambda stage, share: told.add(stage))
+    part = hexhex.mesh(tets.points, tets.tets, cells=500, method="polycube", pillow="never",
+                       snap_curves=False, progress=lambda stage, share: told.add(stage))
     assert {"labelling", "motorcycle complex", "quality"} <= told and len(part.stages) > 10
     assert part.shape.method == "polycube" and part.verification
     assert part.quantization.cells_wanted == 500
@@ -561,9 +561,55 @@ def test_mesh_of_tets(kind, tmp_path):
     meshio = pytest.importorskip("meshio")
     file = tmp_path / "tets.vtu"
     meshio.Mesh(tets.points, [("tetra", tets.tets)]).write(file)
-    same = hexhex.mesh(file, cells=500, method="polycube")
+    same = hexhex.mesh(file, cells=500, method="polycube", pillow="never", snap_curves=False)
     assert np.array_equal(same.mesh.points, part.mesh.points)
     assert "500" not in repr(part) and f"{len(part.mesh.cells)} cells" in repr(part)
+
+
+def test_tags_of_a_file_are_those_of_its_mesh(tmp_path):
+    needs_quantization()
+    tets = hexhex.generate("box")  # of side 2, around the origin or not
+    low = tets.points[:, 0].min()
+    faces = np.sort(tets.tets[:, [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]].reshape(-1, 3), axis=1)
+    left = [f for f in faces if np.all(tets.points[f, 0] == low)]
+    groups = [(2, 7, left), (4, 5, tets.tets)]
+    lines = [f"{kind} 2 {tag} 1 {' '.join(str(v + 1) for v in element)}"
+             for kind, tag, elements in groups for element in elements]
+    file = tmp_path / "tagged.msh"
+    file.write_text("\n".join(
+        ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "2", '2 7 "inlet"', '3 5 "steel"',
+         "$EndPhysicalNames", "$Nodes", str(len(tets.points))]
+        + [f"{i} {' '.join(repr(float(x)) for x in p)}" for i, p in enumerate(tets.points, 1)]
+        + ["$EndNodes", "$Elements", str(len(lines))]
+        + [f"{i} {line}" for i, line in enumerate(lines, 1)] + ["$EndElements", ""]))
+    part = hexhex.mesh(file, cells=200, method="polycube")
+    quads = part.mesh.features.faces
+    assert len(quads) > 0 and set(quads[:, 4]) == {7} and set(part.mesh.regions) == {5}
+    assert np.allclose(part.mesh.points[quads[:, :4], 0], low)
+    assert part.filled is None and part.missing_curves == 0 and part.shape.inner_faces == 0
+    hexhex.write(part.mesh, tmp_path / "mesh.msh", format="gmsh22")
+    written = (tmp_path / "mesh.msh").read_text()
+    assert '2 7 "inlet"' in written and '3 5 "steel"' in written
+
+
+def test_mesh_of_a_surface(tmp_path, monkeypatch):
+    needs_quantization()
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    file = tmp_path / "cube.off"
+    file.write_text("\n".join(["OFF", "8 12 0"] + [" ".join(map(str, p)) for p in corners]
+                              + [f"3 {a} {b} {c}" for a, b, c in triangles]) + "\n")
+    with pytest.raises(hexhex.ArgumentError, match='no mesher "yes"'):
+        hexhex.mesh(file, cells=50, mesher="yes")
+    monkeypatch.setenv("HEXHEX_PYTHON", str(tmp_path / "none"))
+    with pytest.raises(hexhex.FileError, match="netgen-mesher is not installed"):
+        hexhex.mesh(file, cells=50, mesher="netgen")
+    pytest.importorskip("netgen")
+    monkeypatch.setenv("HEXHEX_PYTHON", sys.executable)
+    part = hexhex.mesh(file, cells=50, mesher="netgen")
+    assert part.all_positive and part.filled.mesher.startswith("netgen-mesher")
+    assert part.filled.volume == pytest.approx(1) and part.filled.triangles == 12
 
 
 def test_mesh_by_edge_length_and_with_a_layer():

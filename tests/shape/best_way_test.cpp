@@ -56,7 +56,7 @@ TEST(BestWay, IsJudgedByCertificateMinimumDistanceAndCurves) {
   EXPECT_EQ(keptOf({.minimum = 0.2}, {.minimum = 0.1}), ShapeMethod::Polycube);
   EXPECT_EQ(keptOf({.minimum = 0.2}, {.minimum = 0.4, .notPositive = 1}), ShapeMethod::Polycube);
   EXPECT_EQ(keptOf({.minimum = 0.2, .notPositive = 1}, {.minimum = 0.1}), ShapeMethod::Frames);
-  EXPECT_EQ(keptOf({.distance = 5e-3}, {.distance = 2e-3}), ShapeMethod::Frames);
+  EXPECT_EQ(keptOf({.distance = 8e-3}, {.distance = 2e-3}), ShapeMethod::Frames);
   EXPECT_EQ(keptOf({.curvesFollowed = 0.5}, {.curvesFollowed = 0.9}), ShapeMethod::Frames);
   // Above 0.3, a minimum needs no better.
   EXPECT_EQ(keptOf({.minimum = 0.35, .distance = 2e-3}, {.minimum = 0.9, .distance = 3e-3}),

@@ -1162,9 +1162,10 @@ typedef struct hexhex_improve_options {
   double
       slack; /**< so far may vertices leave the surface if nothing else helps; diagonals, to 0.1 */
   hexhex_pillow_mode pillow; /**< of straight cells only */
+  int snap_curves; /**< 1: edges are laid onto curves that none follows; of straight cells only */
 } hexhex_improve_options;
 #define HEXHEX_IMPROVE_OPTIONS_INIT \
-  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3, HEXHEX_PILLOW_NEVER }
+  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3, HEXHEX_PILLOW_NEVER, 0 }
 
 /** What an improvement did. See ImproveReport in <hexhex/improve.hpp>; lengths are in diagonals of
  * the surface's bounding box. hexhex_mesh_certify() says which cells are not positive. */
@@ -1200,11 +1201,12 @@ typedef struct hexhex_improve_report {
   uint64_t added_cells;   /**< of a pillow, last in the mesh */
   double curve_length;    /**< of the object's sharp and tagged edges, */
   double curves_followed; /**< and the share of it that edges of the mesh follow */
+  uint64_t snapped_curves; /**< pieces of curves onto which edges were laid */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
     sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0, 0, 0, 0, 0                                                                 \
+        0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                                              \
   }
 
 /** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>. With a pillow,
@@ -1255,14 +1257,19 @@ typedef struct hexhex_shape_report {
   uint64_t tagged_edges;  /**< of these: edges of the map */
   double worst;           /**< distortion of the map as scaled Jacobian, at most 1 */
   double median;
+  uint64_t inner_faces;   /**< triangles inside, with a tag or between regions, */
+  uint64_t aligned_faces; /**< and those of them that are planes of the map */
 } hexhex_shape_report;
-#define HEXHEX_SHAPE_REPORT_INIT \
-  { sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define HEXHEX_SHAPE_REPORT_INIT                                                                 \
+  {                                                                                              \
+    sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0, 0, 0                                                                                  \
+  }
 
 /** A seamless map of tets that have none, for hexhex_quantize(). Where there is none, the status is
  * HEXHEX_NOT_MESHABLE, with the place that keeps the tets from it. See mapFromTets() in
  * <hexhex/shape.hpp>; hexhex_can_quantize() says whether this build can.
- * @param tets         of which points and tets are used
+ * @param tets         of which points, tets, features and regions are used
  * @param options      or NULL
  * @param[out] report  made with HEXHEX_SHAPE_REPORT_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_map_from_tets(const hexhex_map_arrays* tets,
@@ -1270,12 +1277,56 @@ HEXHEX_API hexhex_status hexhex_map_from_tets(const hexhex_map_arrays* tets,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_shape_report* report, hexhex_error* error);
 
+/** What fills surfaces with tets. */
+typedef enum hexhex_mesher HEXHEX_AS_INT {
+  HEXHEX_MESHER_AUTO = 0, /**< the first of the others that is installed */
+  HEXHEX_MESHER_TETWILD = 1,
+  HEXHEX_MESHER_NETGEN = 2,
+  HEXHEX_MESHER_GMSH = 3,
+  HEXHEX_MESHER_TETGEN = 4
+} hexhex_mesher;
+
+/** See FillOptions in <hexhex/fill.hpp>. */
+typedef struct hexhex_fill_options {
+  size_t size;
+  hexhex_mesher mesher;
+  double tet_size;      /**< length of an edge; 0: as cells says */
+  double cells;         /**< hexahedra that are wanted; 0: for 20,000 tets, about */
+  double feature_angle; /**< degrees: edges where the surface turns by more stay */
+} hexhex_fill_options;
+#define HEXHEX_FILL_OPTIONS_INIT \
+  { sizeof(hexhex_fill_options), HEXHEX_MESHER_AUTO, 0, 0, 40 }
+
+/** See FillReport in <hexhex/fill.hpp>. */
+typedef struct hexhex_fill_report {
+  size_t size;
+  char mesher[64]; /**< with its version; empty if the file held tets; UTF-8, cut off if longer */
+  double tet_size;
+  uint64_t tets;
+  uint64_t triangles; /**< of a surface, as the rest */
+  uint64_t bodies;
+  uint64_t voids;
+  double volume;
+  double filled_volume;
+} hexhex_fill_report;
+#define HEXHEX_FILL_REPORT_INIT \
+  { sizeof(hexhex_fill_report), {0}, 0, 0, 0, 0, 0, 0, 0 }
+
+/** The tets of a part from a file that hexhex_map_read_tets() reads; or of a closed surface, .stl,
+ * .obj, .ply or .off, or a STEP file, which a mesher that is installed fills. The result has no
+ * parameters.
+ * @param options      or NULL
+ * @param[out] report  made with HEXHEX_FILL_REPORT_INIT, or NULL */
+HEXHEX_API hexhex_status hexhex_map_read_part(const char* file, const hexhex_fill_options* options,
+                                              hexhex_context* context, hexhex_map** map,
+                                              hexhex_fill_report* report, hexhex_error* error);
+
 /** Options of the steps of hexhex_mesh_from_tets(); NULL for those of a step: all defaults. */
 typedef struct hexhex_mesh_options {
   size_t size;
   const hexhex_shape_options* shape;
   const hexhex_quantize_options* quantize; /**< how fine the mesh is to be: not NULL */
-  const hexhex_improve_options* improve;
+  const hexhex_improve_options* improve; /**< NULL: with a pillow where it helps, and snap_curves */
 } hexhex_mesh_options;
 #define HEXHEX_MESH_OPTIONS_INIT \
   { sizeof(hexhex_mesh_options), NULL, NULL, NULL }
@@ -1289,16 +1340,15 @@ typedef struct hexhex_mesh_reports {
   hexhex_improve_report* improvement;
   int tags_released; /**< 1: vertices may have left edges with a tag, to make cells positive */
   char why[512]; /**< with HEXHEX_METHOD_AUTO: why this way was taken; UTF-8, cut off if longer */
+  uint64_t missing_curves; /**< pieces of tagged curves that no edges were found along */
 } hexhex_mesh_reports;
-#define HEXHEX_MESH_REPORTS_INIT                            \
-  {                                                         \
-    sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, { 0 } \
-  }
+#define HEXHEX_MESH_REPORTS_INIT \
+  { sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, {0}, 0 }
 
 /** A hexahedral mesh of tets that have no map: hexhex_map_from_tets(), hexhex_quantize(),
  * hexhex_extract(), hexhex_verify() and hexhex_mesh_improve(). Cells may still not be positive in
  * the end: the report of the improvement says how many. See <hexhex/mesh.hpp>.
- * @param tets             of which points and tets are used
+ * @param tets             of which points, tets, features and regions are used
  * @param options          not NULL
  * @param[out] map         the integer-grid map that the mesh is of, or NULL
  * @param[in,out] reports  made with HEXHEX_MESH_REPORTS_INIT, or NULL */

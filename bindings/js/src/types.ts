@@ -207,6 +207,8 @@ export interface ShapeReport {
   added_tets: number;
   feature_edges: number;
   tagged_edges: number;
+  inner_faces: number;
+  aligned_faces: number;
   scaled_jacobian: { worst: number; median: number };
 }
 
@@ -237,6 +239,7 @@ export interface ImproveReport {
   added_cells: number;
   curve_length: number;
   curves_followed: number;
+  snapped_curves: number;
   seconds: number;
 }
 
@@ -256,6 +259,7 @@ export interface MeshReport {
   verification: VerifyReport;
   improvement: ImproveReport;
   tags_released: boolean;
+  missing_curves: number;
 }
 
 export interface VerifyReport {

@@ -46,6 +46,7 @@ from ._types import (
     Map,
     MapStructure,
     Mesh,
+    FillReport,
     MeshedPart,
     MeshPart,
     PartialMesh,
@@ -617,16 +618,21 @@ def examine_seamless(map: Map, *, threads: int | None = None,
     return SeamlessReport(*_hexhex.examine_seamless(map._arrays(), _threads(threads), progress))
 
 
-def _tets_of(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None, threads: int,
-             progress: Progress | None) -> tuple[Any, Any]:
-    """Arrays for the library, or what a file holds."""
+def _part_of(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None, mesher: str,
+             tet_size: float | None, cells: float, feature_angle: float, threads: int,
+             progress: Progress | None) -> tuple[_hexhex.TetMesh, FillReport | None]:
+    """Arrays for the library, or what a file holds; and how it was filled."""
     if isinstance(points, (str, os.PathLike)):
         if tets is not None:
             raise ArgumentError("Give a file alone, or points and tets.", "InvalidArgument")
-        return tuple(_hexhex.read_tets(os.fspath(points), "", threads, progress))
+        by = _one_of(("auto", "tetwild", "netgen", "gmsh", "tetgen"), mesher, "mesher")
+        options = _hexhex.FillOptions(getattr(_hexhex.Mesher, by), _densities(tet_size)[0], cells,
+                                      feature_angle)
+        part, report = _hexhex.read_part(os.fspath(points), options, threads, progress)
+        return part, None if report is None else FillReport(**report)
     if tets is None:
         raise ArgumentError("Give a file, or points and tets.", "InvalidArgument")
-    return _floats(points, (3,), "points"), _indices(tets, 4, "tets")
+    return _hexhex.TetMesh(_floats(points, (3,), "points"), _indices(tets, 4, "tets")), None
 
 
 def _shape_options(method: str, feature_angle: float, seed: int) -> _hexhex.ShapeOptions:
@@ -638,19 +644,25 @@ def _shape_options(method: str, feature_angle: float, seed: int) -> _hexhex.Shap
 
 def map_from_tets(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
                   method: str = "auto", feature_angle: float = 40.0, seed: int = 1,
-                  threads: int | None = None,
+                  mesher: str = "auto", tet_size: float | None = None, threads: int | None = None,
                   progress: Progress | None = None) -> tuple[Map, ShapeReport]:
     """A seamless map of tets that have none, of which quantize() makes an integer-grid map. The given
     points come first in it; tets may be split.
 
     Args:
-        points: positions, float64 of shape (n, 3); or a file that read_tets() reads.
+        points: positions, float64 of shape (n, 3); or a file: one that read_tets() reads, whose tags
+            those of the map are; or a closed surface (.stl, .obj, .ply, .off) or a STEP file, which a
+            mesher fills with tets.
         tets: vertices of each tet, from 0: integers of shape (m, 4).
         method: "frames" (along a smooth field: good cells, where there is such a map), "polycube" (the
             object becomes one of axis-aligned boxes), or "auto": what fits best.
         feature_angle: edges where the surface turns by more degrees, 0 to 180, get a tag where they
             are edges of the map.
         seed: of random decisions: another one may find a map where this one does not.
+        mesher: of surfaces and STEP files: "tetwild", "netgen", "gmsh", "tetgen", or "auto": the first
+            that is installed.
+        tet_size: length of the edges of its tets; None: so that there are 20,000, or as many as cells
+            ask for, about.
         threads, progress: as in extract().
 
     Raises:
@@ -667,25 +679,27 @@ def map_from_tets(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = Non
     (6, 'seamless')
     """
     options, workers = _shape_options(method, feature_angle, seed), _threads(threads)
-    handle, values = _hexhex.map_from_tets(*_tets_of(points, tets, workers, progress), options,
-                                           workers, progress)
+    part, _ = _part_of(points, tets, mesher, tet_size, 0.0, feature_angle, workers, progress)
+    handle, values = _hexhex.map_from_tets(part, options, workers, progress)
     return Map._from_handle(handle), ShapeReport(**values)
 
 
 def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
          cells: float | None = None, edge_length: float | None = None, method: str = "auto",
          feature_angle: float = 40.0, seed: int = 1, target: float = 0.3, passes: int = 2,
-         fix_boundary: bool = False, slack: float = 1e-3, pillow: str = "never",
+         fix_boundary: bool = False, slack: float = 1e-3, pillow: str = "auto",
+         snap_curves: bool = True, mesher: str = "auto", tet_size: float | None = None,
          threads: int | None = None, progress: Progress | None = None) -> MeshedPart:
     """A hexahedral mesh of tets that have no map: map_from_tets(), quantize(), extract(), verify() and
     improve() in one go.
 
     Args:
-        points, tets, method, seed: as in map_from_tets().
+        points, tets, method, seed, mesher, tet_size: as in map_from_tets(). Tags of a file are those
+            of the mesh.
         cells: hexahedra wanted; there are more if a map of so few cannot be found.
         edge_length: of a hexahedron in space, on the average; instead of cells.
         feature_angle: as in map_from_tets() and improve().
-        target, passes, fix_boundary, slack, pillow: as in improve().
+        target, passes, fix_boundary, slack, pillow, snap_curves: as in improve().
         threads, progress: as in extract().
 
     Returns:
@@ -703,15 +717,17 @@ def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
     (True, True)
     """
     shape = _shape_options(method, feature_angle, seed)
-    improvement = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow)
+    improvement = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow,
+                                   snap_curves)
     many, length = _densities(cells, edge_length)
     workers = _threads(threads)
-    made, integer_map, values, quantization, rows, improved, ways, *rest = _hexhex.mesh_from_tets(
-        *_tets_of(points, tets, workers, progress), shape, many, length, improvement, workers,
-        progress)
+    part, filled = _part_of(points, tets, mesher, tet_size, many, feature_angle, workers, progress)
+    (made, integer_map, values, quantization, rows, improved, ways, why, released, missing,
+     stages) = _hexhex.mesh_from_tets(part, shape, many, length, improvement, workers, progress)
     return MeshedPart(Mesh._from_handle(made), Map._from_handle(integer_map), ShapeReport(**values),
                       QuantizeReport(**quantization), _verification_of(rows),
-                      _improvement_of(improved), [WayReport(*way) for way in ways], *rest)
+                      _improvement_of(improved), [WayReport(*way) for way in ways], why,
+                      released, missing, stages, filled)
 
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
@@ -1001,9 +1017,10 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
+            (.vtu, .msh, .inp, MFEM's .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
             meshes also as .npz: their arrays by name, for numpy.load().
-        format: of a map or mesh, whatever the extension is: see formats(), or "npz".
+        format: of a map or mesh, whatever the extension is: see formats(), or "npz"; or the solver
+            that shall read a mesh: "dealii", "ngsolve" and so on (``hexhex formats`` lists them).
         compress: arrays of .vtu and .npz files, with zlib; of a map or mesh.
         patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
             the boundary turns by more degrees, a group ends; 0 to 180.
@@ -1030,11 +1047,12 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
     elif isinstance(what, Mesh):
         _hexhex.write_mesh(what._handle, name, format or "", patch_angle, compress, jacobians,
                            workers, progress)
-    elif format is not None or compress:
-        raise ArgumentError("Curved meshes are written without format and compress.",
-                            "InvalidArgument")
+    elif compress or (format is not None and not isinstance(what, LagrangeMesh)):
+        raise ArgumentError("Curved meshes are written without compress, arcs and patches also "
+                            "without format.", "InvalidArgument")
     elif isinstance(what, LagrangeMesh):
-        _hexhex.write_lagrange(what._handle, name, patch_angle, jacobians, workers, progress)
+        _hexhex.write_lagrange(what._handle, name, format or "", patch_angle, jacobians, workers,
+                               progress)
     elif isinstance(what, Arcs):
         _hexhex.write_arcs(what._handle, tets, name, workers, progress)
     elif isinstance(what, Patches):
@@ -1092,7 +1110,7 @@ def _quality_of(fields: Any) -> Quality:
 
 def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passes: int = 2,
             fix_boundary: bool = False, feature_angle: float = 40.0, slack: float = 1e-3,
-            pillow: str = "never", threads: int | None = None,
+            pillow: str = "never", snap_curves: bool = False, threads: int | None = None,
             progress: Progress | None = None) -> tuple[AnyMesh, ImproveReport]:
     """The same mesh with vertices moved: all cells become positive, then the worst ones better, then
     all. Vertices on the surface slide on it; the given mesh stays as it is.
@@ -1107,9 +1125,12 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
         feature_angle: edges where the surface turns by more degrees are curves, and so are tagged
             ones: vertices do not leave them.
         slack: where nothing else makes cells positive, vertices without tags may leave the surface
-            by so much, in diagonals of its bounding box, 0 to 0.1.
+            by so much, in diagonals of its bounding box, 0 to 0.1; in meshes with bad cells also to
+            raise cells below the target.
         pillow: whether straight cells get a layer of cells under the boundary: "never", "always", or
             "auto" if fewer cells stay that are not positive, or the minimum rises by 0.02 at least.
+        snap_curves: whether edges of straight cells are laid onto curves that none follows, with
+            layers that make room for them, where the mesh becomes better by that.
         threads, progress: as in extract().
 
     >>> map = hexhex.generate("torus", cells=2, jitter=0.6)
@@ -1117,17 +1138,18 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
     >>> report.after.all_positive and report.after.minimum >= report.before.minimum
     True
     """
-    options = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow)
+    options = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow,
+                               snap_curves)
     handle, report = _hexhex.improve(mesh._handle, None if map is None else map._arrays(), options,
                                      _threads(threads), progress)
     return type(mesh)._from_handle(handle), _improvement_of(report)
 
 
 def _improve_options(target: float, passes: int, fix_boundary: bool, feature_angle: float,
-                     slack: float, pillow: str) -> _hexhex.ImproveOptions:
+                     slack: float, pillow: str, snap_curves: bool) -> _hexhex.ImproveOptions:
     mode = _one_of(("never", "auto", "always"), pillow, "pillow")
     return _hexhex.ImproveOptions(target, passes, fix_boundary, feature_angle, slack,
-                                  getattr(_hexhex.PillowMode, mode))
+                                  getattr(_hexhex.PillowMode, mode), snap_curves)
 
 
 def _improvement_of(fields: Any) -> ImproveReport:

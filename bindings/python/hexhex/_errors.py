@@ -69,7 +69,8 @@ _BY_ERRNO: dict[int, type[FileError]] = {
     errno.EISDIR: _IsFolder, errno.ENOTDIR: _NoFolder}
 for _class in (_NotFound, _Forbidden, _IsFolder, _NoFolder):
     _class.__doc__ = FileError.__doc__
-# The library ends its sentences with the system's.
+# The library ends its sentences with the system's, or with what to do instead of this one.
+_MISSING_FOLDER = "its folder does not exist; make it with "
 _ERRNOS = {os.strerror(number): number for number in errno.errorcode}
 _ERRNOS["it is a folder"] = errno.EISDIR
 
@@ -109,6 +110,8 @@ def make(code: str, message: str, place: str, index: int, second: int) -> Hexhex
     number = None
     if family is FileError:
         number = _ERRNOS.get(message.rstrip(".").rpartition(": ")[2])
+        if number is None and _MISSING_FOLDER in message:
+            number = errno.ENOENT
         family = _BY_ERRNO.get(number or 0, FileError)
     error = family(message, code, place, index, second)
     if isinstance(error, FileError) and number is not None:

@@ -327,6 +327,8 @@ class ShapeReport:
     added_tets: int  #: by splits
     feature_edges: int  #: of the tets, beyond the angle
     tagged_edges: int  #: of these: edges of the map
+    inner_faces: int  #: triangles inside, with a tag or between regions
+    aligned_faces: int  #: of these: planes of the map, which the mesh follows
     worst: float  #: distortion of the map as scaled Jacobian, at most 1
     median: float
 
@@ -879,6 +881,7 @@ class ImproveReport:
     added_cells: int  #: of a pillow, last in the mesh; ``before`` lacks them
     curve_length: float  #: of the object's sharp and tagged edges,
     curves_followed: float  #: and the share of it that edges of the mesh follow
+    snapped_curves: int  #: pieces of curves onto which edges were laid
     seconds: float
 
 
@@ -897,6 +900,20 @@ class WayReport:
 
 
 @dataclasses.dataclass(frozen=True)
+class FillReport:
+    """How a mesher filled a surface or STEP file with tets."""
+
+    mesher: str  #: with its version, where it tells
+    tet_size: float  #: that was asked for; 0 of a STEP file: the mesher chose it
+    tets: int
+    triangles: int  #: of a surface, as the rest
+    bodies: int  #: filled one by one
+    voids: int  #: in them
+    volume: float  #: inside of the surface
+    filled_volume: float  #: of the tets
+
+
+@dataclasses.dataclass(frozen=True)
 class MeshedPart:
     """What hexhex.mesh() makes of tets."""
 
@@ -909,7 +926,9 @@ class MeshedPart:
     ways: list[WayReport]  #: with the method "auto": both
     why: str  #: with the method "auto": why this mesh was kept
     tags_released: bool  #: vertices may have left edges with a tag, to make cells positive
+    missing_curves: int  #: pieces of tagged curves that no edges were found along
     stages: list[tuple[str, float]]  #: name and seconds
+    filled: FillReport | None  #: what made tets of a surface or STEP file
 
     @property
     def all_positive(self) -> bool:

@@ -76,8 +76,11 @@ std::string CellCounts::text() const {
 }
 
 std::string CellCounts::instead() const {
-  const std::string held = text();
-  return held.empty() ? held : "; it holds " + held;
+  const std::vector<CellCount> all = list();
+  if (all.empty()) return {};
+  const bool onlyTets = all.size() == 1 && all.front().name == "tetrahedra";
+  return "; it holds " + text() +
+         (onlyTets ? ", of which `hexhex mesh` makes hexahedra (docs/making-maps.md)" : "");
 }
 
 std::string CellCounts::adviceOnCurved() const {

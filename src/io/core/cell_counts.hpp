@@ -20,10 +20,16 @@ namespace hexhex::io {
 struct TetCells {
   Array<Vec3> points;
   Array<Tet> cells;
-  // Readers leave them empty: features and regions are read of hexahedra only.
-  HexFeatures features = {};
+  Features features = {};
   Array<std::int32_t> regions = {};
 };
+
+[[nodiscard]] inline std::vector<FeatureFace>& facesIn(Features& features) {
+  return features.faces;
+}
+[[nodiscard]] inline std::vector<FeatureQuad>& facesIn(HexFeatures& features) {
+  return features.quads;
+}
 
 /// What readers make of hexahedra (8 corners) or tetrahedra (4).
 template <std::size_t corners>

@@ -19,6 +19,7 @@
 #include <io/core/hdf5_library.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/registry.hpp>
+#include <io/core/repeated_features.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/surface/surface.hpp>
 #include <mesh/lagrange_check.hpp>
@@ -145,6 +146,20 @@ const Format* curvedFormat(const std::filesystem::path& file) {
   }
 }
 
+/// The format of cells of higher order that are to be written.
+/// @param order  0: not known yet
+const Format& curvedFormatToWrite(const std::filesystem::path& file, std::string_view name,
+                                  int order) {
+  const Format& format = findFormat(file, name, FileContent::CurvedCells);
+  const int only = format.curved.onlyOrder;
+  if (order != 0 && only != 0 && order != only) {
+    refuse(file, "the format \"" + std::string(format.label.name) + "\" holds cells of order " +
+                     std::to_string(only) + " and straight ones, but these are of order " +
+                     std::to_string(order) + ".");
+  }
+  return format;
+}
+
 /// @param map  null: not known
 void writeAllArcs(const PiecewiseLinearMesh& mesh, const TetMapView* map,
                   const std::filesystem::path& file, Context& context) {
@@ -200,11 +215,16 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::Tets);
   return inSteps(context, "readTetMesh", io::kReadTets, [&] {
     const io::Input input = io::openInput(file, context);
-    const io::TetCells tets = format.readTets(input, context);
+    io::TetCells tets = format.readTets(input, context);
     io::settleCells(input, io::kCellKind<4>, options, false);
     TetMesh mesh;
     mesh.points.assign(tets.points.begin(), tets.points.end());
     mesh.tets.assign(tets.cells.begin(), tets.cells.end());
+    mesh.regions.assign(tets.regions.begin(), tets.regions.end());
+    mesh.features = std::move(tets.features);
+    io::removeRepeated(mesh.features.vertices);
+    io::removeRepeated(mesh.features.edges);
+    io::removeRepeated(mesh.features.faces);
     return mesh;
   });
 }
@@ -361,7 +381,7 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
-  const io::Format& format = io::findFormat(file, {}, io::FileContent::CurvedCells);
+  const io::Format& format = io::curvedFormatToWrite(file, options.format, mesh.order);
   mesh::requireConsistent(mesh);
   if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
     throw Error(ErrorCode::InvalidArgument,
@@ -396,8 +416,8 @@ void requirePatchFormat(const std::filesystem::path& file) {
   static_cast<void>(io::findFormat(file, {}, io::FileContent::Patches));
 }
 
-void requireLagrangeFormat(const std::filesystem::path& file) {
-  static_cast<void>(io::findFormat(file, {}, io::FileContent::CurvedCells));
+void requireLagrangeFormat(const std::filesystem::path& file, std::string_view format, int order) {
+  static_cast<void>(io::curvedFormatToWrite(file, format, order));
 }
 
 std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +14,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <mesh/smooth_patches.hpp>
 
@@ -37,10 +41,43 @@ Array<std::size_t> orderByTag(std::span<const Tag> tags) {
 struct GroupWords {
   std::string tagged;
   const char* untagged = "boundary";
+  std::map<Tag, std::string> names = {};  ///< of their own
 };
+
+/// A name as every format holds it: letters, digits and '_', 32 at most, no digit first.
+std::string wordOf(std::string_view name) {
+  constexpr std::size_t kLongest = 32;
+  std::string word;
+  for (const char c : name.substr(0, kLongest - 1)) {
+    const bool isDigit = c >= '0' && c <= '9';
+    const bool isLetter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    if (word.empty() && isDigit) word += '_';
+    word += isDigit || isLetter ? c : '_';
+  }
+  return word;
+}
+
+/// What the file that the mesh came from calls groups. Formats that do not tell capital letters
+/// apart need names that differ all the same: one that is like an earlier one is left out.
+/// @param dimension  of the elements
+std::map<Tag, std::string> givenNames(std::span<const TagName> names, int dimension) {
+  std::map<Tag, std::string> given;
+  std::set<std::string> earlier;
+  for (const TagName& known : names) {
+    std::string word = wordOf(known.name);
+    std::string small = word;
+    for (char& c : small) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    const bool isNew = earlier.insert(std::move(small)).second;
+    if (known.dimension != dimension) continue;
+    given.emplace(known.tag, isNew ? std::move(word) : std::string());
+  }
+  return given;
+}
 
 std::string groupName(const GroupWords& words, Tag tag) {
   if (tag == 0) return words.untagged;
+  const auto given = words.names.find(tag);
+  if (given != words.names.end() && !given->second.empty()) return given->second;
   const std::int64_t wide = tag;
   return words.tagged + (wide < 0 ? "_m" : "_") + std::to_string(wide < 0 ? -wide : wide);
 }
@@ -104,11 +141,6 @@ ElementGroups<n> groupFeatures(const HexMesh& mesh, const std::vector<Feature>& 
   return result;
 }
 
-Quad sorted(Quad quad) {
-  std::sort(quad.begin(), quad.end());
-  return quad;
-}
-
 /// Quads before they are sorted into groups.
 struct TaggedQuads {
   Array<Quad> quads;
@@ -168,11 +200,13 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
 }  // namespace
 
 VertexGroups groupVertices(const HexMesh& mesh) {
-  return groupFeatures<1>(mesh, mesh.features.vertices, "vertex", {"point"});
+  return groupFeatures<1>(mesh, mesh.features.vertices, "vertex",
+                          {"point", "", givenNames(mesh.features.names, 0)});
 }
 
 EdgeGroups groupEdges(const HexMesh& mesh) {
-  return groupFeatures<2>(mesh, mesh.features.edges, "edge", {"curve"});
+  return groupFeatures<2>(mesh, mesh.features.edges, "edge",
+                          {"curve", "", givenNames(mesh.features.names, 1)});
 }
 
 void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_t> tags,
@@ -204,7 +238,10 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   }
   const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside);
   const Array<std::size_t> order = orderByTag(found.tags);
-  QuadGroups result{{groupsOf(found.tags, order, {"surface"}), {}}, {}};
+  QuadGroups result{
+      {groupsOf(found.tags, order, {"surface", "boundary", givenNames(mesh.features.names, 2)}),
+       {}},
+      {}};
   for (ElementGroup& group : result.groups) {
     if (group.tag > found.lastTag) group.name = groupName({"patch"}, group.tag - found.lastTag);
   }
@@ -220,7 +257,9 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
 CellGroups groupCells(const HexMesh& mesh) {
   if (mesh.regions.empty()) return {{{1, "hexahedra", 0, mesh.cells.size()}}, {}};
   const Array<std::size_t> order = orderByTag(mesh.regions);
-  CellGroups result{groupsOf(mesh.regions, order, {"region", "hexahedra"}), {}};
+  CellGroups result{
+      groupsOf(mesh.regions, order, {"region", "hexahedra", givenNames(mesh.features.names, 3)}),
+      {}};
   if (result.groups.empty()) result.groups.push_back({1, "hexahedra", 0, 0});
   if (result.groups.size() == 1) return result;
   result.order.resize(order.size());

@@ -27,7 +27,8 @@ struct ElementGroup {
   /// In [1, 2^31), different within one kind of elements: the tag where all tags are positive, and
   /// otherwise the number of the group from 1 on. Untagged boundary quads come last.
   std::uint32_t number = 0;
-  std::string name;  ///< letters, digits and '_': "boundary", "surface_7", "curve_m2" (tag -2)
+  std::string name;  ///< letters, digits and '_': "boundary", "surface_7", "curve_m2" (tag -2), or
+                     ///< what the features name it
   std::size_t begin = 0;
   std::size_t end = 0;
   std::int32_t tag = 0;  ///< 0 for elements without one

@@ -136,7 +136,9 @@ void OutputFile::openTemporary() {
   if (descriptor_ >= 0) return;
   const int error = errno;
   temporary_.clear();
-  fail("no file can be created in the folder " + folderOf(target_).string(), error);
+  const std::string folder = folderOf(target_).string();
+  if (error == ENOENT) fail("its folder does not exist; make it with `mkdir -p " + folder + "`");
+  fail("no file can be created in the folder " + folder, error);
 }
 
 void OutputFile::writeBytes(const void* bytes, std::size_t size) {

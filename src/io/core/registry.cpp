@@ -34,6 +34,7 @@ TetCells readHexexTets(const Input& input, Context& context) {
   TetCells tets;
   tets.points.assign(map.points.begin(), map.points.end());
   tets.cells.assign(map.tets.begin(), map.tets.end());
+  tets.features = map.features;
   return tets;
 }
 
@@ -128,7 +129,10 @@ constexpr std::array kFormatTable = {
     Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"},
            .readTets = AbaqusFormat::readTets,
            .meshes = {AbaqusFormat::readMesh, writeAbaqus},
-           .curved = {AbaqusFormat::holdsCurved, AbaqusFormat::readCurved}},
+           .curved = {.isIn = AbaqusFormat::holdsCurved,
+                      .read = AbaqusFormat::readCurved,
+                      .write = writeQuadraticAbaqus,
+                      .onlyOrder = 2}},
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
            .meshes = {.write = writeMfem},
            .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
@@ -162,8 +166,17 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherFor
      {"gmsh22", "msh22-ascii"},
      {"medit", "mesh"}}};
 
-/// The name in the table of what may be called by another name.
-std::string_view usualName(std::string_view name) {
+/// The name in the table of what may be called by another name, or by a solver's.
+std::string_view usualName(const std::filesystem::path& file, std::string_view name,
+                           FileContent content) {
+  if (const SolverFormat* const solver = findSolver(name)) {
+    if (content != FileContent::CurvedCells) return solver->format;
+    if (!solver->curved.empty()) return solver->curved;
+    throw Error(ErrorCode::FileUnsupported,
+                file.string() + ": for " + std::string(solver->program) +
+                    ", straight cells are written only. Leave out --order, or write another "
+                    "format of cells of higher order.");
+  }
   for (const auto& [other, usual] : kOtherFormatNames) {
     if (name == other) return usual;
   }
@@ -242,6 +255,22 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
                                               ".");
 }
 
+/// What to do with a file that holds something else than what was asked for.
+std::string adviceOn(const std::string& extension, FileContent content) {
+  if (formatWith(extension, extensionOf, FileContent::Triangles) != nullptr) {
+    return ' ' + extension +
+           " files hold surfaces: `hexhex mesh` fills them with tets and makes hexahedra of these.";
+  }
+  if (extension == ".fra") {
+    return " .fra files hold frame fields, not maps: `hexhex map` makes a map of the tets alone.";
+  }
+  const bool tetsOnly = content == FileContent::Map &&
+                        formatWith(extension, extensionOf, FileContent::Tets) != nullptr;
+  if (!tetsOnly) return {};
+  return " Tets without a map: `hexhex mesh` makes hexahedra of them, or give a second mesh with "
+         "their parameters (--tets, --polycube).";
+}
+
 [[noreturn]] void failToExtend(const std::filesystem::path& file, const std::string& extension,
                                FileContent content) {
   const std::string named = "the extension \"" + extension + '"';
@@ -253,21 +282,17 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
           ? (std::filesystem::is_directory(file, unknown) ? "it is a folder"
                                                           : "the file name has no extension")
           : named + " is no format of " + purposeOf(content).what;
-  const bool tetsOnly = content == FileContent::Map &&
-                        formatWith(extension, extensionOf, FileContent::Tets) != nullptr;
   throw Error(ErrorCode::FileUnsupported,
               file.string() + ": " + problem + ". Maps: " + listed(FileContent::Map, extensionOf) +
                   "; hexahedral meshes: " + listed(FileContent::HexMesh, extensionOf) + "." +
-                  (tetsOnly ? " Tets without a map need a second mesh with their parameters "
-                              "(--tets, --polycube)."
-                            : ""));
+                  adviceOn(extension, content));
 }
 
 }  // namespace
 
 const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                          FileContent content) {
-  const std::string_view usual = usualName(name);
+  const std::string_view usual = usualName(file, name, content);
   const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
   const Format* const format = usual.empty() ? formatWith(extension, extensionOf, content)
                                              : formatWith(usual, nameOf, content);

@@ -45,6 +45,7 @@ struct Format {
     ReadCurved* read = nullptr;
     WriteCurved* write = nullptr;
     std::string_view extension = {};  ///< of what is written, if it is not the label's
+    int onlyOrder = 0;                ///< that is written; 0: all are
   } curved = {};
   /// Meshes piece by piece.
   struct {

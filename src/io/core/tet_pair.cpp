@@ -68,6 +68,8 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
   TetMap map;
   map.points = tets.points;
   map.tets = tets.tets;
+  map.features = tets.features;
+  map.regions = tets.regions;
   map.parameters.resize(count);
   parallelFor(stage, count, kTetPairGrain, [&](std::size_t t) {
     for (std::size_t i = 0; i < 4; ++i) map.parameters[t][i] = polycube.points[map.tets[t][i]];

@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <numeric>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,6 +25,7 @@
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/gmsh_elements.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
@@ -29,6 +33,9 @@ namespace {
 
 /// Abaqus' numbers of the faces of kHexFaces.
 constexpr std::array<char, 6> kAbaqusFaces = {'6', '4', '3', '5', '1', '2'};
+/// The corner of a tetrahedron that each of its faces lacks: from '1' on.
+constexpr std::array<std::size_t, 6> kAbaqusOpposite = {3, 2, 0, 1, 4, 4};
+constexpr std::string_view kAbaqusHeading = "hexahedral mesh by hexhex";
 
 // Reading.
 
@@ -80,6 +87,40 @@ AbaqusType abaqusType(std::string_view name) {
   return type;
 }
 
+/// The number of nodes of a shell or membrane (3) or of a beam or truss (2), as Gmsh writes groups
+/// of triangles and lines; 0 of other elements.
+std::size_t nodesOfFacet(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kTriangles = {"cps3", "cpe3",  "s3",   "s3r",
+                                                          "ds3",  "stri3", "m3d3", "sfm3d3"};
+  constexpr std::array<std::string_view, 3> kLines = {"t3d2", "b31", "t2d2"};
+  const auto isIn = [name](const auto& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (isIn(kTriangles)) return 3;
+  return isIn(kLines) ? 2 : 0;
+}
+
+/// Tags of groups: what a name of this library says, or the number of the group in its order, if
+/// no name says it.
+class GroupTags {
+ public:
+  /// Before tags of others are asked for.
+  void reserve(const std::string& name) {
+    if (const auto tag = tagInGroupName(name)) taken_.insert(*tag);
+  }
+  [[nodiscard]] std::int32_t next(const std::string& name) {
+    if (const auto tag = tagInGroupName(name)) return *tag;
+    do {
+      ++last_;
+    } while (taken_.contains(last_));
+    return last_;
+  }
+
+ private:
+  std::set<std::int32_t> taken_;
+  std::int32_t last_ = 0;
+};
+
 /// Reads a file and those that it includes.
 class AbaqusReader {
  public:
@@ -102,6 +143,12 @@ class AbaqusReader {
     std::vector<ElementSide> sides;
   };
   using Sets = std::map<std::string, Set>;
+  /// An element that is no volume.
+  struct Facet {
+    std::uint64_t number;
+    std::size_t count;  ///< of nodes
+    std::array<std::uint64_t, 3> nodes;
+  };
 
   static constexpr std::uint64_t kItemsPerByte = 2;  // of a text: 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
@@ -173,6 +220,8 @@ class AbaqusReader {
       readSet(keyword, keyword.value("elset"), elementSets_);
     } else if (keyword.name == "*surface") {
       readSurface(keyword);
+    } else if (keyword.name == "*heading") {
+      isOwn_ = nextData() && trimmed(line_) == kAbaqusHeading;
     } else if (keyword.name == "*solid section") {
       sections_.push_back(keyword.value("elset"));
     } else if (keyword.name == "*instance") {
@@ -254,7 +303,10 @@ class AbaqusReader {
     while (nextData()) {
       std::string_view rest = line_;
       const std::uint64_t number = integer(takeField(rest), "the number of an element");
-      if (type.cells == nullptr && name.find("c3d") == std::string::npos) continue;
+      if (type.cells == nullptr && name.find("c3d") == std::string::npos) {
+        readFacet(nodesOfFacet(name), number, rest, set);
+        continue;
+      }
       if (type.cells == nullptr) {
         fail("elements of the type " + quoted(std::string_view(name)) + " are not known",
              ErrorCode::FileUnsupported);
@@ -270,6 +322,16 @@ class AbaqusReader {
         places.push_back(integer(takeField(rest), "a node of an element"));
       }
     }
+  }
+
+  void readFacet(std::size_t nodes, std::uint64_t number, std::string_view rest,
+                 const std::string& set) {
+    if (nodes == 0 || parts_ == ElementParts::Types) return;
+    Facet& facet = facets_.emplace_back(Facet{number, nodes, {}});
+    for (std::size_t k = 0; k < nodes; ++k) {
+      facet.nodes[k] = integer(takeField(rest), "a node of an element");
+    }
+    if (!set.empty()) facetSets_[set].items.push_back(number);
   }
 
   void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
@@ -340,13 +402,15 @@ class AbaqusReader {
                                     : kAbaqusFaces.end();
       if (found == kAbaqusFaces.end()) continue;  // the whole surface, or sides of shells
       const auto row = static_cast<std::size_t>(found - kAbaqusFaces.begin());
+      const std::size_t opposite = kAbaqusOpposite[static_cast<std::size_t>(face[1] - '1')];
       const auto set = elementSets_.find(lowerCase(unquoted(elements)));
       if (set == elementSets_.end()) {
-        surface.sides.push_back({integer(elements, "an element or a set of them"), row, 0});
+        surface.sides.push_back(
+            {integer(elements, "an element or a set of them"), row, opposite, 0});
       } else {
         takeRoom(kItemsPerSide * set->second.items.size());
         for (const std::uint64_t element : set->second.items) {
-          surface.sides.push_back({element, row, 0});
+          surface.sides.push_back({element, row, opposite, 0});
         }
       }
     }
@@ -367,6 +431,8 @@ class AbaqusReader {
     for (std::size_t b = 0; b < lists_.blocks.size(); ++b) resolve(lists_.blocks[b], b, nodes);
     tagRegions();
     tagSurfaces();
+    tagFacets(3, nodes);
+    tagFacets(2, nodes);
     for (auto& [name, set] : nodeSets_) {
       NodeSet& added = lists_.nodeSets.emplace_back(
           NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
@@ -394,10 +460,10 @@ class AbaqusReader {
   }
 
   /// Without the letter and '_' that the writer puts in front.
-  static std::string ownName(const std::string& name) {
+  [[nodiscard]] std::string ownName(const std::string& name) const {
     const bool prefixed = name.size() > 2 && name[1] == '_' &&
                           std::string_view("ens").find(name[0]) != std::string_view::npos;
-    return prefixed && tagInGroupName(name.substr(2)) ? name.substr(2) : name;
+    return prefixed && (isOwn_ || tagInGroupName(name.substr(2))) ? name.substr(2) : name;
   }
 
   /// Regions are the sets that *ELEMENT and *SOLID SECTION name, numbered from 1 in their order,
@@ -408,15 +474,16 @@ class AbaqusReader {
     for (const auto& [name, set] : elementSets_) {
       if (ownName(name) != name) names.push_back(name);
     }
-    std::map<std::string, std::int64_t> numbers;
+    GroupTags tags;
+    for (const std::string& name : names) tags.reserve(ownName(name));
+    std::set<std::string> done;
     std::vector<std::pair<std::uint64_t, std::int32_t>> regions;
     for (const std::string& name : names) {
       const auto set = elementSets_.find(name);
       if (set == elementSets_.end()) continue;
-      const auto [known, isNew] =
-          numbers.emplace(name, static_cast<std::int64_t>(numbers.size()) + 1);
-      if (!isNew) continue;
-      const std::int32_t tag = tagOfGroup(ownName(name), known->second);
+      if (!done.insert(name).second) continue;
+      const std::int32_t tag = tags.next(ownName(name));
+      lists_.addName(3, tag, ownName(name));
       for (const std::uint64_t element : set->second.items) regions.emplace_back(element, tag);
     }
     // Of several sets with one element, the last one counts.
@@ -434,14 +501,49 @@ class AbaqusReader {
   }
 
   void tagSurfaces() {
-    std::int64_t number = 0;
+    for (const Surface& surface : surfaces_) facetTags_.reserve(ownName(surface.name));
     for (Surface& surface : surfaces_) {
-      const std::int32_t tag = tagOfGroup(ownName(surface.name), ++number);
+      const std::int32_t tag = facetTags_.next(ownName(surface.name));
+      lists_.addName(2, tag, ownName(surface.name));
       for (ElementSide side : surface.sides) {
         side.tag = tag;
         lists_.sides.push_back(side);
       }
     }
+  }
+
+  /// Triangles or lines have the tag of the first set of nothing else; those that *ELEMENT names
+  /// come last.
+  void tagFacets(std::size_t corners, const NodeTags& nodes) {
+    std::map<std::uint64_t, std::pair<const Facet*, std::int32_t>> facets;
+    for (const Facet& facet : facets_) {
+      if (facet.count == corners) facets.emplace(facet.number, std::pair(&facet, 0));
+    }
+    for (const Sets* sets : {&elementSets_, &facetSets_}) {
+      for (const auto& [name, set] : *sets) {
+        const auto isUntagged = [&](std::uint64_t number) { return facets[number].second == 0; };
+        if (!std::all_of(set.items.begin(), set.items.end(),
+                         [&](std::uint64_t number) { return facets.contains(number); }) ||
+            std::none_of(set.items.begin(), set.items.end(), isUntagged)) {
+          continue;
+        }
+        const std::int32_t tag = facetTags_.next(name);
+        lists_.addName(static_cast<int>(corners) - 1, tag, name);
+        for (const std::uint64_t number : set.items) {
+          if (isUntagged(number)) facets[number].second = tag;
+        }
+      }
+    }
+    for (const auto& [number, entry] : facets) addFacet(*entry.first, entry.second, nodes);
+  }
+
+  void addFacet(const Facet& facet, std::int32_t tag, const NodeTags& nodes) {
+    std::array<Index, 3> v{};
+    for (std::size_t k = 0; k < facet.count; ++k) v[k] = nodes.find(facet.nodes[k]);
+    const bool isKnown = std::find(v.begin(), v.end(), kNone) == v.end();
+    if (tag == 0 || !isKnown) return;
+    if (facet.count == 3) lists_.triangles.push_back({v, tag});
+    if (facet.count == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
   }
 
   [[nodiscard]] std::uint64_t integer(std::string_view word, const char* what) const {
@@ -481,7 +583,8 @@ class AbaqusReader {
   TextScanner* scanner_ = nullptr;
   std::string_view line_;
   bool begun_ = false;
-  int depth_ = 0;  ///< of files in files
+  bool isOwn_ = false;  ///< whether this library wrote the file
+  int depth_ = 0;       ///< of files in files
   int includes_ = 0;
   int instances_ = 0;
   std::uint64_t itemsLeft_ = 1024;  ///< how many members sets may have yet
@@ -493,6 +596,9 @@ class AbaqusReader {
   std::vector<std::string> blockSets_;  ///< names of sets that are regions: those of *ELEMENT,
   std::vector<std::string> sections_;   ///< and of *SOLID SECTION
   std::vector<Surface> surfaces_;
+  std::vector<Facet> facets_;
+  Sets facetSets_;  ///< that *ELEMENT names
+  GroupTags facetTags_;
 };
 
 }  // namespace
@@ -523,61 +629,132 @@ std::string upperCase(std::string name) {
   return name;
 }
 
+/// The vertices of an edge, the smaller one first, and the node in its middle.
+using EdgeMiddle = std::pair<std::array<Index, 2>, Index>;
+EdgeMiddle edgeMiddle(Index a, Index b, Index node) {
+  return {{std::min(a, b), std::max(a, b)}, node};
+}
+
+/// Cells of order 2 without the nodes in their faces and inside, as C3D20 has them.
+struct QuadraticCells {
+  Array<Vec3> points;
+  Array<std::array<Index, 20>> cells;
+  Array<EdgeMiddle> middles;  ///< ascending
+
+  explicit QuadraticCells(const LagrangeMesh& mesh) : cells(mesh.cellCount()) {
+    // Corners, then the middles of the edges around the bottom, around the top, and between.
+    std::vector<Node> nodes;
+    for (std::size_t k = 0; k < 8; ++k) nodes.push_back(corner(k, 0, 2));
+    std::array<std::array<std::size_t, 2>, 12> edges{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      edges[k] = {k, (k + 1) % 4};
+      edges[k + 4] = {k + 4, (k + 1) % 4 + 4};
+      edges[k + 8] = {k, k + 4};
+    }
+    for (const auto& [a, b] : edges) append(nodes, between(nodes[a], nodes[b], 1));
+    const std::vector<std::uint32_t> places = placesOf(nodes, 2);
+
+    const auto corners = static_cast<std::ptrdiff_t>(mesh.vertexCount);
+    points.assign(mesh.points.begin(), mesh.points.begin() + corners);
+    Array<Index> numbers(mesh.points.size());
+    std::fill(numbers.begin(), numbers.end(), kNone);
+    std::iota(numbers.begin(), numbers.begin() + corners, Index{0});
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      std::array<Index, 20>& cell = cells[i];
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const Index node = mesh.nodes[i * mesh.nodesPerCell() + places[k]];
+        if (numbers[node] == kNone) {
+          numbers[node] = static_cast<Index>(points.size());
+          points.push_back(mesh.points[node]);
+        }
+        cell[k] = numbers[node];
+      }
+      for (std::size_t e = 0; e < edges.size(); ++e) {
+        middles.push_back(edgeMiddle(cell[edges[e][0]], cell[edges[e][1]], cell[8 + e]));
+      }
+    }
+    std::sort(middles.begin(), middles.end());
+    middles.erase(std::unique(middles.begin(), middles.end()), middles.end());
+  }
+};
+
 class AbaqusWriter {
  public:
-  AbaqusWriter(OutputFile& output, const HexMesh& mesh, Stage& stage, int threads)
-      : output_(output), lines_(output, threads), mesh_(mesh), stage_(stage) {}
+  AbaqusWriter(OutputFile& output, Stage& stage, int threads)
+      : output_(output), lines_(output, threads), stage_(stage) {}
 
-  void write(const MeshGroups& groups) {
-    output_.write("*HEADING\nhexahedral mesh by hexhex\n");
-    writeNodes();
-    writeElements();
+  /// @param middles  of edges, ascending; empty for straight cells
+  template <class Cells>
+  void write(const Array<Vec3>& points, const Cells& cells, const MeshGroups& groups,
+             const Array<EdgeMiddle>& middles) {
+    output_.write("*HEADING\n").write(kAbaqusHeading).write('\n');
+    writeNodes(points);
+    writeElements(cells);
     // The set of all elements is there in any case.
     for (const ElementGroup& group : groups.cells.groups) {
       if (group.name == "hexahedra") continue;
       writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,
                [&](std::size_t i) { return groups.cells.at(group.begin + i); });
     }
-    writeNodeSets(groups.quads);
-    writeNodeSets(groups.edges);
-    writeNodeSets(groups.vertices);
+    writeNodeSets(groups.quads, middles);
+    writeNodeSets(groups.edges, middles);
+    writeNodeSets(groups.vertices, middles);
     for (const ElementGroup& group : groups.quads.groups) writeSurface(groups.quads, group);
   }
 
  private:
-  void writeNodes() {
-    LoopProgress progress(stage_, mesh_.points.size());
+  void writeNodes(const Array<Vec3>& points) {
+    LoopProgress progress(stage_, points.size());
     output_.write("*NODE\n");
-    const auto node = [this](char* place, std::size_t i) {
+    const auto node = [&points](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
-      for (const double coordinate : mesh_.points[i]) {
+      for (const double coordinate : points[i]) {
         place = putShort(put(place, ", "), coordinate);
       }
       return put(place, '\n');
     };
-    lines_.write(mesh_.points.size(), 4 * (kNumberRoom + 2), node, &progress);
+    lines_.write(points.size(), 4 * (kNumberRoom + 2), node, &progress);
   }
 
-  void writeElements() {
-    LoopProgress progress(stage_, mesh_.cells.size());
-    output_.write("*ELEMENT, TYPE=C3D8, ELSET=HEXAHEDRA\n");
-    const auto cell = [this](char* place, std::size_t i) {
+  template <class Cells>
+  void writeElements(const Cells& cells) {
+    constexpr std::size_t kNodes = std::tuple_size_v<typename Cells::value_type>;
+    LoopProgress progress(stage_, cells.size());
+    output_.write("*ELEMENT, TYPE=C3D").write(kNodes).write(", ELSET=HEXAHEDRA\n");
+    const auto cell = [&cells](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
-      for (const Index vertex : mesh_.cells[i]) {
-        place = put(put(place, ", "), std::uint64_t{vertex} + 1);
+      for (std::size_t k = 0; k < kNodes; ++k) {
+        place = put(place, k + 1 == kNamesPerLine ? ",\n" : ", ");
+        place = put(place, std::uint64_t{cells[i][k]} + 1);
       }
       return put(place, '\n');
     };
-    lines_.write(mesh_.cells.size(), 9 * (kNumberRoom + 2), cell, &progress);
+    lines_.write(cells.size(), (kNodes + 1) * (kNumberRoom + 2), cell, &progress);
   }
 
   template <class Groups>
-  void writeNodeSets(const Groups& groups) {
+  void writeNodeSets(const Groups& groups, const Array<EdgeMiddle>& middles) {
     for (const ElementGroup& group : groups.groups) {
-      const Array<Index> vertices = verticesOf(groups, group);
-      writeSet("*NSET, NSET=N_", group, vertices.size(),
-               [&](std::size_t i) { return vertices[i]; });
+      Array<Index> nodes = verticesOf(groups, group);
+      if (!middles.empty()) addMiddles(groups, group, middles, nodes);
+      writeSet("*NSET, NSET=N_", group, nodes.size(), [&](std::size_t i) { return nodes[i]; });
     }
+  }
+
+  /// Adds the nodes in the middle of the edges of a group's elements.
+  template <class Groups>
+  static void addMiddles(const Groups& groups, const ElementGroup& group,
+                         const Array<EdgeMiddle>& middles, Array<Index>& nodes) {
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const auto& element = groups.elements[i];
+      for (std::size_t k = 0; element.size() > 1 && k < element.size(); ++k) {
+        const EdgeMiddle wanted = edgeMiddle(element[k], element[(k + 1) % element.size()], 0);
+        const auto found = std::lower_bound(middles.begin(), middles.end(), wanted);
+        if (found != middles.end() && found->first == wanted.first) nodes.push_back(found->second);
+      }
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   }
 
   /// @param indexAt  of the i-th of n members
@@ -607,7 +784,6 @@ class AbaqusWriter {
 
   OutputFile& output_;
   LineWriter lines_;
-  const HexMesh& mesh_;
   Stage& stage_;
 };
 
@@ -618,7 +794,18 @@ void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
   Stage stage(context, "write mesh");
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  AbaqusWriter(output, mesh, stage, context.threads()).write(groups);
+  AbaqusWriter(output, stage, context.threads()).write(mesh.points, mesh.cells, groups, {});
+  output.commit();
+}
+
+void writeQuadraticAbaqus(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                          const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile output(file);
+  const MeshGroups groups(straightMesh(mesh), options.patchAngle, stage);
+  const QuadraticCells cells(mesh);
+  AbaqusWriter(output, stage, context.threads())
+      .write(cells.points, cells.cells, groups, cells.middles);
   output.commit();
 }
 

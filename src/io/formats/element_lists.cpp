@@ -63,6 +63,19 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
   return numbers;
 }
 
+/// Tagged triangles.
+std::vector<FeatureFace> trianglesOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
+                                     const Array<Tet>& cells) {
+  std::vector<FeatureFace> triangles = lists.triangles;
+  const NodeTags tets(numbers);
+  for (const ElementSide& side : lists.sides) {
+    const Index tet = tets.find(side.element);
+    if (tet == kNone || side.tag == 0 || side.opposite > 3) continue;
+    triangles.push_back({adjacency::faceVertices(cells[tet], side.opposite), side.tag});
+  }
+  return triangles;
+}
+
 /// Tagged quads.
 /// @param cellAt  the corners of the cell with an index
 template <class CellAt>
@@ -93,10 +106,18 @@ std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
   return vertices;
 }
 
+/// Those of regions and faces, and of sets of one node.
+std::vector<TagName> namesOf(ElementLists& lists) {
+  for (const NodeSet& set : lists.nodeSets) {
+    if (set.nodes.size() == 1) lists.addName(0, set.number, set.name);
+  }
+  return std::move(lists.names);
+}
+
 /// The edges of cells between the nodes of sets that name curves.
 template <class CellAt>
-std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
-                                 const CellAt& cellAt) {
+std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, const CellAt& cellAt,
+                                 const auto& cellEdges) {
   std::vector<std::pair<Index, std::int32_t>> members;  // nodes, and tags of their curves
   for (const NodeSet& set : lists.nodeSets) {
     const std::int32_t tag = set.name.starts_with("curve_") ? tagOfGroup(set.name, 0) : 0;
@@ -111,7 +132,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
   };
   std::vector<std::pair<std::int32_t, std::array<Index, 2>>> found;
   for (std::size_t c = 0; c < (members.empty() ? 0 : cells); ++c) {
-    for (const auto& [from, to] : adjacency::kHexEdges) {
+    for (const auto& [from, to] : cellEdges) {
       const Index a = std::min(cellAt(c, from), cellAt(c, to));
       const Index b = std::max(cellAt(c, from), cellAt(c, to));
       for (auto at = curvesAt(a); at != members.end() && at->first == a; ++at) {
@@ -123,8 +144,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
-  std::vector<FeatureEdge> features;
-  features.reserve(found.size());
+  std::vector<FeatureEdge> features = lists.lines;
   for (const auto& [tag, edge] : found) features.push_back({edge, tag});
   return features;
 }
@@ -224,6 +244,11 @@ const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes) {
                   : volumeCells(std::string(noun) + " with " + std::to_string(nodes) + " nodes");
 }
 
+void ElementLists::addName(int dimension, std::int32_t tag, std::string_view name) {
+  if (tag == 0 || name.empty() || tagInGroupName(name)) return;
+  names.push_back({dimension, tag, std::string(name)});
+}
+
 std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {
   const auto tag = tagInGroupName(name);
   if (tag) return *tag;
@@ -234,15 +259,19 @@ HexMesh hexMeshOf(ElementLists&& lists, const Input& input) {
   HexMesh mesh;
   const Array<std::uint64_t> numbers = takeCells<8>(lists, input, mesh);
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) { return mesh.cells[cell][k]; };
-  mesh.features = {verticesOf(lists), edgesOf(lists, mesh.cells.size(), cellAt),
-                   quadsOf(lists, numbers, cellAt)};
+  mesh.features = {verticesOf(lists),
+                   edgesOf(lists, mesh.cells.size(), cellAt, adjacency::kHexEdges),
+                   quadsOf(lists, numbers, cellAt), namesOf(lists)};
   return mesh;
 }
 
 TetCells tetsOf(ElementLists&& lists, const Input& input) {
   TetCells tets;
-  takeCells<4>(lists, input, tets);
-  tets.regions.clear();
+  const Array<std::uint64_t> numbers = takeCells<4>(lists, input, tets);
+  const auto cellAt = [&tets](std::size_t cell, std::size_t k) { return tets.cells[cell][k]; };
+  tets.features = {verticesOf(lists),
+                   edgesOf(lists, tets.cells.size(), cellAt, adjacency::kTetEdges),
+                   trianglesOf(lists, numbers, tets.cells), namesOf(lists)};
   return tets;
 }
 
@@ -279,8 +308,8 @@ LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
     return mesh.nodes[kNodesOfQuadratic * cell + k];
   };
-  mesh.features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt),
-                   quadsOf(lists, numbers, cellAt)};
+  mesh.features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt, adjacency::kHexEdges),
+                   quadsOf(lists, numbers, cellAt), namesOf(lists)};
   fromVtkOrder(mesh, stage);
   return mesh;
 }

@@ -33,6 +33,7 @@ struct ElementBlock {
 struct ElementSide {
   std::uint64_t element = 0;  ///< its number
   std::size_t face = 0;       ///< of a hexahedron: a row of kHexFaces
+  std::size_t opposite = 0;   ///< of a tetrahedron: the corner that the face lacks; 4: it has none
   std::int32_t tag = 0;
 };
 
@@ -46,7 +47,13 @@ struct ElementLists {
   Array<Vec3> points;
   std::vector<ElementBlock> blocks;
   std::vector<ElementSide> sides;
+  std::vector<FeatureFace> triangles;  ///< with tags: elements of shells
+  std::vector<FeatureEdge> lines;      ///< with tags: elements of beams
   std::vector<NodeSet> nodeSets;
+  std::vector<TagName> names;
+
+  /// Notes what another program calls a group.
+  void addName(int dimension, std::int32_t tag, std::string_view name);
 };
 
 /// The type of volume cells with this name in kVolumeCells.
@@ -63,6 +70,7 @@ struct ElementLists {
 /// "curve_7" are tagged; other sets name nodes for loads and the like, and tag nothing.
 /// @throws Error FileUnsupported, naming what there is instead; TooLarge
 [[nodiscard]] HexMesh hexMeshOf(ElementLists&& lists, const Input& input);
+/// Tetrahedra with 4 nodes, and the same of them.
 [[nodiscard]] TetCells tetsOf(ElementLists&& lists, const Input& input);
 
 /// Gives cells of order 2 the nodes in their faces and inside, where the shape functions of the

@@ -30,6 +30,8 @@ namespace {
 
 /// Exodus' numbers of the faces of kHexFaces.
 constexpr std::array<std::int32_t, 6> kExodusSides = {4, 2, 1, 3, 5, 6};
+/// The corner of a tetrahedron that each of its sides lacks.
+constexpr std::array<std::size_t, 6> kExodusOpposite = {2, 0, 1, 3, 4, 4};
 
 /// Bytes of a name; the last one is 0.
 constexpr std::size_t kExodusNameBytes = 33;
@@ -337,7 +339,9 @@ class ExodusReader {
     for (std::size_t b = 0; b < groups.size(); ++b) {
       // Blocks without elements have no variable.
       const NetcdfValues* const values = file_.find("connect" + std::to_string(b + 1));
-      if (values != nullptr) readBlock(*values, groups.tagOf(b), next);
+      if (values == nullptr) continue;
+      readBlock(*values, groups.tagOf(b), next);
+      lists_.addName(3, groups.tagOf(b), groups.nameOf(b));
     }
     if (lists_.blocks.empty()) fail(ErrorCode::FileUnsupported, "the file has no elements.");
   }
@@ -412,11 +416,13 @@ class ExodusReader {
              "side set " + std::to_string(s + 1) + " has not as many sides as elements.");
       }
       const std::int32_t tag = groups.tagOf(s);
+      lists_.addName(2, tag, groups.nameOf(s));
       for (std::size_t i = 0; i < sides.size(); ++i) {
         const auto* const face = std::find(kExodusSides.begin(), kExodusSides.end(), sides[i]);
-        if (face == kExodusSides.end() || elements[i] < 1) continue;  // of no hexahedron
+        if (face == kExodusSides.end() || elements[i] < 1) continue;  // of no known cell
         lists_.sides.push_back({static_cast<std::uint64_t>(elements[i]),
-                                static_cast<std::size_t>(face - kExodusSides.begin()), tag});
+                                static_cast<std::size_t>(face - kExodusSides.begin()),
+                                kExodusOpposite[static_cast<std::size_t>(sides[i] - 1)], tag});
       }
     }
   }

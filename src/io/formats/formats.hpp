@@ -218,8 +218,8 @@ WritePiecewise writePatchesOvmb;
 // Written are MSH 4.1 (binary or ASCII) and MSH 2.2 (ASCII). Node i has the tag i + 1. Elements are
 // tagged vertices (type 15), tagged edges (type 1), boundary and tagged quads (type 3), then all
 // cells (type 5), numbered from 1 in this order. Each group is an entity (of vertices: each vertex
-// is one) and a physical group, both with the group's number; the cells are volume 1, physical
-// group "hexahedra".
+// is one) and a physical group, both with the group's number, which no other group has, of whatever
+// dimension; cells without regions are the physical group "hexahedra".
 ReadMesh readGmsh;
 ReadTets readGmshTets;
 WriteMesh writeGmsh41Binary, writeGmsh41Text, writeGmsh22Text;
@@ -250,6 +250,9 @@ OpenPartSink openGmshPartSink, openSplitGmshPartSink;
 [[nodiscard]] ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage);
 using AbaqusFormat = ElementFormat<readAbaqus>;
 WriteMesh writeAbaqus;
+/// Order 2 only: elements C3D20, without the nodes in faces and inside. Node sets have the nodes in
+/// the middle of edges, too.
+WriteCurved writeQuadraticAbaqus;
 
 // `.exo`, `.e`: Exodus II, for the codes of Sandia and MOOSE, in NetCDF's classic layouts. Written
 // are an element block HEX8 for each region, a side set for each group of boundary quads, and node

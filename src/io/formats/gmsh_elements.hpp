@@ -9,9 +9,11 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +24,7 @@
 
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
 #include <io/formats/formats.hpp>
 
@@ -29,6 +32,7 @@ namespace hexhex::io {
 
 // Types of elements in files of all versions.
 inline constexpr unsigned kGmshLine = 1;
+inline constexpr unsigned kGmshTriangle = 2;
 inline constexpr unsigned kGmshQuad = 3;
 inline constexpr unsigned kGmshHexahedron = 5;
 inline constexpr unsigned kGmshPoint = 15;
@@ -62,13 +66,40 @@ using GmshGroup = std::pair<std::int64_t, std::int64_t>;
   return {};
 }
 
+/// Gives groups of all dimensions numbers of their own, since programs such as meshio and GetFEM
+/// take groups with one number for one group. Numbers that are tags stay where they can, those of
+/// the first kinds first.
+inline void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds) {
+  std::set<std::uint32_t> taken;
+  std::vector<ElementGroup*> others;
+  for (std::vector<ElementGroup>* const groups : kinds) {
+    for (ElementGroup& group : *groups) {
+      // Groups with names of their own say it by themselves.
+      const auto tag = tagInGroupName(group.name).value_or(group.tag);
+      const bool isTag = tag == static_cast<std::int64_t>(group.number);
+      if (!isTag || !taken.insert(group.number).second) others.push_back(&group);
+    }
+  }
+  std::uint32_t next = 1;
+  for (ElementGroup* const group : others) {
+    if (taken.insert(group->number).second) continue;
+    while (!taken.insert(next).second) ++next;
+    group->number = next;
+  }
+}
+
 /// Tags of elements by their groups or entities.
 class GmshTags {
  public:
   /// The name of a physical group.
   void addName(GmshGroup group, std::string_view name) {
-    if (const std::optional<std::int32_t> tag = tagInGroupName(name)) named_.emplace(group, *tag);
+    if (const std::optional<std::int32_t> tag = tagInGroupName(name)) {
+      named_.emplace(group, *tag);
+    } else if (group.first >= 0 && group.first <= 3 && ofPhysical(group) != 0) {
+      names.push_back({static_cast<int>(group.first), ofPhysical(group), std::string(name)});
+    }
   }
+  std::vector<TagName> names;  ///< that another program chose
   /// The first physical group of an entity of MSH 4.1; 0 if it has none.
   void addEntity(GmshGroup entity, std::int64_t physical) { physicals_.emplace(entity, physical); }
 
@@ -156,7 +187,7 @@ class NodeTags {
 [[nodiscard]] constexpr std::int64_t dimensionOfGmshType(std::int64_t type) noexcept {
   if (type == kGmshPoint) return 0;
   if (type == kGmshLine) return 1;
-  return type == kGmshQuad ? 2 : 3;
+  return type == kGmshTriangle || type == kGmshQuad ? 2 : 3;
 }
 
 /// What differs between versions: 1 has text only; 4.0 numbers nodes and elements with 4 bytes, 4.1
@@ -305,9 +336,10 @@ class GmshElements {
   static constexpr CellKind kKind = kCellKind<corners>;
 
   [[nodiscard]] static constexpr bool isCell(std::int64_t type) { return type == kKind.gmshType; }
-  /// Whether elements of a type can be features of a mesh of hexahedra.
+  static constexpr unsigned kFace = corners == 4 ? kGmshTriangle : kGmshQuad;
+  /// Whether elements of a type can be features of a mesh of these cells.
   [[nodiscard]] static constexpr bool isFeature(std::int64_t type) {
-    return corners == 8 && (type == kGmshPoint || type == kGmshLine || type == kGmshQuad);
+    return type == kGmshPoint || type == kGmshLine || type == kFace;
   }
   [[nodiscard]] std::int32_t tagOf(const GmshBlock& block, std::int64_t physical) const {
     if (hasEntities(block.version)) return block.tag;
@@ -473,10 +505,13 @@ class GmshElements {
                   "an element names node " + std::to_string(static_cast<std::int64_t>(nodes[k])) +
                       ", which is not in the section $Nodes.");
     }
-    HexFeatures& features = mesh_.features;
+    auto& features = mesh_.features;
     if (type == kGmshPoint) features.vertices.push_back({vertices[0], tag});
     if (type == kGmshLine) features.edges.push_back({{vertices[0], vertices[1]}, tag});
-    if (type == kGmshQuad) features.quads.push_back({vertices, tag});
+    if (type != kFace) return;
+    auto& face = facesIn(features).emplace_back();
+    std::copy_n(vertices.begin(), face.vertices.size(), face.vertices.begin());
+    face.tag = tag;
   }
 
   const GmshTags& tags_;

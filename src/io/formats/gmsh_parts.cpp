@@ -136,6 +136,7 @@ class GmshNumbers {
     addMissingGroups(volumes_, regionTags(), hasZero_, "region", "hexahedra");
     if (info.regions.empty()) volumes_ = {{1, "hexahedra", 0, 0}};
     addMissingGroups(surfaces_, info.quadTags, true, "surface", "boundary");
+    numberApart({&surfaces_, &volumes_});
   }
   [[nodiscard]] const std::vector<ElementGroup>& groups(std::size_t dimension) const {
     return dimension == 3 ? volumes_ : surfaces_;

@@ -344,6 +344,7 @@ class GmshReader {
   CellMesh<corners> read() {
     while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
     requireCells();
+    mesh_.features.names = std::move(tags_.names);
     return std::move(mesh_);
   }
 

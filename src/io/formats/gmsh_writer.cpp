@@ -46,7 +46,8 @@ struct GmshEntity {
 struct GmshGroups : MeshGroups {
   std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
 
-  explicit GmshGroups(MeshGroups groups) : MeshGroups(std::move(groups)) {
+  explicit GmshGroups(MeshGroups all) : MeshGroups(std::move(all)) {
+    numberApart({&quads.groups, &cells.groups, &edges.groups, &vertices.groups});
     // A point entity is one point: each vertex of a group is an entity of its own.
     for (const ElementGroup& group : vertices.groups) {
       for (std::size_t i = group.begin; i < group.end; ++i) {

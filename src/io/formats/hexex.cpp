@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
+#include <io/core/repeated_features.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
 
@@ -32,26 +32,6 @@ constexpr std::size_t kMinimumTetBytes = 32;
 // A coordinate or corner or parameter each.
 constexpr std::size_t kTokensOfVertex = 3;
 constexpr std::size_t kTokensOfTet = 16;
-
-/// The vertices of a feature in ascending order.
-std::array<Index, 1> keyOf(const FeatureVertex& feature) { return {feature.vertex}; }
-template <class Feature>
-auto keyOf(const Feature& feature) {
-  auto vertices = feature.vertices;
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
-
-/// Leaves out what is listed before.
-template <class Feature>
-void removeRepeated(std::vector<Feature>& features) {
-  std::set<decltype(keyOf(features[0]))> seen;
-  std::size_t kept = 0;
-  for (const Feature& feature : features) {
-    if (seen.insert(keyOf(feature)).second) features[kept++] = feature;
-  }
-  features.resize(kept);
-}
 
 /// The triangles of one tet alone, the vertices of each ascending, in lexicographic order.
 std::vector<std::array<Index, 3>> boundaryTriangles(const TetMap& map, Stage& stage) {

@@ -36,6 +36,7 @@ enum class MeditSection : std::uint32_t {
   Dimension = 3,
   Vertices = 4,
   Edges = 5,
+  Triangles = 6,
   Quadrilaterals = 7,
   Tetrahedra = 8,
   Hexahedra = 10,
@@ -45,10 +46,11 @@ enum class MeditSection : std::uint32_t {
 };
 
 /// What sections are called in text.
-constexpr std::array<std::pair<MeditSection, std::string_view>, 9> kMeditKeywords = {
+constexpr std::array<std::pair<MeditSection, std::string_view>, 10> kMeditKeywords = {
     {{MeditSection::Dimension, "Dimension"},
      {MeditSection::Vertices, "Vertices"},
      {MeditSection::Edges, "Edges"},
+     {MeditSection::Triangles, "Triangles"},
      {MeditSection::Quadrilaterals, "Quadrilaterals"},
      {MeditSection::Tetrahedra, "Tetrahedra"},
      {MeditSection::Hexahedra, "Hexahedra"},
@@ -56,16 +58,20 @@ constexpr std::array<std::pair<MeditSection, std::string_view>, 9> kMeditKeyword
      {MeditSection::RequiredVertices, "RequiredVertices"},
      {MeditSection::End, "End"}}};
 
+constexpr const auto& edgesOf(const Hex& /*cell*/) { return adjacency::kHexEdges; }
+constexpr const auto& edgesOf(const Tet& /*cell*/) { return adjacency::kTetEdges; }
+
 /// References of which a vertex has two neighbours along edges of cells, ascending.
+template <class Cell>
 std::vector<std::int32_t> crowdedReferences(const Array<std::int32_t>& references,
-                                            const Array<Hex>& cells) {
+                                            const Array<Cell>& cells) {
   Array<Index> neighbours(references.size(), kNone);  // with the same reference; itself: several
   const auto note = [&](Index vertex, Index other) {
     Index& known = neighbours[vertex];
     known = known == kNone || known == other ? other : vertex;
   };
-  for (const Hex& cell : cells) {
-    for (const auto& edge : adjacency::kHexEdges) {
+  for (const Cell& cell : cells) {
+    for (const auto& edge : edgesOf(cell)) {
       const Index a = cell[edge[0]];
       const Index b = cell[edge[1]];
       if (references[a] == 0 || references[a] != references[b]) continue;
@@ -87,9 +93,10 @@ bool allShareOne(const Array<std::int32_t>& references) {
                      [&](std::int32_t reference) { return reference == references[0]; });
 }
 
+template <class Cell>
 std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
                                       const Array<std::int32_t>& references,
-                                      const Array<Hex>& cells) {
+                                      const Array<Cell>& cells) {
   std::vector<FeatureVertex> tags;
   if (!corners.empty()) {
     std::sort(corners.begin(), corners.end());
@@ -115,6 +122,9 @@ std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
 constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
 constexpr CellKind kMeditQuads = {
     .corners = 4, .singular = "quadrilateral", .plural = "quadrilaterals"};
+/// Faces of tets, and of hexahedra.
+template <std::size_t corners>
+constexpr CellKind kMeditFaces = corners == 4 ? kTriangleKind : kMeditQuads;
 constexpr CellKind kMeditCorners = {.corners = 1, .singular = "corner", .plural = "corners"};
 
 /// `.mesh`: keywords and numbers between white space.
@@ -133,6 +143,11 @@ class MeditText {
 
   void readHead() {
     if (scanner_.readToken() != "MeshVersionFormatted") {
+      if (scanner_.currentToken() == "MFEM") {
+        scanner_.fail(ErrorCode::FileUnsupported,
+                      "this is a mesh of MFEM, which is written, but not read. Save it as .vtk "
+                      "(Mesh::PrintVTK).");
+      }
       scanner_.fail(ErrorCode::FileSyntax,
                     "a MEDIT file begins with \"MeshVersionFormatted\", found " +
                         quoted(scanner_.currentToken()) + ".");
@@ -327,9 +342,7 @@ class MeditReader {
   CellMesh<corners> read() {
     encoding_.readHead();
     while (const auto section = encoding_.nextSection()) readSection(*section);
-    if constexpr (corners == 8) {
-      mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
-    }
+    mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
     if (hasCells_) return std::move(mesh_);
     throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
                                                 std::string(kKind.plural) + ": it has no section " +
@@ -350,12 +363,15 @@ class MeditReader {
       }
     }
     // What stands before the vertices cannot be checked, and no known program writes it there.
-    if (corners != 8 || !hasVertices_) return;
+    if (!hasVertices_) return;
+    constexpr MeditSection kFaces =
+        corners == 4 ? MeditSection::Triangles : MeditSection::Quadrilaterals;
     if (section == MeditSection::Edges) {
       static_cast<void>(readFeatures(mesh_.features.edges, kMeditEdges));
-    } else if (section == MeditSection::Quadrilaterals) {
+    } else if (section == kFaces) {
       // Those of a boundary without tags are no features.
-      if (!readFeatures(mesh_.features.quads, kMeditQuads)) mesh_.features.quads.clear();
+      auto& faces = facesIn(mesh_.features);
+      if (!readFeatures(faces, kMeditFaces<corners>)) faces.clear();
     } else if (section == MeditSection::Corners || section == MeditSection::RequiredVertices) {
       readCorners();
     }
@@ -451,7 +467,7 @@ class MeditReader {
       seen.add(reference);
       if (Encoding::kIsText) references[i] = static_cast<std::int32_t>(reference);
     });
-    if (corners != 8 || !seen.saySomething()) return {};
+    if (!seen.saySomething()) return {};
     if constexpr (!Encoding::kIsText) {
       // Only now, so that the usual file takes no memory for references.
       references.resize(count);

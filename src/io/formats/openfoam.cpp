@@ -23,6 +23,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -388,10 +389,6 @@ class PartFaces {
 
  private:
   static std::uint64_t sideOf(std::size_t cell, std::size_t side) { return 8 * cell + side; }
-  static Quad sorted(Quad quad) {
-    std::sort(quad.begin(), quad.end());
-    return quad;
-  }
   void add(Index cell, std::size_t side) {
     Quad quad = adjacency::faceVertices(part_.mesh.cells[cell], side);
     poly.faces.push_back(quad);

@@ -302,9 +302,7 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
     forEachTag(OvmInteger::EdgeValence, [this](std::size_t e, std::int32_t offset) {
       map_.edgeValences.push_back({topology_.edges[e][0], topology_.edges[e][1], offset});
     });
-    readFeatures(map_.features, map_.features.faces);
-    const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
-    map_.regions.assign(regions.begin(), regions.end());
+    readTags(map_);
     return std::move(map_);
   }
 
@@ -313,10 +311,18 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
     TetCells result;
     result.points = std::move(mesh_.points);
     result.cells.assign(map_.tets.begin(), map_.tets.end());
+    readTags(result);
     return result;
   }
 
  private:
+  template <class Mesh>
+  void readTags(Mesh& mesh) {
+    readFeatures(mesh.features, mesh.features.faces);
+    const Array<std::int32_t>& regions = properties_[OvmInteger::Region];
+    mesh.regions.assign(regions.begin(), regions.end());
+  }
+
   void requireMap() const {
     if (!properties_.parametrization.empty() || topology_.cells.size() == 0) return;
     requireProper();

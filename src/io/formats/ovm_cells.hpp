@@ -23,6 +23,7 @@
 
 #include <base/low_level.hpp>
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
 #include <io/formats/ovm_mesh.hpp>
@@ -350,10 +351,6 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t ver
                 const Name& nameOf, const At& placeOf) {
   if (features.empty()) return;
   tags.assign(elements, 0);
-  const auto sorted = [](std::array<Index, n> vertices) {
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
-  };
   struct Wanted {
     const Feature* feature;
     Index element;

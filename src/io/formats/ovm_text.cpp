@@ -30,7 +30,7 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lowerCase(x) == lowerCase(y); });
 }
 
-OvmNumbers numbersOf(std::string_view type) {
+OvmNumbers ovmNumbersOf(std::string_view type) {
   const auto isType = [type](std::string_view known) { return equalsIgnoringCase(type, known); };
   if (std::any_of(kPointTypes.begin(), kPointTypes.end(), isType)) return OvmNumbers::Points;
   const bool integers = std::any_of(kIntegerTypes.begin(), kIntegerTypes.end(), isType);
@@ -253,7 +253,7 @@ class OvmTextReader {
       scanner_.takeLine();
       if (!header) continue;
       const OvmMesh::Destination values =
-          mesh_.destinationOf(header->entity, header->name, numbersOf(header->type));
+          mesh_.destinationOf(header->entity, header->name, ovmNumbersOf(header->type));
       if (values.points != nullptr) readParametrization(*values.points);
       if (values.integers != nullptr) readIntegers(*values.integers, *header);
       anythingGoes = values.points == nullptr && values.integers == nullptr;

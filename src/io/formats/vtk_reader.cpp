@@ -479,9 +479,14 @@ HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
   return mesh;
 }
 
-TetCells readVtkTets(const VtkSource& source, Stage& stage) {
+TetCells readVtkTets(VtkSource& source, Stage& stage) {
   TetCells mesh;
-  readMesh(source, mesh.points, mesh.cells, nullptr, stage);
+  Array<std::size_t> numbers;
+  readMesh(source, mesh.points, mesh.cells, &numbers, stage);
+  while (source.readOn()) {
+  }
+  mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkTetFeatures(source);
   return mesh;
 }
 
@@ -623,8 +628,42 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
   return features;
 }
 
+/// The array of regions: this library's, meshio's of files of other formats, or Gmsh's.
 const VtkSourceArray* findRegions(const VtkSource& source) {
-  return source.find(VtkSection::CellData, kVtkRegions, 1, VtkNumbers::Integers);
+  for (const std::string_view name :
+       {kVtkRegions, std::string_view("gmsh:physical"), std::string_view("medit:ref"),
+        std::string_view("CellEntityIds")}) {
+    const VtkSourceArray* const array =
+        source.find(VtkSection::CellData, name, 1, VtkNumbers::Integers);
+    if (array != nullptr) return array;
+  }
+  return nullptr;
+}
+
+/// Adds cells of a kind with their numbers in the array of regions.
+/// @tparam Feature  FeatureEdge or FeatureFace
+template <class Feature>
+void addTaggedCells(const VtkSource& source, const CellKind& kind, std::vector<Feature>& features) {
+  const VtkSourceArray* const array = findRegions(source);
+  if (array == nullptr) return;
+  constexpr std::size_t kVertices = decltype(Feature::vertices){}.size();
+  for (std::uint64_t first = 0; first < source.cells; first += kVtkReaderGrain) {
+    const std::size_t count = std::min<std::uint64_t>(kVtkReaderGrain, source.cells - first);
+    const std::size_t wanted = countVtkCells(source, kind, first, count);
+    if (wanted == 0) continue;
+    std::vector<Index> vertices(kVertices * wanted);
+    std::vector<std::size_t> numbers(wanted);
+    readVtkCells(source, kind, first, count, vertices.data(), numbers.data());
+    const VtkColumn column = source.load(*array);
+    for (std::size_t i = 0; i < wanted; ++i) {
+      std::int64_t tag = 0;
+      source.copy(column, numbers[i], 1, &tag);
+      if (tag == 0 || !std::in_range<std::int32_t>(tag)) continue;
+      Feature& feature = features.emplace_back();
+      std::copy_n(vertices.data() + kVertices * i, kVertices, feature.vertices.begin());
+      feature.tag = static_cast<std::int32_t>(tag);
+    }
+  }
 }
 
 }  // namespace
@@ -654,8 +693,13 @@ HexFeatures readVtkHexFeatures(const VtkSource& source) {
 }
 
 Features readVtkTetFeatures(const VtkSource& source) {
-  return {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
-          readRows<FeatureFace>(source, kVtkTriangleTags)};
+  constexpr CellKind kLineKind = {
+      .corners = 2, .singular = "line", .plural = "lines", .vtkType = kVtkLine};
+  Features features = {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
+                       readRows<FeatureFace>(source, kVtkTriangleTags)};
+  addTaggedCells(source, kLineKind, features.edges);
+  addTaggedCells(source, kTriangleKind, features.faces);
+  return features;
 }
 
 bool hasVtkRegions(const VtkSource& source) { return findRegions(source) != nullptr; }
@@ -677,14 +721,14 @@ namespace {
 // Files as a whole, or piece by piece.
 
 // Points or cells of a piece: a few megabytes.
-constexpr std::size_t kPiece = std::size_t{1} << 16;
+constexpr std::size_t kVtkPiece = std::size_t{1} << 16;
 
 /// Calls f(first, count) for consecutive ranges of n elements, and reports progress.
 template <class F>
 void forEachPiece(Stage& stage, std::uint64_t n, const F& f) {
   LoopProgress progress(stage, n);
-  for (std::uint64_t first = 0; first < n; first += kPiece) {
-    const std::size_t count = std::min<std::uint64_t>(kPiece, n - first);
+  for (std::uint64_t first = 0; first < n; first += kVtkPiece) {
+    const std::size_t count = std::min<std::uint64_t>(kVtkPiece, n - first);
     f(first, count);
     progress.advance(count);
   }

@@ -219,7 +219,7 @@ void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<Corner
 /// Reads points and hexahedra, and what else writers of this library add.
 [[nodiscard]] HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage);
 /// Reads points and tets.
-[[nodiscard]] TetCells readVtkTets(const VtkSource& source, Stage& stage);
+[[nodiscard]] TetCells readVtkTets(VtkSource& source, Stage& stage);
 /// Reads tets and their map from an array of floating-point numbers. One of 12 numbers per cell
 /// holds u0 v0 w0 u1 v1 w1 u2 v2 w2 u3 v3 w3, the parameters of a tet's corners in their order; one
 /// of 3 numbers per point holds its u v w, for maps with one chart.

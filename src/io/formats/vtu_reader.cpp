@@ -226,7 +226,7 @@ auto* lookUp(const Table& table, std::string_view name) {
   return found == table.end() ? nullptr : &found->second;
 }
 
-VtkNumbers numbersOf(std::string_view type) {
+VtkNumbers vtkNumbersOf(std::string_view type) {
   if (type.starts_with("Float")) return VtkNumbers::Reals;
   if (type.starts_with("Int") || type.starts_with("UInt")) return VtkNumbers::Integers;
   return VtkNumbers::Others;
@@ -347,7 +347,7 @@ class VtuFile final : public VtkSource {
     if (section == VtkSection::Points && !arrays.empty() && arrays.back().section == section) {
       arrays.pop_back();
     }
-    array.numbers = numbersOf(tag.attribute("type"));
+    array.numbers = vtkNumbersOf(tag.attribute("type"));
     const std::string_view components = tag.attribute("NumberOfComponents");
     std::from_chars(components.data(), components.data() + components.size(), array.components);
     array.appended = tag.attribute("format") == "appended";
@@ -399,7 +399,7 @@ class VtuFile final : public VtkSource {
     }
     const std::string_view type = tag.attribute("type");
     const VtkScalar* const scalar = lookUp(kScalars, type);
-    if (scalar == nullptr || numbersOf(type) != numbers) {
+    if (scalar == nullptr || vtkNumbersOf(type) != numbers) {
       tags_.fail(ErrorCode::FileUnsupported,
                  "the number type " + quoted(type) + " is not supported for this array.", tag);
     }

@@ -20,7 +20,10 @@ igm::OrientedMap readTets(const TetMesh& tets, Stage& stage) {
     }
   }
   igm::DefectCollector defects;
-  igm::OrientedMap input = igm::readInput({tets.points, tets.tets, positions}, stage, defects);
+  TetMapView view{tets.points, tets.tets, positions};
+  view.features = tets.features;
+  view.regions = tets.regions;
+  igm::OrientedMap input = igm::readInput(view, stage, defects);
   defects.throwIfAny();
   input.view.parameters = {};
   input.parameters = {};

@@ -112,6 +112,7 @@ TetMap mapOf(const TetMapView& given, PolycubeTets tets, std::vector<TetParamete
       for (double& x : u) x /= scale;
     }
   }
+  tetmap::carryTags(given.features, given.regions, tets.added, tets.parentTet, map);
   return map;
 }
 

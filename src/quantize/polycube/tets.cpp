@@ -16,15 +16,15 @@ double squaredLength(const TetMesh& mesh, const tetmap::VertexPair& edge) {
 }
 
 void splitAll(PolycubeTets& tets, std::vector<tetmap::EdgeInTet> edges) {
-  tets.mate =
-      tetmap::splitLongestFirst(tets.mesh, tets.mate, std::move(edges),
-                                [&tets](const tetmap::VertexPair& /*edge*/, Index /*middle*/,
-                                        const std::vector<tetmap::Cut>& cuts) {
-                                  for (const tetmap::Cut& cut : cuts) {
-                                    tetmap::carryTet(cut, tets.parentTet);
-                                    tetmap::carryFaces(cut, std::int8_t{-1}, tets.flags);
-                                  }
-                                });
+  tets.mate = tetmap::splitLongestFirst(tets.mesh, tets.mate, std::move(edges),
+                                        [&tets](const tetmap::VertexPair& edge, Index /*middle*/,
+                                                const std::vector<tetmap::Cut>& cuts) {
+                                          tets.added.add(edge);
+                                          for (const tetmap::Cut& cut : cuts) {
+                                            tetmap::carryTet(cut, tets.parentTet);
+                                            tetmap::carryFaces(cut, std::int8_t{-1}, tets.flags);
+                                          }
+                                        });
 }
 
 /// Where a tet mesh has its boundary, and where labels change there.
@@ -63,6 +63,7 @@ void splitTets(PolycubeTets& tets, const tetmap::BoundaryCurves& boundary) {
     auto& p = tets.mesh.points;
     p.push_back(tetmap::middleOf(tetmap::middleOf(p[whole[0]], p[whole[1]]),
                                  tetmap::middleOf(p[whole[2]], p[whole[3]])));
+    tets.added.add(whole);
     const FaceFlags flags = tets.flags[t];
     const std::array<Index, 4> parts = mesh.splitTet(t);
     tets.flags.resize(mesh.tetCount());
@@ -86,6 +87,7 @@ PolycubeTets polycubeTets(const LabelledMesh& mesh, double scale) {
     for (double& x : p) x *= scale;
   }
   tets.mesh.tets.assign(view.tets.begin(), view.tets.end());
+  tets.added = tetmap::AddedVertices(view.points.size());
   tets.mate.assign(mesh.topology.mate.begin(), mesh.topology.mate.end());
   for (Index t = 0; t < view.tets.size(); ++t) {
     FaceFlags& flags = tets.flags.emplace_back();

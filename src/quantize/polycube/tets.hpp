@@ -2,6 +2,7 @@
 #pragma once
 
 #include <quantize/polycube/labels.hpp>
+#include <tetmap/carried_tags.hpp>
 
 namespace hexhex::quantization {
 
@@ -10,6 +11,7 @@ struct PolycubeTets {
   std::vector<adjacency::HalfFace> mate;  ///< per half-face
   std::vector<FaceFlags> flags;           ///< per tet
   std::vector<Index> parentTet;  ///< per tet: that of the labelled mesh which it is part of
+  tetmap::AddedVertices added{0};
 };
 
 /// @param scale  of its points, a power of two

@@ -72,13 +72,15 @@ class Planes {
       planes_.push_back(plane);
       return;
     }
+    const IntegerForm& other = planes_[at->second].form;
+    if (other == plane.form) return;
     IntegerForm difference = plane.form;
-    difference.add(planes_[at->second].form, -1);
+    difference.add(other, -1);
     // What depends on where planes lie that may lie anywhere is chance.
     const auto& terms = difference.terms();
-    if (terms.empty() || terms.back().first >= sharedCount_) return;
+    if (terms.back().first >= sharedCount_) return;
     isAny_ = isAny_ || at->first.second != value;
-    equations_.push_back(std::move(difference));
+    if (seen_.insert(difference).second) equations_.push_back(std::move(difference));
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return planes_.size(); }
@@ -98,7 +100,8 @@ class Planes {
   std::int64_t near_;
   std::vector<FixedCoordinate> planes_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> numbers_;  ///< by axis and value
-  std::vector<IntegerForm> equations_;
+  std::vector<IntegerForm> equations_;                                   ///< each once
+  std::set<IntegerForm> seen_;
   bool isAny_ = false;
 };
 

@@ -1,0 +1,254 @@
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+#include <adjacency/tet_topology.hpp>
+#include <pipeline/groups.hpp>
+#include <tetmap/cut.hpp>
+#include <tetmap/grid_planes.hpp>
+
+#include <hexhex/error.hpp>
+
+#include <base/parallel.hpp>
+#include <base/sorted.hpp>
+#include <base/vector3.hpp>
+#include <improve/curve_paths.hpp>
+#include <improve/surface_distance.hpp>
+
+namespace hexhex::pipeline {
+namespace {
+
+using Edge = tetmap::VertexPair;
+
+constexpr std::size_t kGroupsGrain = 1024;
+
+/// Tags by the vertices of edges, triangles or quads.
+template <class Feature>
+class Tags {
+ public:
+  explicit Tags(std::vector<Feature> features) : entries_(std::move(features)) {
+    std::erase_if(entries_, [](const Feature& feature) { return feature.tag == 0; });
+    for (Feature& entry : entries_) entry.vertices = sorted(entry.vertices);
+    std::sort(entries_.begin(), entries_.end(), byVertices);
+  }
+  [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
+  /// 0 without one.
+  [[nodiscard]] std::int32_t of(decltype(Feature::vertices) vertices) const {
+    const Feature wanted{sorted(vertices), 0};
+    const auto found = std::lower_bound(entries_.begin(), entries_.end(), wanted, byVertices);
+    return found != entries_.end() && found->vertices == wanted.vertices ? found->tag : 0;
+  }
+
+ private:
+  static bool byVertices(const Feature& a, const Feature& b) { return a.vertices < b.vertices; }
+  std::vector<Feature> entries_;
+};
+
+/// The boundary of a map: triangles that face outwards, with their tags.
+std::vector<FeatureFace> boundaryOf(const TetMap& map, const adjacency::TetTopology& topology) {
+  const Tags<FeatureFace> tags(map.features.faces);
+  std::vector<FeatureFace> triangles;
+  for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
+    if (topology.mate[h] != kNone) continue;
+    const auto v = adjacency::faceVertices(map.tets[adjacency::tetOf(h)], h % 4);
+    triangles.push_back({{v[0], v[2], v[1]}, tags.of(v)});
+  }
+  return triangles;
+}
+
+adjacency::TetTopology topologyOf(const TetMap& map, Stage& stage) {
+  auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
+  if (!topology) throw Error(ErrorCode::Internal, "The map of a part is no manifold.");
+  return std::move(*topology);
+}
+
+class BoundaryTagger {
+ public:
+  BoundaryTagger(const TetMap& map, HexMesh& mesh, Stage& stage)
+      : map_(map),
+        mesh_(mesh),
+        stage_(stage),
+        triangles_(boundaryOf(map, topologyOf(map, stage))),
+        quads_(adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage))) {}
+
+  void tagQuads() {
+    if (std::all_of(triangles_.begin(), triangles_.end(),
+                    [](const FeatureFace& triangle) { return triangle.tag == 0; })) {
+      return;
+    }
+    std::vector<std::array<Vec3, 3>> corners;
+    for (const FeatureFace& triangle : triangles_) corners.push_back(cornersOf(triangle));
+    const improvement::TriangleTree tree(corners);
+    const Tags<FeatureQuad> before(mesh_.features.quads);
+    std::vector<FeatureQuad> tagged(quads_.size());
+    parallelFor(stage_, quads_.size(), kGroupsGrain, [&](std::size_t q) {
+      const Quad& quad = quads_[q];
+      const std::array<Vec3, 4> at = {mesh_.points[quad[0]], mesh_.points[quad[1]],
+                                      mesh_.points[quad[2]], mesh_.points[quad[3]]};
+      const std::size_t nearest = tree.nearest(centreOf(at)).triangle;
+      const Vec3 normal = cross(minus(at[2], at[0]), minus(at[3], at[1]));
+      // Beyond a thin wall may be nearer.
+      const bool isThis = dot(normal, improvement::normalOf(corners[nearest])) > 0;
+      tagged[q] = {quad, isThis ? triangles_[nearest].tag : before.of(quad)};
+    });
+    replaceBoundary(std::move(tagged));
+  }
+
+  std::uint64_t tagEdges(const Features& held) {
+    const std::vector<Edge> outer = boundaryEdges();
+    std::uint64_t missing = 0;
+    std::set<std::int32_t> open;  // tags of edges that are no lines of the map
+    std::vector<FeatureEdge> curves;
+    const Tags<FeatureEdge> known(held.edges);
+    for (FeatureEdge edge : map_.features.edges) {
+      if (edge.tag == 0) continue;
+      edge.vertices = sorted(edge.vertices);
+      const bool isOuter = std::binary_search(outer.begin(), outer.end(), edge.vertices);
+      const bool isKnown = known.of(edge.vertices) != 0;
+      if (isOuter) curves.push_back(edge);
+      if (isOuter && !isKnown) open.insert(edge.tag);
+      if (!isOuter && !isKnown) ++missing;
+    }
+    std::erase_if(curves, [&open](const FeatureEdge& edge) { return !open.contains(edge.tag); });
+    if (curves.empty()) return missing;
+    const Tags<FeatureEdge> tags(curves);
+    const improvement::CurvePaths paths =
+        improvement::pathsAlongCurves(mesh_.points, quads_, surfaceWith(curves), stage_);
+    if (paths.missing == 0) {  // where some of a curve are lines of the map, paths are along these
+      std::erase_if(mesh_.features.edges,
+                    [&open](const FeatureEdge& edge) { return open.contains(edge.tag); });
+    }
+    std::map<Edge, std::int32_t> added;
+    const Tags<FeatureEdge> before(mesh_.features.edges);
+    for (const improvement::CurvePath& path : paths.paths) {
+      const std::int32_t tag = tags.of(path.segments.front());
+      for (std::size_t i = 1; i < path.vertices.size(); ++i) {
+        const Edge edge = tetmap::pairOf(path.vertices[i - 1], path.vertices[i]);
+        if (before.of(edge) == 0) added.emplace(edge, tag);
+      }
+    }
+    for (const auto& [edge, tag] : added) mesh_.features.edges.push_back({edge, tag});
+    return missing + paths.missing;
+  }
+
+  void tagVertices() {
+    if (map_.features.vertices.empty()) return;
+    std::vector<Index> outer;
+    for (const Quad& quad : quads_) outer.insert(outer.end(), quad.begin(), quad.end());
+    tetmap::sortUnique(outer);
+    std::vector<std::array<Vec3, 3>> places;
+    places.reserve(outer.size());
+    for (const Index v : outer)
+      places.push_back({mesh_.points[v], mesh_.points[v], mesh_.points[v]});
+    const improvement::TriangleTree tree(places);
+    std::map<Index, std::int32_t> tags;
+    for (const FeatureVertex& known : mesh_.features.vertices)
+      tags.emplace(known.vertex, known.tag);
+    for (const FeatureVertex& given : map_.features.vertices) {
+      if (given.tag != 0) {
+        tags.emplace(outer[tree.nearest(map_.points[given.vertex]).triangle], given.tag);
+      }
+    }
+    mesh_.features.vertices.clear();
+    for (const auto& [vertex, tag] : tags) mesh_.features.vertices.push_back({vertex, tag});
+  }
+
+ private:
+  [[nodiscard]] std::array<Vec3, 3> cornersOf(const FeatureFace& triangle) const {
+    const auto& [a, b, c] = triangle.vertices;
+    return {map_.points[a], map_.points[b], map_.points[c]};
+  }
+
+  void replaceBoundary(std::vector<FeatureQuad> tagged) {
+    std::vector<Quad> outer(quads_.begin(), quads_.end());
+    for (Quad& quad : outer) quad = sorted(quad);
+    std::sort(outer.begin(), outer.end());
+    std::erase_if(mesh_.features.quads, [&outer](const FeatureQuad& quad) {
+      return std::binary_search(outer.begin(), outer.end(), sorted(quad.vertices));
+    });
+    std::erase_if(tagged, [](const FeatureQuad& quad) { return quad.tag == 0; });
+    mesh_.features.quads.insert(mesh_.features.quads.end(), tagged.begin(), tagged.end());
+  }
+
+  [[nodiscard]] std::vector<Edge> boundaryEdges() const {
+    std::vector<Edge> edges;
+    for (const auto& [vertices, tag] : triangles_) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        edges.push_back(tetmap::pairOf(vertices[i], vertices[(i + 1) % 3]));
+      }
+    }
+    tetmap::sortUnique(edges);
+    return edges;
+  }
+
+  /// The boundary of the map, with these edges for curves, which end where tags change.
+  [[nodiscard]] improvement::ReferenceSurface surfaceWith(
+      const std::vector<FeatureEdge>& curves) const {
+    improvement::SurfaceParts parts;
+    parts.points.assign(map_.points.begin(), map_.points.end());
+    for (const FeatureFace& triangle : triangles_)
+      parts.triangles.push_back({triangle.vertices, 0});
+    parts.boundaryTriangles = parts.triangles.size();
+    parts.angle = 180;  // a border of patches may zigzag from triangle to triangle
+    std::vector<Edge>& sharp = parts.sharp.emplace();
+    std::map<Index, std::int32_t> tagAt;
+    for (const FeatureEdge& curve : curves) {
+      sharp.push_back(curve.vertices);
+      for (const Index v : curve.vertices) {
+        if (tagAt.emplace(v, curve.tag).first->second != curve.tag) parts.corners.push_back(v);
+      }
+    }
+    std::sort(sharp.begin(), sharp.end());
+    return {std::move(parts), stage_};
+  }
+
+  const TetMap& map_;
+  HexMesh& mesh_;
+  Stage& stage_;
+  std::vector<FeatureFace> triangles_;
+  Array<Quad> quads_;
+};
+
+}  // namespace
+
+Features heldTags(const TetMap& map, Stage& stage) {
+  Features held;
+  held.vertices = map.features.vertices;
+  const Tags<FeatureEdge> edges(map.features.edges);
+  const Tags<FeatureFace> faces(map.features.faces);
+  if (edges.empty() && faces.empty()) return held;
+  const adjacency::TetTopology topology = topologyOf(map, stage);
+  std::map<Edge, std::int32_t> heldEdges;
+  for (std::size_t t = 0; t < map.tets.size(); ++t) {
+    const Tet& tet = map.tets[t];
+    tetmap::forEachEdgeOf(tet, [&](const Edge& edge, lattice::CornerMask corners) {
+      const std::int32_t tag = edges.empty() ? 0 : edges.of(edge);
+      if (tag != 0 && tetmap::gridPlanes(map.parameters[t], corners) > 1) {
+        heldEdges.emplace(edge, tag);
+      }
+    });
+    for (std::size_t face = 0; !faces.empty() && face < 4; ++face) {
+      const adjacency::HalfFace mate = topology.mate[4 * t + face];
+      const auto vertices = adjacency::faceVertices(tet, face);
+      const std::int32_t tag = mate == kNone || mate < 4 * t + face ? 0 : faces.of(vertices);
+      if (tag != 0) held.faces.push_back({vertices, tag});
+    }
+  }
+  for (const auto& [edge, tag] : heldEdges) held.edges.push_back({edge, tag});
+  return held;
+}
+
+std::uint64_t tagBoundary(const TetMap& map, const Features& held, HexMesh& mesh, Stage& stage) {
+  if (map.features.empty()) return 0;
+  BoundaryTagger tagger(map, mesh, stage);
+  tagger.tagQuads();
+  const std::uint64_t missing = tagger.tagEdges(held);
+  tagger.tagVertices();
+  return missing;
+}
+
+}  // namespace hexhex::pipeline
