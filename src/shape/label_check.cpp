@@ -256,6 +256,10 @@ void LabelCheck::visitTurns(const Labels& labels, const Loop& loop, Verdict& ver
   if (loop.end - loop.begin < 4 || std::abs(turns) == 4) return;
   ++verdict.report.wrongTurns;
   chart.isBad = true;
+  addPlaces(loop, verdict);
+}
+
+void LabelCheck::addPlaces(const Loop& loop, Verdict& verdict) const {
   for (std::size_t i = loop.begin; i < loop.end; ++i) {
     verdict.places.push_back(Surface::triangleOf(pieces_[i].first));
   }
@@ -324,7 +328,9 @@ void LabelCheck::visitCharts(Verdict& verdict) const {
       }
     } else if (!chart.isBad && chart.turns != 4 * (2 - chart.loops)) {
       ++verdict.report.wrongTurns;
-      verdict.places.push_back(chart.first);
+      for (const Loop& loop : loops_) {
+        if (loop.chart == i) addPlaces(loop, verdict);
+      }
     }
   }
 }

@@ -55,6 +55,7 @@ class LabelCheck {
   void addPieces();
   void visitPiece(const Labels& labels, Piece& piece, Verdict& verdict);
   void setDirections(const Labels& labels);
+  void addPlaces(const Loop& loop, Verdict& verdict) const;
   void visitTurns(const Labels& labels, const Loop& loop, Verdict& verdict);
   void visitRoom(const Labels& labels, Verdict& verdict);
   void setCharacteristics();

@@ -13,7 +13,8 @@ namespace hexhex::shape {
 ///
 /// From cuts of the whole boundary with several degrees of compactness, the best go on by changes
 /// in small places, each with random numbers of its own: the same for any number of threads.
+/// @param[in,out] workLeft  as of quantization::mapFromLabels()
 [[nodiscard]] CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs,
-                                     std::uint64_t seed, Stage& stage);
+                                     std::uint64_t seed, double& workLeft, Stage& stage);
 
 }  // namespace hexhex::shape

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <quantize/polycube/polycube.hpp>
 #include <shape/labels.hpp>
 #include <shape/polycube_map.hpp>
 #include <shape/rotation.hpp>
@@ -17,10 +18,12 @@
 namespace hexhex::shape {
 namespace {
 
-/// Labels of which a map is tried, one after the other: few where there are many tets, as each
-/// takes seconds.
+/// Labels of which a map is tried, one after the other, until so much is spent on all together,
+/// about twenty seconds: see quantization::mapFromLabels().
 constexpr std::uint64_t kMostAttempts = 6;
-constexpr std::uint64_t kMostTets = 40'000;
+constexpr double kMostWork = 4e7;
+/// At least so many steps of the solver, however many tets there are.
+constexpr double kStepsOfAll = 300;
 
 std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std::size_t tets) {
   std::vector<FaceFlags> flags(tets, FaceFlags{-1, -1, -1, -1});
@@ -58,9 +61,9 @@ std::string faultsOf(const LabelReport& report) {
 }
 
 CheckedLabels label(const Surface& surface, const LabelCosts& costs, std::uint64_t seed,
-                    Context& context) {
+                    double& workLeft, Context& context) {
   Stage stage(context, "labelling");
-  return labelsOf(surface, costs, seed, stage);
+  return labelsOf(surface, costs, seed, workLeft, stage);
 }
 
 /// Where an error is.
@@ -91,18 +94,17 @@ TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, Shape
   LabelCosts costs(surface);
   std::optional<Error> problem;
   LabelReport best;
-  const std::uint64_t attempts =
-      std::clamp<std::uint64_t>(kMostTets / tets.mesh().tets.size(), 2, kMostAttempts);
+  double workLeft = std::max(kMostWork, kStepsOfAll * static_cast<double>(tets.mesh().tets.size()));
   // Most labels without a map lack it at a corner or two, near to where tets stay flipped.
-  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
-    const CheckedLabels found = label(surface, costs, seed + attempt, context);
+  for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
+    const CheckedLabels found = label(surface, costs, seed + attempt, workLeft, context);
     // What is not valid may still be good enough, but not beside what is and was not.
     if (problem && !found.verdict.report.isValid()) continue;
     report.labels = found.verdict.report;
     report.labelMoves = found.moves;
     try {
-      TetMap map = mapFromFlags(tets.mesh(),
-                                flagsOf(surface, found.labels, tets.mesh().tets.size()), context);
+      TetMap map = quantization::mapFromLabels(
+          tets.mesh(), flagsOf(surface, found.labels, tets.mesh().tets.size()), workLeft, context);
       for (Vec3& point : map.points) point = turnedBack(report.rotation, point);
       return map;
     } catch (const Error& error) {

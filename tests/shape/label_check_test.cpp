@@ -74,6 +74,17 @@ TEST(LabelCheck, RefusesCornersWithoutRoom) {
   EXPECT_EQ(verdict.report.badCorners, 8U);
 }
 
+TEST(LabelCheck, NamesAllBordersOfFacesThatTurnWrong) {
+  // The four sides of a hole look away from it: around each, turns are to the right.
+  const CubeBody ring = {{3, 3, 1}, [](const Cell& c) { return c[0] != 1 || c[1] != 1; }};
+  const Verdict verdict = verdictOf(ring, [](int label, const Vec3& middle) {
+    const bool isInHole = middle[0] > 0.9 && middle[0] < 2.1 && middle[1] > 0.9 && middle[1] < 2.1;
+    return isInHole && label < 4 ? label ^ 1 : label;
+  });
+  EXPECT_EQ(verdict.report.wrongTurns, 4U);
+  EXPECT_EQ(verdict.places.size(), 4 * 4 + verdict.report.badCorners);
+}
+
 TEST(LabelCheck, TakesCornersAwayFromWhereNoMapWasFound) {
   const test::Labelled input = step().labelled(3, [](const Vec3& p) { return p; });
   Context context;
