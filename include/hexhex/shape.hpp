@@ -35,7 +35,7 @@ struct LabelReport {
   std::uint64_t charts = 0;
   std::uint64_t corners = 0;        ///< where three charts or more meet
   std::uint64_t badLoops = 0;       ///< borders of charts with fewer than four corners
-  std::uint64_t badCorners = 0;     ///< where more than three charts meet
+  std::uint64_t badCorners = 0;     ///< of more than three charts, or without room for their faces
   std::uint64_t oppositeEdges = 0;  ///< edges of the mesh between opposite labels
   std::uint64_t turningPoints = 0;  ///< where edges of the polycube would run back
   std::uint64_t wrongTurns = 0;     ///< charts whose right angles do not add up

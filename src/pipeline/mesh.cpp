@@ -5,6 +5,7 @@
 
 #include <pipeline/best_way.hpp>
 #include <pipeline/groups.hpp>
+#include <quantize/most_cells.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/extractor.hpp>
@@ -114,6 +115,8 @@ MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& op
 }  // namespace pipeline
 
 MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context& context) {
+  // Before minutes are spent on maps; what is no number at all is quantize()'s to refuse.
+  if (options.quantize.cells > 0) quantization::requireNumberable(options.quantize.cells);
   if (options.shape.method != ShapeMethod::Auto) {
     return pipeline::meshBy(options.shape.method, tets, options, context);
   }

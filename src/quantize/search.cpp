@@ -12,6 +12,7 @@
 #include <quantize/bend/bend_problem.hpp>
 #include <quantize/bend/edge_turns.hpp>
 #include <quantize/integers/block_structure.hpp>
+#include <quantize/most_cells.hpp>
 #include <quantize/search.hpp>
 
 #include <base/vector3.hpp>
@@ -19,9 +20,6 @@
 namespace hexhex::quantization {
 
 namespace {
-
-/// More hexahedra have more vertices than indices.
-constexpr double kMostCells = 4e9;
 
 /// Integers to try, and with which blocks.
 struct Candidate {
@@ -97,12 +95,7 @@ double cellsWanted(const TetMapView& map, const SeamlessMap& seamless,
   double cells = options.cells;
   if (options.scale > 0) cells = std::pow(options.scale, 3) * volumeOf(seamless);
   if (options.edgeLength > 0) cells = spaceVolume(map) / std::pow(options.edgeLength, 3);
-  if (!(cells <= kMostCells)) {
-    throw Error(ErrorCode::TooLarge,
-                "A mesh of more than 4,000,000,000 cells cannot be numbered. "
-                "Ask for fewer cells, or quantize for a part of them and "
-                "extract with a scale.");
-  }
+  requireNumberable(cells);
   return std::max(cells, 1.0);
 }
 

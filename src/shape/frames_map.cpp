@@ -34,27 +34,34 @@ constexpr int kMostRefinements = 1;
 constexpr double kPull = 0.5;
 constexpr double kLastPull = 0.1;
 
-/// One way to a map.
-struct Attempt {
-  bool isRefined = false;  ///< the tets, before there is a field
-  std::uint64_t seed = 0;  ///< of random numbers
-};
-
-/// Fields of the same tets differ in what random numbers make of their curves. Finer tets leave
-/// room for more of these.
-constexpr std::array<Attempt, 3> kAttempts = {{{false, 0}, {true, 0}, {false, 1000}}};
-/// More tets than this are not refined.
+/// Of random numbers: fields of the same tets differ in what these make of their curves.
+constexpr std::array<std::uint64_t, 2> kSeeds = {0, 1000};
+/// More tets than this are not refined; nor those whose field is that of no mesh, which finer tets
+/// have not changed on any part yet.
 constexpr std::size_t kMostRefined = 8000;
 
-/// A map that may come out, by one attempt.
+/// Tets with a field that turns as little as it can from one to the next.
+FrameTets tetsWithField(const TetMapView& given, double featureAngle, bool isRefined,
+                        Stage& stage) {
+  FrameTets tets(
+      {{given.points.begin(), given.points.end()}, {given.tets.begin(), given.tets.end()}},
+      featureAngle, stage);
+  if (isRefined) tets.refine(stage);
+  tets.makeRoom(stage);
+  tets.frames = frameField(tets, stage);
+  matchFrames(tets, stage);
+  return tets;
+}
+
+/// A map that may come out of a field.
 class FramesMapper {
  public:
-  FramesMapper(const quantization::LabelledMesh& given, double featureAngle, const Attempt& attempt,
+  FramesMapper(const quantization::LabelledMesh& given, const FrameTets& tets, std::uint64_t seed,
                Stage& stage)
-      : stage_(stage), given_(given), attempt_(attempt), tets_(copied(), featureAngle, stage) {}
+      : stage_(stage), given_(given), seed_(seed), tets_(tets) {}
 
   TetMap run() {
-    makeField();
+    rematch();
     for (int refinements = 0;; ++refinements) {
       splitAtCurves();
       const EdgeWalks walks(tets_);
@@ -69,17 +76,8 @@ class FramesMapper {
   }
 
  private:
-  [[nodiscard]] TetMesh copied() const {
-    const TetMapView& view = given_.input.view;
-    return {{view.points.begin(), view.points.end()}, {view.tets.begin(), view.tets.end()}};
-  }
-
-  /// The field, its rotations, and a decision on whether there is a map.
-  void makeField() {
-    if (attempt_.isRefined) tets_.refine(stage_);
-    tets_.makeRoom(stage_);
-    tets_.frames = frameField(tets_, stage_);
-    matchFrames(tets_, stage_);
+  /// Rotations of the field, and a decision on whether there is a map.
+  void rematch() {
     const EdgeWalks walks(tets_);
     const std::vector<lattice::Rotation> nearest = tets_.rotations;
     std::vector<FieldDefect> fewest = defectsOf(tets_, walks);
@@ -87,7 +85,7 @@ class FramesMapper {
     for (std::uint64_t seed = 0; seed < kSearches && !(seed > 0 && fewest.empty()); ++seed) {
       // From the best that there is, or all over again, in turns.
       tets_.rotations = seed % 2 == 0 ? nearest : best;
-      rematchFrames(tets_, walks, attempt_.seed + seed, stage_);
+      rematchFrames(tets_, walks, seed_ + seed, stage_);
       std::vector<FieldDefect> defects = defectsOf(tets_, walks);
       if (seed > 0 && defects.size() >= fewest.size()) continue;
       fewest = std::move(defects);
@@ -263,7 +261,7 @@ class FramesMapper {
 
   Stage& stage_;
   const quantization::LabelledMesh& given_;
-  Attempt attempt_;
+  std::uint64_t seed_;
   FrameTets tets_;
 };
 
@@ -281,14 +279,21 @@ quantization::LabelledMesh read(const TetMesh& tets, Stage& stage) {
 TetMap mapFromFrames(const TetMesh& tets, double featureAngleInDegrees, Stage& stage) {
   const quantization::LabelledMesh given = read(tets, stage);
   std::optional<Error> first;
-  for (const Attempt& attempt : kAttempts) {
-    if (attempt.isRefined && tets.tets.size() > kMostRefined) continue;
-    try {
-      return FramesMapper(given, featureAngleInDegrees, attempt, stage).run();
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::TransitionResidual && error.code() != ErrorCode::FlippedTet)
-        throw;
-      if (!first) first = error;
+  bool mayBeTooCoarse = false;
+  for (const bool isRefined : {false, true}) {
+    if (isRefined && (!mayBeTooCoarse || tets.tets.size() > kMostRefined)) break;
+    const FrameTets field =
+        tetsWithField(given.input.view, featureAngleInDegrees, isRefined, stage);
+    for (const std::uint64_t seed : kSeeds) {
+      if (isRefined && seed != kSeeds.front()) break;
+      try {
+        return FramesMapper(given, field, seed, stage).run();
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::TransitionResidual && error.code() != ErrorCode::FlippedTet)
+          throw;
+        mayBeTooCoarse |= error.code() == ErrorCode::FlippedTet;
+        if (!first) first = error;
+      }
     }
   }
   throw Error(*first);

@@ -25,11 +25,6 @@ class FrameTets {
  public:
   /// @param mesh  a manifold of positive tets
   FrameTets(TetMesh mesh, double featureAngleInDegrees, Stage& stage);
-  FrameTets(const FrameTets&) = delete;
-  FrameTets& operator=(const FrameTets&) = delete;
-  FrameTets(FrameTets&&) = default;
-  FrameTets& operator=(FrameTets&&) = default;
-  ~FrameTets() = default;
 
   [[nodiscard]] const TetMesh& mesh() const noexcept { return mesh_; }
   [[nodiscard]] const adjacency::TetTopology& topology() const noexcept { return topology_; }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 #include <shape/label_check.hpp>
 
@@ -32,7 +33,13 @@ LabelCheck::LabelCheck(const Surface& surface, const LabelCosts& costs)
       costs_(costs),
       chartOf_(surface.triangleCount()),
       borderCount_(surface.pointCount),
-      isDone_(surface.tails.size()) {}
+      isDone_(surface.tails.size()) {
+  std::vector<bool> isSeen(surface.pointCount);
+  for (Side side = 0; side < surface.tails.size(); ++side) {
+    if (!isSeen[surface.tails[side]]) sideAt_.push_back(side);
+    isSeen[surface.tails[side]] = true;
+  }
+}
 
 void LabelCheck::reset() {
   for (const Side border : borders_) {
@@ -40,6 +47,8 @@ void LabelCheck::reset() {
     isDone_[border] = false;
   }
   borders_.clear();
+  loops_.clear();
+  pieces_.clear();
 }
 
 void LabelCheck::visitTriangles(const Labels& labels, Verdict& verdict) {
@@ -99,6 +108,9 @@ void LabelCheck::visitCorners(Verdict& verdict) {
     } else {
       ++verdict.report.corners;  // three times
     }
+    const double cost = costs_.ofCorner(Surface::triangleOf(border));
+    verdict.energy += cost / 3;
+    if (cost > 0) verdict.places.push_back(Surface::triangleOf(border));
   }
   verdict.report.corners /= 3;
   std::sort(seen.begin(), seen.end());
@@ -121,27 +133,40 @@ void LabelCheck::walkLoop(const Labels& labels, Side first) {
   } while (side != first);
 }
 
-std::vector<LabelCheck::Piece> LabelCheck::pieces() const {
-  std::vector<Piece> pieces;
-  for (std::size_t i = 0; i < loop_.size(); ++i) {
+/// Those of the loop, none if it has no corners.
+void LabelCheck::addPieces() {
+  const std::size_t before = pieces_.size();
+  const std::size_t size = loop_.size();
+  const auto chartBeyond = [&](std::size_t i) {
+    return chartOf_[surface_.beyond(loop_[i % size])];
+  };
+  for (std::size_t i = 0; i < size; ++i) {
     if (borderCount_[surface_.tails[loop_[i]]] < 3) continue;
-    if (!pieces.empty()) pieces.back().end = i;
-    pieces.push_back({i, 0});
+    if (pieces_.size() > before) pieces_.back().end = i;
+    pieces_.push_back({.begin = i, .end = 0, .first = loop_[i]});
   }
-  if (pieces.empty()) return {{0, loop_.size()}};
-  pieces.back().end = pieces.front().begin + loop_.size();
-  return pieces;
+  if (pieces_.size() == before) return;
+  pieces_.back().end = pieces_[before].begin + size;
+  for (std::size_t i = before; i < pieces_.size(); ++i) {
+    pieces_[i].planes = {chartBeyond(pieces_[i].begin + size - 1), chartBeyond(pieces_[i].end)};
+  }
 }
 
-/// @return where it runs, of length 1; 0 between opposite labels
-Vec3 LabelCheck::visitPiece(const Labels& labels, const Piece& piece, Verdict& verdict) {
-  const Side first = loop_[piece.begin];
-  const lattice::Direction here = labels[Surface::triangleOf(first)];
-  const lattice::Direction beyond = labels[surface_.beyond(first)];
-  if (lattice::axisOf(here) == lattice::axisOf(beyond)) return {};
+/// Where it runs, and where back.
+void LabelCheck::visitPiece(const Labels& labels, Piece& piece, Verdict& verdict) {
+  const lattice::Direction here = labels[Surface::triangleOf(piece.first)];
+  const lattice::Direction beyond = labels[surface_.beyond(piece.first)];
+  piece.hasDirection = lattice::axisOf(here) != lattice::axisOf(beyond);
+  if (!piece.hasDirection) return;
   const auto axis = static_cast<std::size_t>(3 - lattice::axisOf(here) - lattice::axisOf(beyond));
   // The same border is seen from both sides.
-  const bool counts = chartOf_[Surface::triangleOf(first)] < chartOf_[surface_.beyond(first)];
+  const bool counts =
+      chartOf_[Surface::triangleOf(piece.first)] < chartOf_[surface_.beyond(piece.first)];
+  const auto turnBack = [&](Side side) {
+    if (!counts) return;
+    ++verdict.report.turningPoints;
+    verdict.places.push_back(Surface::triangleOf(side));
+  };
   double x = 0;
   double extreme = 0;  // farthest in the direction of the run, as long as there is one
   double low = 0;
@@ -162,54 +187,150 @@ Vec3 LabelCheck::visitPiece(const Labels& labels, const Piece& piece, Verdict& v
     } else if (std::abs(x - extreme) > noise) {
       run = -run;
       extreme = x;
-      if (!counts) continue;
-      ++verdict.report.turningPoints;
-      verdict.places.push_back(Surface::triangleOf(side));
+      turnBack(side);
     }
   }
-  Vec3 direction{};
-  direction[axis] = x > 0 ? 1 : -1;
-  return direction;
+  if (piece.planes[0] == piece.planes[1]) turnBack(piece.first);
+  piece.rise = x;
 }
 
 void LabelCheck::visitLoop(const Labels& labels, Verdict& verdict) {
   const Index triangle = Surface::triangleOf(loop_.front());
-  Chart& chart = charts_[chartOf_[triangle]];
-  ++chart.loops;
-  const std::vector<Piece> all = pieces();
-  const bool hasCorners = borderCount_[surface_.tails[loop_[all.front().begin]]] >= 3;
-  const std::size_t corners = hasCorners ? all.size() : 0;
+  const Index chart = chartOf_[triangle];
+  ++charts_[chart].loops;
+  const std::size_t before = pieces_.size();
+  addPieces();
+  const std::size_t corners = pieces_.size() - before;
   if (corners < 4) {
     // The fewer, the worse: a step towards four is to pay off.
     verdict.report.badLoops += corners < 1 ? 3 : corners < 2 ? 2 : 1;
-    chart.isBad = true;
+    charts_[chart].isBad = true;
     verdict.places.push_back(triangle);
     verdict.places.push_back(Surface::triangleOf(loop_[loop_.size() / 2]));
   }
   if (corners == 0) return;
-  std::vector<Vec3> directions;
-  directions.reserve(all.size());
-  for (const Piece& piece : all) directions.push_back(visitPiece(labels, piece, verdict));
+  for (std::size_t i = before; i < pieces_.size(); ++i) visitPiece(labels, pieces_[i], verdict);
+  loops_.push_back({chart, before, pieces_.size()});
+}
+
+/// All pieces between two planes run from the lower to the upper one, or back: whichever their
+/// places in space say together.
+void LabelCheck::setDirections(const Labels& labels) {
+  const auto key = [](const Piece& piece) { return std::minmax(piece.planes[0], piece.planes[1]); };
+  std::vector<std::size_t> order(pieces_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return key(pieces_[a]) < key(pieces_[b]); });
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin;
+    double rise = 0;
+    for (; end < order.size() && key(pieces_[order[end]]) == key(pieces_[order[begin]]); ++end) {
+      const Piece& piece = pieces_[order[end]];
+      rise += piece.planes[0] < piece.planes[1] ? piece.rise : -piece.rise;
+    }
+    for (; begin < end; ++begin) {
+      Piece& piece = pieces_[order[begin]];
+      if (!piece.hasDirection) continue;
+      const int axis = 3 - lattice::axisOf(labels[Surface::triangleOf(piece.first)]) -
+                       lattice::axisOf(labels[surface_.beyond(piece.first)]);
+      const bool isUpwards = (piece.planes[0] < piece.planes[1]) == (rise > 0);
+      piece.direction = lattice::direction(axis, isUpwards ? 1 : -1);
+    }
+  }
+}
+
+void LabelCheck::visitTurns(const Labels& labels, const Loop& loop, Verdict& verdict) {
+  Chart& chart = charts_[loop.chart];
   int turns = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Vec3& before = directions[(i + all.size() - 1) % all.size()];
-    turns += static_cast<int>(std::lround(cosine(cross(before, directions[i]), labels[triangle])));
+  const Piece* before = &pieces_[loop.end - 1];
+  for (std::size_t i = loop.begin; i < loop.end; ++i) {
+    const Piece& piece = pieces_[i];
+    if (before->hasDirection && piece.hasDirection &&
+        lattice::axisOf(before->direction) != lattice::axisOf(piece.direction)) {
+      const bool isLeft = lattice::cross(before->direction, piece.direction) == labels[chart.first];
+      turns += isLeft ? 1 : -1;
+    }
+    before = &piece;
   }
   chart.turns += turns;
-  if (corners < 4 || std::abs(turns) == 4) return;
+  if (loop.end - loop.begin < 4 || std::abs(turns) == 4) return;
   ++verdict.report.wrongTurns;
   chart.isBad = true;
-  for (const Piece& piece : all) verdict.places.push_back(Surface::triangleOf(loop_[piece.begin]));
+  addPlaces(loop, verdict);
+}
+
+void LabelCheck::addPlaces(const Loop& loop, Verdict& verdict) const {
+  for (std::size_t i = loop.begin; i < loop.end; ++i) {
+    verdict.places.push_back(Surface::triangleOf(pieces_[i].first));
+  }
+}
+
+/// Around a corner of three charts: seen from outside, their normals are a right-handed system or a
+/// left-handed one. In the former, all edges run to where the inside of the polycube is along their
+/// axis, or none; in the latter, one or two.
+void LabelCheck::visitRoom(const Labels& labels, Verdict& verdict) {
+  struct Edge {
+    Index corner;
+    Index triangle;
+    bool isRightHanded;
+    bool leavesInside;
+  };
+  std::vector<Edge> edges;
+  for (const Piece& piece : pieces_) {
+    const Index corner = surface_.tails[piece.first];
+    if (borderCount_[corner] != 3 || !piece.hasDirection) continue;
+    const Index left = Surface::triangleOf(piece.first);
+    const lattice::Direction normal =
+        lattice::cross(labels[surface_.beyond(piece.first)], labels[left]);
+    const lattice::Direction third = labels[charts_[piece.planes[0]].first];
+    edges.push_back({corner, left, normal == third, piece.direction == lattice::opposite(third)});
+  }
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const Edge& a, const Edge& b) { return a.corner < b.corner; });
+  for (std::size_t i = 0; i + 3 <= edges.size();) {
+    if (edges[i].corner != edges[i + 2].corner) {  // opposite labels meet there
+      ++i;
+      continue;
+    }
+    const int inside =
+        edges[i].leavesInside + edges[i + 1].leavesInside + edges[i + 2].leavesInside;
+    if (edges[i].isRightHanded != (inside % 3 == 0)) {
+      ++verdict.report.badCorners;
+      verdict.places.push_back(edges[i].triangle);
+    }
+    i += 3;
+  }
+}
+
+/// Twice vertices - edges + triangles. Vertices and edges of borders are as many.
+void LabelCheck::setCharacteristics() {
+  for (const Index chart : chartOf_) --charts_[chart].twiceCharacteristic;
+  for (const Side border : borders_) {
+    ++charts_[chartOf_[Surface::triangleOf(border)]].twiceCharacteristic;
+  }
+  for (const Side side : sideAt_) {
+    if (borderCount_[surface_.tails[side]] > 0) continue;
+    charts_[chartOf_[Surface::triangleOf(side)]].twiceCharacteristic += 2;
+  }
 }
 
 void LabelCheck::visitCharts(Verdict& verdict) const {
-  for (const Chart& chart : charts_) {
+  for (Index i = 0; i < charts_.size(); ++i) {
+    const Chart& chart = charts_[i];
+    const std::int64_t handles = (2 * (2 - chart.loops) - chart.twiceCharacteristic) / 4;
     if (chart.loops == 0) {
       verdict.report.badLoops += 3;  // a closed surface that faces one way
       verdict.places.push_back(chart.first);
+    } else if (handles > 0) {
+      verdict.report.wrongTurns += static_cast<std::uint64_t>(handles);
+      for (Index t = 0; t < chartOf_.size(); ++t) {
+        if (chartOf_[t] == i) verdict.places.push_back(t);
+      }
     } else if (!chart.isBad && chart.turns != 4 * (2 - chart.loops)) {
       ++verdict.report.wrongTurns;
-      verdict.places.push_back(chart.first);
+      for (const Loop& loop : loops_) {
+        if (loop.chart == i) addPlaces(loop, verdict);
+      }
     }
   }
 }
@@ -226,6 +347,10 @@ Verdict LabelCheck::operator()(const Labels& labels) {
     walkLoop(labels, border);
     visitLoop(labels, verdict);
   }
+  setDirections(labels);
+  for (const Loop& loop : loops_) visitTurns(labels, loop, verdict);
+  visitRoom(labels, verdict);
+  setCharacteristics();
   visitCharts(verdict);
   verdict.energy = energyOf(verdict.report, verdict.energy);
   return verdict;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include <shape/label_costs.hpp>
@@ -18,9 +19,10 @@ struct Verdict {
 };
 
 /// Each face of a polycube is bounded by loops of at least four edges, which turn by four right
-/// angles; three faces meet in a corner, never opposite ones at an edge; and edges run along an
-/// axis without turning back. (Sufficient conditions are not known: Sokolov, Ray 2015. A chart of a
-/// higher genus than a disk with holes is none either.)
+/// angles; three faces meet in a corner, never opposite ones at an edge; edges run along an axis
+/// without turning back, and two that connect the same planes in the same order; and no faces
+/// overlap around a corner. A face is a disk with holes. (Sufficient conditions are not known:
+/// Sokolov, Ray 2015.)
 class LabelCheck {
  public:
   LabelCheck(const Surface& surface, const LabelCosts& costs);
@@ -30,8 +32,18 @@ class LabelCheck {
  private:
   /// Of a loop around a chart, from one corner to the next.
   struct Piece {
-    std::size_t begin;
-    std::size_t end;  ///< behind the last side; the loop goes round
+    std::size_t begin;  ///< in the loop
+    std::size_t end;    ///< behind the last side; the loop goes round
+    Side first = kNone;
+    std::array<Index, 2> planes{};  ///< the charts at its ends, in one of which each lies
+    double rise = 0;                ///< along its axis, in space
+    lattice::Direction direction = 0;
+    bool hasDirection = false;  ///< not between opposite labels
+  };
+  struct Loop {
+    Index chart;
+    std::size_t begin;  ///< of its pieces
+    std::size_t end;
   };
 
   void reset();
@@ -40,8 +52,13 @@ class LabelCheck {
   void visitCorners(Verdict& verdict);
   void walkLoop(const Labels& labels, Side first);
   void visitLoop(const Labels& labels, Verdict& verdict);
-  [[nodiscard]] std::vector<Piece> pieces() const;
-  [[nodiscard]] Vec3 visitPiece(const Labels& labels, const Piece& piece, Verdict& verdict);
+  void addPieces();
+  void visitPiece(const Labels& labels, Piece& piece, Verdict& verdict);
+  void setDirections(const Labels& labels);
+  void addPlaces(const Loop& loop, Verdict& verdict) const;
+  void visitTurns(const Labels& labels, const Loop& loop, Verdict& verdict);
+  void visitRoom(const Labels& labels, Verdict& verdict);
+  void setCharacteristics();
   void visitCharts(Verdict& verdict) const;
 
   const Surface& surface_;
@@ -52,13 +69,17 @@ class LabelCheck {
     int loops = 0;
     int turns = 0;  ///< right angles to the left, of all loops
     bool isBad = false;
+    std::int64_t twiceCharacteristic = 0;
   };
   std::vector<Chart> charts_;
   std::vector<Index> chartOf_;      ///< per triangle
+  std::vector<Side> sideAt_;        ///< one per vertex of the surface
   std::vector<Side> borders_;       ///< sides between labels
   std::vector<Index> borderCount_;  ///< per vertex
   std::vector<bool> isDone_;        ///< per side
   std::vector<Side> loop_;
+  std::vector<Loop> loops_;  ///< with corners
+  std::vector<Piece> pieces_;
   std::vector<Index> stack_;
 };
 

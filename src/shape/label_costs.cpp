@@ -20,8 +20,10 @@ double costBeyond(double distance, double area) {
 
 }  // namespace
 
-LabelCosts::LabelCosts(const Surface& surface) : surface_(surface) {
-  ofTriangles_.resize(surface.triangleCount());
+LabelCosts::LabelCosts(const Surface& surface)
+    : surface_(surface),
+      ofTriangles_(surface.triangleCount()),
+      ofCorners_(surface.triangleCount()) {
   for (Index t = 0; t < ofTriangles_.size(); ++t) {
     const double area = surface.areas[t] / surface.meanArea;
     for (lattice::Direction label = 0; label < lattice::kDirections; ++label) {
@@ -36,6 +38,15 @@ LabelCosts::LabelCosts(const Surface& surface) : surface_(surface) {
         1 - dot(surface.normals[Surface::triangleOf(side)], surface.normals[surface.beyond(side)]);
     weights_.push_back(surface.lengths[side] / surface.meanEdge *
                        std::max(kLeast, bell(turn, 0.25)));
+  }
+}
+
+void LabelCosts::avoidCornersAt(const Vec3& point) {
+  constexpr double kMost = 0.3;  // what a turning point costs
+  constexpr double kReach = 4;   // in mean edges
+  for (Index t = 0; t < ofCorners_.size(); ++t) {
+    const double distance = length(minus(surface_.centres[t], point)) / surface_.meanEdge;
+    ofCorners_[t] += kMost * std::max(0.0, 1 - distance / kReach);
   }
 }
 

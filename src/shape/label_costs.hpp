@@ -41,10 +41,15 @@ class LabelCosts {
   /// How natural a border is there: from 0 where the surface turns to the side's length.
   [[nodiscard]] double weight(Side side) const { return weights_[side]; }
 
+  /// From now on, corners between labels cost something near to a point where no map was found.
+  void avoidCornersAt(const Vec3& point);
+  [[nodiscard]] double ofCorner(Index triangle) const { return ofCorners_[triangle]; }
+
  private:
   const Surface& surface_;
   std::vector<std::array<std::int64_t, lattice::kDirections>> ofTriangles_;
-  std::vector<double> weights_;  ///< per side, in mean edges
+  std::vector<double> weights_;    ///< per side, in mean edges
+  std::vector<double> ofCorners_;  ///< per triangle
 };
 
 /// Costs are integers: so many are one mean area, or one mean edge on a flat place.

@@ -8,7 +8,6 @@ namespace hexhex::shape {
 
 namespace {
 
-constexpr std::uint64_t kMostMoves = 1500;
 /// Once labels are valid, the rest is shape: borders become shorter, triangles face their labels.
 constexpr std::uint64_t kMovesIfValid = 300;
 /// Then it goes on from the best that was found.
@@ -36,17 +35,17 @@ LabelSearch::LabelSearch(const Surface& surface, const LabelCosts& costs, Random
       random_(random),
       stamps_(surface.triangleCount()) {}
 
-CheckedLabels LabelSearch::improve(const Labels& start, Context& context) {
+CheckedLabels LabelSearch::improve(const Labels& start, std::uint64_t mostMoves, Context& context) {
   CheckedLabels current = {start, check_(start)};
   CheckedLabels best = current;
   std::uint64_t moves = 0;
-  while (moves < (isValid(best.verdict) ? kMovesIfValid : kMostMoves)) {
+  while (moves < (isValid(best.verdict) ? kMovesIfValid : mostMoves)) {
     context.throwIfCancelled();
     if (++moves % kMovesUntilReturn == 0) current = best;
     Labels labels = current.labels;
     move(labels, current.verdict);
     if (labels == current.labels) continue;
-    const double rest = 1 - static_cast<double>(moves) / static_cast<double>(kMostMoves);
+    const double rest = 1 - static_cast<double>(moves) / static_cast<double>(mostMoves);
     const double allowed =
         random_.share() < 0.3 ? -kTemperature * rest * rest * std::log(1 - random_.share()) : 0;
     Verdict verdict = check_(labels);

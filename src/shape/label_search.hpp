@@ -27,7 +27,9 @@ class LabelSearch {
   LabelSearch(const Surface& surface, const LabelCosts& costs, Random random);
 
   /// Until labels are valid and little is to be gained, or as long as it lasts.
-  [[nodiscard]] CheckedLabels improve(const Labels& start, Context& context);
+  /// @param mostMoves  if labels do not become valid
+  [[nodiscard]] CheckedLabels improve(const Labels& start, std::uint64_t mostMoves,
+                                      Context& context);
 
  private:
   void move(Labels& labels, const Verdict& verdict);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <span>
+#include <vector>
 
 #include <shape/labels.hpp>
 
@@ -17,6 +17,13 @@ constexpr int kSweeps = 3;
 /// Searches beside each other, from the best starts; and once more if all fail.
 constexpr std::size_t kLabelSearches = 2;
 constexpr int kLabelRounds = 2;
+/// Of a search.
+constexpr double kFewestMoves = 400;
+constexpr double kMostMoves = 1500;
+/// A move takes as long per triangle as a step of the solver for a part of a tet; all searches
+/// together, as long as a part of what is left.
+constexpr double kWorkOfMove = 0.5;
+constexpr double kShareOfMoves = 0.5;
 
 Labels nearestLabels(const Surface& surface) {
   constexpr double kTie = 1e-9;  // the first of several axes that are as near
@@ -61,24 +68,30 @@ std::vector<CheckedLabels> cutAll(const Surface& surface, const LabelCosts& cost
 
 }  // namespace
 
-std::vector<CheckedLabels> labelsOf(const Surface& surface, std::uint64_t seed, Stage& stage) {
-  const LabelCosts costs(surface);
+CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs, std::uint64_t seed,
+                       double& workLeft, Stage& stage) {
   stage.setTotal(kStarts.size() + kLabelSearches * kLabelRounds);
   std::vector<CheckedLabels> found = cutAll(surface, costs, seed, stage);
   sortByMerit(found);
+  const double workOfMove = kWorkOfMove * static_cast<double>(surface.triangleCount());
+  const double affordable = kShareOfMoves * workLeft / (workOfMove * kLabelSearches * kLabelRounds);
+  const auto mostMoves =
+      static_cast<std::uint64_t>(std::clamp(affordable, kFewestMoves, kMostMoves));
   for (std::size_t round = 0; round < kLabelRounds; ++round) {
     const std::size_t count = std::min(kLabelSearches, found.size());
     std::vector<CheckedLabels> better(count);
     parallelFor(stage, count, 1, [&](std::size_t i) {
       const Random random(seed, 16 + round * kLabelSearches + i);
       LabelSearch search(surface, costs, random);
-      better[i] = search.improve(found[i].labels, stage.context());
+      better[i] = search.improve(found[i].labels, mostMoves, stage.context());
     });
+    for (const CheckedLabels& each : better)
+      workLeft -= workOfMove * static_cast<double>(each.moves);
     found.insert(found.end(), better.begin(), better.end());
     sortByMerit(found);
     if (found.front().verdict.report.isValid()) break;
   }
-  return found;
+  return found.front();
 }
 
 }  // namespace hexhex::shape

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include <shape/label_search.hpp>
 
@@ -10,11 +9,12 @@
 
 namespace hexhex::shape {
 
-/// Valid ones first, those first that deform the object less; without repetitions. At least one.
+/// The best that are found: valid ones, if there are any, that deform the object the least.
 ///
 /// From cuts of the whole boundary with several degrees of compactness, the best go on by changes
 /// in small places, each with random numbers of its own: the same for any number of threads.
-[[nodiscard]] std::vector<CheckedLabels> labelsOf(const Surface& surface, std::uint64_t seed,
-                                                  Stage& stage);
+/// @param[in,out] workLeft  as of quantization::mapFromLabels()
+[[nodiscard]] CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs,
+                                     std::uint64_t seed, double& workLeft, Stage& stage);
 
 }  // namespace hexhex::shape

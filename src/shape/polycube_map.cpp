@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <quantize/polycube/polycube.hpp>
 #include <shape/labels.hpp>
 #include <shape/polycube_map.hpp>
 #include <shape/rotation.hpp>
@@ -17,8 +18,12 @@
 namespace hexhex::shape {
 namespace {
 
-/// Labels of which a map is tried, one after the other.
-constexpr std::size_t kMostTries = 2;
+/// Labels of which a map is tried, one after the other, until so much is spent on all together,
+/// about twenty seconds: see quantization::mapFromLabels().
+constexpr std::uint64_t kMostAttempts = 6;
+constexpr double kMostWork = 4e7;
+/// At least so many steps of the solver, however many tets there are.
+constexpr double kStepsOfAll = 300;
 
 std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std::size_t tets) {
   std::vector<FaceFlags> flags(tets, FaceFlags{-1, -1, -1, -1});
@@ -38,7 +43,7 @@ std::string faultsOf(const LabelReport& report) {
     text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
   };
   add(report.badLoops, "too few corners around charts");
-  add(report.badCorners, "corners of too many charts");
+  add(report.badCorners, "corners of too many charts, or without room");
   add(report.oppositeEdges, "edges between opposite labels");
   add(report.turningPoints, "points where borders turn back");
   add(report.wrongTurns, "charts whose right angles do not add up");
@@ -55,39 +60,64 @@ std::string faultsOf(const LabelReport& report) {
               tets.givenPlace(problem.place()));
 }
 
-std::vector<CheckedLabels> label(PositiveTets& tets, Surface& surface, std::uint64_t seed,
-                                 ShapeReport& report, Context& context) {
+CheckedLabels label(const Surface& surface, const LabelCosts& costs, std::uint64_t seed,
+                    double& workLeft, Context& context) {
   Stage stage(context, "labelling");
-  report.rotation = bestRotation(surface, seed);
-  surface.turn(report.rotation);
-  tets.turn(report.rotation);
-  return labelsOf(surface, seed, stage);
+  return labelsOf(surface, costs, seed, workLeft, stage);
+}
+
+/// Where an error is.
+Vec3 pointAt(const TetMesh& mesh, const Place& place) {
+  std::vector<Index> vertices;
+  if (place.kind == PlaceKind::Vertex || place.kind == PlaceKind::Edge) {
+    vertices.push_back(static_cast<Index>(place.index));
+    if (place.kind == PlaceKind::Edge) vertices.push_back(static_cast<Index>(place.second));
+  } else {
+    vertices.assign(mesh.tets[place.index].begin(), mesh.tets[place.index].end());
+  }
+  Vec3 middle{};
+  for (const Index v : vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle[k] += mesh.points[v][k] / static_cast<double>(vertices.size());
+    }
+  }
+  return middle;
 }
 
 }  // namespace
 
 TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, ShapeReport& report,
                    Context& context) {
-  const std::vector<CheckedLabels> found = label(tets, surface, seed, report, context);
+  report.rotation = bestRotation(surface, seed);
+  surface.turn(report.rotation);
+  tets.turn(report.rotation);
+  LabelCosts costs(surface);
   std::optional<Error> problem;
-  for (std::size_t i = 0; i < std::min(kMostTries, found.size()); ++i) {
+  LabelReport best;
+  double workLeft = std::max(kMostWork, kStepsOfAll * static_cast<double>(tets.mesh().tets.size()));
+  // Most labels without a map lack it at a corner or two, near to where tets stay flipped.
+  for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
+    const CheckedLabels found = label(surface, costs, seed + attempt, workLeft, context);
     // What is not valid may still be good enough, but not beside what is and was not.
-    if (i > 0 && !found[i].verdict.report.isValid()) break;
-    report.labels = found[i].verdict.report;
-    report.labelMoves = found[i].moves;
+    if (problem && !found.verdict.report.isValid()) continue;
+    report.labels = found.verdict.report;
+    report.labelMoves = found.moves;
     try {
-      TetMap map = mapFromFlags(
-          tets.mesh(), flagsOf(surface, found[i].labels, tets.mesh().tets.size()), context);
+      TetMap map = quantization::mapFromLabels(
+          tets.mesh(), flagsOf(surface, found.labels, tets.mesh().tets.size()), workLeft, context);
       for (Vec3& point : map.points) point = turnedBack(report.rotation, point);
       return map;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::InvalidArgument && error.code() != ErrorCode::FlippedTet) {
         throw;
       }
-      if (!problem) problem = error;
+      costs.avoidCornersAt(pointAt(tets.mesh(), error.place()));
+      if (problem) continue;
+      problem = error;
+      best = found.verdict.report;
     }
   }
-  fail(*problem, tets, found.front().verdict.report);
+  fail(*problem, tets, best);
 }
 
 }  // namespace hexhex::shape

@@ -167,11 +167,13 @@ struct Solver::Parts {
         metric(laplacian(theProblem, energy.uses()), kMostFactored, theStage.context()) {}
 
   /// Untangles x. Ends at the best place that was seen.
-  End untangle(double epsilon, const Pace& pace, Vector& x, int& steps) {
+  End untangle(const Options& options, Vector& x, int& steps) {
+    const Pace& pace = options.isPatient ? kPatient : kQuick;
+    double epsilon = options.epsilon;
     std::size_t fewest = energy.at(x, epsilon).flipped;
     Vector best = x;
     std::vector<std::size_t> history = {fewest};
-    while (fewest > 0 && !isTooSlow(history, pace.patience)) {
+    while (fewest > 0 && steps < options.mostSteps && !isTooSlow(history, pace.patience)) {
       Lbfgs descent(energy, metric, x, epsilon);
       const double before = descent.height().energy;
       steps += descendRound(descent, x);
@@ -233,8 +235,7 @@ Result Solver::run(const Options& options) {
   Problem& problem = parts_->problem;
   Vector x = Eigen::Map<const Vector>(problem.x.data(), std::ssize(problem.x));
   Result result;
-  result.end =
-      parts_->untangle(options.epsilon, options.isPatient ? kPatient : kQuick, x, result.steps);
+  result.end = parts_->untangle(options, x, result.steps);
   if (result.end == End::Positive) result.steps += parts_->polish(options.polishing, x);
   problem.x.assign(x.begin(), x.end());
   const Height height = parts_->energy.at(x, 0);

@@ -38,11 +38,14 @@ struct Options {
   /// Whether the penalty grows slowly, and flips may stay for longer: for maps of which nothing is
   /// fixed, whose parts have to find their places first. Takes up to three times as many steps.
   bool isPatient = false;
+  /// Of a round or two more, as it ends between rounds; without polishing.
+  int mostSteps = std::numeric_limits<int>::max();
 };
 
 enum class End : unsigned char {
   Positive,  ///< no element is flipped
   Stalled,   ///< there were hardly fewer flipped elements, or none fewer, over many steps
+             ///< or steps ran out
 };
 
 struct Result {

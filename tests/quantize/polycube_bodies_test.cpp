@@ -158,6 +158,17 @@ TEST(PolycubeBorders, PutPlanesIntoAnotherOrderWhereFacesOverlap) {
             turnsOf(notched(), asTheyAre));
 }
 
+TEST(PolycubeBorders, PutPlanesIntoTheOrderInSpaceWhereFacesTurnOtherwise) {
+  // The hole is inside out, and has room at all of its corners.
+  const auto isInHole = [](double x) { return x > 0.9 && x < 2.1; };
+  EXPECT_EQ(turnsOf(ring(),
+                    [&](const Vec3& p, int axis) {
+                      const std::int64_t at = asTheyAre(p, axis);
+                      return axis == 0 && isInHole(p[0]) && isInHole(p[1]) ? 6 - at : at;
+                    }),
+            turnsOf(ring(), asTheyAre));
+}
+
 TEST(PolycubeBorders, RefusePlanesThatLeaveNoRoom) {
   const Error flat = errorOf([] {
     static_cast<void>(turnsOf(

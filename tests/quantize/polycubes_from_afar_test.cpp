@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <quantize/polycube/polycube.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -226,6 +227,22 @@ TEST(PolycubesFromAfar, CanBeCancelledAtEachStep) {
               ErrorCode::Cancelled)
         << step;
   }
+}
+
+TEST(PolycubesFromAfar, SayWhatTheyTook) {
+  const Labelled ball =
+      block({1, 1, 1}).labelled(8, [](const Vec3& p) { return turned(ballOf(p), 1.2); });
+  const auto tets = static_cast<double>(ball.tets.tets.size());
+  std::vector<double> steps;
+  for (const double given : {1.0, 5e7}) {
+    Context context;
+    double left = given;
+    static_cast<void>(quantization::mapFromLabels(ball.tets, ball.flags, left, context));
+    steps.push_back((given - left) / tets);
+  }
+  EXPECT_GT(steps[0], 1);
+  EXPECT_LT(steps[0], 200);
+  EXPECT_LE(steps[0], steps[1]);
 }
 
 }  // namespace

@@ -131,6 +131,15 @@ TEST(BadParts, HaveTooManyTets) {
   expectRefusal(tets, ErrorCode::TooLarge, "longer edges");
 }
 
+TEST(BadParts, AreNotMappedForMoreCellsThanThereCanBe) {
+  Context context;
+  MeshOptions options;
+  options.quantize = {.cells = 1e12};
+  const Error error = errorOf([&] { static_cast<void>(meshFromTets(cube(2), options, context)); });
+  EXPECT_EQ(error.code(), ErrorCode::TooLarge);
+  EXPECT_TRUE(context.stageTimes().empty());
+}
+
 /// Each by itself: cells and boundary are those of both.
 TEST(BadParts, DoNotIncludeSeveralComponentsAndVoids) {
   const CubeBody two({3, 1, 1}, [](const Cell& c) { return c[0] != 1; });

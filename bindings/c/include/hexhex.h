@@ -1254,7 +1254,7 @@ typedef struct hexhex_shape_report {
   uint64_t charts;            /**< of a polycube, as the next eight: its faces */
   uint64_t corners;           /**< where three charts or more meet */
   uint64_t bad_loops;         /**< borders of charts with fewer than four corners, */
-  uint64_t bad_corners;       /**< corners of more than three charts, */
+  uint64_t bad_corners;       /**< of more than three charts, or without room for their faces, */
   uint64_t opposite_edges;    /**< edges of the mesh between opposite labels, */
   uint64_t turning_points;    /**< places where edges of the polycube would run back, */
   uint64_t wrong_turns;   /**< charts whose right angles do not add up: labels are valid without */

@@ -356,7 +356,7 @@ class ShapeReport:
     charts: int  #: of a polycube, as the next eight: its faces
     corners: int  #: where three charts or more meet
     bad_loops: int  #: borders of charts with fewer than four corners
-    bad_corners: int  #: of more than three charts
+    bad_corners: int  #: of more than three charts, or without room for their faces
     opposite_edges: int  #: edges of the mesh between opposite labels
     turning_points: int  #: where edges of the polycube would run back
     wrong_turns: int  #: charts whose right angles do not add up

@@ -71,14 +71,16 @@ void finish(const LabelledMesh& mesh, std::span<const PolycubeEdge> edges, BentT
 }  // namespace
 
 BentTets bendTets(const LabelledMesh& mesh, const PolycubeProblem& start,
-                  std::span<const PolycubeEdge> edges, bool fixPlanes, Stage& stage) {
+                  std::span<const PolycubeEdge> edges, bool fixPlanes, int mostSteps,
+                  Stage& stage) {
   BentTets bent{.problem = start, .flipped = {}, .isWound = false, .steps = 0};
   bent.problem.addBoundary(edges, kBoundaryWeight);
   if (fixPlanes) bent.problem.fixPlanes();
   untangle::Problem& problem = bent.problem.solved();
   untangle::Solver solver(problem, stage);
   problem.pull = kPull;
-  untangle::Result result = solver.run({.epsilon = 1, .polishing = 0, .isPatient = true});
+  untangle::Result result =
+      solver.run({.epsilon = 1, .polishing = 0, .isPatient = true, .mostSteps = mostSteps});
   bent.steps = result.steps;
   bent.flipped = std::move(result.flipped);
   if (!bent.flipped.empty()) return bent;

@@ -26,8 +26,10 @@ struct BentTets {
 /// Objects need one or the other: planes that stay, or move with the tets. Whether a map is good is
 /// decided exactly, after its coordinates have been rounded, and without the solver.
 /// @param start  with tets only, near to where the rotations turn them
+/// @param mostSteps  of the solver, until nothing is flipped, more or less
 [[nodiscard]] BentTets bendTets(const LabelledMesh& mesh, const PolycubeProblem& start,
-                                std::span<const PolycubeEdge> edges, bool fixPlanes, Stage& stage);
+                                std::span<const PolycubeEdge> edges, bool fixPlanes, int mostSteps,
+                                Stage& stage);
 
 /// Of the corners of tets.
 [[nodiscard]] std::vector<TetParameters> parametersOf(const LabelledMesh& mesh,

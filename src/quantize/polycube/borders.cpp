@@ -163,9 +163,18 @@ std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) 
   return list;
 }
 
-void PolycubeBorders::turnOver(Gap& gap, std::vector<lattice::Direction>& directions) const {
-  gap.upwards.swap(gap.downwards);
-  setDirections(gap, directions);
+/// Upwards is where most of its edges run upwards in space.
+void PolycubeBorders::turnAsInSpace(Gap& gap) const {
+  const auto rise = [this](const std::vector<BoundarySide>& borders) {
+    double sum = 0;
+    for (const BoundarySide side : borders) {
+      const auto axis = static_cast<std::size_t>(axisAlong(side));
+      const auto& points = mesh_.input.view.points;
+      sum += points[sides_.head(side)][axis] - points[sides_.tail(side)][axis];
+    }
+    return sum;
+  };
+  if (rise(gap.upwards) < rise(gap.downwards)) gap.upwards.swap(gap.downwards);
 }
 
 void PolycubeBorders::setDirections(const Gap& gap,
@@ -196,20 +205,23 @@ BoundarySide PolycubeBorders::cornerAt(BoundarySide border) const {
 /// Planes that are near to each other may be in the wrong order, as a map that turns towards labels
 /// need not be injective. Two of them change places, the nearest ones first, where faces overlap
 /// around fewer corners then.
-std::vector<lattice::Direction> PolycubeBorders::directions(const PlaneAt& planeAt) const {
+std::vector<lattice::Direction> PolycubeBorders::directions(std::vector<Gap> gaps) const {
   std::vector<lattice::Direction> directions(sides_.size());
-  std::vector<Gap> all = gaps(planeAt);
-  for (const Gap& gap : all) setDirections(gap, directions);
+  for (const Gap& gap : gaps) setDirections(gap, directions);
+  const auto turnOver = [&](Gap& gap) {
+    gap.upwards.swap(gap.downwards);
+    setDirections(gap, directions);
+  };
   const auto improves = [&](Gap& gap) {
     const std::size_t before = countOverlaps(gap, directions);
     if (before == 0) return false;
-    turnOver(gap, directions);
+    turnOver(gap);
     if (countOverlaps(gap, directions) < before) return true;
-    turnOver(gap, directions);
+    turnOver(gap);
     return false;
   };
   // It ends, as there are fewer such corners each time.
-  while (std::any_of(all.begin(), all.end(), improves)) {
+  while (std::any_of(gaps.begin(), gaps.end(), improves)) {
   }
   return directions;
 }
@@ -248,7 +260,8 @@ void PolycubeBorders::requireRoom(BoundarySide first,
 }
 
 /// Quarter turns to the left around a flat face: four times its Euler characteristic.
-void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& directions) const {
+std::optional<PolycubeBorders::Turns> PolycubeBorders::wrongTurns(
+    const std::vector<lattice::Direction>& directions) const {
   DisjointSets faces(sides_.size() / 3);
   for (BoundarySide side = 0; side < sides_.size(); ++side) {
     if (!isBorder(side)) faces.unite(triangleOf(side), triangleOf(sides_.twin(side)));
@@ -274,21 +287,42 @@ void PolycubeBorders::requireFlatFaces(const std::vector<lattice::Direction>& di
   }
   for (BoundarySide side = 0; side < sides_.size(); side += 3) {
     const Index face = faces.find(triangleOf(side));
-    if (turns[face] == 2 * twiceCharacteristic[face]) continue;
-    refusePlanes("the border of a face with the label " + nameOf(label(side)) + " makes " +
-                     std::to_string(turns[face]) + " quarter turns to the left, and not " +
-                     std::to_string(2 * twiceCharacteristic[face]) +
-                     ", with planes where a map turned towards the labels puts them.",
-                 mesh_.placeOf(sides_.face(side)));
+    const int expected = 2 * twiceCharacteristic[face];
+    if (turns[face] != expected) return Turns{side, turns[face], expected};
   }
+  return std::nullopt;
+}
+
+bool PolycubeBorders::isPolycube(const std::vector<lattice::Direction>& directions) const {
+  return std::all_of(borders_.begin(), borders_.end(),
+                     [&](BoundarySide border) {
+                       return !isCorner(sides_.tail(border)) || hasRoom(border, directions);
+                     }) &&
+         !wrongTurns(directions);
+}
+
+void PolycubeBorders::requirePolycube(const std::vector<lattice::Direction>& directions) const {
+  for (const BoundarySide border : borders_) {
+    if (isCorner(sides_.tail(border))) requireRoom(border, directions);
+  }
+  const std::optional<Turns> wrong = wrongTurns(directions);
+  if (!wrong) return;
+  refusePlanes("the border of a face with the label " + nameOf(label(wrong->at)) + " makes " +
+                   std::to_string(wrong->found) + " quarter turns to the left, and not " +
+                   std::to_string(wrong->expected) +
+                   ", with planes where a map turned towards the labels puts them.",
+               mesh_.placeOf(sides_.face(wrong->at)));
 }
 
 std::vector<PolycubeEdge> PolycubeBorders::edges(const PlaneAt& planeAt) const {
-  const std::vector<lattice::Direction> along = directions(planeAt);
-  for (const BoundarySide border : borders_) {
-    if (isCorner(sides_.tail(border))) requireRoom(border, along);
+  std::vector<Gap> all = gaps(planeAt);
+  std::vector<lattice::Direction> along = directions(all);
+  if (!isPolycube(along)) {
+    for (Gap& gap : all) turnAsInSpace(gap);
+    const std::vector<lattice::Direction> inSpace = directions(std::move(all));
+    if (!isPolycube(inSpace)) requirePolycube(along);
+    along = inSpace;
   }
-  requireFlatFaces(along);
   std::vector<PolycubeEdge> edges;
   for (const BoundarySide border : borders_) {
     if (sides_.head(border) < sides_.tail(border)) continue;  // once from each side

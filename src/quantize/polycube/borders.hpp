@@ -11,6 +11,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <quantize/complex/wall_mesh.hpp>
@@ -41,7 +42,7 @@ class PolycubeBorders {
   using PlaneAt = std::function<std::int64_t(int axis, Index vertex)>;
 
   /// How the edges of the polycube run in maps with such planes, or with planes in another order if
-  /// faces overlap around corners otherwise.
+  /// faces overlap around corners otherwise: the one that edges have in space, perhaps.
   /// @throws Error FlippedTet where no map with such planes is injective
   [[nodiscard]] std::vector<PolycubeEdge> edges(const PlaneAt& planeAt) const;
 
@@ -75,7 +76,6 @@ class PolycubeBorders {
   /// The narrowest first.
   [[nodiscard]] std::vector<Gap> gaps(const PlaneAt& planeAt) const;
   void setDirections(const Gap& gap, std::vector<lattice::Direction>& directions) const;
-  void turnOver(Gap& gap, std::vector<lattice::Direction>& directions) const;
   [[nodiscard]] BoundarySide cornerAt(BoundarySide border) const;
   /// Corners at its ends around which faces overlap.
   [[nodiscard]] std::size_t countOverlaps(const Gap& gap,
@@ -83,9 +83,18 @@ class PolycubeBorders {
   [[nodiscard]] bool hasRoom(BoundarySide first,
                              const std::vector<lattice::Direction>& directions) const;
   /// Per side of a border: where it runs.
-  [[nodiscard]] std::vector<lattice::Direction> directions(const PlaneAt& planeAt) const;
+  [[nodiscard]] std::vector<lattice::Direction> directions(std::vector<Gap> gaps) const;
+  void turnAsInSpace(Gap& gap) const;
   void requireRoom(BoundarySide first, const std::vector<lattice::Direction>& directions) const;
-  void requireFlatFaces(const std::vector<lattice::Direction>& directions) const;
+  struct Turns {
+    BoundarySide at;  ///< of a face
+    int found;        ///< quarters to the left
+    int expected;
+  };
+  [[nodiscard]] std::optional<Turns> wrongTurns(
+      const std::vector<lattice::Direction>& directions) const;
+  [[nodiscard]] bool isPolycube(const std::vector<lattice::Direction>& directions) const;
+  void requirePolycube(const std::vector<lattice::Direction>& directions) const;
 
   const LabelledMesh& mesh_;
   BoundarySides sides_;

@@ -10,6 +10,7 @@
 //    (polycube_bend, polycube_problem). What decides whether it gets there are boundary triangles
 //    and edges in its energy: tets alone do not see triangles that fold over in their plane.
 // 5. Where that fails, tets are refined, and all begins anew: from there, maps do not get better.
+//    Unless there are fewer flips then, it is the labels that have no map.
 #include <string>
 
 #include <hexhex/quantize.hpp>
@@ -18,12 +19,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <quantize/polycube/bend.hpp>
 #include <quantize/polycube/field.hpp>
+#include <quantize/polycube/polycube.hpp>
 #include <quantize/polycube/tets.hpp>
 #include <untangle/untangle.hpp>
 
@@ -37,8 +40,12 @@ namespace {
 
 /// Times at which tets are refined and all begins anew.
 constexpr int kMostRefinements = 3;
-/// It is not tried again after so many steps of the solver, times tets: a minute or two.
+/// Of the caller's labels, which are to have a map: steps of the solver times tets, a minute or
+/// two.
 constexpr double kMostWork = 5e7;
+/// At least so many steps, however many tets there are.
+constexpr double kStepsOfAll = 1000;
+constexpr double kMostSteps = 1e6;  // the solver gives up far earlier
 
 double scaleOf(const TetMapView& view) {
   double size = 0;
@@ -116,19 +123,27 @@ TetMap mapOf(const TetMapView& given, PolycubeTets tets, std::vector<TetParamete
 
 class PolycubeMaker {
  public:
-  PolycubeMaker(const TetMesh& tets, std::span<const FaceFlags> flags, Context& context)
+  PolycubeMaker(const TetMesh& tets, std::span<const FaceFlags> flags, double& workLeft,
+                Context& context)
       : context_(context),
+        mostWork_(workLeft),
+        workLeft_(workLeft),
         given_(read(tets, flags)),
         borders_(given_),
         scale_(scaleOf(given_.input.view)),
         tets_(polycubeTets(given_, scale_)) {}
 
   TetMap run() {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (int refinements = 0;; ++refinements) {
       makeRoom(tets_);
       std::optional<BentTets> best;
       if (bend(refinements < kMostRefinements, best)) break;
-      if (refinements == kMostRefinements || work_ > kMostWork) fail(*best, tets_);
+      const std::size_t flips = best->flipped.size();
+      if (refinements == kMostRefinements || workLeft_ <= 0 || flips >= fewest) {
+        fail(*best, tets_);
+      }
+      fewest = flips;
       refineAt(tets_, verticesAt(*best));
     }
     return mapOf(given_.input.view, std::move(tets_), std::move(parameters_), scale_);
@@ -155,9 +170,11 @@ class PolycubeMaker {
     const std::vector<PolycubeEdge> edges = PolycubeBorders(mesh_).edges(planeAt);
     Stage stage(context_, "untangling");
     for (const bool fixPlanes : {false, true}) {
-      if (fixPlanes && mayRefine && isFew(*best)) break;
-      BentTets bent = bendTets(mesh_, start, edges, fixPlanes, stage);
-      work_ += static_cast<double>(bent.steps) * static_cast<double>(tets_.flags.size());
+      if (fixPlanes && (workLeft_ <= 0 || (mayRefine && isFew(*best)))) break;
+      const auto tets = static_cast<double>(tets_.flags.size());
+      const int steps = static_cast<int>(std::clamp(workLeft_ / tets, 1.0, kMostSteps));
+      BentTets bent = bendTets(mesh_, start, edges, fixPlanes, steps, stage);
+      workLeft_ -= bent.steps * tets;
       announce(bent, fixPlanes);
       if (bent.flipped.empty()) {
         parameters_ = parametersOf(mesh_, bent.problem);
@@ -179,7 +196,7 @@ class PolycubeMaker {
     context_.report("untangling " + std::to_string(tets_.flags.size()) + " tets, planes " +
                         (fixPlanes ? "fixed: " : "free: ") + counted(bent.steps, "step") + ", " +
                         std::to_string(bent.flipped.size()) + " flips",
-                    std::min(1.0, work_ / kMostWork));
+                    std::min(1.0, 1 - workLeft_ / mostWork_));
   }
 
   /// Near to where the field turns tets to, flipped or not.
@@ -191,16 +208,28 @@ class PolycubeMaker {
   }
 
   Context& context_;
+  double mostWork_;
+  double& workLeft_;
   LabelledMesh given_;
   PolycubeBorders borders_;
   double scale_;
   PolycubeTets tets_;  ///< of points times the scale
   LabelledMesh mesh_;  ///< of these tets; what is bent refers to it
-  double work_ = 0;
   std::vector<TetParameters> parameters_;
 };
 
 }  // namespace
+
+TetMap mapFromLabels(const TetMesh& tets, std::span<const FaceFlags> flags, double& workLeft,
+                     Context& context) {
+  constexpr std::array<WorkStep, 3> kSteps = {{{"labels", 1}, {"planes", 2}, {"untangling", 6}}};
+  return inSteps(context, "mapFromFlags", kSteps, [&] {
+    TetMap map;
+    withThreads(context.threads(),
+                [&] { map = PolycubeMaker(tets, flags, workLeft, context).run(); });
+    return map;
+  });
+}
 
 }  // namespace hexhex::quantization
 #endif
@@ -210,13 +239,9 @@ namespace hexhex {
 #if defined(HEXHEX_HAS_QUANTIZE)
 
 TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags, Context& context) {
-  constexpr std::array<WorkStep, 3> kSteps = {{{"labels", 1}, {"planes", 2}, {"untangling", 6}}};
-  return inSteps(context, "mapFromFlags", kSteps, [&] {
-    TetMap map;
-    withThreads(context.threads(),
-                [&] { map = quantization::PolycubeMaker(tets, flags, context).run(); });
-    return map;
-  });
+  double work = std::max(quantization::kMostWork,
+                         quantization::kStepsOfAll * static_cast<double>(tets.tets.size()));
+  return quantization::mapFromLabels(tets, flags, work, context);
 }
 #else
 TetMap mapFromFlags(const TetMesh& /*tets*/, std::span<const FaceFlags> /*flags*/,
