@@ -377,7 +377,9 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
 }
 
 void Sweeps::raiseWorst(double target, double slack) {
-  if (cellsThat([&](double quality) { return quality < target; }).size() > kMostFalling) {
+  const std::size_t low = cellsThat([&](double quality) { return quality < target; }).size();
+  if (low == 0) return;
+  if (low > kMostFalling) {
     raise({target, false, kPrice}, slack);
     return;
   }
