@@ -408,6 +408,10 @@ TEST(ForeignFiles, MistakesInUniversalFilesAreToldWithTheirLine) {
                 "element 9 names node 90, which is in no data set of nodes");
   expectFailure(replaced(good, "80 1 1 11", "70 1 1 11"), ErrorCode::FileSyntax,
                 "two nodes have the number 70");
+  std::string nodes27;
+  for (int i = 0; i < 27; ++i) nodes27 += " 10";
+  expectFailure(replaced(good, "115 2 1 7 8\n10 20 30 40 50 60 70 80", "115 2 1 7 27\n" + nodes27),
+                ErrorCode::FileUnsupported, "type 115 with 27 nodes are not known");
   expectFailure(replaced(good, "9 115 2 1 7 8", "9 115 2 1 7 99"), ErrorCode::FileSyntax,
                 "element 9 has 99 nodes");
   expectFailure(replaced(good, "9 115 2 1 7 8", "9 115 2 1 7 7"), ErrorCode::FileUnsupported,

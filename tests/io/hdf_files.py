@@ -7,8 +7,8 @@ KIND is exodus: by the library of NetCDF (netCDF4), a file of NetCDF-4 with name
 and node sets, compressed as SEACAS does; exodus27: a block of HEX27; exodus-lies: a block whose
 elements are not in the file. cgns: by h5py, a file as the CGNS library maps it to HDF5: two cubes with
 conditions; cgns-mixed: in one section of all; cgns20, cgns27: a cell of order 2; cgns-zones, cgns-apart:
-a zone for each cube, with and without a connection; cgns-structured, cgns-beyond: to be refused. Exit
-code 77: a package is not installed.
+a zone for each cube, with and without a connection; cgns-structured, cgns-beyond: to be refused, as
+cgns-link, cgns-raw, cgns-virtual, whose coordinates are in another file, FILE.other. Exit code 77: a package is not installed.
 """
 
 import sys
@@ -19,6 +19,9 @@ CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1,
 def write_exodus(file, kind):
     import netCDF4
     import numpy
+
+    def letters(name):
+        return numpy.frombuffer(name.encode().ljust(33, b"\0"), dtype="S1")
 
     data = netCDF4.Dataset(file, "w", format="NETCDF4")
     # Two cubes beside each other along x, and a shell in between; the numbers of blocks are not in order.
@@ -43,7 +46,7 @@ def write_exodus(file, kind):
     data.createVariable("eb_prop1", "i4", ("num_el_blk",))[:] = [30, 20][: len(cells)]
     names = data.createVariable("eb_names", "S1", ("num_el_blk", "len_name"))
     for i, name in enumerate(["steel", "region_7"][: len(cells)]):
-        names[i, :] = netCDF4.stringtochar(numpy.array(name, "S33"))
+        names[i, :] = letters(name)
     for i, cell in enumerate(cells):
         data.createDimension(f"num_el_in_blk{i + 1}", 1)
         data.createDimension(f"num_nod_per_el{i + 1}", len(cell))
@@ -55,7 +58,7 @@ def write_exodus(file, kind):
     data.createDimension("num_side_sets", 1)
     data.createVariable("ss_prop1", "i4", ("num_side_sets",))[:] = [5]
     names = data.createVariable("ss_names", "S1", ("num_side_sets", "len_name"))
-    names[0, :] = netCDF4.stringtochar(numpy.array("inlet", "S33"))
+    names[0, :] = letters("inlet")
     data.createDimension("num_side_ss1", 1)
     data.createVariable("elem_ss1", "i4", ("num_side_ss1",))[:] = [1]
     data.createVariable("side_ss1", "i4", ("num_side_ss1",))[:] = [4]  # x = 0
@@ -148,6 +151,29 @@ def write_cgns(file, kind):
             condition(conditions, "BC-1", "FaceCenter", points=[1], family="inflow")
             condition(conditions, "BC-2", "FaceCenter", span=[2, 2])
             condition(conditions, "BC-3", "Vertex", points=[1, 2, 3])
+            put_into_another_file(data, "Base/Zone/GridCoordinates/CoordinateX/ data", kind)
+
+
+def put_into_another_file(data, path, kind):
+    import h5py
+
+    other = data.filename + ".other"
+    if kind not in ("cgns-link", "cgns-raw", "cgns-virtual"):
+        return
+    values = data[path][...]
+    del data[path]
+    if kind == "cgns-raw":
+        values.tofile(other)
+        data.create_dataset(path, shape=values.shape, dtype="f8", external=[(other, 0, values.nbytes)])
+        return
+    with h5py.File(other, "w") as file:
+        file["values"] = values
+    if kind == "cgns-link":
+        data[path] = h5py.ExternalLink(other, "values")
+    else:
+        layout = h5py.VirtualLayout(shape=values.shape, dtype="f8")
+        layout[:] = h5py.VirtualSource(other, "values", shape=values.shape)
+        data.create_virtual_dataset(path, layout)
 
 
 if __name__ == "__main__":

@@ -114,6 +114,18 @@ TEST(HdfFiles, CgnsWithConditionsAndFamilies) {
   }
 }
 
+TEST(HdfFiles, NamesOfOtherFilesAreNotFollowed) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.cgns";
+  for (const std::string kind : {"cgns-link", "cgns-raw", "cgns-virtual"}) {
+    SCOPED_TRACE(kind);
+    if (const std::string why = makeFile(kind, file); !why.empty()) GTEST_SKIP() << why;
+    EXPECT_TRUE(std::filesystem::exists(folder / "a.cgns.other"));
+    const Failure failure = failureOf([&] { static_cast<void>(readHexMesh(file)); });
+    EXPECT_EQ(failure.code, ErrorCode::FileSyntax) << failure.sentence;
+  }
+}
+
 TEST(HdfFiles, CgnsOfOrder2AndOfSeveralZones) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "a.cgns";

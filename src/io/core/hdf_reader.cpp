@@ -17,11 +17,16 @@ class OpenHdf final : public HdfReader {
   explicit OpenHdf(const Input& input)
       : target_{.name = input.name()},
         access_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_FILE_ACCESS_ID_g)), HDF5(H5Pclose)),
-        file_(target_, openFile(input), HDF5(H5Fclose)) {}
+        links_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_LINK_ACCESS_ID_g)), HDF5(H5Pclose)),
+        file_(target_, openFile(input), HDF5(H5Fclose)) {
+    // No other file that this one names is opened, however long the way of links to its name.
+    const H5L_elink_traverse_t refuse = [](const char*, const char*, const char*, const char*,
+                                           unsigned*, hid_t, void*) -> herr_t { return -1; };
+    links_.require(HDF5(H5Pset_elink_cb)(links_.id(), refuse, nullptr));
+  }
 
   [[nodiscard]] std::vector<std::string> members(const std::string& path) const override {
-    const HdfObject group(target_, HDF5(H5Gopen2)(file_.id(), path.c_str(), H5P_DEFAULT),
-                          HDF5(H5Gclose));
+    const HdfObject group = open(path);
     H5G_info_t info{};
     group.require(HDF5(H5Gget_info)(group.id(), &info));
     std::vector<std::string> names;
@@ -46,10 +51,10 @@ class OpenHdf final : public HdfReader {
   [[nodiscard]] bool has(const std::string& path) const override {
     for (std::size_t end = path.find('/');; end = path.find('/', end + 1)) {
       const std::string part = path.substr(0, end);
-      if (HDF5(H5Lexists)(file_.id(), part.c_str(), H5P_DEFAULT) <= 0) return false;
+      if (HDF5(H5Lexists)(file_.id(), part.c_str(), links_.id()) <= 0) return false;
       if (end == std::string::npos) break;
     }
-    const hid_t object = HDF5(H5Oopen)(file_.id(), path.c_str(), H5P_DEFAULT);
+    const hid_t object = HDF5(H5Oopen)(file_.id(), path.c_str(), links_.id());
     if (object < 0) return false;  // a link to what is not there
     const HdfObject opened(target_, object, HDF5(H5Oclose));
     return HDF5(H5Iget_type)(object) == H5I_DATASET;
@@ -87,8 +92,7 @@ class OpenHdf final : public HdfReader {
   }
 
   [[nodiscard]] std::string attribute(const std::string& path, const char* name) const override {
-    const HdfObject object(target_, HDF5(H5Oopen)(file_.id(), path.c_str(), H5P_DEFAULT),
-                           HDF5(H5Oclose));
+    const HdfObject object = open(path);
     if (HDF5(H5Aexists)(object.id(), name) <= 0) return {};
     const HdfObject found(target_, HDF5(H5Aopen)(object.id(), name, H5P_DEFAULT), HDF5(H5Aclose));
     const HdfObject type(target_, HDF5(H5Aget_type)(found.id()), HDF5(H5Tclose));
@@ -112,11 +116,11 @@ class OpenHdf final : public HdfReader {
   /// An open dataset, and what it holds.
   struct Dataset {
     Dataset(const OpenHdf& file, const std::string& path)
-        : set(file.target_, HDF5(H5Dopen2)(file.file_.id(), path.c_str(), H5P_DEFAULT),
-              HDF5(H5Dclose)),
+        : set(file.open(path)),
           type(file.target_, HDF5(H5Dget_type)(set.id()), HDF5(H5Tclose)),
           kind(HDF5(H5Tget_class)(type.id())),
           each(HDF5(H5Tget_size)(type.id())) {
+      file.requireInside(set, path);
       const HdfObject space(file.target_, HDF5(H5Dget_space)(set.id()), HDF5(H5Sclose));
       const int rank = HDF5(H5Sget_simple_extent_ndims)(space.id());
       space.require(rank);
@@ -149,6 +153,19 @@ class OpenHdf final : public HdfReader {
     std::vector<std::uint64_t> shape;
   };
 
+  [[nodiscard]] HdfObject open(const std::string& path) const {
+    return {target_, HDF5(H5Oopen)(file_.id(), path.c_str(), links_.id()), HDF5(H5Oclose)};
+  }
+
+  void requireInside(const HdfObject& set, const std::string& path) const {
+    const HdfObject made(target_, HDF5(H5Dget_create_plist)(set.id()), HDF5(H5Pclose));
+    if (HDF5(H5Pget_external_count)(made.id()) == 0 &&
+        HDF5(H5Pget_layout)(made.id()) != H5D_VIRTUAL) {
+      return;
+    }
+    fail(path, "has its values in another file. Save the mesh as one file.");
+  }
+
   [[nodiscard]] hid_t openFile(const Input& input) const {
     if (!input.bytes()) {
       return HDF5(H5Fopen)(input.path().c_str(), H5F_ACC_RDONLY, access_.id());
@@ -179,6 +196,7 @@ class OpenHdf final : public HdfReader {
   HdfSession session_;
   HdfTarget target_;
   HdfObject access_;
+  HdfObject links_;  ///< how they are followed
   HdfObject file_;
 };
 

@@ -286,7 +286,7 @@ std::string adviceOn(const std::string& extension, FileContent content) {
   if (extension == ".fra") {
     return " .fra files hold frame fields, not maps: `hexhex map` makes a map of the tets alone.";
   }
-  const bool tetsOnly = content == FileContent::Map &&
+  const bool tetsOnly = (content == FileContent::Map || content == FileContent::MapOrHexMesh) &&
                         formatWith(extension, extensionOf, FileContent::Tets) != nullptr;
   if (!tetsOnly) return {};
   return " Tets without a map: `hexhex mesh` makes hexahedra of them, or give a second mesh with "

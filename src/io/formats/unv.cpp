@@ -152,10 +152,14 @@ class UnvReader {
                          " nodes; no element of this format has more than 64.");
     }
     const UnvType type = unvType(typeNumber, count);
-    if (type.kind == UnvKind::Volume && type.cells == nullptr) {
+    // In which order other programs list 27 nodes is their own affair.
+    if (type.kind == UnvKind::Volume &&
+        (type.cells == nullptr || count > kNodesInVtkOrder.size())) {
       scanner_->fail(ErrorCode::FileUnsupported,
                      "elements of the type " + std::to_string(typeNumber) + " with " +
-                         std::to_string(count) + " nodes are not known.");
+                         std::to_string(count) +
+                         " nodes are not known. Save hexahedra of order 2 "
+                         "with 20 nodes (in Gmsh: Mesh.SecondOrderIncomplete = 1).");
     }
     std::array<std::uint64_t, kMost> nodes{};
     for (std::size_t k = 0; k < count; ++k) nodes[k] = number("a node of an element");
