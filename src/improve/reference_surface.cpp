@@ -34,22 +34,24 @@ double squaredDistance(const Vec3& a, const Vec3& b) {
   return dot(d, d);
 }
 
-/// From simplex to simplex as long as one of those at the corners is nearer.
+/// From simplex to simplex as long as one of those at the corners is nearer, and the place farther
+/// than `enough`.
 template <std::size_t n, class Corners, class Allowed>
-SurfacePlace walk(const Vec3& point, Index start,
+SurfacePlace walk(const Vec3& point, Index start, double enough,
                   const std::vector<std::array<Index, n>>& simplices,
                   const adjacency::VertexLists<Index>& at, const Corners& cornersOf,
                   const Allowed& isAllowed) {
   SurfacePlace best{nearestOf(cornersOf(start), point), start};
   double distance = squaredDistance(best.point, point);
-  for (bool moved = true; moved && distance > 0;) {
+  for (bool moved = true; moved && distance > enough * enough;) {
     moved = false;
     for (const Index corner : simplices[best.simplex]) {
       if (!isAllowed(corner)) continue;
       for (const Index next : at(corner)) {
+        if (!isAllowed(corner, next)) continue;
         const Vec3 nearest = nearestOf(cornersOf(next), point);
         const double other = squaredDistance(nearest, point);
-        if (other >= distance || !isAllowed(corner, next)) continue;
+        if (other >= distance) continue;
         best = {nearest, next};
         distance = other;
         moved = true;
@@ -244,7 +246,7 @@ Index ReferenceSurface::triangleAt(Freedom freedom, Index simplex, const Vec3& p
 }
 
 SurfacePlace ReferenceSurface::onTriangles(const Vec3& point, Index triangle,
-                                           const std::vector<Index>& sets) const {
+                                           const std::vector<Index>& sets, double enough) const {
   struct Allowed {
     const std::vector<Index>& sets;
     Index set;
@@ -252,16 +254,17 @@ SurfacePlace ReferenceSurface::onTriangles(const Vec3& point, Index triangle,
     bool operator()(Index /*corner*/, Index next) const { return sets[next] == set; }
   };
   return walk(
-      point, triangle, triangles_, trianglesAt_, [this](Index t) { return this->triangle(t); },
-      Allowed{sets, sets[triangle]});
+      point, triangle, enough, triangles_, trianglesAt_,
+      [this](Index t) { return this->triangle(t); }, Allowed{sets, sets[triangle]});
 }
 
-SurfacePlace ReferenceSurface::onPatch(const Vec3& point, Index triangle) const {
-  return onTriangles(point, triangle, patches_);
+SurfacePlace ReferenceSurface::onPatch(const Vec3& point, Index triangle, double enough) const {
+  return onTriangles(point, triangle, patches_, enough);
 }
 
-SurfacePlace ReferenceSurface::acrossCreases(const Vec3& point, Index triangle) const {
-  return onTriangles(point, triangle, withCreases_);
+SurfacePlace ReferenceSurface::acrossCreases(const Vec3& point, Index triangle,
+                                             double enough) const {
+  return onTriangles(point, triangle, withCreases_, enough);
 }
 
 SurfacePlace ReferenceSurface::onCurve(const Vec3& point, Index segment) const {
@@ -273,7 +276,7 @@ SurfacePlace ReferenceSurface::onCurve(const Vec3& point, Index segment) const {
     bool operator()(Index /*corner*/, Index /*next*/) const { return true; }
   };
   return walk(
-      point, segment, segments_, segmentsAt_, [this](Index s) { return this->segment(s); },
+      point, segment, 0, segments_, segmentsAt_, [this](Index s) { return this->segment(s); },
       Allowed{corners_});
 }
 

@@ -129,9 +129,11 @@ class ReferenceSurface {
   [[nodiscard]] Index triangleAt(Freedom freedom, Index simplex, const Vec3& point) const;
 
   /// The nearest place of the patch around a triangle, as a walk downhill finds it.
-  [[nodiscard]] SurfacePlace onPatch(const Vec3& point, Index triangle) const;
+  /// @param enough  the walk ends at the first place that is no farther
+  [[nodiscard]] SurfacePlace onPatch(const Vec3& point, Index triangle, double enough = 0) const;
   /// The same, across creases.
-  [[nodiscard]] SurfacePlace acrossCreases(const Vec3& point, Index triangle) const;
+  [[nodiscard]] SurfacePlace acrossCreases(const Vec3& point, Index triangle,
+                                           double enough = 0) const;
   /// The nearest place of the curve around a segment, up to its ends.
   [[nodiscard]] SurfacePlace onCurve(const Vec3& point, Index segment) const;
 
@@ -139,7 +141,7 @@ class ReferenceSurface {
   void findCurves(const SurfaceParts& parts, Stage& stage);
   void findCorners(const SurfaceParts& parts);
   [[nodiscard]] SurfacePlace onTriangles(const Vec3& point, Index triangle,
-                                         const std::vector<Index>& sets) const;
+                                         const std::vector<Index>& sets, double enough) const;
   [[nodiscard]] bool isCurve(const std::array<Index, 2>& vertices, std::span<const Index> around,
                              const SurfaceParts& parts, double limit) const;
 

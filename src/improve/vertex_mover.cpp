@@ -11,7 +11,7 @@
 
 namespace hexhex::improvement {
 
-double ChordError::at(Index vertex) const {
+double ChordError::at(Index vertex, double enough) const {
   const ReferenceSurface& surface = places.surface;
   double error = 0;
   const auto add = [&error](const Vec3& point, const SurfacePlace& nearest) {
@@ -28,7 +28,7 @@ double ChordError::at(Index vertex) const {
       for (const Index v : quad) centre = plus(centre, times(0.25, mesh.points[v]));
       const auto* const start = std::find_if(
           quad.begin(), quad.end(), [&](Index v) { return places.freedom[v] == Freedom::OnPatch; });
-      if (start != quad.end()) add(centre, places.nearest(*start, centre));
+      if (start != quad.end()) add(centre, places.nearest(*start, centre, enough));
       if (places.freedom[vertex] != Freedom::OnCurve) continue;
       for (const Index other : {quad[(at + 1) % 4], quad[(at + 3) % 4]}) {
         // Other edges lead away from the curve.
@@ -181,10 +181,11 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   if (!isCertified(before)) return 0;
   collect(vertex, false);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
-  const double farthest = bounded ? std::max(all_.chordError.chord, all_.chordError.at(vertex)) : 0;
+  const double chord = all_.chordError.chord;
+  const double farthest = bounded ? std::max(chord, all_.chordError.at(vertex, chord)) : 0;
   const double moved = mover_.descend(vertex, terms_, EnergyKind{power, 0, 0}, [&] {
     return isGoodAround(vertex, before, exchange) &&
-           (!bounded || all_.chordError.at(vertex) <= farthest);
+           (!bounded || all_.chordError.at(vertex, farthest) <= farthest);
   });
   if (moved == 0) return 0;
   keepMeasured();

@@ -29,7 +29,8 @@ struct ChordError {
   double chord;  ///< so far may quads be from the surface, if they are not farther anyway
 
   /// The largest distance of centres of boundary quads at a vertex, and of edges on its curve.
-  [[nodiscard]] double at(Index vertex) const;
+  /// @param enough  where it is no larger, any number up to this
+  [[nodiscard]] double at(Index vertex, double enough) const;
 };
 
 // Moves one point at a time down an energy, within what its place allows.

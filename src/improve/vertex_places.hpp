@@ -27,10 +27,10 @@ struct VertexPlaces {
   std::uint64_t tagged = 0;      ///< vertices that are Fixed because they have a tag
 
   /// The place nearest to a point that a vertex may move to.
-  [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point) const {
+  [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point, double enough = 0) const {
     if (freedom[vertex] == Freedom::OnPatch) {
-      return isLoose[vertex] != 0 ? surface.acrossCreases(point, simplex[vertex])
-                                  : surface.onPatch(point, simplex[vertex]);
+      return isLoose[vertex] != 0 ? surface.acrossCreases(point, simplex[vertex], enough)
+                                  : surface.onPatch(point, simplex[vertex], enough);
     }
     if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
     return {point, simplex[vertex]};
