@@ -75,7 +75,10 @@ class Walls {
     if (onSingular_[a] == 0 || onSingular_[b] == 0) return false;
     const std::pair ends(std::min(a, b), std::max(a, b));
     const auto endsOf = [](const SingularHexEdge& e) { return std::pair(e.vertex0, e.vertex1); };
-    return std::ranges::binary_search(singular_, ends, {}, endsOf);
+    const auto found = std::lower_bound(
+        singular_.begin(), singular_.end(), ends,
+        [&](const SingularHexEdge& e, const auto& wanted) { return endsOf(e) < wanted; });
+    return found != singular_.end() && endsOf(*found) == ends;
   }
 
   void add(std::size_t halfFace) {
