@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string>
 
 #include <hexhex/quantize.hpp>
@@ -34,8 +35,7 @@ std::string adviceFor(const SeamlessReport& report, const QuantizeCall& call) {
     return "The map is integer up to a scale: multiply its parameters by " + factor + ", as " +
            call("scale", factor) + " does.";
   }
-  const std::string cells =
-      std::to_string(static_cast<std::uint64_t>(std::max(report.cells, 1000.0) + 0.5));
+  const std::string cells = std::to_string(std::llround(std::max(report.cells, 1000.0)));
   const std::string displacement = quantization::digitsOf(report.displacement, 3);
   if (report.kind == SeamlessKind::Seamless) {
     return "The map is seamless (to within " + displacement +

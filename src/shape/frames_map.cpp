@@ -56,9 +56,9 @@ FrameTets tetsWithField(const TetMapView& given, double featureAngle, bool isRef
 /// A map that may come out of a field.
 class FramesMapper {
  public:
-  FramesMapper(const quantization::LabelledMesh& given, const FrameTets& tets, std::uint64_t seed,
+  FramesMapper(const quantization::LabelledMesh& given, FrameTets tets, std::uint64_t seed,
                Stage& stage)
-      : stage_(stage), given_(given), seed_(seed), tets_(tets) {}
+      : stage_(stage), given_(given), seed_(seed), tets_(std::move(tets)) {}
 
   TetMap run() {
     rematch();

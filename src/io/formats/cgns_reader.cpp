@@ -114,7 +114,8 @@ class CgnsReader {
     std::vector<std::string> found;
     for (const std::string& member : file_->members(parent.empty() ? "/" : parent)) {
       if (member.starts_with(' ') || (!name.empty() && member != name)) continue;
-      const std::string path = parent.empty() ? member : parent + '/' + member;
+      std::string path = parent.empty() ? "" : parent + '/';
+      path += member;
       if (file_->attribute(path, "type") == "LK") {
         fail(ErrorCode::FileUnsupported,
              "\"" + path + "\" is a link into another file. Save the mesh as one file.");
