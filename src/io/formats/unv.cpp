@@ -163,7 +163,7 @@ class UnvReader {
     }
     std::array<std::uint64_t, kMost> nodes{};
     for (std::size_t k = 0; k < count; ++k) nodes[k] = number("a node of an element");
-    addElement(element, type, {nodes.data(), count});
+    addElement(element, type, std::span(nodes).first(static_cast<std::size_t>(count)));
   }
 
   void addElement(std::uint64_t element, const UnvType& type,
