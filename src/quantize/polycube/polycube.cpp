@@ -45,7 +45,7 @@ constexpr int kMostRefinements = 3;
 constexpr double kMostWork = 5e7;
 /// At least so many steps, however many tets there are.
 constexpr double kStepsOfAll = 1000;
-constexpr double kMostSteps = 1e6;  // the solver gives up far earlier
+constexpr double kMostStepsOfTry = 1e6;  // the solver gives up far earlier
 
 double scaleOf(const TetMapView& view) {
   double size = 0;
@@ -172,7 +172,7 @@ class PolycubeMaker {
     for (const bool fixPlanes : {false, true}) {
       if (fixPlanes && (workLeft_ <= 0 || (mayRefine && isFew(*best)))) break;
       const auto tets = static_cast<double>(tets_.flags.size());
-      const int steps = static_cast<int>(std::clamp(workLeft_ / tets, 1.0, kMostSteps));
+      const int steps = static_cast<int>(std::clamp(workLeft_ / tets, 1.0, kMostStepsOfTry));
       BentTets bent = bendTets(mesh_, start, edges, fixPlanes, steps, stage);
       workLeft_ -= bent.steps * tets;
       announce(bent, fixPlanes);
