@@ -342,7 +342,8 @@ TEST(ForeignFiles, CubesOf20NodesOfAbaqusAndVtk) {
     SCOPED_TRACE(name);
     ASSERT_TRUE(holdsLagrangeCells(folder / name, context));
     expectCube(readLagrangeMesh(folder / name, context));
-    const Failure failure = failureOf([&] { static_cast<void>(readHexMesh(folder / name)); });
+    const Failure failure =
+        failureOf([&, file = folder / name] { static_cast<void>(readHexMesh(file)); });
     EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
     EXPECT_NE(failure.sentence.find("it holds 1 hexahedron with 20 nodes. Cells of order 2"),
               std::string::npos)
@@ -699,7 +700,8 @@ TEST(ForeignFiles, PublicOnes) {
       {"mfem_fichera-mixed-p2.vtk", "Give the others a file of their own."},
       {"vtkdata_polyhedron2pieces.vtu", "it holds 2 polyhedra and 2 pyramids."}};
   for (const auto& [name, sentence] : refused) {
-    const Failure failure = failureOf([&] { static_cast<void>(readHexMesh(folder / name)); });
+    const Failure failure =
+        failureOf([&, file = folder / name] { static_cast<void>(readHexMesh(file)); });
     EXPECT_EQ(failure.code, ErrorCode::FileUnsupported) << name;
     EXPECT_NE(failure.sentence.find(sentence), std::string::npos) << failure.sentence;
   }
