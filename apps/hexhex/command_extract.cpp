@@ -331,11 +331,9 @@ int extractMesh(const ExtractArguments& arguments) {
   if (arguments.stream || arguments.parts.parts) {
     arguments.patchAngle.warnIfGiven(
         "smooth patches are those of a mesh that is whole; leave out --stream and --parts");
-  } else {
-    if (record.boundary) {
-      arguments.patchAngle.warnIfUseless(*record.boundary, arguments.output,
-                                         arguments.choice.options());
-    }
+  } else if (record.boundary) {
+    arguments.patchAngle.warnIfUseless(*record.boundary, arguments.output,
+                                       arguments.choice.options());
   }
   if (!report.isOnOutput()) printSummary(record);
   return kSuccess;

@@ -27,6 +27,11 @@ namespace hexhex::adjacency {
   return quad;
 }
 
+[[nodiscard]] inline bool namesAVertexTwice(Hex cell) noexcept {
+  std::sort(cell.begin(), cell.end());
+  return std::adjacent_find(cell.begin(), cell.end()) != cell.end();
+}
+
 /// Local corners of the six faces of a hexahedron, counter-clockwise seen from outside, in VTK's
 /// order: 2 * axis at corner 0, 2 * axis + 1 across from it.
 inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kHexFaces = {

@@ -377,7 +377,8 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
 }
 
 void Sweeps::raiseWorst(double target, double slack) {
-  const std::size_t low = cellsThat([&](double quality) { return quality < target; }).size();
+  const Standing now = standing(target);
+  const std::size_t low = now.bad + now.below;
   if (low == 0) return;
   if (low > kMostFalling) {
     raise({target, false, kPrice}, slack);

@@ -13,8 +13,9 @@
 #include <hexhex/error.hpp>
 
 #include <base/disjoint_sets.hpp>
+#include <base/numbered_sets.hpp>
 #include <base/parallel.hpp>
-#include <mesh/numbered_sets.hpp>
+#include <mesh/cell_measures.hpp>
 #include <mesh/singular_graph.hpp>
 
 namespace hexhex::mesh {
@@ -23,14 +24,15 @@ namespace {
 using adjacency::kHexEdges;
 using adjacency::kHexFaces;
 
-/// Corners of a cell as places in a cube: bit i is the place along axis i.
-constexpr std::array<unsigned, 8> kPlaces = {0, 1, 3, 2, 4, 5, 7, 6};
+/// Of a corner of a cell, its places in a cube: bit i is that along axis i. The table is its own
+/// inverse.
+constexpr std::size_t placesOf(std::size_t corner) { return kVtkCorner[corner]; }
 
 /// The axis along which a cell has the edge between two of its vertices.
 std::size_t axisBetween(const Hex& cell, Index a, Index b) {
-  unsigned between = 0;
+  std::size_t between = 0;
   for (std::size_t k = 0; k < 8; ++k) {
-    if (cell[k] == a || cell[k] == b) between ^= kPlaces[k];
+    if (cell[k] == a || cell[k] == b) between ^= placesOf(k);
   }
   return static_cast<std::size_t>(std::countr_zero(between));
 }
@@ -41,7 +43,7 @@ std::size_t faceAcross(const Hex& cell, std::size_t face, Index a, Index b) {
   const std::size_t axis = 3 - edgeAxis - face / 2;  // the third one
   const auto corner =
       static_cast<std::size_t>(std::find(cell.begin(), cell.end(), a) - cell.begin());
-  return 2 * axis + (kPlaces[corner] >> axis & 1U);
+  return 2 * axis + (placesOf(corner) >> axis & 1U);
 }
 
 /// What is known of the faces of a mesh by half-faces: 6 * cell + face.
@@ -73,8 +75,8 @@ class Walls {
  private:
   [[nodiscard]] bool isSingular(Index a, Index b) const {
     if (onSingular_[a] == 0 || onSingular_[b] == 0) return false;
-    const std::pair ends(std::min(a, b), std::max(a, b));
-    const auto endsOf = [](const SingularHexEdge& e) { return std::pair(e.vertex0, e.vertex1); };
+    const auto ends = adjacency::ascending(a, b);
+    const auto endsOf = [](const SingularHexEdge& e) { return std::array{e.vertex0, e.vertex1}; };
     const auto found = std::lower_bound(
         singular_.begin(), singular_.end(), ends,
         [&](const SingularHexEdge& e, const auto& wanted) { return endsOf(e) < wanted; });
@@ -97,7 +99,7 @@ class Walls {
       if (!isSingular(a, b)) continue;
       const std::size_t axis = axisBetween(cell, a, b);
       for (const std::size_t other : {(axis + 1) % 3, (axis + 2) % 3}) {
-        add(6 * c + 2 * other + (kPlaces[edge[0]] >> other & 1U));
+        add(6 * c + 2 * other + (placesOf(edge[0]) >> other & 1U));
       }
     }
   }
@@ -209,9 +211,7 @@ adjacency::HexMates matesOf(const HexMesh& mesh, Stage& stage) {
                                          std::to_string(kMost) + ".");
   }
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    Hex cell = mesh.cells[c];
-    std::sort(cell.begin(), cell.end());
-    if (std::adjacent_find(cell.begin(), cell.end()) == cell.end()) continue;
+    if (!adjacency::namesAVertexTwice(mesh.cells[c])) continue;
     throw Error(ErrorCode::InvalidArgument,
                 "Cell " + std::to_string(c) + " names a vertex twice, so it has no three axes.",
                 Place{PlaceKind::Cell, c});

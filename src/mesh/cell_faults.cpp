@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <adjacency/cell_faces.hpp>
 #include <adjacency/corner_range.hpp>
 #include <adjacency/hex_topology.hpp>
 
@@ -25,11 +26,6 @@ namespace hexhex::mesh {
 namespace {
 
 constexpr std::size_t kFaultGrain = 2048;
-
-bool namesAVertexTwice(Hex cell) {
-  std::sort(cell.begin(), cell.end());
-  return std::adjacent_find(cell.begin(), cell.end()) != cell.end();
-}
 
 /// 12 times the volume that the bilinear faces enclose: of each, the mean over both ways to divide
 /// it into triangles.
@@ -160,7 +156,7 @@ CellFaults findCellFaults(const HexMesh& mesh, Context& context) {
     withThreads(context.threads(), [&] {
       std::vector<std::uint8_t> isRepeated(n);
       parallelFor(stage, n, mesh::kFaultGrain, [&](std::size_t c) {
-        isRepeated[c] = mesh::namesAVertexTwice(mesh.cells[c]) ? 1 : 0;
+        isRepeated[c] = adjacency::namesAVertexTwice(mesh.cells[c]) ? 1 : 0;
       });
       for (std::size_t c = 0; c < n; ++c) {
         if (isRepeated[c] != 0) faults.repeated.push_back(c);

@@ -14,9 +14,9 @@
 #include <hexhex/patches.hpp>
 
 #include <base/disjoint_sets.hpp>
+#include <base/numbered_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
-#include <mesh/numbered_sets.hpp>
 #include <mesh/smooth_patches.hpp>
 
 namespace hexhex::mesh {

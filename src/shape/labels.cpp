@@ -85,8 +85,9 @@ CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs, std::uin
       LabelSearch search(surface, costs, random);
       better[i] = search.improve(found[i].labels, mostMoves, stage.context());
     });
-    for (const CheckedLabels& each : better)
+    for (const CheckedLabels& each : better) {
       workLeft -= workOfMove * static_cast<double>(each.moves);
+    }
     found.insert(found.end(), better.begin(), better.end());
     sortByMerit(found);
     if (found.front().verdict.report.isValid()) break;

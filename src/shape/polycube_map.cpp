@@ -14,6 +14,7 @@
 #include <shape/rotation.hpp>
 
 #include <base/stage.hpp>
+#include <base/vector3.hpp>
 
 namespace hexhex::shape {
 namespace {
@@ -68,20 +69,14 @@ CheckedLabels label(const Surface& surface, const LabelCosts& costs, std::uint64
 
 /// Where an error is.
 Vec3 pointAt(const TetMesh& mesh, const Place& place) {
-  std::vector<Index> vertices;
+  std::vector<Vec3> points;
   if (place.kind == PlaceKind::Vertex || place.kind == PlaceKind::Edge) {
-    vertices.push_back(static_cast<Index>(place.index));
-    if (place.kind == PlaceKind::Edge) vertices.push_back(static_cast<Index>(place.second));
+    points.push_back(mesh.points[place.index]);
+    if (place.kind == PlaceKind::Edge) points.push_back(mesh.points[place.second]);
   } else {
-    vertices.assign(mesh.tets[place.index].begin(), mesh.tets[place.index].end());
+    for (const Index v : mesh.tets[place.index]) points.push_back(mesh.points[v]);
   }
-  Vec3 middle{};
-  for (const Index v : vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      middle[k] += mesh.points[v][k] / static_cast<double>(vertices.size());
-    }
-  }
-  return middle;
+  return centreOf(points);
 }
 
 }  // namespace

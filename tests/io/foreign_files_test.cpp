@@ -249,11 +249,16 @@ TEST(ForeignFiles, AbaqusByOtherPrograms) {
   EXPECT_EQ(mesh.features.vertices[0].vertex, 11U);
 }
 
+void expectFailureOf(HexMesh (*read)(const std::string&), const std::string& text, ErrorCode code,
+                     const std::string& part) {
+  const Failure failure = failureOf([&] { static_cast<void>(read(text)); });
+  EXPECT_EQ(failure.code, code) << failure.sentence;
+  EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
+}
+
 TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
   const auto expectFailure = [](const std::string& text, ErrorCode code, const std::string& part) {
-    const Failure failure = failureOf([&] { static_cast<void>(abaqus(text)); });
-    EXPECT_EQ(failure.code, code) << failure.sentence;
-    EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
+    expectFailureOf(abaqus, text, code, part);
   };
   const std::string good = kInpNodes + kInpCells;
   expectFailure("1, 2\n" + good, ErrorCode::FileSyntax, "m.inp, line 1: a file of Abaqus begins");
@@ -397,9 +402,7 @@ TEST(ForeignFiles, UniversalFilesWithGroups) {
 TEST(ForeignFiles, MistakesInUniversalFilesAreToldWithTheirLine) {
   const std::string good = unvOf({kCorners.begin(), kCorners.end()}, kUnvElements, kUnvGroups);
   const auto expectFailure = [](const std::string& text, ErrorCode code, const std::string& part) {
-    const Failure failure = failureOf([&] { static_cast<void>(unv(text)); });
-    EXPECT_EQ(failure.code, code) << failure.sentence;
-    EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
+    expectFailureOf(unv, text, code, part);
   };
   expectFailure("solid\n" + good, ErrorCode::FileSyntax, "m.unv, line 1: expected \"-1\"");
   expectFailure(replaced(good, " 8 9 0 0", " 8 x 0 0"), ErrorCode::FileSyntax,

@@ -19,7 +19,7 @@ inline constexpr std::string_view kHdfMark = "\x89HDF\r\n\x1a\n";
 
 /// An open file. While it lives, no other thread uses HDF5 through this library.
 ///
-/// Paths are "group/group/dataset". A dataset that claims to hold more values than it can have
+/// Paths are "group/group/dataset". A dataset that says it holds more values than it can have
 /// bytes in the file is not read.
 class HdfReader {
  public:

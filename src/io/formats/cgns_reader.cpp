@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +12,8 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/disjoint_sets.hpp>
+#include <base/numbered_sets.hpp>
 #include <base/stage.hpp>
 #include <io/core/hdf_reader.hpp>
 #include <io/core/input_file.hpp>
@@ -317,21 +318,14 @@ class CgnsReader {
   /// Vertices that connections name in two zones become one.
   void connect() {
     if (zones_.size() == 1) return;
-    std::vector<Index> same(lists_.points.size());
-    std::iota(same.begin(), same.end(), Index{0});
-    const auto rootOf = [&same](Index v) {
-      while (same[v] != v) v = same[v] = same[same[v]];
-      return v;
-    };
+    DisjointSets same(lists_.points.size());
     for (const Zone& zone : zones_) {
       std::size_t found = 0;
       for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
         for (const std::string& to : nodes(all, "GridConnectivity_t")) {
           for (const auto& [a, b] : sharedBy(zone, to)) {
             ++found;
-            const Index first = rootOf(a);
-            const Index second = rootOf(b);
-            same[std::max(first, second)] = std::min(first, second);
+            same.unite(a, b);
           }
         }
       }
@@ -340,20 +334,15 @@ class CgnsReader {
            "the file has several zones, and nothing says which vertices \"" + zone.path +
                "\" shares with others (Abutting1to1). Merge them into one zone.");
     }
-    Array<Index> numbers(same.size());
-    std::size_t kept = 0;
-    for (std::size_t v = 0; v < same.size(); ++v) {
-      const Index root = rootOf(static_cast<Index>(v));
-      if (root != v) {
-        numbers[v] = numbers[root];  // a smaller one
-        continue;
-      }
-      lists_.points[kept] = lists_.points[v];
-      numbers[v] = static_cast<Index>(kept++);
+    const NumberedSets numbered = numberSets(same, lists_.points.size());
+    Array<Vec3> kept(numbered.count);
+    // Of a set the first point stays: it comes last.
+    for (std::size_t v = numbered.setOf.size(); v > 0; --v) {
+      kept[numbered.setOf[v - 1]] = lists_.points[v - 1];
     }
-    lists_.points.resize(kept);
-    const auto renumber = [&numbers](auto& list) {
-      for (Index& v : list) v = numbers[v];
+    lists_.points = std::move(kept);
+    const auto renumber = [&numbered](auto& list) {
+      for (Index& v : list) v = numbered.setOf[v];
     };
     for (ElementBlock& block : lists_.blocks) renumber(block.nodes);
     for (NodeSet& set : lists_.nodeSets) renumber(set.nodes);

@@ -8,7 +8,7 @@
 
 #include <base/disjoint_sets.hpp>
 
-namespace hexhex::mesh {
+namespace hexhex {
 
 struct NumberedSets {
   Array<Index> setOf;  ///< per element: from 0 on, in order of the sets' first elements
@@ -26,4 +26,4 @@ struct NumberedSets {
   return result;
 }
 
-}  // namespace hexhex::mesh
+}  // namespace hexhex
