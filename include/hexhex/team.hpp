@@ -46,7 +46,7 @@ class ProcessTeam {
   void run(const std::function<void()>& work);
 
   /// Returns when all processes are here.
-  void agree();
+  void barrier();
   /// Gives bytes of process 0 to all others.
   void share(std::span<std::byte> bytes);
   /// The same for a text of any length. @return that of process 0

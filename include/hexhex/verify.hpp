@@ -73,8 +73,8 @@ class VerifySink : public MeshSink {
   [[nodiscard]] const VerifyReport& report() const noexcept;
 
  private:
-  class HEXHEX_HIDDEN Prover;
-  std::unique_ptr<Prover> prover_;
+  class HEXHEX_HIDDEN Checker;
+  std::unique_ptr<Checker> checker_;
 };
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -41,10 +41,10 @@ bitsAs(const From& x) noexcept {
 
 #if defined(HEXHEX_PLAIN_VECTORS)
 
-/// @tparam T  double or an integer; truth values are integers of its size, 0 or -1
+/// @tparam T  double or an integer; masks are integers of its size, 0 or -1
 template <class T, std::size_t n>
 struct Lanes {
-  using Truth =
+  using Mask =
       Lanes<std::conditional_t<sizeof(T) == sizeof(std::int64_t), std::int64_t, std::int32_t>, n>;
 
   Lanes() = default;
@@ -76,11 +76,11 @@ struct Lanes {
   HEXHEX_LANES_OPERATOR(<<)
   HEXHEX_LANES_OPERATOR(>>)
 #undef HEXHEX_LANES_OPERATOR
-#define HEXHEX_LANES_COMPARISON(symbol)                                             \
-  friend constexpr Truth operator symbol(const Lanes& a, const Lanes& b) noexcept { \
-    Truth result;                                                                   \
-    for (std::size_t i = 0; i < n; ++i) result[i] = a[i] symbol b[i] ? -1 : 0;      \
-    return result;                                                                  \
+#define HEXHEX_LANES_COMPARISON(symbol)                                            \
+  friend constexpr Mask operator symbol(const Lanes& a, const Lanes& b) noexcept { \
+    Mask result;                                                                   \
+    for (std::size_t i = 0; i < n; ++i) result[i] = a[i] symbol b[i] ? -1 : 0;     \
+    return result;                                                                 \
   }
   HEXHEX_LANES_COMPARISON(<)
   HEXHEX_LANES_COMPARISON(>)
@@ -100,8 +100,8 @@ struct Lanes {
     return result;
   }
 
-  /// Of each, the first where the truth value is set, elsewhere the second.
-  [[nodiscard]] static constexpr Lanes choose(const Truth& first, const Lanes& a,
+  /// Of each, the first where the mask is set, elsewhere the second.
+  [[nodiscard]] static constexpr Lanes choose(const Mask& first, const Lanes& a,
                                               const Lanes& b) noexcept {
     Lanes result;
     for (std::size_t i = 0; i < n; ++i) result[i] = first[i] != 0 ? a[i] : b[i];
@@ -187,7 +187,7 @@ rootOf(const V& x) noexcept {
 // Two doubles that are worked with at once. Each behaves as it would alone.
 
 using Pair = Lanes<double, 2>;
-/// One truth value for each: 0 or -1.
+/// One mask for each: 0 or -1.
 using PairMask = Lanes<std::int64_t, 2>;
 
 using PairBits = Lanes<std::uint64_t, 2>;

@@ -43,8 +43,8 @@ PagePool& pool() {
   return *pool;
 }
 
-/// A wish: where the system has no huge pages, ordinary ones do.
-void wishForHugePages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
+/// Advice to the system: where the system has no huge pages, ordinary ones do.
+void adviseHugePages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   static_cast<void>(::madvise(memory, bytes, MADV_HUGEPAGE));
 #endif
@@ -56,7 +56,7 @@ void* allocateLarge(std::size_t bytes) {
   void* const memory = ::operator new (rounded, std::align_val_t{kHugePage});
   // Not for a rest that would waste much of the last one.
   const bool wastesLittle = rounded - bytes <= bytes / 16;
-  if (hugePagesForLarge) wishForHugePages(memory, wastesLittle ? rounded : rounded - kHugePage);
+  if (hugePagesForLarge) adviseHugePages(memory, wastesLittle ? rounded : rounded - kHugePage);
   return memory;
 }
 
@@ -76,7 +76,7 @@ char* mapHugePages(std::size_t bytes) noexcept {
   const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % kHugePage;
   if (before > 0) ::munmap(begin, before);
   ::munmap(begin + before + bytes, bytes - before);
-  wishForHugePages(begin + before, bytes);
+  adviseHugePages(begin + before, bytes);
   return begin + before;
 }
 

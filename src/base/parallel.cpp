@@ -212,34 +212,34 @@ void startWorkers(ArenaPool::Arena& arena, int threads) {
 }
 
 /// How many threads this process can have.
-class Workforce {
+class WorkerThreads {
  public:
   /// `wanted`, or as many as have worked before if the system does not have enough more to spare.
-  int hire(int wanted) {
+  int start(int wanted) {
     const std::lock_guard lock(mutex_);
-    if (wanted <= hired_) return wanted;
+    if (wanted <= started_) return wanted;
     // All or none, and a few to spare: oneTBB may start a thread more while another is about to
     // sleep.
-    if (!haveSpareThreads(wanted - hired_ + kSpare)) return hired_;
+    if (!haveSpareThreads(wanted - started_ + kSpare)) return started_;
     try {
       arenaPool().with(wanted, [wanted](auto& arena) { startWorkers(arena, wanted); });
     } catch (const std::runtime_error&) {
       throw std::bad_alloc();  // how oneTBB says that it could not start a thread
     }
-    hired_ = wanted;
-    return hired_;
+    started_ = wanted;
+    return started_;
   }
-  [[nodiscard]] int hired() const noexcept { return hired_; }
+  [[nodiscard]] int started() const noexcept { return started_; }
 
  private:
   static constexpr int kSpare = 2;
   std::mutex mutex_;
-  std::atomic<int> hired_{1};
+  std::atomic<int> started_{1};
 };
 
-Workforce& workforce() {
-  static auto* const force = new Workforce;  // as above
-  return *force;
+WorkerThreads& workerThreads() {
+  static auto* const threads = new WorkerThreads;  // as above
+  return *threads;
 }
 
 }  // namespace
@@ -256,7 +256,7 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
   };
 #if HEXHEX_HAS_TBB
   // Outside of withThreads(), only with threads that have been started.
-  if (blocks > 1 && currentThreads() > 1 && workforce().hired() > 1) {
+  if (blocks > 1 && currentThreads() > 1 && workerThreads().started() > 1) {
     LoopOutcome outcome;
     {
       const KnownOrder loop(KnownOrder::Of::Loop);
@@ -292,8 +292,8 @@ void runWithThreads(int threads, const std::function<void()>& function) {
     permission.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
                        static_cast<std::size_t>(count));
   }
-  const int hired = workforce().hire(count);
-  arenaPool().with(hired, [&](auto& arena) { arena.execute(function); });
+  const int started = workerThreads().start(count);
+  arenaPool().with(started, [&](auto& arena) { arena.execute(function); });
 #else
   static_cast<void>(threads);
   function();

@@ -65,10 +65,10 @@ Error ProcessTeam::firstError(const Error* failure) noexcept {
           {static_cast<PlaceKind>(numbers[2]), numbers[3], numbers[4]}};
 }
 
-void ProcessTeam::agree() { settle(nullptr); }
+void ProcessTeam::barrier() { settle(nullptr); }
 
 void ProcessTeam::share(std::span<std::byte> bytes) {
-  agree();
+  barrier();
   if (!bytes.empty()) doShare(0, bytes);
 }
 
@@ -89,13 +89,13 @@ void ProcessTeam::requireSame(const std::string& text, const std::string& what) 
                                                 "\", that of process 0 \"" + first +
                                                 "\". Give all processes the same.");
   });
-  agree();  // before anybody goes on
+  barrier();  // before anybody goes on
 }
 
 std::vector<std::uint64_t> ProcessTeam::gatherCounts(std::uint64_t count) {
   std::vector<std::uint64_t> counts(size());
   const std::vector<std::uint64_t> ones(size(), 1);
-  agree();
+  barrier();
   doGather(std::span(&count, 1), ones, counts);
   return counts;
 }
@@ -108,7 +108,7 @@ GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
     gathered.begin[r + 1] = gathered.begin[r] + counts[r];
   }
   gathered.numbers.resize(gathered.begin.back());
-  agree();  // where there is no memory for it, nobody waits
+  barrier();  // where there is no memory for it, nobody waits
   doGather(mine, counts, gathered.numbers);
   return gathered;
 }
@@ -121,7 +121,7 @@ void ProcessTeam::showAll(
   for (std::uint32_t r = 0; r < counts.size(); ++r) {
     const std::span<std::uint64_t> numbers = std::span(shown).first(counts[r]);
     if (r == rank()) std::copy(mine.begin(), mine.end(), numbers.begin());
-    agree();  // where there was no memory, nobody waits
+    barrier();  // where there was no memory, nobody waits
     doShare(r, std::as_writable_bytes(numbers));
     take(r, numbers);
   }

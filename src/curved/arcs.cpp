@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <curved/arcs.hpp>
-#include <curved/crossings.hpp>
 #include <curved/face_walk.hpp>
+#include <curved/intersections.hpp>
 #include <curved/simplex_point.hpp>
 #include <curved/simplex_star.hpp>
 

@@ -10,8 +10,8 @@
 #include <hexhex/curved.hpp>
 
 #include <curved/batches.hpp>
-#include <curved/crossings.hpp>
 #include <curved/element_numbers.hpp>
+#include <curved/intersections.hpp>
 #include <sweep/vertex_tables.hpp>
 
 namespace hexhex::curved {

@@ -63,7 +63,7 @@ double placeOnSide(const lattice::LatticeTet& seen, const SliceCorner& corner, s
   }
   SimplexPoint point = SimplexPoint::corner(lattice::firstCorner(corner.simplex));
   if (lattice::dimension(corner.simplex) == 2) {
-    point = crossingOfFace(moved, lattice::oppositeCorner(corner.simplex), along);
+    point = intersectionWithFace(moved, lattice::oppositeCorner(corner.simplex), along);
   } else if (lattice::dimension(corner.simplex) == 1) {
     const std::size_t i = lattice::firstCorner(corner.simplex);
     const std::size_t j = lattice::lastCorner(corner.simplex);

@@ -342,7 +342,7 @@ PatchPoint FaceCutter::newInnerPoint(const Piece& piece, const SliceCorner& corn
   const std::size_t j = lattice::lastCorner(corner.simplex);
   const lattice::LatticeTet& seen = piece.seen.corners;
   const std::array<double, 2> shares =
-      i == j ? std::array<double, 2>{1, 0} : sharesOfCrossing(seen[i][2], seen[j][2]);
+      i == j ? std::array<double, 2>{1, 0} : sharesOfIntersection(seen[i][2], seen[j][2]);
   const auto& points = input_.map.input.view.points;
   Vec3 position{};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -91,11 +91,11 @@ BorderFlags exactBorders(const lattice::LatticePoint& i, const lattice::LatticeP
 }
 
 /// The point where the plane crosses an edge between a corner above it and one below.
-SectionPoint crossing(const SeenTet& tet, std::size_t i, std::size_t j, lattice::CornerMask simplex,
-                      std::int64_t unit) noexcept {
+SectionPoint intersection(const SeenTet& tet, std::size_t i, std::size_t j,
+                          lattice::CornerMask simplex, std::int64_t unit) noexcept {
   const lattice::LatticePoint& a = tet.corners[i];
   const lattice::LatticePoint& b = tet.corners[j];
-  const auto [shareA, shareB] = sharesOfCrossing(a[2], b[2]);
+  const auto [shareA, shareB] = sharesOfIntersection(a[2], b[2]);
   const double u = shareA * static_cast<double>(a[0]) + shareB * static_cast<double>(b[0]);
   const double v = shareA * static_cast<double>(a[1]) + shareB * static_cast<double>(b[1]);
   SectionPoint point{{u, v}, simplex, 0};
@@ -158,7 +158,8 @@ lattice::CornerMask SeenTet::carrier() const noexcept {
 
 Section sectionOf(const SeenTet& tet, lattice::CornerMask carrier, std::int64_t unit) noexcept {
   if (carrier != lattice::kWholeTet) return sectionOfFace(tet, carrier, unit);
-  // Corners in the plane count as above it; crossings of their edges are the corners themselves.
+  // Corners in the plane count as above it; intersections of their edges are the corners
+  // themselves.
   const Outline& outline = kOutlines[tet.below];
   Section section;
   lattice::CornerMask known = lattice::kNoSimplex;
@@ -166,7 +167,7 @@ Section sectionOf(const SeenTet& tet, lattice::CornerMask carrier, std::int64_t 
     const std::size_t above = outline.above[k];
     if (!lattice::contains(tet.inPlane, outline.above[k])) {
       section.points[section.size++] =
-          crossing(tet, above, outline.below[k], outline.simplex[k], unit);
+          intersection(tet, above, outline.below[k], outline.simplex[k], unit);
     } else if (!lattice::contains(known, outline.above[k])) {
       // A corner of the tet ends several edges that the plane crosses.
       known = static_cast<lattice::CornerMask>(known | lattice::cornerBit(outline.above[k]));
@@ -190,7 +191,8 @@ Section sectionBehind(const SeenTet& tet, int entered, const Section& from, std:
   section.points[k] = from.points[fromSide];
   section.points[k].simplex = outline.simplex[k];
   for (k = section.next(k); k != side; k = section.next(k)) {
-    section.points[k] = crossing(tet, outline.above[k], outline.below[k], outline.simplex[k], unit);
+    section.points[k] =
+        intersection(tet, outline.above[k], outline.below[k], outline.simplex[k], unit);
   }
   return section;
 }

@@ -72,8 +72,8 @@ struct SectionPoint {
 inline constexpr double kPointError = 0x1p-50;
 
 /// Shares of the two ends of an edge in the point where the plane crosses it.
-[[nodiscard]] inline std::array<double, 2> sharesOfCrossing(std::int64_t heightOfFirst,
-                                                            std::int64_t heightOfSecond) noexcept {
+[[nodiscard]] inline std::array<double, 2> sharesOfIntersection(
+    std::int64_t heightOfFirst, std::int64_t heightOfSecond) noexcept {
   // Of opposite signs, so that their difference is a sum.
   const auto first = static_cast<double>(heightOfFirst);
   const auto second = static_cast<double>(heightOfSecond);

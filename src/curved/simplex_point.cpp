@@ -31,8 +31,8 @@ SimplexPoint exitOfFace(const lattice::LatticeTet& corners, int face, std::size_
 
 }  // namespace
 
-SimplexPoint crossingOfFace(const lattice::LatticeTet& corners, int face,
-                            std::size_t along) noexcept {
+SimplexPoint intersectionWithFace(const lattice::LatticeTet& corners, int face,
+                                  std::size_t along) noexcept {
   const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
   SimplexPoint point;
   bool positive = false;

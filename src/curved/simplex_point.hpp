@@ -97,7 +97,7 @@ struct SimplexPoint {
 
 /// Where such a line crosses a face that it is not parallel to.
 /// @return no weights at all if it does not meet the closed face
-[[nodiscard]] SimplexPoint crossingOfFace(const lattice::LatticeTet& corners, int face,
-                                          std::size_t along) noexcept;
+[[nodiscard]] SimplexPoint intersectionWithFace(const lattice::LatticeTet& corners, int face,
+                                                std::size_t along) noexcept;
 
 }  // namespace hexhex::curved

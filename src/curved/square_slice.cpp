@@ -9,14 +9,14 @@ namespace hexhex::curved {
 namespace {
 
 /// Where a line along a side of the square crosses a side of a section.
-struct BorderCrossing {
+struct BorderIntersection {
   BorderFlags borders;  ///< exact; on the line's border
   Half half;            ///< of the border
 };
 
-class Crossings {
+class Intersections {
  public:
-  Crossings(const SeenTet& tet, const Section& section, std::int64_t unit) noexcept
+  Intersections(const SeenTet& tet, const Section& section, std::int64_t unit) noexcept
       : tet_(tet),
         section_(section),
         unit_(unit),
@@ -24,7 +24,7 @@ class Crossings {
         error_(kError * tet.reach * tet.reach) {}
 
   /// @param side  of the section; its ends are on opposite sides of the line
-  [[nodiscard]] BorderCrossing operator()(std::size_t side, std::size_t border) const noexcept {
+  [[nodiscard]] BorderIntersection operator()(std::size_t side, std::size_t border) const noexcept {
     const std::size_t across = axisAcross(border);
     const std::size_t along = 1 - across;
     const double line = std::array<double, 2>{0, one_}[boundsAtOne(border) ? 1 : 0];
@@ -65,7 +65,7 @@ class Crossings {
       const std::size_t j = lattice::lastCorner(simplex);
       point = SimplexPoint::between(i, j, moved[i][across], moved[j][across]);
     } else {
-      point = crossingOfFace(moved, lattice::oppositeCorner(simplex), along);
+      point = intersectionWithFace(moved, lattice::oppositeCorner(simplex), along);
     }
     return static_cast<BorderFlags>(
         onBorder(border) |
@@ -89,7 +89,7 @@ class Crossings {
 class Clipper {
  public:
   Clipper(const SeenTet& tet, const Section& section, std::int64_t unit) noexcept
-      : section_(section), crossings_(tet, section, unit) {}
+      : section_(section), intersections_(tet, section, unit) {}
 
   /// Clips a slice by the half plane on the inner side of a side of the square.
   void clip(Slice& slice, std::size_t border) const noexcept {
@@ -115,7 +115,7 @@ class Clipper {
         if (here == 0 && next <= 0) result[result.size() - 1].side = label;
       }
       if (here * next < 0) {
-        result.add(crossing(slice[i].side, border));
+        result.add(intersection(slice[i].side, border));
         if (next < 0) result[result.size() - 1].side = label;
       }
     }
@@ -124,26 +124,26 @@ class Clipper {
 
  private:
   /// Where the line crosses a side between its ends.
-  [[nodiscard]] SliceCorner crossing(std::uint8_t side, std::size_t border) const noexcept {
+  [[nodiscard]] SliceCorner intersection(std::uint8_t side, std::size_t border) const noexcept {
     if (side >= kSquareSide) {  // a corner of the square
       const auto borders =
           static_cast<BorderFlags>(onBorder(border) | onBorder(side - kSquareSide));
       return {kNoPoint, lattice::kNoSimplex, borders, side};
     }
-    return {kNoPoint, section_.sideSimplex(side), crossings_(side, border).borders, side};
+    return {kNoPoint, section_.sideSimplex(side), intersections_(side, border).borders, side};
   }
 
   const Section& section_;
-  Crossings crossings_;
+  Intersections intersections_;
 };
 
 /// Cuts the sides of a section that has no corner on a line, one by one.
 class SideCutter {
  public:
   SideCutter(const SeenTet& tet, const Section& section, std::int64_t unit) noexcept
-      : section_(section), crossings_(tet, section, unit) {}
+      : section_(section), intersections_(tet, section, unit) {}
 
-  /// @return false if a crossing is on another line, too
+  /// @return false if an intersection is on another line, too
   [[nodiscard]] bool cut(std::size_t side, SideCut& cut) const noexcept {
     const unsigned from = section_.points[side].borders;
     const unsigned to = section_.points[section_.next(side)].borders;
@@ -161,7 +161,7 @@ class SideCutter {
     if (beyond == 0 || !exists) return true;
     for (unsigned open = beyond; open != 0; open &= open - 1) {
       const auto line = static_cast<std::uint8_t>(std::countr_zero(open));
-      const BorderCrossing at = crossings_(side, line);
+      const BorderIntersection at = intersections_(side, line);
       if (at.borders == onBorder(line)) {
         border = line;
         half = at.half;
@@ -176,7 +176,7 @@ class SideCutter {
   }
 
   const Section& section_;
-  Crossings crossings_;
+  Intersections intersections_;
 };
 
 /// Adds the corners of the square between two points of its border.

@@ -97,7 +97,7 @@ inline constexpr std::uint8_t kUncut = 4;
 struct SectionCuts {
   std::array<SideCut, 4> sides;
   std::array<std::uint8_t, 4> corner;  ///< per side that exists: the corner of the slice before it
-  bool areKnown = false;  ///< all of this; never where a corner or a crossing is on two lines
+  bool areKnown = false;  ///< all of this; never where a corner or an intersection is on two lines
 };
 
 /// A side whose cut is known.

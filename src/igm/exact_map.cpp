@@ -340,12 +340,12 @@ double displacementOf(const Vec3& before, const lattice::LatticePoint& after,
 }
 
 ExactMap sanitize(const adjacency::TetTopology& topology, const LocalParameters& parameters,
-                  Transitions transitions, const RegularVertices& survey,
+                  Transitions transitions, const RegularVertices& regular,
                   const VertexKinds& vertices, const Singularities& singularities, double tolerance,
                   int maxScale, Stage& stage, DefectCollector& defects) {
   ExactMap map;
   map.transitions = std::move(transitions);
-  checkBoundary(survey, parameters, tolerance, stage, defects);
+  checkBoundary(regular, parameters, tolerance, stage, defects);
   checkSingularities(singularities, parameters, tolerance, defects);
   map.unit = std::int64_t{1} << fractionBits(parameters.largest(), maxScale, defects);
   if (defects.has(ErrorCode::TooLarge)) return map;
@@ -354,7 +354,7 @@ ExactMap sanitize(const adjacency::TetTopology& topology, const LocalParameters&
   const auto unfinished = roundTets(sanitization, vertices.rounding, stage);
   sanitizeStars(sanitization, vertices.blocks, singularities, stage);
   checkOrientations(unfinished, parameters, stage, defects, map);
-  map.sixfoldVolume = sixfoldVolume(survey, map, stage);
+  map.sixfoldVolume = sixfoldVolume(regular, map, stage);
   const auto unit = static_cast<double>(map.unit);
   const double cells = map.sixfoldVolume.toDouble() / (6 * unit * unit * unit);
   if (defects.empty() && cells >= kMaxCountedCells) defects.add(ErrorCode::TooLarge, {}, cells);

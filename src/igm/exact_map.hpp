@@ -36,7 +36,7 @@ struct ExactMap {
 /// @param maxScale   the map is going to be scaled by at most this
 [[nodiscard]] ExactMap sanitize(const adjacency::TetTopology& topology,
                                 const LocalParameters& parameters, Transitions transitions,
-                                const RegularVertices& survey, const VertexKinds& vertices,
+                                const RegularVertices& regular, const VertexKinds& vertices,
                                 const Singularities& singularities, double tolerance, int maxScale,
                                 Stage& stage, DefectCollector& defects);
 

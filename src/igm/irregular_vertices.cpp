@@ -34,18 +34,19 @@ bool reachesOctant(const TetParameters& u, std::size_t corner, const Ray& ray) {
 class StarClassifier {
  public:
   StarClassifier(const adjacency::TetTopology& topology, const LocalParameters& parameters,
-                 const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
-                 bool flatAllowed, VertexKinds& result)
+                 const RegularVertices& regular,
+                 std::span<const HalfFaceTransition> faceTransitions, bool flatAllowed,
+                 VertexKinds& result)
       : topology_(topology),
         parameters_(parameters),
-        survey_(survey),
-        crossings_(crossings),
+        regular_(regular),
+        faceTransitions_(faceTransitions),
         flatAllowed_(flatAllowed),
         result_(result) {}
 
   /// @param block  receives the star
   void run(Index vertex, StarBlock& block) {
-    star_.collect(topology_, vertex, crossings_);
+    star_.collect(topology_, vertex, faceTransitions_);
     const std::span<const VertexStar::Member> star = star_.members();
     block.cornersSeen += star.size();
     planes_ = star_.planes();
@@ -112,7 +113,7 @@ class StarClassifier {
     for (const VertexStar::Member& member : star) {
       const auto& rays = kRays[static_cast<std::size_t>(member.rotation.index())];
       const bool isRotated = !member.rotation.isIdentity();
-      const std::size_t cone = coneCorner(survey_.sides[member.tet()]);
+      const std::size_t cone = coneCorner(regular_.sides[member.tet()]);
       cones += allOf(!isRotated, cone == member.corner % 4) ? 1 : 0;
       add(member.corner, rays[kNoReflection], isRotated);
       if (planes_ != 0) add(member.corner, rays[planeAxis(member.rotation)], true);
@@ -130,8 +131,8 @@ class StarClassifier {
 
   const adjacency::TetTopology& topology_;
   const LocalParameters& parameters_;
-  const RegularVertices& survey_;
-  std::span<const HalfFaceCrossing> crossings_;
+  const RegularVertices& regular_;
+  std::span<const HalfFaceTransition> faceTransitions_;
   bool flatAllowed_;
   VertexKinds& result_;
   VertexStar star_;
@@ -143,10 +144,10 @@ class StarClassifier {
 }  // namespace
 
 VertexKinds classifyVertices(const adjacency::TetTopology& topology,
-                             const LocalParameters& parameters, const RegularVertices& survey,
-                             std::span<const HalfFaceCrossing> crossings,
+                             const LocalParameters& parameters, const RegularVertices& regular,
+                             std::span<const HalfFaceTransition> faceTransitions,
                              std::span<const EdgeValence> known, bool findFlat, Stage& stage) {
-  Array<std::uint8_t> isIrregular = survey.isIrregular;
+  Array<std::uint8_t> isIrregular = regular.isIrregular;
   for (const EdgeValence& edge : known) {
     for (const Index v : {edge.vertex0, edge.vertex1}) {
       if (!topology.isIsolated(v)) isIrregular[v] = 1;
@@ -159,7 +160,7 @@ VertexKinds classifyVertices(const adjacency::TetTopology& topology,
   // What the caller claims about edges, if anything, is to be looked up for each.
   const bool flatAllowed = findFlat && known.empty();
   const auto makeClassifier = [&] {
-    return StarClassifier(topology, parameters, survey, crossings, flatAllowed, result);
+    return StarClassifier(topology, parameters, regular, faceTransitions, flatAllowed, result);
   };
   parallelBlocksWith(
       stage, topology.pointCount, kIrregularVerticesGrain, makeClassifier,
@@ -171,7 +172,7 @@ VertexKinds classifyVertices(const adjacency::TetTopology& topology,
             classifier.run(static_cast<Index>(v), result.blocks[block]);
           } else {
             result.kind[v] = VertexKind::Regular;
-            result.rounding[v] = static_cast<Rounding>(survey.plane[v]);
+            result.rounding[v] = static_cast<Rounding>(regular.plane[v]);
           }
         }
       });

@@ -80,8 +80,8 @@ struct VertexKinds {
 /// @param findFlat  otherwise flat stars count as irregular
 [[nodiscard]] VertexKinds classifyVertices(const adjacency::TetTopology& topology,
                                            const LocalParameters& parameters,
-                                           const RegularVertices& survey,
-                                           std::span<const HalfFaceCrossing> crossings,
+                                           const RegularVertices& regular,
+                                           std::span<const HalfFaceTransition> faceTransitions,
                                            std::span<const EdgeValence> known, bool findFlat,
                                            Stage& stage);
 

@@ -26,10 +26,10 @@ std::size_t edgeAxis(const LocalParameters& parameters, const SingularEdge& edge
       minus(parameters(edge.tet, edge.corner1), parameters(edge.tet, edge.corner0)));
 }
 
-void checkBoundary(const RegularVertices& survey, const LocalParameters& parameters,
+void checkBoundary(const RegularVertices& regular, const LocalParameters& parameters,
                    double tolerance, Stage& stage, DefectCollector& defects) {
-  parallelFor(stage, survey.boundaryFaces.size(), 1, [&](std::size_t block) {
-    for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
+  parallelFor(stage, regular.boundaryFaces.size(), 1, [&](std::size_t block) {
+    for (const RegularVertices::BoundaryFace& face : regular.boundaryFaces[block]) {
       const std::size_t axis = face.axis;
       const adjacency::HalfFace halfFace = face.halfFace;
       std::array<double, 3> x{};

@@ -12,7 +12,7 @@ namespace hexhex::igm {
                                    const SingularEdge& edge) noexcept;
 
 /// (IGM2) up to the tolerance: what snapping may repair.
-void checkBoundary(const RegularVertices& survey, const LocalParameters& parameters,
+void checkBoundary(const RegularVertices& regular, const LocalParameters& parameters,
                    double tolerance, Stage& stage, DefectCollector& defects);
 
 /// (IGM3) up to the tolerance, for edges; nodes are noticed when they are snapped.

@@ -63,17 +63,17 @@ adjacency::HalfFace acrossBoundaryEdge(const adjacency::TetTopology& topology,
 /// The volume of a tet is the sum of those between its faces and the origin. They cancel at inner
 /// faces, but for what the transition makes of it: if it is a translation by t after a rotation,
 /// then the scalar product of t with the triangle's normal is left.
-lattice::Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map, Stage& stage) {
+lattice::Int192 sixfoldVolume(const RegularVertices& regular, const ExactMap& map, Stage& stage) {
   const Transitions& transitions = map.transitions;
-  std::vector<lattice::Int192> sums(survey.boundaryFaces.size());
+  std::vector<lattice::Int192> sums(regular.boundaryFaces.size());
   parallelFor(stage, sums.size(), 1, [&](std::size_t block) {
     lattice::Int192 sum;
-    for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
+    for (const RegularVertices::BoundaryFace& face : regular.boundaryFaces[block]) {
       const LatticeTriangle triangle(map, face.halfFace);
       // Its plane is axis-parallel, and so is the normal.
       sum.addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
     }
-    for (const adjacency::HalfFace halfFace : survey.unequalFaces[block]) {
+    for (const adjacency::HalfFace halfFace : regular.unequalFaces[block]) {
       const Index back = Transitions::inverse(transitions.ofFace[halfFace]);
       const lattice::GridPoint& translation = transitions.table[back].translation;
       const LatticeTriangle triangle(map, halfFace);

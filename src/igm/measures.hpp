@@ -13,8 +13,8 @@
 namespace hexhex::igm {
 
 /// ExactMap::sixfoldVolume of a map without defects, before it is scaled.
-/// @param survey  knows the boundary, and where tets differ
-[[nodiscard]] lattice::Int192 sixfoldVolume(const RegularVertices& survey, const ExactMap& map,
+/// @param regular  knows the boundary, and where tets differ
+[[nodiscard]] lattice::Int192 sixfoldVolume(const RegularVertices& regular, const ExactMap& map,
                                             Stage& stage);
 
 /// Parametric volume in unit cubes before scaling: the number of cells of the mesh at scale 1.

@@ -71,19 +71,19 @@ class Preparation {
       prepared_.isUnfolded = true;
     }
     const LocalParameters parameters(prepared_.input);
-    RegularVertices survey;
+    RegularVertices regular;
     {
       Stage stage(context_, "regular vertices");
-      survey = findRegularVertices(prepared_.topology, parameters, stage);
-      if (!switches_.regularVertices) survey.isIrregular = usedVertices(prepared_.topology);
+      regular = findRegularVertices(prepared_.topology, parameters, stage);
+      if (!switches_.regularVertices) regular.isIrregular = usedVertices(prepared_.topology);
     }
     Transitions transitions;
-    if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, survey);
+    if (!parameters.tooLarge()) transitions = findTransitions(parameters, unfolding, regular);
     VertexKinds vertices;
-    if (!findSingularities(parameters, transitions, survey, vertices)) return std::move(prepared_);
+    if (!findSingularities(parameters, transitions, regular, vertices)) return std::move(prepared_);
     Stage stage(context_, "sanitization");
     prepared_.exact =
-        sanitize(prepared_.topology, parameters, std::move(transitions), survey, vertices,
+        sanitize(prepared_.topology, parameters, std::move(transitions), regular, vertices,
                  prepared_.singularities, tolerance_, maxScale_, stage, defects_);
     return std::move(prepared_);
   }
@@ -106,9 +106,9 @@ class Preparation {
 
   [[nodiscard]] Transitions findTransitions(const LocalParameters& parameters,
                                             const Array<lattice::Gauge>& unfolding,
-                                            const RegularVertices& survey) {
+                                            const RegularVertices& regular) {
     Stage stage(context_, "transitions");
-    Transitions transitions = computeTransitions(prepared_.topology, parameters, survey,
+    Transitions transitions = computeTransitions(prepared_.topology, parameters, regular,
                                                  prepared_.input.view.rotations, tolerance_, stage);
     prepared_.chartJumps = countGivenTransitions(prepared_.topology, transitions, unfolding, stage);
     return transitions;
@@ -117,15 +117,15 @@ class Preparation {
   /// @return whether there is an exact map to be found
   [[nodiscard]] bool findSingularities(const LocalParameters& parameters,
                                        const Transitions& transitions,
-                                       const RegularVertices& survey, VertexKinds& vertices) {
+                                       const RegularVertices& regular, VertexKinds& vertices) {
     Stage stage(context_, "singularities");
     const auto& valences = prepared_.input.view.edgeValences;
-    const Array<HalfFaceCrossing> crossings =
-        findCrossings(prepared_.topology, survey, transitions, stage);
-    vertices = classifyVertices(prepared_.topology, parameters, survey, crossings, valences,
+    const Array<HalfFaceTransition> faceTransitions =
+        findHalfFaceTransitions(prepared_.topology, regular, transitions, stage);
+    vertices = classifyVertices(prepared_.topology, parameters, regular, faceTransitions, valences,
                                 switches_.flatStars, stage);
     std::optional<Singularities> singularities = computeSingularities(
-        prepared_.topology, parameters, survey, crossings, vertices, valences, stage);
+        prepared_.topology, parameters, regular, faceTransitions, vertices, valences, stage);
     if (!singularities) {
       collectTopologyDefects(prepared_.topology, stage, defects_);
       if (defects_.empty()) throwContradiction();

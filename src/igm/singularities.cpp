@@ -73,8 +73,8 @@ class KnownOffsets {
 struct Surroundings {
   const adjacency::TetTopology& topology;
   const LocalParameters& parameters;
-  const RegularVertices& survey;
-  std::span<const HalfFaceCrossing> crossings;
+  const RegularVertices& regular;
+  std::span<const HalfFaceTransition> faceTransitions;
   const VertexKinds& vertices;
   const KnownOffsets& known;
 };
@@ -121,7 +121,7 @@ class VertexEdges {
       const VertexStar::Member& member = star_[i];
       const Tet& tet = in_.topology.tets[member.tet()];
       const std::array<std::uint8_t, 3>& corners = kOthers[member.corner % 4];
-      const TetSides sides = in_.survey.sides[member.tet()];
+      const TetSides sides = in_.regular.sides[member.tet()];
       std::array<Index, 3>& numbers = numbers_[i];
       for (std::size_t k = 0; k < 3; ++k) {
         edges_[count] = {tet[corners[k]], 0, 0, 0};
@@ -132,9 +132,9 @@ class VertexEdges {
       std::array<std::uint32_t, 3> isNonTrivial{};
       std::array<std::uint32_t, 3> isBoundary{};
       for (std::size_t k = 0; k < 3; ++k) {
-        const HalfFaceCrossing crossing = in_.crossings[4 * member.tet() + corners[k]];
+        const HalfFaceTransition across = in_.faceTransitions[4 * member.tet() + corners[k]];
         inward[k] = leadsInward(sides, corners[k]) ? 1 : 0;
-        isNonTrivial[k] = crossing.isTrivial() ? 0 : 1;
+        isNonTrivial[k] = across.isTrivial() ? 0 : 1;
         isBoundary[k] = member.neighbour[k] == kNone ? 1 : 0;
         boundaryFaces += isBoundary[k];
       }
@@ -295,10 +295,10 @@ void indexByVertex(Singularities& singularities, std::size_t pointCount) {
 
 std::optional<Singularities> computeSingularities(
     const adjacency::TetTopology& topology, const LocalParameters& parameters,
-    const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
+    const RegularVertices& regular, std::span<const HalfFaceTransition> faceTransitions,
     const VertexKinds& vertices, std::span<const EdgeValence> known, Stage& stage) {
   const KnownOffsets offsets(known);
-  const Surroundings in{topology, parameters, survey, crossings, vertices, offsets};
+  const Surroundings in{topology, parameters, regular, faceTransitions, vertices, offsets};
   std::vector<std::vector<SingularEdge>> singular(vertices.blocks.size());
   std::atomic<bool> isManifold = true;
   parallelForWith(

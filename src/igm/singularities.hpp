@@ -54,7 +54,7 @@ struct Singularities {
 /// @param known  valence offsets that the caller gave, or empty
 [[nodiscard]] std::optional<Singularities> computeSingularities(
     const adjacency::TetTopology& topology, const LocalParameters& parameters,
-    const RegularVertices& survey, std::span<const HalfFaceCrossing> crossings,
+    const RegularVertices& regular, std::span<const HalfFaceTransition> faceTransitions,
     const VertexKinds& vertices, std::span<const EdgeValence> known, Stage& stage);
 
 }  // namespace hexhex::igm

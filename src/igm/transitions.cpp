@@ -66,15 +66,15 @@ void enter(Index index, adjacency::HalfFace halfFace, const lattice::Transition&
 }  // namespace
 
 Transitions computeTransitions(const adjacency::TetTopology& topology,
-                               const LocalParameters& parameters, const RegularVertices& survey,
+                               const LocalParameters& parameters, const RegularVertices& regular,
                                std::span<const std::array<std::int8_t, 4>> rotations,
                                double tolerance, Stage& stage) {
   const TransitionFitter fitter(topology, parameters, rotations, tolerance);
-  std::vector<BlockResult> blocks(survey.unequalFaces.size());
+  std::vector<BlockResult> blocks(regular.unequalFaces.size());
   parallelFor(stage, blocks.size(), 1,
-              [&](std::size_t block) { blocks[block] = fitter.run(survey.unequalFaces[block]); });
+              [&](std::size_t block) { blocks[block] = fitter.run(regular.unequalFaces[block]); });
   Transitions result;
-  result.innerFaces = survey.innerFaces;
+  result.innerFaces = regular.innerFaces;
   std::vector<std::uint64_t> first;
   for (const BlockResult& block : blocks) {
     first.push_back(result.nonTrivial);
@@ -104,43 +104,43 @@ Transitions computeTransitions(const adjacency::TetTopology& topology,
   return result;
 }
 
-Array<HalfFaceCrossing> findCrossings(const adjacency::TetTopology& topology,
-                                      const RegularVertices& survey, const Transitions& transitions,
-                                      Stage& stage) {
-  Array<HalfFaceCrossing> crossings(topology.mate.size());
+Array<HalfFaceTransition> findHalfFaceTransitions(const adjacency::TetTopology& topology,
+                                                  const RegularVertices& regular,
+                                                  const Transitions& transitions, Stage& stage) {
+  Array<HalfFaceTransition> faceTransitions(topology.mate.size());
   const auto isCertain = [&](adjacency::HalfFace h) {
-    return survey.sides[adjacency::tetOf(h)] != kUncertainSides;
+    return regular.sides[adjacency::tetOf(h)] != kUncertainSides;
   };
   parallelBlocks(stage, topology.tetCount(), RegularVertices::kBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   std::fill(&crossings[4 * begin], &crossings[4 * begin] + 4 * (end - begin),
-                             HalfFaceCrossing());
+                   std::fill(&faceTransitions[4 * begin],
+                             &faceTransitions[4 * begin] + 4 * (end - begin), HalfFaceTransition());
                    for (auto t = static_cast<Index>(begin); t < end; ++t) {
-                     if (survey.sides[t] != kUncertainSides) continue;
+                     if (regular.sides[t] != kUncertainSides) continue;
                      for (adjacency::HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-                       crossings[h] = HalfFaceCrossing::inner(lattice::Rotation(), false);
+                       faceTransitions[h] = HalfFaceTransition::inner(lattice::Rotation(), false);
                      }
                    }
-                   for (const RegularVertices::BoundaryFace& face : survey.boundaryFaces[block]) {
+                   for (const RegularVertices::BoundaryFace& face : regular.boundaryFaces[block]) {
                      const bool isConstant = face.constantAxes == 1U << face.axis;
-                     crossings[face.halfFace] = HalfFaceCrossing::boundary(
+                     faceTransitions[face.halfFace] = HalfFaceTransition::boundary(
                          face.axis, isConstant && isCertain(face.halfFace));
                    }
                  });
-  parallelFor(stage, survey.unequalFaces.size(), 1, [&](std::size_t block) {
-    for (const adjacency::HalfFace halfFace : survey.unequalFaces[block]) {
+  parallelFor(stage, regular.unequalFaces.size(), 1, [&](std::size_t block) {
+    for (const adjacency::HalfFace halfFace : regular.unequalFaces[block]) {
       for (const adjacency::HalfFace h : {halfFace, topology.mate[halfFace]}) {
         if (transitions.ofFace.empty()) {
-          crossings[h] = HalfFaceCrossing::inner(lattice::Rotation(), false);
+          faceTransitions[h] = HalfFaceTransition::inner(lattice::Rotation(), false);
           continue;
         }
         const Index index = transitions.ofFace[h];
-        crossings[h] = HalfFaceCrossing::inner(transitions.table[index].rotation,
-                                               transitions.isExact[index] != 0 && isCertain(h));
+        faceTransitions[h] = HalfFaceTransition::inner(
+            transitions.table[index].rotation, transitions.isExact[index] != 0 && isCertain(h));
       }
     }
   });
-  return crossings;
+  return faceTransitions;
 }
 
 void collectMisfits(const Transitions& transitions, DefectCollector& defects) {

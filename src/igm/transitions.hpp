@@ -8,7 +8,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/half_face_crossing.hpp>
+#include <igm/half_face_transition.hpp>
 #include <igm/input.hpp>
 #include <igm/regular_vertices.hpp>
 #include <lattice/grid_motion.hpp>
@@ -49,21 +49,21 @@ struct Transitions {
   }
 };
 
-/// @param survey  knows where tets differ
+/// @param regular  knows where tets differ
 /// @param rotations  what the caller knows, as in TetMapView; may be empty
 /// @param tolerance  residuals above it make misfits
 [[nodiscard]] Transitions computeTransitions(const adjacency::TetTopology& topology,
                                              const LocalParameters& parameters,
-                                             const RegularVertices& survey,
+                                             const RegularVertices& regular,
                                              std::span<const std::array<std::int8_t, 4>> rotations,
                                              double tolerance, Stage& stage);
 
 /// Per half-face. Inexact are all of a tet with uncertain sides, and where tets do not agree unless
 /// a transition fits exactly.
 /// @param transitions  may be empty: if parameters are too large, they are not known
-[[nodiscard]] Array<HalfFaceCrossing> findCrossings(const adjacency::TetTopology& topology,
-                                                    const RegularVertices& survey,
-                                                    const Transitions& transitions, Stage& stage);
+[[nodiscard]] Array<HalfFaceTransition> findHalfFaceTransitions(
+    const adjacency::TetTopology& topology, const RegularVertices& regular,
+    const Transitions& transitions, Stage& stage);
 
 /// Reports misfits. Not done at once, as nothing is worth saying about them if the mesh is not a
 /// manifold.

@@ -9,7 +9,7 @@
 #include <adjacency/tet_topology.hpp>
 
 #include <base/low_level.hpp>
-#include <igm/half_face_crossing.hpp>
+#include <igm/half_face_transition.hpp>
 #include <lattice/grid_motion.hpp>
 
 namespace hexhex::igm {
@@ -44,9 +44,9 @@ class VertexStar {
   /// Walks breadth first from the smallest tet at the vertex. Only what is connected through faces
   /// is found: everything, in a manifold.
   /// @param vertex  not isolated
-  /// @param crossings  per half-face; without them, nothing is known of charts
+  /// @param faceTransitions  per half-face; without them, nothing is known of charts
   void collect(const adjacency::TetTopology& topology, Index vertex,
-               std::span<const HalfFaceCrossing> crossings = {}) {
+               std::span<const HalfFaceTransition> faceTransitions = {}) {
     numbers_.clear();
     adjacency::KeyTable::Numberer number = numbers_.numberer();
     Member* members = members_.data();
@@ -61,8 +61,8 @@ class VertexStar {
     const auto cross = [&](Index head, std::size_t k) {
       const Member here = members[head];
       const adjacency::HalfFace halfFace = here.halfFace(k);
-      const HalfFaceCrossing crossing =
-          crossings.empty() ? HalfFaceCrossing() : crossings[halfFace];
+      const HalfFaceTransition across =
+          faceTransitions.empty() ? HalfFaceTransition() : faceTransitions[halfFace];
       const adjacency::HalfFace mate = topology.mate[halfFace];
       const bool isBoundary = mate == kNone;
       const Index tet = adjacency::tetOf(isBoundary ? halfFace : mate);
@@ -73,11 +73,11 @@ class VertexStar {
       behind.corner = 4 * tet + corner;
       behind.entry = kPlaceOfFace[corner][mate % 4];
       behind.neighbour[behind.entry] = head;
-      behind.rotation = crossing.rotation() * here.rotation;
+      behind.rotation = across.rotation() * here.rotation;
       members[head].neighbour[k] = isBoundary ? kNone : j;
       misfits |= behind.rotation == members[j].rotation ? 0U : 1U;
-      misfits |= crossing.isInexact() ? 1U : 0U;
-      planes |= lattice::imageOf(crossing.plane(), here.rotation.inverse());
+      misfits |= across.isInexact() ? 1U : 0U;
+      planes |= lattice::imageOf(across.plane(), here.rotation.inverse());
       count += j == count ? 1 : 0;
     };
     for (std::size_t k = 0; k < 3; ++k) cross(0, k);

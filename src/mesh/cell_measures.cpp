@@ -20,7 +20,7 @@ namespace {
 using Two = Lanes<double, 2>;
 using Four = Lanes<double, 4>;
 
-/// One truth value for each: 0 or -1.
+/// One mask for each: 0 or -1.
 template <class V>
 using Mask = decltype(V{} < V{});
 

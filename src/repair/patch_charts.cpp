@@ -163,7 +163,7 @@ void PatchCharts::collectEdges(const Patch& patch) {
       std::vector<std::uint32_t>& at = faces_[face].edges;
       if (at.empty() || at.back() != e) at.push_back(static_cast<std::uint32_t>(e));
     };
-    for (const Crossing& crossing : fans_[e].crossings) list(crossing.face);
+    for (const FanStep& step : fans_[e].steps) list(step.face);
     if (edges_[e].boundary) {
       list(fans_[e].firstBoundary);
       list(fans_[e].lastBoundary);
@@ -192,7 +192,7 @@ void PatchCharts::walkFan(PatchEdge& edge, Fan& fan) const {
       fan.lastBoundary = static_cast<std::uint32_t>(faceIndex(leaving));
       return;
     }
-    fan.crossings.push_back(
+    fan.steps.push_back(
         {static_cast<std::uint32_t>(faceIndex(std::min(leaving, mate))), leaving < mate});
     turn.step();
   } while (turn.tet() != edge.tet);
@@ -213,10 +213,10 @@ int PatchCharts::boundaryAxis(adjacency::HalfFace halfFace) const {
 /// Of the whole fan: back to the first tet's chart, or on the boundary from the first to the last.
 lattice::Rotation PatchCharts::holonomy(const Fan& fan) const {
   lattice::Rotation total;
-  for (const Crossing& crossing : fan.crossings) {
-    const Face& face = faces_[crossing.face];
+  for (const FanStep& step : fan.steps) {
+    const Face& face = faces_[step.face];
     const lattice::Rotation rotation = face.candidates[face.chosen].rotation;
-    total = (crossing.forward ? rotation : rotation.inverse()) * total;
+    total = (step.forward ? rotation : rotation.inverse()) * total;
   }
   return total;
 }
@@ -296,7 +296,7 @@ bool PatchCharts::improvePairs(std::uint32_t f) {
   bool improved = false;
   for (const std::uint32_t e : faces_[f].edges) {
     std::vector<std::uint32_t> partners;
-    for (const Crossing& crossing : fans_[e].crossings) partners.push_back(crossing.face);
+    for (const FanStep& step : fans_[e].steps) partners.push_back(step.face);
     if (edges_[e].boundary) {
       partners.push_back(fans_[e].firstBoundary);
       partners.push_back(fans_[e].lastBoundary);
@@ -316,10 +316,10 @@ double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
                       topology_.localCorner(tet, edge.vertex1));
   };
   Index tet = edge.tet;
-  for (const Crossing& crossing : fan.crossings) {
+  for (const FanStep& step : fan.steps) {
     add(tet);
-    const adjacency::HalfFace halfFace = faces_[crossing.face].halfFace;
-    tet = adjacency::tetOf(crossing.forward ? topology_.mate[halfFace] : halfFace);
+    const adjacency::HalfFace halfFace = faces_[step.face].halfFace;
+    tet = adjacency::tetOf(step.forward ? topology_.mate[halfFace] : halfFace);
   }
   if (edge.boundary) add(tet);
   return sum / (std::numbers::pi / 2);

@@ -65,12 +65,12 @@ class PatchCharts {
     [[nodiscard]] std::size_t choices() const { return boundary ? axes.size() : candidates.size(); }
   };
   /// One step around an edge: through which face, and in which direction.
-  struct Crossing {
+  struct FanStep {
     std::uint32_t face;
     bool forward;
   };
   struct Fan {
-    std::vector<Crossing> crossings;
+    std::vector<FanStep> steps;
     std::uint32_t firstBoundary = 0;  ///< faces where a fan on the boundary begins and ends
     std::uint32_t lastBoundary = 0;
     Vec3 vector{};  ///< the edge in the chart of its first tet

@@ -204,9 +204,9 @@ std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
     std::array<untangle::Corner, 4> corners{};
     for (int c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = cornerOf(t, c);
     // Along how many axes all corners of a simplex are bound to the same coordinate.
-    const auto commonBonds = [&](lattice::CornerMask simplex) {
+    const auto commonConstraints = [&](lattice::CornerMask simplex) {
       const untangle::Corner& first = corners[lattice::firstCorner(simplex)];
-      int bonds = 0;
+      int constraints = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         bool common = true;
         for (int c = 0; c < 4; ++c) {
@@ -214,14 +214,14 @@ std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
           const untangle::Corner& corner = corners[static_cast<std::size_t>(c)];
           common = common && corner.unknown[k] < 0 && corner.constant[k] == first.constant[k];
         }
-        bonds += common ? 1 : 0;
+        constraints += common ? 1 : 0;
       }
-      return bonds;
+      return constraints;
     };
     lattice::CornerMask found =
-        commonBonds(lattice::kWholeTet) > 0 ? lattice::kWholeTet : lattice::kNoSimplex;
+        commonConstraints(lattice::kWholeTet) > 0 ? lattice::kWholeTet : lattice::kNoSimplex;
     for (int f = 0; f < 4; ++f) {
-      if (commonBonds(lattice::faceMask(f)) >= 2) found = lattice::faceMask(f);
+      if (commonConstraints(lattice::faceMask(f)) >= 2) found = lattice::faceMask(f);
     }
     if (found != lattice::kNoSimplex) locked.push_back({t, found});
   }

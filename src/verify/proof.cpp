@@ -2,7 +2,7 @@
 #include <cassert>
 #include <string>
 
-#include <verify/cell_prover.hpp>
+#include <verify/cell_checker.hpp>
 #include <verify/comparisons.hpp>
 #include <verify/proof.hpp>
 
@@ -60,9 +60,9 @@ void Proof::compare(std::uint64_t first, std::span<const Cell> cells, Stage& sta
   const auto [begin, end] = tetsWith(centers_.begin, first, first + cells.size());
   parallelForWith(
       stage, end - begin, sweep::kSweepBlock / 8,
-      [&] { return CellProver<Cell>(map_, centers_, places_, hints_, cells_); },
-      [&, begin = begin](std::size_t i, CellProver<Cell>& prover) {
-        prover.prove(static_cast<Index>(begin + i), ConsecutiveCells<Cell>{first, cells});
+      [&] { return CellChecker<Cell>(map_, centers_, places_, hints_, cells_); },
+      [&, begin = begin](std::size_t i, CellChecker<Cell>& checker) {
+        checker.prove(static_cast<Index>(begin + i), ConsecutiveCells<Cell>{first, cells});
       });
 }
 template void Proof::compare(std::uint64_t first, std::span<const Hex> cells, Stage& stage);
@@ -198,9 +198,9 @@ void PartProof::compareCells(const MeshPart& part, Stage& stage, Faults& hints,
     addOwners(centers_.begin, stretch.numbers, tets, wrong);
     parallelForWith(
         stage, tets.size(), 1,
-        [&] { return CellProver<Hex64>(map_, centers_, places_, hints, wrong); },
-        [&](std::size_t i, CellProver<Hex64>& prover) {
-          prover.prove(tets[i], stretch.from(centers_.begin[tets[i]]));
+        [&] { return CellChecker<Hex64>(map_, centers_, places_, hints, wrong); },
+        [&](std::size_t i, CellChecker<Hex64>& checker) {
+          checker.prove(tets[i], stretch.from(centers_.begin[tets[i]]));
         });
   });
 }

@@ -21,7 +21,7 @@
 namespace hexhex::verification {
 
 /// A scaled map, and what follows from it.
-struct Truth {
+struct Reference {
   igm::PreparedMap map;
   Expectation expected;
 };
@@ -93,8 +93,8 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
 }
 
 /// Adds "map_valid"; nothing if it did not pass.
-std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options, Context& context,
-                             Comparisons& comparisons) {
+std::optional<Reference> referenceOf(const TetMapView& map, const VerifyOptions& options,
+                                     Context& context, Comparisons& comparisons) {
   igm::DefectCollector defects;
   igm::PreparedMap prepared = igm::prepareMap(map, options.tolerance, options.scale, context,
                                               defects, igm::ChartChoice::Unfolded);
@@ -104,7 +104,7 @@ std::optional<Truth> truthOf(const TetMapView& map, const VerifyOptions& options
   Stage stage(context, "verification");
   igm::scaleMap(prepared.exact, options.scale, stage);
   Expectation expected = expectationOf(prepared, stage);
-  return Truth{std::move(prepared), std::move(expected)};
+  return Reference{std::move(prepared), std::move(expected)};
 }
 
 /// Adds "cells" and "vertices"; returns whether all passed so far.
@@ -190,11 +190,11 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
   WorkSteps steps(context, "verify", kSteps);
   verification::Comparisons comparisons;
   withThreads(context.threads(), [&] {
-    std::optional<verification::Truth> truth =
-        verification::truthOf(map, options, context, comparisons);
-    if (!truth) return;
+    std::optional<verification::Reference> reference =
+        verification::referenceOf(map, options, context, comparisons);
+    if (!reference) return;
     Stage stage(context, "verification");
-    verification::Verification(truth->map, truth->expected, options, context, stage)
+    verification::Verification(reference->map, reference->expected, options, context, stage)
         .compare(mesh, comparisons);
   });
   steps.finish();
@@ -225,33 +225,34 @@ VerifyReport verify(const TetMapView& map, const HexMesh& mesh, const VerifyOpti
   return verify(map, mesh, options, context);
 }
 
-class VerifySink::Prover {
+class VerifySink::Checker {
  public:
-  Prover(const TetMapView& map, const VerifyOptions& options, Context& context)
+  Checker(const TetMapView& map, const VerifyOptions& options, Context& context)
       : quiet_(context.threads()) {
     constexpr std::array<WorkStep, 2> kSteps = {{{"prepare", 1}, {"verification", 0.1}}};
     WorkSteps steps(context, "VerifySink", kSteps);
     withThreads(context.threads(), [&] {
-      truth_ = verification::truthOf(map, options, context, comparisons_);
-      if (!truth_) return;
+      reference_ = verification::referenceOf(map, options, context, comparisons_);
+      if (!reference_) return;
       Stage stage(context, "verification");
-      proof_.emplace(truth_->map, truth_->expected, false, stage);
+      proof_.emplace(reference_->map, reference_->expected, false, stage);
     });
     steps.finish();
   }
 
   void points(const PointPiece& piece) {
-    if (!truth_) return;
-    compare(piece.first, piece.points, verification::expectedElements(truth_->expected).vertices,
-            points_);
+    if (!reference_) return;
+    compare(piece.first, piece.points,
+            verification::expectedElements(reference_->expected).vertices, points_);
   }
   template <class Cell>
   void cells(std::uint64_t first, std::span<const Cell> cells) {
-    if (truth_) compare(first, cells, truth_->expected.cells, cells_);
+    if (reference_) compare(first, cells, reference_->expected.cells, cells_);
   }
 
   void end() {
-    if (!truth_ || !verification::compareCounts(truth_->expected, cells_, points_, comparisons_))
+    if (!reference_ ||
+        !verification::compareCounts(reference_->expected, cells_, points_, comparisons_))
       return;
     if (proof_->hints().count() > 0) verification::addWrongExtraction(comparisons_);
     const verification::Faults& positions = proof_->positions();
@@ -278,25 +279,25 @@ class VerifySink::Prover {
 
   Context quiet_;  ///< pieces come while somebody else reports progress
   verification::Comparisons comparisons_;
-  std::optional<verification::Truth> truth_;
+  std::optional<verification::Reference> reference_;
   std::optional<verification::Proof> proof_;
   std::uint64_t points_ = 0;
   std::uint64_t cells_ = 0;
 };
 
 VerifySink::VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context)
-    : prover_(std::make_unique<Prover>(map, options, context)) {}
+    : checker_(std::make_unique<Checker>(map, options, context)) {}
 VerifySink::~VerifySink() = default;
 
 void VerifySink::begin(std::uint64_t /*pointCount*/, std::uint64_t /*cellCount*/) {}
-void VerifySink::points(const PointPiece& piece) { prover_->points(piece); }
+void VerifySink::points(const PointPiece& piece) { checker_->points(piece); }
 void VerifySink::cells(std::uint64_t first, std::span<const Hex> cells) {
-  prover_->cells(first, cells);
+  checker_->cells(first, cells);
 }
 void VerifySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
-  prover_->cells(first, cells);
+  checker_->cells(first, cells);
 }
-void VerifySink::end() { prover_->end(); }
-const VerifyReport& VerifySink::report() const noexcept { return prover_->report(); }
+void VerifySink::end() { checker_->end(); }
+const VerifyReport& VerifySink::report() const noexcept { return checker_->report(); }
 
 }  // namespace hexhex

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <base/stage.hpp>
-#include <curved/crossings.hpp>
 #include <curved/element_numbers.hpp>
 #include <curved/face_walk.hpp>
+#include <curved/intersections.hpp>
 #include <curved/simplex_point.hpp>
 #include <igm/defects.hpp>
 

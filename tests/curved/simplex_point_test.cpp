@@ -52,7 +52,7 @@ TEST(SimplexPoint, IsWhereALineCrossesAFace) {
     const std::int64_t area = (seen[1][0] - seen[0][0]) * (seen[2][1] - seen[0][1]) -
                               (seen[1][1] - seen[0][1]) * (seen[2][0] - seen[0][0]);
     if (area == 0) continue;  // the face is parallel to the line
-    const SimplexPoint point = crossingOfFace(corners, face, along);
+    const SimplexPoint point = intersectionWithFace(corners, face, along);
     ASSERT_EQ(point.simplex() == lattice::kNoSimplex, isBeside(seen));
     if (point.simplex() == lattice::kNoSimplex) {
       ++missed;

@@ -21,11 +21,11 @@ namespace {
 using test::Prepared;
 
 /// The preprocessing of a valid map up to its regular vertices.
-struct Survey : test::Topology {
+struct Analysis : test::Topology {
   LocalParameters parameters;
   RegularVertices regular;
 
-  explicit Survey(const TetMapView& map)
+  explicit Analysis(const TetMapView& map)
       : Topology(map),
         parameters(input),
         regular(findRegularVertices(topology, parameters, stage)) {
@@ -36,29 +36,30 @@ struct Survey : test::Topology {
 /// What follows from the stars of irregular vertices.
 struct Stars {
   Transitions transitions;
-  Array<HalfFaceCrossing> crossings;
+  Array<HalfFaceTransition> faceTransitions;
   VertexKinds vertices;
 
-  /// @param noneIsFlat  declares all crossings inexact
-  explicit Stars(Survey& survey, bool noneIsFlat = false)
-      : transitions(computeTransitions(survey.topology, survey.parameters, survey.regular, {}, 0.1,
-                                       survey.stage)),
-        crossings(findCrossings(survey.topology, survey.regular, transitions, survey.stage)) {
+  /// @param noneIsFlat  declares all transitions inexact
+  explicit Stars(Analysis& analysis, bool noneIsFlat = false)
+      : transitions(computeTransitions(analysis.topology, analysis.parameters, analysis.regular, {},
+                                       0.1, analysis.stage)),
+        faceTransitions(findHalfFaceTransitions(analysis.topology, analysis.regular, transitions,
+                                                analysis.stage)) {
     if (noneIsFlat) {
-      for (HalfFaceCrossing& crossing : crossings) {
-        crossing = crossing.isBoundary()
-                       ? HalfFaceCrossing::boundary(
-                             static_cast<std::size_t>(std::countr_zero(crossing.plane())), false)
-                       : HalfFaceCrossing::inner(crossing.rotation(), false);
+      for (HalfFaceTransition& across : faceTransitions) {
+        across = across.isBoundary()
+                     ? HalfFaceTransition::boundary(
+                           static_cast<std::size_t>(std::countr_zero(across.plane())), false)
+                     : HalfFaceTransition::inner(across.rotation(), false);
       }
     }
-    vertices = classifyVertices(survey.topology, survey.parameters, survey.regular, crossings, {},
-                                true, survey.stage);
+    vertices = classifyVertices(analysis.topology, analysis.parameters, analysis.regular,
+                                faceTransitions, {}, true, analysis.stage);
   }
 
-  [[nodiscard]] std::optional<Singularities> singularities(Survey& survey) const {
-    return computeSingularities(survey.topology, survey.parameters, survey.regular, crossings,
-                                vertices, {}, survey.stage);
+  [[nodiscard]] std::optional<Singularities> singularities(Analysis& analysis) const {
+    return computeSingularities(analysis.topology, analysis.parameters, analysis.regular,
+                                faceTransitions, vertices, {}, analysis.stage);
   }
 };
 
@@ -81,15 +82,15 @@ double rightAngles(const TetMapView& map, std::span<const adjacency::EdgeCorner>
 }
 
 /// Everything that being regular promises about edges.
-std::size_t expectRegularEdges(const Survey& survey) {
+std::size_t expectRegularEdges(const Analysis& analysis) {
   std::vector<adjacency::EdgeCorner> scratch;
   std::size_t edges = 0;
-  for (Index v = 0; v < survey.topology.pointCount; ++v) {
+  for (Index v = 0; v < analysis.topology.pointCount; ++v) {
     adjacency::forEachEdge(
-        survey.topology, v, scratch, [&](Index w, std::span<const adjacency::EdgeCorner> fan) {
-          if (survey.regular.isIrregular[v] != 0 && survey.regular.isIrregular[w] != 0) return;
-          const double regular = adjacency::boundaryFacesAt(survey.topology, fan) > 0 ? 2 : 4;
-          EXPECT_NEAR(rightAngles(survey.input.view, fan), regular, 1e-6);
+        analysis.topology, v, scratch, [&](Index w, std::span<const adjacency::EdgeCorner> fan) {
+          if (analysis.regular.isIrregular[v] != 0 && analysis.regular.isIrregular[w] != 0) return;
+          const double regular = adjacency::boundaryFacesAt(analysis.topology, fan) > 0 ? 2 : 4;
+          EXPECT_NEAR(rightAngles(analysis.input.view, fan), regular, 1e-6);
           ++edges;
         });
   }
@@ -102,9 +103,9 @@ TEST_P(RegularVerticesOfKind, HaveRegularEdgesOnly) {
   for (const ChartStyle charts : test::kChartStyles) {
     const TetMap map =
         generateSample(kind(), {.cells = 7, .refine = 3, .charts = charts, .jitter = 0.6}).map;
-    const Survey survey(map);
-    ASSERT_TRUE(survey.defects.empty());
-    const std::size_t edges = expectRegularEdges(survey);
+    const Analysis analysis(map);
+    ASSERT_TRUE(analysis.defects.empty());
+    const std::size_t edges = expectRegularEdges(analysis);
     if (charts == ChartStyle::Aligned || charts == ChartStyle::Blocks) {
       EXPECT_GT(edges, map.tets.size() / 2);
     }
@@ -114,21 +115,21 @@ TEST_P(RegularVerticesOfKind, HaveRegularEdgesOnly) {
 TEST_P(RegularVerticesOfKind, AreNeitherSingularNorBetweenPlanesNorAtJumps) {
   for (const ChartStyle charts : test::kChartStyles) {
     const TetMap map = generateSample(kind(), {.refine = 3, .charts = charts, .jitter = 0.6}).map;
-    const Survey survey(map);
+    const Analysis analysis(map);
     const Prepared prepared(map);
     for (Index v = 0; v < map.points.size(); ++v) {
-      if (survey.regular.isIrregular[v] != 0) continue;
+      if (analysis.regular.isIrregular[v] != 0) continue;
       EXPECT_EQ(prepared.singularities().degree(v), 0);
       bool boundary = false;
       for (const adjacency::CornerIndex corner : prepared.topology().star(v)) {
         for (int face = 0; face < 4; ++face) {
           if (face == adjacency::localOf(corner)) continue;
           const adjacency::HalfFace halfFace = adjacency::halfFaceOf(corner / 4, face);
-          boundary = boundary || survey.topology.isBoundary(halfFace);
+          boundary = boundary || analysis.topology.isBoundary(halfFace);
           EXPECT_FALSE(prepared.transitions().isNonTrivial(halfFace));
         }
       }
-      EXPECT_EQ(survey.regular.plane[v] != 0, boundary);
+      EXPECT_EQ(analysis.regular.plane[v] != 0, boundary);
     }
   }
 }
@@ -149,11 +150,11 @@ void forEachChartStyle(SampleKind kind, const F& f) {
 TEST_P(RegularVerticesOfKind, AreSanitizedAsTheirStarsAre) {
   forEachChartStyle(kind(), [](const TetMap& map, ChartStyle charts, double noise) {
     const auto sanitized = [&](bool allIrregular) {
-      Survey survey(map);
+      Analysis analysis(map);
       if (allIrregular) {
-        for (std::uint8_t& isIrregular : survey.regular.isIrregular) isIrregular = 1;
+        for (std::uint8_t& isIrregular : analysis.regular.isIrregular) isIrregular = 1;
       }
-      Stars stars(survey, allIrregular);
+      Stars stars(analysis, allIrregular);
       EXPECT_TRUE(stars.transitions.misfits.empty());
       const bool flat = std::ranges::count(stars.vertices.kind, VertexKind::Flat) > 0;
       if (allIrregular || noise > 0) {
@@ -162,11 +163,11 @@ TEST_P(RegularVerticesOfKind, AreSanitizedAsTheirStarsAre) {
       if (!allIrregular && noise == 0 && charts != ChartStyle::Aligned) {
         EXPECT_TRUE(flat);
       }
-      const auto singularities = stars.singularities(survey);
-      ExactMap exact =
-          sanitize(survey.topology, survey.parameters, std::move(stars.transitions), survey.regular,
-                   stars.vertices, singularities.value(), 0.1, 1, survey.stage, survey.defects);
-      EXPECT_TRUE(survey.defects.empty());
+      const auto singularities = stars.singularities(analysis);
+      ExactMap exact = sanitize(analysis.topology, analysis.parameters,
+                                std::move(stars.transitions), analysis.regular, stars.vertices,
+                                singularities.value(), 0.1, 1, analysis.stage, analysis.defects);
+      EXPECT_TRUE(analysis.defects.empty());
       return std::pair(std::move(exact), singularities->edges.size());
     };
     const auto [fast, fastEdges] = sanitized(false);
@@ -207,9 +208,9 @@ TEST(RegularVertices, TurnsInOneChartAreCounted) {
   for (const int turns : {1, 2, 3}) {
     for (const double angle : {0.0, 0.1, 1.0, 3.0}) {
       const TetMap map = windingFan(turns, angle);
-      Survey survey(map);
-      ASSERT_TRUE(survey.defects.empty());
-      const auto singularities = Stars(survey).singularities(survey);
+      Analysis analysis(map);
+      ASSERT_TRUE(analysis.defects.empty());
+      const auto singularities = Stars(analysis).singularities(analysis);
       ASSERT_TRUE(singularities.has_value());
       int valence = 4;
       for (const SingularEdge& edge : singularities->edges) {
@@ -225,9 +226,9 @@ TEST(RegularVertices, TurnsInOneChartAreCounted) {
 
 /// Which vertices have stars that are flat, but not regular.
 std::vector<Index> flatVertices(const TetMap& map) {
-  Survey survey(map);
-  EXPECT_TRUE(survey.defects.empty());
-  const Stars stars(survey);
+  Analysis analysis(map);
+  EXPECT_TRUE(analysis.defects.empty());
+  const Stars stars(analysis);
   std::vector<Index> flat;
   for (Index v = 0; v < map.points.size(); ++v) {
     if (stars.vertices.kind[v] == VertexKind::Flat) flat.push_back(v);
@@ -287,9 +288,9 @@ TetMap partOf(const TetMap& map, const Keep& keep) {
 }
 
 bool isRegular(const TetMap& map, Index vertex) {
-  const Survey survey(map);
-  EXPECT_TRUE(survey.defects.empty());
-  return survey.regular.isIrregular[vertex] == 0;
+  const Analysis analysis(map);
+  EXPECT_TRUE(analysis.defects.empty());
+  return analysis.regular.isIrregular[vertex] == 0;
 }
 
 TEST(RegularVertices, OfTheBoundaryAreOnOneSideOfOnePlane) {

@@ -73,8 +73,8 @@ TEST(Mpi, SaysTheSameInAllProcesses) {
   try {
     team.run([&] {
       if (team.rank() == last) throw Error(ErrorCode::FileWrite, "full");
-      team.agree();
-      team.agree();
+      team.barrier();
+      team.barrier();
     });
     ADD_FAILURE() << "one process failed";
   } catch (const Error& error) {

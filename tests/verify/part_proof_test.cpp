@@ -17,9 +17,9 @@ namespace {
 constexpr int kPartMaps = 100;
 
 /// A map that is ready to prove parts.
-class Truth {
+class Reference {
  public:
-  explicit Truth(const TetMapView& map)
+  explicit Reference(const TetMapView& map)
       : map_(prepare(map)),
         stage_(context_, "verification"),
         expected_(expectationOf(map_, stage_)),
@@ -86,8 +86,8 @@ TEST(PartProof, RefusesOtherMeshes) {
     const std::vector<MeshPart> parts = partsOf(map, drawParts(random));
     const MeshPart& part = parts[random.below(parts.size())];
     if (part.mesh.cells.empty()) continue;
-    Truth truth(map);
-    ASSERT_TRUE(truth.passes(part)) << "map " << i;
+    Reference reference(map);
+    ASSERT_TRUE(reference.passes(part)) << "map " << i;
     for (const Mutation& mutation : mutations()) {
       MeshPart wrong = part;
       if (!mutation.apply(wrong.mesh, random)) continue;
@@ -96,10 +96,10 @@ TEST(PartProof, RefusesOtherMeshes) {
           wrong.mesh.cells.size() != part.mesh.cells.size()) {
         continue;
       }
-      EXPECT_FALSE(truth.passes(wrong)) << mutation.name << ", map " << i;
+      EXPECT_FALSE(reference.passes(wrong)) << mutation.name << ", map " << i;
       ++refused[mutation.name];
     }
-    EXPECT_TRUE(truth.passes(part)) << "map " << i;
+    EXPECT_TRUE(reference.passes(part)) << "map " << i;
   }
   EXPECT_GE(refused.size(), 10U);
 }
@@ -107,13 +107,13 @@ TEST(PartProof, RefusesOtherMeshes) {
 TEST(PartProof, RefusesOtherNumbers) {
   const TetMap map = generateSample(SampleKind::Torus).map;
   const MeshPart part = partsOf(map, {.parts = 3, .ghostLayers = 1}).at(1);
-  Truth truth(map);
+  Reference reference(map);
   const auto refuses = [&](const auto& change) {
     MeshPart wrong = part;
     change(wrong);
-    return !truth.passes(wrong);
+    return !reference.passes(wrong);
   };
-  EXPECT_TRUE(truth.passes(part));
+  EXPECT_TRUE(reference.passes(part));
   EXPECT_TRUE(refuses([](MeshPart& p) { std::swap(p.globalPoints[0], p.globalPoints[1]); }));
   EXPECT_TRUE(refuses([](MeshPart& p) { std::swap(p.globalCells[0], p.globalCells[1]); }));
   EXPECT_TRUE(refuses([](MeshPart& p) { ++p.globalPoints.back(); }));

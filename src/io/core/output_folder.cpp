@@ -154,7 +154,7 @@ void OutputFolder::takeBack() noexcept {
 }
 
 void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>& change) {
-  agree(team_);  // all are written
+  barrier(team_);  // all are written
   std::size_t done = 0;
   try {
     for (; done < files_.size(); ++done) {
@@ -163,7 +163,7 @@ void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>&
       if (change) change(done, output);
       output.commit();
     }
-    agree(team_);
+    barrier(team_);
   } catch (...) {
     std::error_code unknown;
     if (done < files_.size() && files_[done].output->isNamed()) ++done;

@@ -68,8 +68,8 @@ class OutputFolder {
 [[nodiscard]] inline bool isFirst(const ProcessTeam* team) {
   return team == nullptr || team->rank() == 0;
 }
-inline void agree(ProcessTeam* team) {
-  if (team != nullptr) team->agree();
+inline void barrier(ProcessTeam* team) {
+  if (team != nullptr) team->barrier();
 }
 
 /// One file for each part, side by side; in a team, those of all processes get names, or none.
@@ -165,9 +165,9 @@ class SharedFile {
 
   void commit() {
     if (!isFirst(team_)) output_->handOver();
-    agree(team_);  // all is written
+    barrier(team_);  // all is written
     if (isFirst(team_)) output_->commit();
-    agree(team_);
+    barrier(team_);
   }
 
  private:

@@ -514,7 +514,7 @@ class OpenFoamSink final : public PartSink {
         throw folders_[p].named(error);
       }
     }
-    agree(team_);  // all parts are written
+    barrier(team_);  // all parts are written
     nameAll();
   }
 
@@ -646,9 +646,9 @@ class OpenFoamSink final : public PartSink {
     std::size_t done = 0;
     try {
       for (; done < folders_.size(); ++done) folders_[done].commit();
-      agree(team_);
+      barrier(team_);
       if (marker_) marker_->commit();
-      agree(team_);
+      barrier(team_);
     } catch (...) {
       // A marker that is there is only not yet safe on the disk; other processes cannot know.
       const bool isNamed = marker_ && marker_->isNamed();

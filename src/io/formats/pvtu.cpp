@@ -75,9 +75,9 @@ class PvtuSink final : public PartSink {
 
   void end() override {
     Stage stage(context_, "write mesh");
-    agree(team_);  // all pieces are written
+    barrier(team_);  // all pieces are written
     if (index_) nameAll(*index_);
-    agree(team_);
+    barrier(team_);
   }
 
  private:

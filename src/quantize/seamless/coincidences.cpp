@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostPlanes = 10'000;
 /// So often one is taken across a piece of the cut at most: for maps with many pieces, the rest of
 /// quantization takes longer than this.
-constexpr std::size_t kMostCrossings = 200'000;
+constexpr std::size_t kMostIntersections = 200'000;
 
 /// Planes may also lie anywhere: one on each axis stands for those, at this share of the extent,
 /// which no other plane is likely to have.
@@ -110,8 +110,8 @@ class Planes {
 void addBeyondCut(const CutGraph& graph, const SharedUnknowns& unknowns, double extent,
                   Planes& planes) {
   const std::vector<adjacency::HalfFace> pieces = unknowns.cutPieces();
-  for (std::size_t next = 0;
-       next < planes.size() && planes.size() < kMostPlanes && next * pieces.size() < kMostCrossings;
+  for (std::size_t next = 0; next < planes.size() && planes.size() < kMostPlanes &&
+                             next * pieces.size() < kMostIntersections;
        ++next) {
     const FixedCoordinate here = planes[next];
     for (const adjacency::HalfFace h : pieces) {

@@ -24,8 +24,9 @@ constexpr std::size_t kMostEntries = std::size_t{1} << 27;
 /// Of coefficients; those of values, which stay far below, are sums of a few of them.
 constexpr std::int64_t kLargestCoefficient = std::int64_t{1} << 40;
 constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
-/// By what a wish may divide: planes of symmetric objects that come back after several ways around
-/// make fractions of up to eighths. Larger ones, of chains of them, would need a coarser lattice.
+/// By what a preference may divide: planes of symmetric objects that come back after several ways
+/// around make fractions of up to eighths. Larger ones, of chains of them, would need a coarser
+/// lattice.
 constexpr std::int64_t kLargestDivisor = 8;
 
 [[noreturn]] void failForSize() {
@@ -97,10 +98,10 @@ std::int64_t IntegerForm::commonDivisor(std::int64_t with) const noexcept {
 }
 
 IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
-                             std::vector<IntegerForm> wishes)
+                             std::vector<IntegerForm> preferences)
     : variableCount_(variableCount), solvedBy_(variableCount, kNone) {
   addEquations(std::move(equations), std::numeric_limits<std::int64_t>::max());
-  addEquations(std::move(wishes), kLargestDivisor);
+  addEquations(std::move(preferences), kLargestDivisor);
   for (Index v = 0; v < variableCount; ++v) {
     if (solvedBy_[v] == kNone) free_.push_back(v);
   }

@@ -45,9 +45,10 @@ class IntegerForm {
 class IntegerSystem {
  public:
   /// @param equations  forms that are to vanish
-  /// @param wishes     further ones, but for those that would make fractions of more than eighths
+  /// @param preferences     further ones, but for those that would make fractions of more than
+  /// eighths
   IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
-                std::vector<IntegerForm> wishes = {});
+                std::vector<IntegerForm> preferences = {});
 
   /// The solution nearest to `wanted` (least squares).
   /// @throws Error TooLarge for more variables than charts of real maps bring

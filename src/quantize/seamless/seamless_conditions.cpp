@@ -51,15 +51,15 @@ void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unk
 }
 
 /// A way from one sector at a vertex to another, across the cut.
-struct Crossing {
+struct SectorTransition {
   Index from;
   Index to;
   adjacency::HalfFace halfFace;
 };
 
-std::vector<Crossing> crossingsAt(Index vertex, const adjacency::TetTopology& topology,
-                                  const CutGraph& graph) {
-  std::vector<Crossing> crossings;
+std::vector<SectorTransition> transitionsAt(Index vertex, const adjacency::TetTopology& topology,
+                                            const CutGraph& graph) {
+  std::vector<SectorTransition> transitions;
   for (const adjacency::CornerIndex corner : topology.star(vertex)) {
     for (int face = 0; face < 4; ++face) {
       const adjacency::HalfFace h = adjacency::halfFaceOf(corner / 4, face);
@@ -67,10 +67,10 @@ std::vector<Crossing> crossingsAt(Index vertex, const adjacency::TetTopology& to
       const Index there = adjacency::tetOf(topology.mate[h]);
       const adjacency::CornerIndex mate =
           4 * there + static_cast<Index>(topology.localCorner(there, vertex));
-      crossings.push_back({graph.sectors[corner], graph.sectors[mate], h});
+      transitions.push_back({graph.sectors[corner], graph.sectors[mate], h});
     }
   }
-  return crossings;
+  return transitions;
 }
 
 }  // namespace
@@ -207,23 +207,23 @@ VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topolo
   VertexConditions conditions;
   SharedEquations ofPoint;
   // All sectors from the first one, across the cut; each further way between them is a condition.
-  const std::vector<Crossing> crossings = crossingsAt(vertex, topology, graph);
+  const std::vector<SectorTransition> transitions = transitionsAt(vertex, topology, graph);
   conditions.sectors.push_back({graph.sectors[topology.star(vertex)[0]], {}, {}});
   const auto find = [&](Index sector) {
     return std::find_if(conditions.sectors.begin(), conditions.sectors.end(),
                         [sector](const auto& known) { return known.sector == sector; });
   };
   for (std::size_t next = 0; next < conditions.sectors.size(); ++next) {
-    for (const Crossing& crossing : crossings) {
-      if (crossing.from != conditions.sectors[next].sector) continue;
+    for (const SectorTransition& transition : transitions) {
+      if (transition.from != conditions.sectors[next].sector) continue;
       const VertexConditions::Sector& from = conditions.sectors[next];
-      const lattice::Rotation turn = graph.rotations[crossing.halfFace];
-      VertexConditions::Sector reached{crossing.to, turn * from.rotation,
+      const lattice::Rotation turn = graph.rotations[transition.halfFace];
+      VertexConditions::Sector reached{transition.to, turn * from.rotation,
                                        rotated(turn, from.translation)};
       for (std::size_t k = 0; k < 3; ++k) {
-        reached.translation[k].add(unknowns.translation(crossing.halfFace, k), 1);
+        reached.translation[k].add(unknowns.translation(transition.halfFace, k), 1);
       }
-      const auto known = find(crossing.to);
+      const auto known = find(transition.to);
       if (known == conditions.sectors.end()) {
         conditions.sectors.push_back(std::move(reached));
         continue;

@@ -31,7 +31,7 @@ constexpr double kNoise = 1e-9;
 /// The map moves by so many times its noise at most so that they are.
 constexpr double kChainedNoise = 16;
 /// Planes that come together may bring others near to each other; nearly all are found at once.
-constexpr int kRoundsOfWishes = 3;
+constexpr int kRoundsOfPreferences = 3;
 
 /// The axis to which a triangle is perpendicular: along which it extends least. The normal of a
 /// thin one may be noise.
@@ -417,14 +417,14 @@ class NearestMap {
   /// Finds it once more with all planes as one that noise alone keeps apart: walls between them
   /// were a mess. @pre find()
   void joinPlanes(double noise) {
-    std::vector<IntegerForm> wishes;
+    std::vector<IntegerForm> preferences;
     std::vector<std::int64_t> best = values_;
-    for (int round = 0; round < kRoundsOfWishes; ++round) {
+    for (int round = 0; round < kRoundsOfPreferences; ++round) {
       const auto more = coincidences(graph_, unknowns_, conditions_, best, noise * map_.unit,
                                      map_.size * map_.unit);
       if (more.empty()) break;
-      wishes.insert(wishes.end(), more.begin(), more.end());
-      best = nearest(wishes);
+      preferences.insert(preferences.end(), more.begin(), more.end());
+      best = nearest(preferences);
       if (best.empty()) break;
       take(best);
     }
@@ -434,10 +434,11 @@ class NearestMap {
 
  private:
   /// Values of shared unknowns for the seamless map that is nearest under all equations.
-  /// @param wishes  further equations, as far as they make no fractions
+  /// @param preferences  further equations, as far as they make no fractions
   /// @return empty if they are not on the lattice
-  [[nodiscard]] std::vector<std::int64_t> nearest(const std::vector<IntegerForm>& wishes) const {
-    const IntegerSystem system(unknowns_.size(), equations_, wishes);
+  [[nodiscard]] std::vector<std::int64_t> nearest(
+      const std::vector<IntegerForm>& preferences) const {
+    const IntegerSystem system(unknowns_.size(), equations_, preferences);
     std::vector<double> wanted = system.nearest(unknowns_.measured());
     for (double& x : wanted) x *= map_.unit;
     // Nearly all that depends on others is their sum, or half of it, and the step is a power of

@@ -13,19 +13,19 @@ namespace hexhex::igm {
 
 /// Either the rotation into the neighbour's chart (the translation follows from the parameters), or
 /// the boundary, across an axis. A byte, so that all of them fit a cache.
-class HalfFaceCrossing {
+class HalfFaceTransition {
  public:
   /// To a neighbour that agrees on the parameters of the common corners.
-  constexpr HalfFaceCrossing() = default;
+  constexpr HalfFaceTransition() = default;
 
   /// @param isExact  whether a transition carries the parameters over without rounding
-  [[nodiscard]] static constexpr HalfFaceCrossing inner(lattice::Rotation rotation,
-                                                        bool isExact) noexcept {
+  [[nodiscard]] static constexpr HalfFaceTransition inner(lattice::Rotation rotation,
+                                                          bool isExact) noexcept {
     return {static_cast<unsigned>(rotation.index()), isExact};
   }
   /// @param axis  along which the triangle is constant, or nearly so
-  [[nodiscard]] static constexpr HalfFaceCrossing boundary(std::size_t axis,
-                                                           bool isConstant) noexcept {
+  [[nodiscard]] static constexpr HalfFaceTransition boundary(std::size_t axis,
+                                                             bool isConstant) noexcept {
     return {static_cast<unsigned>((1 + axis) * kBoundary), isConstant};
   }
 
@@ -49,7 +49,7 @@ class HalfFaceCrossing {
   static constexpr unsigned kInexact = 32;
   static constexpr unsigned kBoundary = 64;
 
-  constexpr HalfFaceCrossing(unsigned kind, bool isExact)
+  constexpr HalfFaceTransition(unsigned kind, bool isExact)
       : code_(static_cast<std::uint8_t>(kind | (isExact ? 0 : kInexact))) {}
 
   std::uint8_t code_ = 0;
@@ -58,4 +58,4 @@ class HalfFaceCrossing {
 }  // namespace hexhex::igm
 
 template <>
-inline constexpr bool hexhex::kLeftUninitialized<hexhex::igm::HalfFaceCrossing> = true;
+inline constexpr bool hexhex::kLeftUninitialized<hexhex::igm::HalfFaceTransition> = true;

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <curved/crossings.hpp>
+#include <curved/intersections.hpp>
 
 #include "lattice/random.hpp"
 
@@ -53,7 +53,7 @@ ChartEdge reversed(const ChartEdge& edge) {
 }
 
 /// What occurred: tests that miss a case say nothing.
-struct CrossingCounts {
+struct IntersectionCounts {
   std::size_t certain = 0;
   std::size_t leftToExact = 0;
   std::size_t onBorders = 0;
@@ -72,7 +72,7 @@ double placeOf(const FaceShares& shares, const OwnersFace& face, const ChartEdge
   return place / static_cast<double>(unit);
 }
 
-/// For the parameter of a crossing whose shares are known to 2^-37.
+/// For the parameter of an intersection whose shares are known to 2^-37.
 double errorBound(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit) {
   const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   const double reach = std::abs(face.second(axis)) + std::abs(face.third(axis));
@@ -88,8 +88,8 @@ double largestDifference(const FaceShares& a, const FaceShares& b) {
 }
 
 /// @param edge  its line meets the closed face
-void compareCrossing(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit,
-                     CrossingCounts& counts) {
+void compareIntersection(const OwnersFace& face, const ChartEdge& edge, std::int64_t unit,
+                         IntersectionCounts& counts) {
   const FaceShares rough = shareRoughly(face, edge, unit);
   const FaceShares exact = shareExactly(face, edge, unit);
   if (!exact.inside) {
@@ -99,17 +99,17 @@ void compareCrossing(const OwnersFace& face, const ChartEdge& edge, std::int64_t
   }
   ++(rough.inside ? counts.certain : counts.leftToExact);
   EXPECT_TRUE(!rough.inside || largestDifference(rough, exact) < 0x1p-37);
-  const FaceCrossing crossing = crossFace(face, edge, unit);
-  EXPECT_LE(std::abs(crossing.parameter - placeOf(exact, face, edge, unit)),
+  const FaceIntersection intersection = crossFace(face, edge, unit);
+  EXPECT_LE(std::abs(intersection.parameter - placeOf(exact, face, edge, unit)),
             errorBound(face, edge, unit));
-  const FaceCrossing back = crossFace(face, reversed(edge), unit);
-  EXPECT_TRUE(back.parameter == 1 - crossing.parameter &&
-              crossing.parameter == 1 - back.parameter && back.shares == crossing.shares);
+  const FaceIntersection back = crossFace(face, reversed(edge), unit);
+  EXPECT_TRUE(back.parameter == 1 - intersection.parameter &&
+              intersection.parameter == 1 - back.parameter && back.shares == intersection.shares);
 }
 
-TEST(FaceCrossing, IsTheSameByBothArithmeticsAndFromBothEnds) {
+TEST(FaceIntersection, IsTheSameByBothArithmeticsAndFromBothEnds) {
   LatticeRandom random(8812);
-  CrossingCounts counts;
+  IntersectionCounts counts;
   for (int i = 0; i < testing::cases(200000) + 5000 && !HasFailure(); ++i) {
     // Where products fit 53 bits, and where they are rounded.
     const std::int64_t unit = std::int64_t{1} << (random.oneIn(2) ? 18 : 44);
@@ -117,7 +117,7 @@ TEST(FaceCrossing, IsTheSameByBothArithmeticsAndFromBothEnds) {
     const OwnersFace face(corners, static_cast<int>(random.between(0, 3)));
     ChartEdge edge{{}, static_cast<lattice::Direction>(random.between(0, 5))};
     for (std::int32_t& z : edge.z) z = static_cast<std::int32_t>(random.between(-4, 4));
-    if (meets(face, edge, unit)) compareCrossing(face, edge, unit, counts);
+    if (meets(face, edge, unit)) compareIntersection(face, edge, unit, counts);
   }
   EXPECT_GT(counts.certain, 100U);
   EXPECT_GT(counts.leftToExact, 0U);

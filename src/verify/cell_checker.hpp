@@ -185,10 +185,10 @@ struct NumberedCells {
 
 /// Steps 2 and 3 of a proof (proof.hpp), for the cells of one tet after the other. One per thread.
 template <class Cell>
-class CellProver {
+class CellChecker {
  public:
-  CellProver(const igm::PreparedMap& map, const sweep::CellCenters& centers,
-             const LatticePlaces& places, Faults& hints, Faults& wrong)
+  CellChecker(const igm::PreparedMap& map, const sweep::CellCenters& centers,
+              const LatticePlaces& places, Faults& hints, Faults& wrong)
       : map_(map),
         centers_(centers),
         places_(places),

@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
-#include <curved/crossings.hpp>
+#include <curved/intersections.hpp>
 
 #include "lattice/random.hpp"
 
@@ -57,7 +57,7 @@ lattice::LatticePoint fromOtherEnd(lattice::LatticePoint point, std::int64_t uni
   return point;
 }
 
-TEST(EdgeCrossing, IsTheSameHoweverItIsSeen) {
+TEST(EdgeIntersection, IsTheSameHoweverItIsSeen) {
   LatticeRandom random(4711);
   int inside = 0;
   for (int i = 0; i < testing::cases(100000) + 5000 && !HasFailure(); ++i) {
@@ -67,20 +67,22 @@ TEST(EdgeCrossing, IsTheSameHoweverItIsSeen) {
     if (exact <= 0 || exact >= 1) continue;
     ++inside;
     const auto [a, b] = corners;
-    const EdgeCrossing crossing = crossTetEdge(a, b, 0, unit);
-    EXPECT_LT(std::abs(crossing.parameter - exact.convert_to<double>()), 0x1p-48);
-    EXPECT_LT(std::abs(crossing.shares[0] + crossing.shares[1] - 1), 0x1p-51);
-    const EdgeCrossing swapped = crossTetEdge(b, a, 0, unit);
-    EXPECT_TRUE(swapped.parameter == crossing.parameter &&
-                swapped.shares[0] == crossing.shares[1] && swapped.shares[1] == crossing.shares[0]);
-    const EdgeCrossing back = crossTetEdge(fromOtherEnd(a, unit), fromOtherEnd(b, unit), 0, unit);
-    EXPECT_TRUE(back.parameter == 1 - crossing.parameter &&
-                crossing.parameter == 1 - back.parameter && back.shares == crossing.shares);
+    const EdgeIntersection intersection = crossTetEdge(a, b, 0, unit);
+    EXPECT_LT(std::abs(intersection.parameter - exact.convert_to<double>()), 0x1p-48);
+    EXPECT_LT(std::abs(intersection.shares[0] + intersection.shares[1] - 1), 0x1p-51);
+    const EdgeIntersection swapped = crossTetEdge(b, a, 0, unit);
+    EXPECT_TRUE(swapped.parameter == intersection.parameter &&
+                swapped.shares[0] == intersection.shares[1] &&
+                swapped.shares[1] == intersection.shares[0]);
+    const EdgeIntersection back =
+        crossTetEdge(fromOtherEnd(a, unit), fromOtherEnd(b, unit), 0, unit);
+    EXPECT_TRUE(back.parameter == 1 - intersection.parameter &&
+                intersection.parameter == 1 - back.parameter && back.shares == intersection.shares);
     const auto axis = static_cast<std::size_t>(random.between(0, 2));
     const bool flipped = random.oneIn(2);
-    const EdgeCrossing turned =
+    const EdgeIntersection turned =
         crossTetEdge(inOtherChart(a, axis, flipped), inOtherChart(b, axis, flipped), axis, unit);
-    EXPECT_TRUE(turned.parameter == crossing.parameter && turned.shares == crossing.shares);
+    EXPECT_TRUE(turned.parameter == intersection.parameter && turned.shares == intersection.shares);
   }
   EXPECT_GT(inside, 100);
 }

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include <verify/cell_prover.hpp>
+#include <verify/cell_checker.hpp>
 
 namespace hexhex::verification {
 

@@ -115,15 +115,15 @@ struct FaceShares {
 }
 
 /// The point inside a face at which an edge crosses it.
-struct FaceCrossing {
+struct FaceIntersection {
   std::array<double, 3> shares{};  ///< of the face's corners
   double parameter = 0;            ///< along the edge; 1 minus it, exactly, from the other end
 };
 
 /// @param edge  in the owner's chart; its line crosses the interior of the face
 /// @param unit  a power of two
-[[nodiscard]] inline FaceCrossing crossFace(const OwnersFace& face, const ChartEdge& edge,
-                                            std::int64_t unit) noexcept {
+[[nodiscard]] inline FaceIntersection crossFace(const OwnersFace& face, const ChartEdge& edge,
+                                                std::int64_t unit) noexcept {
   FaceShares shares = shareRoughly(face, edge, unit);
   if (!shares.inside) shares = shareExactly(face, edge, unit);
   // Along the axis, in whichever direction the edge runs.
@@ -143,7 +143,7 @@ struct FaceCrossing {
 [[nodiscard]] inline ArcExit exitThrough(const igm::PreparedMap& map, const OwnedSimplex& face,
                                          const ChartEdge& edge) noexcept {
   const int local = lattice::oppositeCorner(face.corners);
-  const FaceCrossing crossing =
+  const FaceIntersection intersection =
       crossFace(OwnersFace(map.exact.corners[face.tet], local), edge, map.exact.unit);
   const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(local)];
   const auto corner = [&](std::size_t i) -> const Vec3& {
@@ -151,10 +151,10 @@ struct FaceCrossing {
   };
   Vec3 point;
   for (std::size_t k = 0; k < 3; ++k) {
-    point[k] = crossing.shares[0] * corner(0)[k] + crossing.shares[1] * corner(1)[k] +
-               crossing.shares[2] * corner(2)[k];
+    point[k] = intersection.shares[0] * corner(0)[k] + intersection.shares[1] * corner(1)[k] +
+               intersection.shares[2] * corner(2)[k];
   }
-  return {face, point, crossing.parameter};
+  return {face, point, intersection.parameter};
 }
 
 /// The same from any tet of the face.
@@ -168,7 +168,7 @@ struct FaceCrossing {
 }
 
 /// The point inside an edge of the tets at which a hex edge crosses it.
-struct EdgeCrossing {
+struct EdgeIntersection {
   std::array<double, 2> shares;  ///< of the corners, with sum 1
   double parameter;              ///< along the hex edge; 1 minus it, exactly, from the other end
 };
@@ -176,9 +176,9 @@ struct EdgeCrossing {
 /// @param a, b   the corners, seen from where the hex edge begins
 /// @param axis   along which the hex edge ascends; its line passes between the corners
 /// @param unit   its length
-[[nodiscard]] inline EdgeCrossing crossTetEdge(const lattice::LatticePoint& a,
-                                               const lattice::LatticePoint& b, std::size_t axis,
-                                               std::int64_t unit) noexcept {
+[[nodiscard]] inline EdgeIntersection crossTetEdge(const lattice::LatticePoint& a,
+                                                   const lattice::LatticePoint& b, std::size_t axis,
+                                                   std::int64_t unit) noexcept {
   // Both corners and the line are in one plane, so any distance across the axis will do; this one
   // is exact, and the same in all charts.
   const std::size_t p = (axis + 1) % 3;
@@ -214,12 +214,12 @@ struct EdgeCrossing {
   if (i == j) {
     return {generator, first, static_cast<double>(seen[i][0]) / static_cast<double>(unit)};
   }
-  const EdgeCrossing crossing = crossTetEdge(seen[i], seen[j], 0, unit);
+  const EdgeIntersection intersection = crossTetEdge(seen[i], seen[j], 0, unit);
   Vec3 point;
   for (std::size_t k = 0; k < 3; ++k) {
-    point[k] = crossing.shares[0] * first[k] + crossing.shares[1] * last[k];
+    point[k] = intersection.shares[0] * first[k] + intersection.shares[1] * last[k];
   }
-  return {generator, point, crossing.parameter};
+  return {generator, point, intersection.parameter};
 }
 
 }  // namespace hexhex::curved
