@@ -1143,7 +1143,7 @@ class Repair(CommandTest):
                           expect=BAD_USAGE, code="InvalidArgument", words=["--pillow adds straight cells"])
 
     def test_improve(self):
-        self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "3", "--quiet", "-o", "map.hexex")
+        self.run_command("generate", "torus", "--jitter", "0.9", "--cells", "2", "--quiet", "-o", "map.hexex")
         run = self.run_command("extract", "map.hexex", "-o", "rough.vtu", "--scale", "2")
         self.assertRegex(run.stderr, "not positive everywhere.*--improve makes such cells positive")
         # With the map, in two steps and in one; without it.

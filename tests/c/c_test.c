@@ -638,7 +638,7 @@ static void test_improve(void) {
   hexhex_map* map = NULL;
   hexhex_mesh* mesh = NULL;
   hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
-  sample.cells = 3;
+  sample.cells = 2;
   sample.jitter = 0.9;
   CHECK_OK(hexhex_map_generate("torus", &sample, &map, &error));
   hexhex_extract_options extraction = HEXHEX_EXTRACT_OPTIONS_INIT;
