@@ -639,7 +639,7 @@ static void test_improve(void) {
   hexhex_mesh* mesh = NULL;
   hexhex_sample_options sample = HEXHEX_SAMPLE_OPTIONS_INIT;
   sample.cells = 2;
-  sample.jitter = 0.9;
+  sample.jitter = 0.6;
   CHECK_OK(hexhex_map_generate("torus", &sample, &map, &error));
   hexhex_extract_options extraction = HEXHEX_EXTRACT_OPTIONS_INIT;
   extraction.scale = 2;
