@@ -44,8 +44,7 @@ struct FillOptions {
   /// Desired number of hexahedra. Tet edges get the length of hexahedron edges, but the number of
   /// tets stays between about 3,000 and 20,000, since maps of more tets take long. 0: the latter.
   double cells = 0;
-  double featureAngle = 40;  ///< preserve edges where the surface turns by more than this angle, in
-                             ///< degrees (Gmsh)
+  double featureAngle = 40;  ///< preserve edges where the surface turns by more, in degrees (Gmsh)
 };
 
 struct FillReport {

@@ -91,15 +91,14 @@ struct ImproveReport {
   Array<Vec3> addedPoints;  ///< positions of their vertices before improvement
   /// Curves of the object: its sharp edges and its tagged edges.
   double curveLength = 0;           ///< in diagonals
-  double curvesFollowed = 1;        ///< share of that length close to mesh edges, 0 to 1
-  std::uint64_t snappedCurves = 0;  ///< curve segments between corners to which paths of edges were
-                                    ///< snapped
+  double curvesFollowed = 1;        ///< share of that length closely followed by mesh edges, 0 to 1
+  std::uint64_t snappedCurves = 0;  ///< segments between corners to which edges were snapped
 };
 
 /// Moves vertices and, if requested, adds a pillow. The surface is that of the map: its boundary,
 /// tagged triangles and region interfaces.
 ///
-/// The minimum scaled Jacobian never decreases, and certified cells remain certified. Cells at or
+/// The minimum scaled Jacobian does not decrease, and certified cells remain certified. Cells at or
 /// above the target remain there, unless cells beside them were untangled. Connectivity, tags,
 /// regions and vertices at tagged corners are preserved. (With PillowMode::Always, cells may become
 /// worse. A pillow changes the connectivity; interior tags and regions are extended through it to

@@ -40,7 +40,7 @@ struct MeshedPart {
   QuantizeReport quantization;
   VerifyReport verification;
   ImproveReport improvement;
-  /// Whether vertices were allowed to leave tagged edges because cells were not positive otherwise.
+  /// Whether vertices could leave tagged edges because cells were not positive otherwise.
   bool tagsReleased = false;
   /// Segments of tagged curves for which no mesh edges were found.
   std::uint64_t missingCurves = 0;

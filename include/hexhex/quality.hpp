@@ -25,8 +25,7 @@ struct QualitySummary {
   double minimum = 0;
   double mean = 0;
   std::uint64_t notPositive = 0;              ///< cells with scaled Jacobian <= 0
-  std::array<std::uint64_t, 20> histogram{};  ///< of [-1, 1] in steps of 0.1; the last bin includes
-                                              ///< 1
+  std::array<std::uint64_t, 20> histogram{};  ///< of [-1, 1] in steps of 0.1; 1 is in the last
 };
 
 [[nodiscard]] QualitySummary summarize(const Array<double>& scaledJacobians);

@@ -42,8 +42,7 @@ struct QuantizeReport {
   double cellsWanted = 0;
   std::uint64_t cells = 0;
   double scale = 0;          ///< final scale of the seamless map's parameters
-  double displacement = 0;   ///< largest change of a parameter that was needed to make the map
-                             ///< seamless
+  double displacement = 0;   ///< largest parameter change needed to make the map seamless
   std::uint64_t blocks = 0;  ///< in the motorcycle complex
   std::uint64_t arcs = 0;
   std::uint64_t shortestArc = 0;  ///< in hexahedra
@@ -72,9 +71,8 @@ struct SeamlessReport {
   SeamlessKind kind = SeamlessKind::Neither;
   double displacement = 0;   ///< of the nearest seamless map, if there is one, in parameter units
   double cells = 0;          ///< its volume, in unit cubes
-  double integerFactor = 0;  ///< smallest factor that turns all parameters into those of an
-                             ///< integer-grid map, which then needs no quantization; 0 if there is
-                             ///< none
+  double integerFactor = 0;  ///< smallest factor for all parameters that makes the map an
+                             ///< integer-grid map without quantization; 0: there is none
   std::string problem;       ///< for Neither: why, and where
 };
 

@@ -18,8 +18,7 @@ struct RepairOptions {
   /// First round boundary and singular coordinates that deviate from integers by more than the
   /// tolerance but less than 0.1.
   bool round = false;
-  bool refine = true;  ///< allow splitting edges of the tet mesh where moving parameters is not
-                       ///< sufficient
+  bool refine = true;  ///< allow splitting tet edges where moving parameters is not enough
 };
 
 /// Result of a repair at one place.

@@ -40,18 +40,16 @@ enum class DefectKind {
 };
 
 struct SampleOptions {
-  int cells = 4;    ///< number of hexahedra along each block edge, 1 to 10000
-  int refine = 2;   ///< number of tet sub-blocks along each block edge, 1 to 500 (12 tets per
-                    ///< sub-block)
+  int cells = 4;    ///< hexahedra along each block edge, 1 to 10000
+  int refine = 2;   ///< tet sub-blocks along each block edge, 1 to 500 (12 tets per sub-block)
   int valence = 5;  ///< of SampleKind::Star, 3 to 12
   ChartStyle charts = ChartStyle::Aligned;
   double jitter = 0;  ///< displaces free tet vertices by up to this fraction of a sub-block, 0 to 1
   double onLattice = 0;  ///< fraction of free tet coordinates placed exactly on integers, 0 to 1
   double noise = 0;  ///< added to each corner independently, uniform in [-noise, noise]; below 0.25
                      ///< and at most cells / (72 refine), so that the answer remains correct
-  double offset = 0;  ///< chart translations are integers in [-offset, offset], up to 1e9; a single
-                      ///< one for all blocks if aligned. Below 1: none if aligned, otherwise up to
-                      ///< 20
+  double offset = 0;  ///< chart translations are integers in [-offset, offset], up to 1e9; one for
+                      ///< all blocks if aligned. Below 1: none if aligned, else up to 20
   /// Makes the map seamless instead of integer: along each chain of opposite block edges, hexahedra
   /// get a random length from [1 - stretch, 1 + stretch). 0 to 0.9, not with jitter or onLattice.
   /// The answer is that of the unstretched map.
@@ -60,9 +58,8 @@ struct SampleOptions {
   /// kind starting at 1, and numbers the blocks as regions, starting at 1.
   bool features = false;
   std::uint64_t seed = 1;
-  int defects = 0;  ///< damages the map in one place: at least this number of tets are flipped or
-                    ///< flat, if the sample has enough vertices of the kind; 0 to 10000. 0: a valid
-                    ///< map
+  int defects = 0;  ///< damages one place: at least this many tets are flipped or flat, if the
+                    ///< sample has enough vertices of the kind; 0 to 10000. 0: a valid map
   DefectKind defectKind = DefectKind::Interior;
 };
 

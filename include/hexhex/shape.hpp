@@ -33,10 +33,9 @@ struct ShapeOptions {
 /// labelling, they are the faces of the polycube.
 struct LabelReport {
   std::uint64_t charts = 0;
-  std::uint64_t corners = 0;     ///< where at least three charts meet
-  std::uint64_t badLoops = 0;    ///< chart borders with fewer than four corners
-  std::uint64_t badCorners = 0;  ///< corners of more than three charts, or without room for their
-                                 ///< faces
+  std::uint64_t corners = 0;        ///< where at least three charts meet
+  std::uint64_t badLoops = 0;       ///< chart borders with fewer than four corners
+  std::uint64_t badCorners = 0;     ///< of more than three charts, or without room for their faces
   std::uint64_t oppositeEdges = 0;  ///< mesh edges between opposite labels
   std::uint64_t turningPoints = 0;  ///< where edges of the polycube would reverse direction
   std::uint64_t wrongTurns = 0;     ///< charts whose right angles do not add up
@@ -58,8 +57,7 @@ struct ShapeReport {
   std::uint64_t featureEdges = 0;  ///< edges of the tets above the angle
   std::uint64_t taggedEdges = 0;   ///< those of them that are edges of the map
   std::uint64_t innerFaces = 0;    ///< interior triangles with a tag or on a region interface
-  std::uint64_t alignedFaces = 0;  ///< those of them that lie in planes of the map and will be
-                                   ///< covered by quads
+  std::uint64_t alignedFaces = 0;  ///< those of them in planes of the map, to be covered by quads
   MapDistortion distortion;
 };
 

@@ -40,15 +40,13 @@ struct FaceConflict {
   std::array<Index, 4> vertices{};  ///< in the order in which `cell` lists them
   std::uint64_t cell = 0;
   std::uint64_t other = 0;  ///< the next cell with this face
-  std::uint64_t cells = 0;  ///< number of cells with this face; 2: both list it in the same
-                            ///< direction
+  std::uint64_t cells = 0;  ///< number of cells with it; 2: both list it in the same direction
 };
 
 /// Faults in the corner lists of cells. Such cells cannot all be positive without overlap, wherever
 /// their vertices are.
 struct CellFaults {
-  Array<std::uint64_t> repeated;  ///< cells that name a vertex twice, ascending; excluded from the
-                                  ///< rest
+  Array<std::uint64_t> repeated;  ///< cells that name a vertex twice, ascending; not in the rest
   /// Cells that list their corners in reverse orientation, ascending. Once they are reversed, all
   /// cells of a component list common faces in opposite directions, and its volume is not negative.
   Array<std::uint64_t> mirrored;
