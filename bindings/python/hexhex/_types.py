@@ -1024,7 +1024,7 @@ class ImproveReport:
     from_surface_before: float  #: maximum distance from the object's boundary to the mesh's
     from_mesh_after: float
     from_surface_after: float
-    inner_distance_before: float  #: of interior faces with a tag or between regions
+    inner_distance_before: float  #: of tagged and interface faces inside, from such triangles
     inner_distance_after: float
     free_vertices: int
     patch_vertices: int  #: vertices that slide on the surface
