@@ -1,5 +1,4 @@
-// The arrays in results: who gets one may keep it, look at it, or pass its memory on, without a
-// copy.
+// Arrays in results, which callers can keep, view, or pass on without a copy.
 #pragma once
 
 #include <cstddef>
@@ -15,21 +14,21 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Whether elements of a type are left uninitialized by arrays that grow: numbers are, and what
-/// else says so because it is always written before it is read. Only for types that are copied like
-/// bytes.
+/// Whether growing arrays leave elements of this type uninitialized: true for numbers, and for
+/// types that opt in because they are always written before they are read. Only for trivially
+/// copyable types.
 template <class T>
 inline constexpr bool kLeftUninitialized = std::is_trivially_default_constructible_v<T>;
 
 namespace detail {
 
-/// Memory for arrays. Large ones ask the system for huge pages: the first touch of a fresh array
-/// costs mostly page faults, and those come per page.
+/// Memory for arrays. Large arrays request huge pages: the first touch of a fresh array costs
+/// mostly page faults, and those occur per page.
 [[nodiscard]] void* allocateArray(std::size_t bytes);
 void freeArray(void* memory, std::size_t bytes) noexcept;
 
-/// Leaves such elements uninitialized, so that large arrays are touched once, by the thread that
-/// fills them.
+/// Leaves such elements uninitialized, so that large arrays are only touched once, by the thread
+/// that fills them.
 template <class T>
 struct ArrayAllocator {
   using value_type = T;
@@ -65,7 +64,7 @@ using ArrayStorage = std::vector<T, ArrayAllocator<T>>;
 
 }  // namespace detail
 
-/// Frees what Array::release() returned.
+/// Frees the memory returned by Array::release().
 template <class T>
 class ArrayDeleter {
  public:
@@ -78,11 +77,11 @@ class ArrayDeleter {
   detail::ArrayStorage<T> storage_;
 };
 
-/// A std::vector whose resize() does not clear memory, and whose memory can be taken over. Three
-/// ways to adopt the array of a result, none of which copies an element:
+/// A std::vector whose resize() does not clear memory, and which can give up ownership of its
+/// memory. Three ways to adopt the array of a result without copying an element:
 ///  - move it: `Array<Vec3> points = std::move(mesh.points);`
-///  - look at it while it lives, as a std::span or by data() and size(): elements are in a row;
-///  - release() it, to libraries that take a pointer and something that frees it:
+///  - view it while it lives, as a std::span or through data() and size(): elements are contiguous;
+///  - release() it, for libraries that take a pointer and a deleter:
 ///    `std::shared_ptr<Vec3[]> points = mesh.points.release();`
 template <class T>
 class Array : private detail::ArrayStorage<T> {
@@ -143,8 +142,8 @@ class Array : private detail::ArrayStorage<T> {
     return static_cast<const Storage&>(a) < static_cast<const Storage&>(b);
   }
 
-  /// Hands over the elements, and leaves the array empty. Ask for size() before. What is returned
-  /// frees them, whichever way and in whichever thread it ends.
+  /// Transfers ownership of the elements and leaves the array empty. Call size() first. The
+  /// returned pointer frees them, however and in whichever thread it is destroyed.
   [[nodiscard]] std::unique_ptr<T[], ArrayDeleter<T>> release() noexcept {
     T* const elements = data();
     return {elements, ArrayDeleter<T>(std::move(static_cast<Storage&>(*this)))};

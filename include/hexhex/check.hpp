@@ -1,4 +1,4 @@
-// What a map is, what its mesh will be, and what is wrong with it.
+// Diagnosis of a map: its properties, the mesh to expect, and its defects.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// One violated condition: how often, how badly, and the worst places.
+/// A violated condition: how often, how badly, and the worst places.
 struct Defect {
   struct Occurrence {
     Place place;
@@ -21,15 +21,15 @@ struct Defect {
   };
   ErrorCode code = ErrorCode::Internal;
   std::string sentence;           ///< what is wrong and what to do
-  std::uint64_t count = 0;        ///< all occurrences
+  std::uint64_t count = 0;        ///< number of all occurrences
   std::vector<Occurrence> worst;  ///< at most ten, worst first
 };
 
-/// What follows from a map without extracting it: the mesh can be checked against this.
+/// Properties of the mesh that follow from the map without extraction, for checking the mesh.
 struct Expectation {
   std::uint64_t cells = 0;          ///< parametric volume
   std::uint64_t boundaryQuads = 0;  ///< parametric area of the boundary
-  /// Number of singular hex edges by valence: parametric length of singular tet edges.
+  /// Number of singular hex edges by valence: the parametric length of singular tet edges.
   std::map<int, std::uint64_t> innerSingularEdges;
   std::map<int, std::uint64_t> boundarySingularEdges;
   std::int64_t eulerCharacteristic = 0;  ///< V - E + F - C
@@ -45,31 +45,31 @@ struct CheckReport {
   std::uint64_t boundaryFaces = 0;
   std::uint64_t innerFaces = 0;
   std::uint64_t chartJumps = 0;           ///< inner faces with a non-identity transition
-  std::uint64_t isolatedVertices = 0;     ///< vertices without a tet: ignored, a warning
+  std::uint64_t isolatedVertices = 0;     ///< a warning: vertices without a tet are ignored
   std::uint64_t tetsInvertedInSpace = 0;  ///< a warning
-  bool mirrored = false;                  ///< the map reverses orientation: a notice
-  bool cornersReversed = false;           ///< tets list their corners in negative order: a notice
+  bool mirrored = false;                  ///< a notice: the map reverses orientation
+  bool cornersReversed = false;  ///< a notice: tets list their corners in negative orientation
   double maxTransitionResidual = 0;
-  double maxDisplacement = 0;  ///< by sanitization
-  /// Number of singular tet edges by valence (hexahedra around them).
+  double maxDisplacement = 0;  ///< caused by sanitization
+  /// Number of singular tet edges by valence (number of hexahedra around them).
   std::map<int, std::uint64_t> innerSingularTetEdges;
   std::map<int, std::uint64_t> boundarySingularTetEdges;
   std::uint64_t singularNodes = 0;
   /// Genus of each boundary component, in descending order.
   std::vector<std::int64_t> boundaryGenus;
   std::vector<Defect> defects;  ///< empty for a valid map
-  Expectation expected;         ///< meaningful if there are no defects
+  Expectation expected;         ///< only meaningful if there are no defects
 
   [[nodiscard]] bool valid() const noexcept { return defects.empty(); }
 };
 
 struct CheckOptions {
   double tolerance = 1e-2;  ///< as in ExtractOptions
-  int scale = 1;            ///< for the expectation
+  int scale = 1;            ///< for `expected`
 };
 
-/// Examines a map and collects every violated condition instead of stopping at the first. Throws
-/// only for arguments out of range and for cancellation.
+/// Checks a map and collects all violated conditions instead of stopping at the first. Throws only
+/// for arguments out of range and for cancellation.
 [[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options,
                                 Context& context);
 [[nodiscard]] CheckReport check(const TetMapView& map, const CheckOptions& options = {});

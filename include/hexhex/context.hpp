@@ -1,5 +1,5 @@
-// What long work gets from its caller: number of threads, progress, cancellation; and what it
-// gives back: how long each stage took.
+// Execution context for long-running functions: number of threads, progress, cancellation, and the
+// time that each stage took.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,7 @@ struct StageTime {
   double seconds = 0;
 };
 
-/// A step of longer work, and how long it takes compared with the other steps, about.
+/// A step of a larger task, with its approximate duration relative to the other steps.
 struct WorkStep {
   std::string_view name;
   double weight = 1;
@@ -28,18 +28,17 @@ struct WorkStep {
 
 class WorkSteps;
 
-/// Passed by reference into long functions. One context serves one call at a time.
+/// Passed by reference to long-running functions. A context serves one call at a time.
 class Context {
  public:
-  /// Called with the name of the running stage and the finished share of the whole call, which
-  /// grows from 0 to 1 and never falls; at most a hundred times a loop, from one thread at a time.
+  /// Called with the name of the current stage and the completed fraction of the whole call, which
+  /// grows monotonically from 0 to 1; at most a hundred times per loop, from one thread at a time.
   /// An exception thrown here ends the work.
   using Progress = std::function<void(std::string_view stage, double share)>;
 
   Context() = default;
-  /// @param threads  number of threads, 0 = all cores of this machine; more than 64 are used only
-  /// on
-  ///                 machines with more cores
+  /// @param threads  number of threads, 0 = all cores of this machine; more than 64 are only used
+  ///                 on machines with more cores
   explicit Context(int threads, Progress progress = {})
       : threads_(threads), progress_(std::move(progress)) {}
 
@@ -48,8 +47,8 @@ class Context {
 
   [[nodiscard]] int threads() const noexcept { return threads_; }
 
-  /// Asks running work to end soon with ErrorCode::Cancelled. May be called from any thread and
-  /// from a signal handler.
+  /// Requests that running work end soon with ErrorCode::Cancelled. Safe to call from any thread
+  /// and from a signal handler.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool cancelled() const noexcept {
     return cancelled_.load(std::memory_order_relaxed);
@@ -57,18 +56,18 @@ class Context {
   /// Throws ErrorCode::Cancelled if cancel() was called.
   void throwIfCancelled() const;
 
-  /// A step of this name begins. Outside of any WorkSteps, it is work of its own.
+  /// Begins the step of this name. Outside any WorkSteps, the step is a task of its own.
   void begin(std::string_view step);
-  /// Reports the finished share of the step that has begun last. Thread-safe.
+  /// Reports the completed fraction of the current step. Thread-safe.
   void report(std::string_view stage, double share);
 
-  /// The stages that have run through this context so far, in order.
+  /// The stages completed in this context so far, in order.
   [[nodiscard]] const std::vector<StageTime>& stageTimes() const noexcept { return stageTimes_; }
   void addStageTime(std::string_view stage, double seconds);
 
  private:
   friend class WorkSteps;
-  /// A part of the whole work, from 0 to 1.
+  /// A section of the whole task, within 0 to 1.
   struct Range {
     double begin = 0;
     double end = 1;
@@ -78,16 +77,16 @@ class Context {
   Progress progress_;
   std::atomic<bool> cancelled_{false};
   std::atomic<bool> reporting_{false};
-  WorkSteps* steps_ = nullptr;  ///< the innermost ones
-  Range step_;                  ///< what has begun last
+  WorkSteps* steps_ = nullptr;  ///< the innermost one
+  Range step_;                  ///< range of the current step
   double reported_ = 0;
-  std::string stage_;  ///< that has begun last
+  std::string stage_;  ///< the current stage
   std::vector<StageTime> stageTimes_;
 };
 
-/// Work in several steps, whose progress is reported as one. Every function of the library is one
-/// of these under its own name, in steps that are its stages; so that a sequence of calls reports
-/// as one if it is another, in steps that are names of functions:
+/// A task in several steps whose progress is reported as one. Every function of the library is such
+/// a task under its own name, and its steps are its stages. To report a sequence of calls as one,
+/// make it a task whose steps are named after the functions:
 ///
 ///     const std::array<WorkStep, 2> names = {{{"readMap", 1}, {"extract", 9}}};
 ///     WorkSteps steps(context, "all", names);
@@ -95,17 +94,17 @@ class Context {
 ///     const HexMesh mesh = extract(map, {}, context);            // ... to 1
 ///     steps.finish();
 ///
-/// A step that does not occur is skipped; one that is not in the list does not move the share.
+/// Steps that do not occur are skipped; steps that are not listed do not advance the progress.
 class WorkSteps {
  public:
-  /// @param name   of the work, by which an outer one knows it
-  /// @param steps  in the order in which they occur; live as long as this
+  /// @param name   name of the task, by which an enclosing task refers to it
+  /// @param steps  in order of execution; must outlive this object
   WorkSteps(Context& context, std::string_view name, std::span<const WorkStep> steps);
   ~WorkSteps();
   WorkSteps(const WorkSteps&) = delete;
   WorkSteps& operator=(const WorkSteps&) = delete;
 
-  /// All is done: reports 1, unless this is a step of other work.
+  /// Marks the task as complete: reports 1, unless it is a step of an enclosing task.
   void finish();
 
  private:
@@ -116,9 +115,9 @@ class WorkSteps {
   WorkSteps* outer_;
   std::span<const WorkStep> steps_;
   Context::Range range_;
-  double total_ = 0;      ///< of all weights
-  double before_ = 0;     ///< the weights of steps_[0, next_)
-  std::size_t next_ = 0;  ///< behind the step that has begun last
+  double total_ = 0;      ///< sum of all weights
+  double before_ = 0;     ///< sum of the weights of steps_[0, next_)
+  std::size_t next_ = 0;  ///< index after that of the current step
 };
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -1,7 +1,7 @@
 // Curved meshes: the exact images of integer-grid edges and faces, and hexahedra of any order.
 //
-// A map bends hex edges and faces at every tet that they cross. Arcs and patches are these images
-// as they are, piece by piece (Section 5.5 of the paper); Lagrange cells follow them with
+// A map bends hex edges and faces at every tet that they cross. Arcs and patches represent these
+// images exactly, piece by piece (Section 5.5 of the paper). Lagrange cells approximate them by
 // polynomials through the preimages of a refined grid, on the boundary or everywhere.
 #pragma once
 
@@ -19,23 +19,24 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Hex edges as polylines. An inner point is where the edge leaves one simplex of the tet mesh for
-/// another; a segment lies in the interior of one simplex: a tet, or a face or edge inside which
-/// the hex edge runs. Arc e has the inner points pointBegin[e] to pointBegin[e + 1] - 1, and the
-/// segments from number pointBegin[e] + e on, one more than inner points.
+/// Hex edges as polylines. At an inner point, the edge passes from one simplex of the tet mesh to
+/// another. A segment lies in the interior of a single simplex: a tet, or a face or edge that
+/// contains this piece of the hex edge. Arc e has inner points pointBegin[e] to
+/// pointBegin[e + 1] - 1 and one segment more than inner points, numbered from pointBegin[e] + e.
 struct Arcs {
-  /// Per arc: the hex vertices at its beginning and end. Arcs of the same two vertices may be
-  /// different ones.
+  /// Per arc: the hex vertices at its beginning and end. Distinct arcs may have the same two
+  /// vertices.
   Array<std::array<Index, 2>> ends;
   Array<std::uint64_t> pointBegin;  ///< per arc (+1)
 
   // Per inner point:
-  Array<Vec3> points;                 ///< position
-  Array<double> parameters;           ///< place along the arc, in (0, 1), not descending
-  Array<Index> generatorTet;          ///< the simplex that is crossed there (a vertex, an edge or
-  Array<CornerSet> generatorCorners;  ///< a face): as in HexMesh
+  Array<Vec3> points;        ///< position
+  Array<double> parameters;  ///< position along the arc, in (0, 1), non-decreasing
+  /// The simplex that is crossed there (a vertex, an edge or a face), as in HexMesh.
+  Array<Index> generatorTet;
+  Array<CornerSet> generatorCorners;
 
-  // Per segment: the simplex that it lies in (an edge, a face, or a tet), as in HexMesh.
+  // Per segment: the simplex that contains it (an edge, a face, or a tet), as in HexMesh.
   Array<Index> segmentTet;
   Array<CornerSet> segmentCorners;
 
@@ -45,43 +46,45 @@ struct Arcs {
   }
 };
 
-/// Hex faces as planar polygons: one per tet whose interior the open face meets, and one per
-/// triangle of the tet mesh that it contains a part of. They meet along whole sides.
+/// Hex faces as planar polygons: one for each tet whose interior the open face meets, and one for
+/// each triangle of the tet mesh that partly coincides with it. Polygons meet along whole sides.
 ///
-/// Polygons name points of one common numbering: hex vertices, then inner points of arcs, then
-/// those of patches.
+/// Polygons refer to points in a common numbering: hex vertices, then inner points of arcs, then
+/// inner points of patches.
 struct Patches {
   /// Per face: its hex vertices, at (u, v) = (0, 0), (1, 0), (1, 1), (0, 1).
   Array<Quad> vertices;
   /// Per face: the arc from its vertex i to vertex i + 1 (mod 4).
   Array<std::array<Index, 4>> arcs;
-  Array<std::uint8_t> reversedArcs;   ///< per face: bit i if that arc runs from i + 1 to i
+  Array<std::uint8_t> reversedArcs;   ///< per face: bit i if that arc runs from vertex i + 1 to i
   Array<std::uint64_t> polygonBegin;  ///< per face (+1): its polygons
 
   // Per polygon:
-  Array<std::uint64_t> cornerBegin;  ///< (+1): its corners, counter-clockwise in (u, v)
-  Array<Index> polygonTet;           ///< the simplex whose interior it lies in (a tet or a face),
-  Array<CornerSet> polygonCorners;   ///< as in HexMesh
+  Array<std::uint64_t> cornerBegin;  ///< (+1): its corners, counterclockwise in (u, v)
+  /// The simplex whose interior contains the polygon (a tet or a face), as in HexMesh.
+  Array<Index> polygonTet;
+  Array<CornerSet> polygonCorners;
 
   // Per corner of a polygon:
-  Array<Index> corners;                     ///< a point of the common numbering
+  Array<Index> corners;                     ///< point in the common numbering
   Array<std::array<double, 2>> parameters;  ///< (u, v) in the face, in [0, 1]
 
   // Per inner point of a face:
   Array<Vec3> points;
-  Array<Index> generatorTet;          ///< the vertex or edge of the tet mesh that crosses the face,
-  Array<CornerSet> generatorCorners;  ///< as in HexMesh
+  /// The vertex or edge of the tet mesh that crosses the face, as in HexMesh.
+  Array<Index> generatorTet;
+  Array<CornerSet> generatorCorners;
 
   [[nodiscard]] std::size_t count() const noexcept { return vertices.size(); }
 };
 
 /// A mesh with the exact shapes of its edges and faces.
 struct PiecewiseLinearMesh {
-  HexMesh mesh;     ///< what extract() returns, bit for bit
+  HexMesh mesh;     ///< the result of extract(), bit for bit
   Arcs arcs;        ///< one per hex edge
-  Patches patches;  ///< one per hex face, if asked for
+  Patches patches;  ///< one per hex face, if requested
 
-  /// Position of a point of the common numbering.
+  /// Position of a point in the common numbering.
   [[nodiscard]] const Vec3& point(std::uint64_t number) const noexcept {
     if (number < mesh.points.size()) return mesh.points[number];
     number -= mesh.points.size();
@@ -95,9 +98,9 @@ enum class PiecewiseLinearParts : std::uint8_t {
   ArcsAndPatches  ///< edges and faces
 };
 
-/// Extracts a mesh with its arcs and, if asked for, its patches. All combinatorial decisions are
-/// exact. The result does not depend on the number of threads or on the engine; memory grows with
-/// its size.
+/// Extracts a mesh with its arcs and, if requested, its patches. All combinatorial decisions are
+/// exact. The result does not depend on the number of threads or on the engine; memory is
+/// proportional to its size.
 /// @throws Error  as extract(); TooLarge for more points than an Index can number
 [[nodiscard]] PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map,
                                                          PiecewiseLinearParts parts,
@@ -105,25 +108,25 @@ enum class PiecewiseLinearParts : std::uint8_t {
                                                          Context& context,
                                                          ExtractStatistics* statistics = nullptr);
 
-/// The highest order of Lagrange cells.
+/// Maximum order of Lagrange cells.
 inline constexpr int kMaxOrder = 9;
 
-/// Hexahedra of an order p: each has (p + 1)^3 nodes, the preimages of the grid refined by p, from
-/// which CurvedNodes::Blended moves those inside. Neighbours share the nodes of their common face.
-/// Nodes 0, 1, ... are the hex vertices in the numbering of extract().
+/// Hexahedra of order p: each has (p + 1)^3 nodes, which are the preimages of the grid refined by
+/// p; CurvedNodes::Blended moves the inner nodes from there. Neighbours share the nodes of their
+/// common face. Nodes 0, 1, ... are the hex vertices in the numbering of extract().
 struct LagrangeMesh {
   int order = 1;
   Array<Vec3> points;  ///< one per node
   /// (p + 1)^3 per cell: node (i, j, k), which lies i / p of the way from corner 0 to corner 1, j /
-  /// p to corner 3, and k / p to corner 4, is number i + (p + 1) (j + (p + 1) k).
+  /// p to corner 3, and k / p to corner 4, has index i + (p + 1) (j + (p + 1) k).
   Array<Index> nodes;
-  std::uint64_t vertexCount = 0;  ///< of the nodes, those that are hex vertices
+  std::uint64_t vertexCount = 0;  ///< number of nodes that are hex vertices
 
-  // Per node, as in HexMesh: where its preimage is, also if it was moved from there.
+  // Per node, as in HexMesh: the location of its preimage, even if the node was moved from there.
   Array<Index> generatorTet;
   Array<CornerSet> generatorCorners;
 
-  // Of the straight mesh, as in HexMesh; a tagged edge or quad stands for all its nodes:
+  // From the straight mesh, as in HexMesh; a tagged edge or quad includes all its nodes:
   HexFeatures features = {};
   Array<std::int32_t> regions = {};
 
@@ -134,90 +137,91 @@ struct LagrangeMesh {
   [[nodiscard]] std::size_t cellCount() const noexcept { return nodes.size() / nodesPerCell(); }
 };
 
-/// Extracts cells of order `order`: those of extract() with the same options, in the same order.
+/// Extracts cells of order `order`, which correspond to those of extract() with the same options,
+/// in the same order.
 /// @param order  1 to kMaxOrder
 /// @throws Error  as extract(); InvalidArgument for other orders
 [[nodiscard]] LagrangeMesh extractLagrange(const TetMapView& map, int order,
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics = nullptr);
 
-/// The straight mesh between the corners: what extract() returns (its coordinates up to rounding if
-/// scale times order exceeds 255, which may make the lattice coarser that parameters are rounded
-/// to).
-/// @throws Error InvalidArgument for arrays that do not fit each other
+/// Returns the straight mesh of the corners, which is the result of extract(). (Coordinates may
+/// differ by rounding if scale times order exceeds 255, since parameters may be rounded to a
+/// coarser lattice then.)
+/// @throws Error InvalidArgument for arrays of inconsistent sizes
 [[nodiscard]] HexMesh straightMesh(const LagrangeMesh& mesh);
 
-/// Per cell: the smallest determinant of the Jacobian matrix, divided by the lengths of its
-/// columns, at the nodes and at the Gauss points of order p + 1. In [-1, 1]; a bad cell has a value
-/// that is not positive; certify() finds also those that are bad elsewhere only.
-/// @throws Error InvalidArgument for arrays that do not fit each other
+/// Per cell: the smallest Jacobian determinant, divided by the lengths of the columns, at the nodes
+/// and at the Gauss points of order p + 1. In [-1, 1]; a value that is not positive indicates a bad
+/// cell. certify() also detects cells that are bad only elsewhere.
+/// @throws Error InvalidArgument for arrays of inconsistent sizes
 [[nodiscard]] Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context);
 
-/// Quality and validity of every cell, as of straight ones. Where doubles do not tell the sign,
-/// integers do at corners, and up to order 3 everywhere.
-/// @throws Error InvalidArgument for arrays that do not fit each other
+/// Computes quality and validity of every cell, as for straight cells. If doubles cannot determine
+/// a sign, integers do at corners, and up to order 3 everywhere.
+/// @throws Error InvalidArgument for arrays of inconsistent sizes
 [[nodiscard]] Certificate certify(const LagrangeMesh& mesh, Context& context);
 
 /// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
-/// points, and a line per segment with the number of its hex edge; arrays docs/curved.md explains.
-/// `.ovmb` (OpenVolumeMesh, polyhedral, without faces and cells): the same, with the property names
-/// that tools of the field use. The file appears complete or not at all.
+/// points, and a line per segment with the number of its hex edge; docs/curved.md describes the
+/// arrays. `.ovmb` (OpenVolumeMesh, polyhedral, without faces and cells): the same, with the
+/// property names common in the field. The file appears complete or not at all.
 /// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context);
 
-/// The same with the map that the mesh was extracted from, so that `.ovmb` files tell the indices
-/// of the tet simplices that points and segments lie in: in the numbering of the file that
-/// writeMap() writes for this map as `.ovm` or `.ovmb`.
-/// @param map  after a repair, the repaired one (ExtractStatistics::repairedMap)
-/// @throws Error  also InvalidArgument if it is another map, and as writeMap() for `.ovmb`
+/// The same with the map that the mesh was extracted from, so that `.ovmb` files include the
+/// indices of the tet simplices that contain points and segments, in the numbering of the `.ovm` or
+/// `.ovmb` file that writeMap() writes for this map.
+/// @param map  after a repair, the repaired map (ExtractStatistics::repairedMap)
+/// @throws Error  also InvalidArgument for a different map, and as writeMap() for `.ovmb`
 void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                const std::filesystem::path& file, Context& context);
 
-/// Writes the patches of a mesh: `.vtu` and `.vtp`, a polygon each; or `.ovmb` (OpenVolumeMesh,
-/// polyhedral, without cells), with the property names that tools of the field use.
+/// Writes the patches of a mesh: `.vtu` and `.vtp`, with one polygon each; or `.ovmb`
+/// (OpenVolumeMesh, polyhedral, without cells), with the property names common in the field.
 /// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context);
 
-/// The same with the map, as for arcs; then also the sides of polygons inside faces know their
-/// simplices.
+/// The same with the map, as for arcs; the file then also includes the simplices of polygon sides
+/// inside faces.
 /// @throws Error  as writeArcs() with a map
 void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                   const std::filesystem::path& file, Context& context);
 
 /// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
-/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and groups
-/// of the boundary are written as those of straight meshes: docs/features.md tells what formats
-/// hold.
-/// @param options  format, patchAngle; scaledJacobians: of the cells, by scaledJacobians(); empty:
-///                 computed
-/// @throws Error FileUnsupported, FileWrite; InvalidArgument for arrays that do not fit each
-///         other, and for features that are not in the mesh
+/// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and
+/// boundary groups are written as for straight meshes: docs/features.md lists what each format
+/// stores.
+/// @param options  format, patchAngle; scaledJacobians: as returned by scaledJacobians() for these
+///                 cells; empty: computed
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument for arrays of inconsistent sizes, and
+///         for features that are not in the mesh
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
-/// Whether a file has cells that readLagrangeMesh() reads: VTK_LAGRANGE_HEXAHEDRON in `.vtu`, and
-/// hexahedra with 20 or 27 nodes in `.vtu`, `.vtk`, `.inp`, `.exo` and `.e`, of VTK's formats only
-/// where no hexahedra are straight.
+/// Whether a file contains cells for readLagrangeMesh(): VTK_LAGRANGE_HEXAHEDRON in `.vtu`, and
+/// hexahedra with 20 or 27 nodes in `.vtu`, `.vtk`, `.inp`, `.exo` and `.e`; in VTK formats, only
+/// if there are no straight hexahedra.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported
 [[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
 
-/// Reads cells of order 2 from these formats, where nodes that hexahedra with 20 lack are where
-/// their shape functions place them; or the Lagrange hexahedra of a `.vtu` file, all of one order,
-/// with their nodes in the order of VTK 9. What writeLagrangeMesh() wrote comes back node by node,
-/// with its generators, tags and regions; of other files, nodes at corners get the first numbers,
-/// and what is tagged at other nodes is left out.
-/// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported without such
-///         cells, for other volume cells beside them, for orders that differ or exceed kMaxOrder,
-///         and for other extensions; TooLarge
+/// Reads cells of order 2 from these formats, placing the nodes missing in 20-node hexahedra
+/// according to their shape functions; or the Lagrange hexahedra of a `.vtu` file, all of the same
+/// order, with nodes in the order of VTK 9. Files from writeLagrangeMesh() are restored node by
+/// node, with generators, tags and regions. For other files, corner nodes are numbered first, and
+/// tags on other nodes are dropped.
+/// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported if there are
+///         no such cells, for other volume cells beside them, for orders that differ or exceed
+///         kMaxOrder, and for other extensions; TooLarge
 [[nodiscard]] LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context);
 
-/// Throw FileUnsupported unless the functions above know the extension, or the format: to fail
-/// before long work.
+/// Throw FileUnsupported unless the functions above support the extension or the format, so that
+/// unsupported formats are detected before long work.
 void requireArcFormat(const std::filesystem::path& file);
 void requirePatchFormat(const std::filesystem::path& file);
-/// @param order  of the cells; 0: not known yet
+/// @param order  of the cells; 0 if not known yet
 void requireLagrangeFormat(const std::filesystem::path& file, std::string_view format = {},
                            int order = 0);
 

@@ -1,5 +1,5 @@
 // Tagged simplices of a tet mesh, and tagged vertices, edges and quads of a hex mesh: sharp edges,
-// surface patches, corners of a CAD model. They travel beside the mesh and never change it.
+// surface patches, corners of a CAD model. Tags accompany the mesh and never change it.
 #pragma once
 
 #include <array>
@@ -12,44 +12,44 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// A tagged vertex. Tags are chosen by whoever made the mesh; 0 means "no feature", so elements
-/// with that tag are not listed.
+/// A tagged vertex. The creator of the mesh chooses the tags; 0 means "no feature", so elements
+/// with tag 0 are not listed.
 struct FeatureVertex {
   std::uint32_t vertex = 0;
   std::int32_t tag = 0;
   bool operator==(const FeatureVertex&) const = default;
 };
 
-/// A tagged edge by its two vertices, in any order.
+/// A tagged edge, given by its two vertices in any order.
 struct FeatureEdge {
   std::array<std::uint32_t, 2> vertices{};
   std::int32_t tag = 0;
   bool operator==(const FeatureEdge&) const = default;
 };
 
-/// A tagged triangle by its three vertices, in any order.
+/// A tagged triangle, given by its three vertices in any order.
 struct FeatureFace {
   std::array<std::uint32_t, 3> vertices{};
   std::int32_t tag = 0;
   bool operator==(const FeatureFace&) const = default;
 };
 
-/// A tagged quad by its four vertices, in order around it (starting anywhere, either direction).
+/// A tagged quad, given by its four vertices in cyclic order (any start, either direction).
 struct FeatureQuad {
   std::array<std::uint32_t, 4> vertices{};
   std::int32_t tag = 0;
   bool operator==(const FeatureQuad&) const = default;
 };
 
-/// What a file calls the elements with a tag; those of other tags are called by their numbers.
+/// Name of a tag in a file; tags without an entry are named by their numbers.
 struct TagName {
-  int dimension = 0;  ///< of the elements: 0 vertices, 1 edges, 2 faces, 3 cells (their region)
+  int dimension = 0;  ///< dimension of the elements: 0 vertices, 1 edges, 2 faces, 3 cells (region)
   std::int32_t tag = 0;
   std::string name;
   bool operator==(const TagName&) const = default;
 };
 
-/// Features of a tet mesh; each element is listed at most once.
+/// Features of a tet mesh. Each element is listed at most once.
 struct Features {
   std::vector<FeatureVertex> vertices;
   std::vector<FeatureEdge> edges;
@@ -62,7 +62,7 @@ struct Features {
   bool operator==(const Features&) const = default;
 };
 
-/// The same as a view on the caller's arrays.
+/// The same as a view of the caller's arrays.
 struct FeaturesView {
   std::span<const FeatureVertex> vertices = {};
   std::span<const FeatureEdge> edges = {};
@@ -92,7 +92,7 @@ struct FeaturesView {
   }
 };
 
-/// Features of a hex mesh; each element is listed at most once.
+/// Features of a hex mesh. Each element is listed at most once.
 struct HexFeatures {
   std::vector<FeatureVertex> vertices;
   std::vector<FeatureEdge> edges;

@@ -1,5 +1,5 @@
-// From a closed surface, or from a STEP file, to tets: by a mesher that is installed, which runs as
-// a program of its own.
+// Fills closed surfaces and STEP files with tets, using an installed mesher that runs as a separate
+// program.
 #pragma once
 
 #include <array>
@@ -16,15 +16,15 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// A surface of triangles.
+/// A triangulated surface.
 struct TriangleMesh {
   std::vector<Vec3> points;
   std::vector<std::array<Index, 3>> triangles;  ///< three vertices each
 };
 
-/// Reads a surface: `.stl`, `.ply` (text and binary), `.obj`, `.off`. Polygons become triangles
-/// around their first corner. Vertices at the same position become one, and triangles without three
-/// different corners, which that makes, are left out.
+/// Reads a surface: `.stl`, `.ply` (text and binary), `.obj`, `.off`. Polygons are split into
+/// triangles around their first corner. Vertices at the same position are merged, and triangles
+/// left without three distinct corners are dropped.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, NotFinite
 [[nodiscard]] TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& context);
 
@@ -32,53 +32,53 @@ enum class Mesher : std::uint8_t {
   Auto,     ///< the first of the others that is installed
   TetWild,  ///< fTetWild: the Python package pytetwild; surfaces only
   Netgen,   ///< the Python package netgen-mesher
-  Gmsh,     ///< the Python package gmsh, or the program of this name
-  TetGen    ///< the program of this name; surfaces only
+  Gmsh,     ///< the Python package gmsh, or the program of that name
+  TetGen    ///< the program of that name; surfaces only
 };
 
-/// Python packages are looked for in the Python that the variable HEXHEX_PYTHON of the environment
-/// names, or else in `python3`; programs on the PATH.
+/// Python packages are looked up in the Python interpreter named by the environment variable
+/// HEXHEX_PYTHON, or else in `python3`; programs on the PATH.
 struct FillOptions {
   Mesher mesher = Mesher::Auto;
-  double tetSize = 0;  ///< length of an edge; 0: as cells says
-  /// Hexahedra that are wanted: edges of tets are as long as theirs, but there are 3,000 to 20,000
-  /// tets, about, since maps of more take long. 0: the latter.
+  double tetSize = 0;  ///< edge length; 0: derived from `cells`
+  /// Desired number of hexahedra. Tet edges get the length of hexahedron edges, but the number of
+  /// tets stays between about 3,000 and 20,000, since maps of more tets take long. 0: the latter.
   double cells = 0;
-  double featureAngle = 40;  ///< edges where the surface turns by more, in degrees, stay (Gmsh)
+  double featureAngle = 40;  ///< preserve edges where the surface turns by more, in degrees (Gmsh)
 };
 
 struct FillReport {
-  std::string mesher;  ///< with its version, where it tells
-  double tetSize = 0;  ///< that was asked for; 0 of a STEP file: the mesher chose it
+  std::string mesher;  ///< including its version, if known
+  double tetSize = 0;  ///< requested edge length; 0 for a STEP file if the mesher chose it
   std::uint64_t tets = 0;
-  // Of surfaces:
+  // For surfaces:
   std::uint64_t triangles = 0;
-  std::uint64_t bodies = 0;  ///< filled one by one
-  std::uint64_t voids = 0;   ///< in them
-  double volume = 0;         ///< inside of the surface
+  std::uint64_t bodies = 0;  ///< each filled separately
+  std::uint64_t voids = 0;   ///< inside the bodies
+  double volume = 0;         ///< enclosed by the surface
   double filledVolume = 0;   ///< of the tets
 };
 
 struct FilledPart {
   TetMesh tets;
-  std::optional<FillReport> report;  ///< nothing if the file held tets
+  std::optional<FillReport> report;  ///< empty if the file held tets
 };
 
-/// Fills the inside of a surface with tets. Each of its bodies is closed and filled by itself; a
-/// closed surface in another one bounds a void, and one in that a body again. Triangles may be
-/// listed in any orientation.
-/// @throws Error NonManifoldEdge for a surface that is open, or whose edges have more than two
-///               triangles; NonManifoldVertex where it touches itself in a point; Orientation if it
-///               has one side only; NotMeshable if it intersects itself, has no thickness or a
-///               triangle without area, and if the mesher fails; FileUnsupported if no mesher is
-///               installed; InvalidArgument for options out of range; EmptyMesh
+/// Fills the interior of a surface with tets. Each body is closed and filled separately; a closed
+/// surface inside another one bounds a void, and one inside a void bounds a body again. Triangles
+/// may have any orientation.
+/// @throws Error NonManifoldEdge for an open surface, or edges with more than two triangles;
+///         NonManifoldVertex where the surface touches itself at a point; Orientation if it is
+///         one-sided; NotMeshable if it intersects itself, has no thickness or a triangle with zero
+///         area, or if the mesher fails; FileUnsupported if no mesher is installed; InvalidArgument
+///         for options out of range; EmptyMesh
 [[nodiscard]] FilledPart fillSurface(const TriangleMesh& surface, const FillOptions& options,
                                      Context& context);
 
-/// Reads the tets of a part from a file that readTetMesh() reads, or fills what readTriangleMesh()
-/// reads, or a STEP file (`.step`, `.stp`).
-/// @throws Error  as these and fillSurface(); InvalidArgument if a mesher or a size is asked for,
-///                but the file holds tets
+/// Reads the tets of a part from a file in a format of readTetMesh(), or fills a surface in a
+/// format of readTriangleMesh() or a STEP file (`.step`, `.stp`).
+/// @throws Error  as these functions and fillSurface(); InvalidArgument if a mesher or a size is
+///         requested but the file holds tets
 [[nodiscard]] FilledPart readPart(const std::filesystem::path& file, const FillOptions& options,
                                   Context& context);
 

@@ -1,4 +1,4 @@
-// Everything at once.
+// Includes all headers.
 #pragma once
 
 #include <hexhex/base_complex.hpp>   // IWYU pragma: export

@@ -1,5 +1,5 @@
-// From a mesh that was extracted to one that a solver takes: cells become positive everywhere, then
-// the worst ones better, then all. Vertices of the boundary stay on the surface of the object.
+// Improves an extracted mesh for use in a solver: first makes all cells positive, then improves the
+// worst cells, then all. Boundary vertices stay on the surface of the object.
 #pragma once
 
 #include <array>
@@ -13,122 +13,121 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Whether a layer of cells is added under the boundary. In it, each cell has one face on the
-/// boundary: no position of its vertices makes a cell good that has two where the boundary hardly
-/// turns, as at borders of labels on a smooth surface.
+/// Whether to add a layer of cells under the boundary, in which each cell has one boundary face. A
+/// cell with two boundary faces cannot become good where the boundary is nearly smooth between
+/// them, as at label borders on a smooth surface, wherever its vertices move.
 enum class PillowMode : std::uint8_t {
   Never,
-  Auto,   ///< where fewer cells stay that are not positive, or the minimum rises by 0.02 or more
-  Always  ///< if there cannot be one, that is an error
+  Auto,  ///< if it leaves fewer cells that are not positive, or raises the minimum by at least 0.02
+  Always  ///< report an error if a layer is impossible
 };
 
 struct ImproveOptions {
-  /// Cells whose scaled Jacobian is below are improved until none is, or no vertex helps any more.
-  /// 0 to 1; 0: cells are only made positive.
+  /// Improve cells with a scaled Jacobian below this value until none is left or no vertex move
+  /// helps. 0 to 1; 0 only makes cells positive.
   double target = 0.3;
-  /// Over all vertices in the end, for the mean. 0 to 1000.
+  /// Final passes over all vertices, to raise the mean. 0 to 1000.
   int passes = 2;
-  bool fixBoundary = false;  ///< vertices on the surface and on tagged faces inside stay
-  /// Edges of the surface where it turns by more than that are curves, which vertices on them do
-  /// not leave; in degrees, 0 to 180. Tagged edges are curves, too, and without a map or any of
-  /// these, so are edges of the boundary with other than two cells.
+  bool fixBoundary = false;  ///< keep vertices on the surface and on tagged interior faces fixed
+  /// Edges where the surface turns by more than this angle are curves, which their vertices do not
+  /// leave; in degrees, 0 to 180. Tagged edges are curves, too. Without a map and tagged edges, so
+  /// are boundary edges with other than two cells.
   double featureAngle = 40;
-  /// Where vertices on the surface cannot make cells positive, those without tags may leave it by
-  /// so much, in diagonals of the bounding box; in such meshes also to raise cells below the
-  /// target. 0 to 0.1.
+  /// How far untagged vertices may leave the surface where vertices on it cannot make cells
+  /// positive, in diagonals of the bounding box. In such meshes, this also applies to raising cells
+  /// below the target. 0 to 0.1.
   double slack = 1e-3;
-  PillowMode pillow = PillowMode::Never;  ///< of straight cells only
-  /// Where edges of the mesh do not follow the curves of a map's surface: lays paths of edges of
-  /// the boundary onto them, in a copy with a pillow, which is kept if it is better by its least
-  /// scaled Jacobian, its distance and what it follows together. Straight cells only.
+  PillowMode pillow = PillowMode::Never;  ///< straight cells only
+  /// Where mesh edges do not follow the curves of a map's surface: snap paths of boundary edges to
+  /// them in a copy with a pillow. The copy is kept if its minimum scaled Jacobian, its distance
+  /// and the curves that it follows are better overall. Straight cells only.
   bool snapCurves = false;
 };
 
-/// Between the boundaries of the object and of the mesh, in diagonals of the surface's bounding
-/// box.
+/// Distance between the boundaries of the object and of the mesh, in diagonals of the surface's
+/// bounding box.
 struct SurfaceDistance {
-  double fromMesh = 0;     ///< largest of vertices, centres and middles of edges of boundary quads
-  double fromSurface = 0;  ///< largest of vertices and centres of the object's boundary triangles
+  double fromMesh = 0;  ///< maximum over vertices, centres and edge midpoints of the boundary quads
+  double fromSurface = 0;  ///< maximum over vertices and centres of the object's boundary triangles
 
   [[nodiscard]] double hausdorff() const noexcept {
     return fromMesh > fromSurface ? fromMesh : fromSurface;
   }
 };
 
-/// So far may the boundary of a mesh be from the surface, in diagonals of its bounding box, until
-/// ImproveReport says which cells are farther. What lets it come farther than that, and than it was
-/// anywhere before, is undone, unless cells would become worse.
+/// Maximum distance of the mesh boundary from the surface beyond which ImproveReport lists cells,
+/// in diagonals of the bounding box. Moves that take it beyond this, and beyond any earlier
+/// distance, are undone unless that would make cells worse.
 inline constexpr double kSurfaceTolerance = 1e-3;
 
 struct ImproveReport {
   Certificate before;
   Certificate after;
-  Array<std::uint64_t> notPositive;  ///< cells that are not certified in the end, ascending
+  Array<std::uint64_t> notPositive;  ///< cells that are not certified at the end, ascending
   double diagonal = 0;               ///< of the surface's bounding box
   SurfaceDistance distanceBefore;
   SurfaceDistance distanceAfter;
-  /// Of faces inside that are tagged, or between regions of the map: the largest distance of such a
-  /// face from such triangles, in diagonals. 0 if there are none.
+  /// Largest distance of an interior mesh face that is tagged or on a region interface from the
+  /// corresponding triangles of the map, in diagonals. 0 if there are none.
   double innerDistanceBefore = 0;
   double innerDistanceAfter = 0;
-  std::uint64_t farCellsBefore = 0;         ///< whose boundary is beyond kSurfaceTolerance
-  Array<std::uint64_t> farCells;            ///< those of the end, ascending
-  std::array<std::uint64_t, 4> vertices{};  ///< that move freely, on patches, on curves, not at all
-  // Why vertices do not move at all: these, and the rest are corners, where curves meet or turn.
-  std::uint64_t taggedVertices = 0;    ///< that have a tag
-  std::uint64_t boundaryVertices = 0;  ///< that only ImproveOptions::fixBoundary holds
+  std::uint64_t farCellsBefore = 0;         ///< cells whose boundary is beyond kSurfaceTolerance
+  Array<std::uint64_t> farCells;            ///< the same at the end, ascending
+  std::array<std::uint64_t, 4> vertices{};  ///< free, on patches, on curves, fixed
+  // Why vertices are fixed; those not counted here are corners, where curves meet or turn.
+  std::uint64_t taggedVertices = 0;    ///< vertices with a tag
+  std::uint64_t boundaryVertices = 0;  ///< vertices fixed only by ImproveOptions::fixBoundary
   std::uint64_t movedVertices = 0;
   double largestMove = 0;        ///< in diagonals
-  double meanMove = 0;           ///< of those that moved
+  double meanMove = 0;           ///< mean over the moved vertices
   std::uint64_t offSurface = 0;  ///< vertices that used the slack
   double seconds = 0;
-  /// Vertices that left creases where nothing else made cells positive. Creases are curves that
-  /// have no tag, and on both sides of which the surface goes on.
+  /// Vertices that left creases because nothing else made cells positive. A crease is an untagged
+  /// curve with surface on both sides.
   std::uint64_t offCreases = 0;
-  /// Of a pillow, and of layers beside curves: they are last in the mesh, and so are their
-  /// vertices. In `before`, they are missing.
+  /// Cells of a pillow and of layers beside curves. They come last in the mesh, as do their
+  /// vertices; `before` does not include them.
   std::uint64_t addedCells = 0;
-  Array<Vec3> addedPoints;  ///< their vertices, where they were put before they moved
-  /// Curves of the object: its sharp and its tagged edges.
+  Array<Vec3> addedPoints;  ///< positions of their vertices before improvement
+  /// Curves of the object: its sharp edges and its tagged edges.
   double curveLength = 0;           ///< in diagonals
-  double curvesFollowed = 1;        ///< share of it near which edges of the mesh run along, 0 to 1
-  std::uint64_t snappedCurves = 0;  ///< pieces between corners that paths of edges were laid onto
+  double curvesFollowed = 1;        ///< share of that length closely followed by mesh edges, 0 to 1
+  std::uint64_t snappedCurves = 0;  ///< segments between corners to which edges were snapped
 };
 
-/// Moves vertices, and adds a pillow if that is wanted. The surface is that of the map: its
-/// boundary, tagged triangles and those between regions.
+/// Moves vertices and, if requested, adds a pillow. The surface is that of the map: its boundary,
+/// tagged triangles and region interfaces.
 ///
-/// The least scaled Jacobian is no less in the end, and no cell that is certified loses that. Cells
-/// at the target or above end there, unless cells beside them were untangled. Connectivity, tags
-/// and regions stay as they are; so do vertices at tagged corners. (With PillowMode::Always, cells
-/// may be worse than before, and a pillow changes the connectivity; tags and regions inside go on
-/// through it to the boundary.) Vertices on tagged curves and
-/// patches stay on them. The result does not depend on the number of threads. If it throws, the
-/// mesh is as it was.
+/// The minimum scaled Jacobian does not decrease, and certified cells remain certified. Cells at or
+/// above the target remain there, unless cells beside them were untangled. Connectivity, tags,
+/// regions and vertices at tagged corners are preserved. (With PillowMode::Always, cells may become
+/// worse. A pillow changes the connectivity; interior tags and regions are extended through it to
+/// the boundary.) Vertices on tagged curves and patches stay on them. The result does not depend on
+/// the number of threads. If an exception is thrown, the mesh is unchanged.
 ///
-/// @param mesh  with generators in the map: what extract() returns, or what was read from `.vtu`,
-///              `.ovm` or `.ovmb`
+/// @param mesh  with generators in the map: returned by extract(), or read from `.vtu`, `.ovm` or
+///              `.ovmb`
 /// @throws Error InvalidArgument for options out of range, vertices that do not exist, generators
-///         that are not in the map, and a map that is elsewhere than the mesh; NotFinite for a
-///         coordinate; TooLarge unless the mesh extends over 1e-10 to 1e30; RepeatedVertex for a
-///         cell that names a vertex twice; NonManifoldFace for a face of more than two cells;
-///         Orientation for cells that list their corners the other way round; EmptyMesh; those of
-///         broken maps; with PillowMode::Always, NonManifoldEdge for edges with other than two
-///         quads of the boundary, and InvalidArgument where tags or regions inside leave no room
-///         for a layer
+///         that are not in the map, and a map in a different location than the mesh; NotFinite for
+///         a coordinate; TooLarge unless the extent of the mesh is between 1e-10 and 1e30;
+///         RepeatedVertex for a cell that names a vertex twice; NonManifoldFace for a face of more
+///         than two cells; Orientation for cells that list their corners in reverse orientation;
+///         EmptyMesh; the errors of broken maps; with PillowMode::Always, NonManifoldEdge for edges
+///         that do not have exactly two boundary quads, and InvalidArgument where interior tags or
+///         regions leave no room for a layer
 ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);
 
-/// The surface is the boundary of the mesh itself, and its tagged quads: each is divided into two
-/// triangles.
+/// The same without a map: the surface is the boundary of the mesh and its tagged quads, each split
+/// into two triangles.
 /// @throws Error  as above
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context);
 
-/// Cells of order 1 to 3: all nodes move, each where its generator lets it; certificates are those
-/// of curved cells. Vertices in the report are nodes, and its distances those of the grid of quads
-/// between them.
-/// @throws Error  as above; InvalidArgument also for higher orders, and for arrays that do not fit
-///         each other
+/// The same for cells of order 1 to 3: moves all nodes, each as far as its generator permits, and
+/// certifies curved cells. In the report, vertices are nodes, and distances are those of the grid
+/// of quads between them.
+/// @throws Error  as above; also InvalidArgument for higher orders, and for arrays of inconsistent
+///         sizes
 ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);
 ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context);

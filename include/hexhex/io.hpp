@@ -1,4 +1,5 @@
-// Files. The format follows from the file name's extension (letter case does not matter).
+// Reading and writing files. The extension of the file name determines the format
+// (case-insensitive).
 #pragma once
 
 #include <array>
@@ -22,29 +23,29 @@ class OutputFile;
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Volume cells of one type in a file.
+/// Number of volume cells of one type in a file.
 struct CellCount {
   std::string name;  ///< "hexahedra", "prisms with 15 nodes"
   std::uint64_t count = 0;
 };
 
-/// What a reader may be told.
+/// Options for readers.
 struct ReadOptions {
-  /// A format by its name (see fileFormats()), whatever the file's extension. Empty: what the
-  /// extension means.
+  /// Name of the format (see fileFormats()), whatever the file's extension. Empty: the format is
+  /// that of the extension.
   std::string_view format = {};
-  /// The name of the array that holds the map in `.vtu` and `.vtk` files: of cells, with 12
-  /// components (u0 v0 w0 u1 ... w3: the parameters of the corners in their order), or of points,
-  /// with 3, for maps with one chart.
+  /// Name of the array that holds the map in `.vtu` and `.vtk` files: a cell array with 12
+  /// components (u0 v0 w0 u1 ... w3: the parameters of the corners in order) or, for maps with a
+  /// single chart, a point array with 3.
   std::string_view mapArray = "igm";
-  /// `.hexex` files of other programs list walls of a motorcycle complex, which are no features.
-  /// Those inside of the object become features with the tag 2 all the same: faces between blocks.
+  /// `.hexex` files from other programs list walls of a motorcycle complex, which are not features.
+  /// Import interior walls as features with tag 2 anyway: faces between blocks.
   bool keepWalls = false;
-  /// Reads the hexahedra among other volume cells, which are left out; the vertices of these stay.
-  /// Otherwise a hex mesh with other cells is an error, as its hexahedra alone have holes.
+  /// Read only the hexahedra of a mesh and skip its other volume cells, whose vertices are kept. By
+  /// default, other cells in a hex mesh are an error, as its hexahedra alone would leave holes.
   bool hexesOnly = false;
-  /// If not null, receives what types of volume cells the file holds, by name. Of `.hexex`, `.ovm`,
-  /// `.ovmb` and `.pvtu` files, which hold one, nothing.
+  /// If not null, receives the types of volume cells in the file, by name. Receives nothing for
+  /// `.hexex`, `.ovm`, `.ovmb` and `.pvtu` files, which hold a single type.
   std::vector<CellCount>* cellCounts = nullptr;
 };
 
@@ -55,41 +56,40 @@ struct ReadOptions {
 [[nodiscard]] TetMap readMap(const std::filesystem::path& file, Context& context);
 [[nodiscard]] TetMap readMap(const std::filesystem::path& file);
 
-/// Reads a tetrahedral mesh, without a map, whether there is one or not: the formats above,
-/// `.mesh`, `.meshb`, `.msh`, `.inp`, `.unv`, `.exo`, `.e`, and TetGen's `.ele` beside its `.node`.
+/// Reads a tetrahedral mesh and ignores its map, if any: the formats above, `.mesh`, `.meshb`,
+/// `.msh`, `.inp`, `.unv`, `.exo`, `.e`, and TetGen's `.ele` with its `.node` file.
 /// @throws Error  as readMap()
 [[nodiscard]] TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);
 
-/// The map of two meshes of the same tets, as polycube tools deliver it: the vertices of the second
-/// one are the parameters of the first one's. There is one chart then. The corners of a tet may be
-/// listed in another order.
-/// @throws Error InvalidArgument if the numbers of vertices or tets differ, or a tet (the place)
-/// has
-///         other vertices; IndexOutOfRange
+/// Combines two meshes of the same tets, as produced by polycube tools, into a map with a single
+/// chart: the vertices of the second mesh are the parameters of the first. The corners of a tet may
+/// be listed in a different order.
+/// @throws Error InvalidArgument if the numbers of vertices or tets differ, or if a tet (the place)
+///         has other vertices; IndexOutOfRange
 [[nodiscard]] TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context);
 
-/// The same from two files that readTetMesh() reads.
-/// @throws Error  as readTetMesh(); FileUnsupported if the two do not belong together
+/// The same from two files in formats that readTetMesh() reads.
+/// @throws Error  as readTetMesh(); FileUnsupported if the files do not belong together
 [[nodiscard]] TetMap readMapPair(const std::filesystem::path& tets,
                                  const std::filesystem::path& polycube, Context& context);
 
-/// Where the labels of a polycube are, and how they are found.
+/// Location of the labels of a polycube.
 struct FlagsFile {
   std::filesystem::path file;
-  /// For a text with a number per triangle: the triangles, as an `.obj` file. Its vertices are
-  /// those of the tets by their positions.
+  /// For a text file with one number per triangle: an `.obj` file with the triangles. Its vertices
+  /// are matched with those of the tets by position.
   std::filesystem::path surface = {};
   std::string_view array = "flags";  ///< name of the cell array in `.vtu` and `.vtk` files
 };
 
 /// Reads the labels of a tet mesh's boundary, see FaceFlags in <hexhex/quantize.hpp>:
-/// - text: four numbers for each tet, one for the face opposite each corner, -1 where there is
-///   none; or, with a surface, a number per triangle;
-/// - `.vtu` and `.vtk`: a cell array of whole numbers, one for each triangle among the cells, whose
-///   points are those of the tet mesh.
+/// - text: four numbers per tet, one for the face opposite each corner, -1 where there is no label;
+///   or, with a surface, one number per triangle;
+/// - `.vtu` and `.vtk`: an integer cell array with one value for each triangle among the cells,
+///   whose points are those of the tet mesh.
 /// Triangles that are not on the boundary are an error.
-/// @return per tet
+/// @return one entry per tet
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported if the numbers do not fit the mesh
 [[nodiscard]] std::vector<std::array<std::int8_t, 4>> readFlags(const FlagsFile& flags,
                                                                 const TetMesh& tets,
@@ -98,85 +98,84 @@ struct FlagsFile {
 /// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
 /// VTK, ASCII and binary), `.msh` (Gmsh 1 to 4.1, ASCII and binary), `.ovm`, `.ovmb`, `.inp`
 /// (Abaqus), `.unv` (I-deas universal), `.cgns`, `.exo` and `.e` (Exodus II); each of them also
-/// compressed, as `.msh.gz`. Points, lines, triangles and other sections are ignored, quads may be
-/// features; generators are restored from `.vtu`, `.ovm` and `.ovmb`.
+/// compressed, as in `.msh.gz`. Points, lines, triangles and other sections are ignored; quads may
+/// become features. Generators are restored from `.vtu`, `.ovm` and `.ovmb`.
 /// @throws Error  as readMap(); FileUnsupported for other volume cells, see ReadOptions::hexesOnly
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, Context& context);
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file);
 
-/// Reads what a file holds: a hexahedral mesh or, where there are no hexahedra, a map.
+/// Reads whatever a file holds: a hexahedral mesh or, if it has no hexahedra, a map.
 /// @throws Error  as readHexMesh() and readMap()
 [[nodiscard]] std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file,
                                                              const ReadOptions& options,
                                                              Context& context);
 
-/// What a writer may be told beside the mesh.
+/// Options for writers.
 struct WriteOptions {
-  /// What scaledJacobians() returned for this mesh, if the caller has it anyway. Empty: computed by
-  /// writers whose format holds it.
+  /// Result of scaledJacobians() for this mesh, if already available. Empty: writers compute it if
+  /// their format stores it.
   std::span<const double> scaledJacobians = {};
 
-  /// A format by its name (see fileFormats()), whatever the file's extension, or a solver that
-  /// shall read the file (see solverFormats()). Empty: what the extension means.
+  /// Name of the format (see fileFormats()), whatever the file's extension, or of the solver that
+  /// will read the file (see solverFormats()). Empty: the format is that of the extension.
   std::string_view format = {};
 
-  /// For formats with groups of boundary quads, if none of them is tagged: the angle in
-  /// degrees, up to 180, by which the boundary may turn within a group; see boundaryPatches(). 0:
-  /// one group.
+  /// For formats with boundary groups, if no boundary quad is tagged: the maximum angle, in degrees
+  /// up to 180, by which the boundary may turn within a group; see boundaryPatches(). 0: a single
+  /// group.
   double patchAngle = 40;
 
-  /// Compresses the arrays of `.vtu` files with zlib. Other formats refuse it, and so does a
-  /// library that was built without zlib.
+  /// Compress the arrays of `.vtu` files with zlib. An error for other formats and in builds
+  /// without zlib.
   bool compress = false;
 
-  /// The name of the cell array that holds a map in `.vtu` and `.vtk` files; not empty.
+  /// Name of the cell array that holds a map in `.vtu` and `.vtk` files; must not be empty.
   std::string_view mapArray = "igm";
 };
 
-/// Writes a map: `.hexex`, `.ovm`, `.ovmb`, and as a cell array `.vtu`, `.vtk`. Each number of a
-/// text has the fewest digits that read back to the same double. The file appears complete or not
+/// Writes a map: `.hexex`, `.ovm`, `.ovmb`, and as a cell array `.vtu`, `.vtk`. Numbers in text
+/// files have the fewest digits that read back to the same double. The file appears complete or not
 /// at all.
-/// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays disagree; IndexOutOfRange,
-///         NotFinite
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays are inconsistent;
+///         IndexOutOfRange, NotFinite
 void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
               Context& context);
 void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context);
 void writeMap(const TetMap& map, const std::filesystem::path& file);
 
 /// Writes a hexahedral mesh: `.mesh` (vertices, boundary quads, hexahedra) or `.vtu` (binary
-/// appended; cell array `scaled_jacobian`; for meshes that know where their vertices came from, the
-/// point arrays `generator_kind` (UInt8), `generator_tet` (UInt32), `generator_corners` (UInt8)).
-/// `.vtk` holds vertices and hexahedra, and regions as cell data. `.meshb` and `.mesh`
-/// (references),
-/// `.msh` (physical groups), `.inp` (node sets, element sets and surfaces) and MFEM's files
-/// (attributes) also hold boundary quads, what mesh.features tags, and regions.
-/// The file appears complete or not at all.
-/// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays disagree or a cell names a
-///         vertex that does not exist; NotFinite
+/// appended; cell array `scaled_jacobian`; for meshes with generators, the point arrays
+/// `generator_kind` (UInt8), `generator_tet` (UInt32), `generator_corners` (UInt8)). `.vtk` stores
+/// vertices, hexahedra, and regions as cell data. `.meshb` and `.mesh` (references), `.msh`
+/// (physical groups), `.inp` (node sets, element sets and surfaces) and MFEM files (attributes)
+/// also store boundary quads, the tags in mesh.features, and regions. The file appears complete or
+/// not at all.
+/// @throws Error FileUnsupported, FileWrite; InvalidArgument if arrays are inconsistent or a cell
+///         names a vertex that does not exist; NotFinite
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
                   const WriteOptions& options, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file, Context& context);
 void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
 
-/// Opens a file for a mesh that comes in pieces: `.vtu`, `.mesh`, `.meshb`, `.vtk` or `.msh` (Gmsh
-/// 4.1, binary), as writeHexMesh() writes them but without the array `scaled_jacobian` and without
-/// boundary quads. Of the options, the format counts. Memory: a few megabytes. The
-/// file appears, complete, when the sink's end() returns; a sink that is destroyed before leaves
-/// nothing.
+/// Opens a file for a mesh that arrives in pieces: `.vtu`, `.mesh`, `.meshb`, `.vtk` or `.msh`
+/// (Gmsh 4.1, binary), as written by writeHexMesh() except for the array `scaled_jacobian` and
+/// boundary quads. Uses only the format of the options, and a few megabytes of memory. The complete
+/// file appears when the sink's end() returns; a sink destroyed earlier leaves nothing behind.
 ///
-/// The sink refuses calls in the wrong order, vertices that do not exist and coordinates that are
-/// not finite. It takes both kinds of cells in meshes of any size.
-/// @param context  outlives the sink
-/// @throws Error FileUnsupported; FileWrite, now and later
+/// The sink rejects calls in the wrong order, vertices that do not exist and non-finite
+/// coordinates. It accepts both kinds of cells in meshes of any size.
+/// @param context  must outlive the sink
+/// @throws Error FileUnsupported; FileWrite, here and from the sink
 [[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                                      const WriteOptions& options, Context& context);
 [[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                                      Context& context);
 
-/// A text file of the caller's, complete or absent like all that is written here: opened at once,
-/// so that what cannot be written shows before long work; without commit() nothing is left of it.
+/// A text file written by the caller; like all files written here, it appears complete or not at
+/// all. It is opened immediately, so that write errors surface before long work. Without commit(),
+/// nothing is left behind.
 class TextFile {
  public:
   /// @throws Error FileWrite
@@ -185,7 +184,7 @@ class TextFile {
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;
 
-  /// Writes the text and gives the file its name.
+  /// Writes the text and moves the file to its final name.
   /// @throws Error FileWrite
   void commit(std::string_view text);
 
@@ -193,33 +192,33 @@ class TextFile {
   std::unique_ptr<io::OutputFile> output_;
 };
 
-/// Gives a file that is written another name, of its folder, also for the time after a power
-/// failure.
+/// Renames a finished file within its folder, durably: the new name survives a power failure.
 /// @throws Error FileWrite
 void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target);
 
-/// Reads a hexahedral mesh and hands it over in pieces. A `.vtu` file with appended data, as this
-/// library writes it, takes a few megabytes of memory, however large it is, and hands over the
-/// generators that it holds; other files are read as a whole first.
+/// Reads a hexahedral mesh and passes it on in pieces. A `.vtu` file with appended data, as written
+/// by this library, takes a few megabytes of memory whatever its size, and includes the generators
+/// that it holds; other files are read completely first.
 /// @throws Error  as readHexMesh(), and whatever the sink throws
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const ReadOptions& options,
                    Context& context);
 void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& context);
 
-/// Throw FileUnsupported unless writeHexMesh() or writeMap() knows the file's extension, or the
-/// format of the options, and can do what they say: to fail before long work.
+/// Throw FileUnsupported unless writeHexMesh() or writeMap() supports the file's extension, or the
+/// format and the other options, so that unsupported formats are detected before long work.
 void requireHexMeshFormat(const std::filesystem::path& file, const WriteOptions& options);
 void requireHexMeshFormat(const std::filesystem::path& file, std::string_view format = {});
 void requireMapFormat(const std::filesystem::path& file, const WriteOptions& options);
 
-/// Whether writeHexMesh() puts boundary quads into groups there, as namedPatches() has them.
+/// Whether writeHexMesh() stores boundary quads in groups in this format, as returned by
+/// namedPatches().
 /// @throws Error  as requireHexMeshFormat()
 [[nodiscard]] bool writesPatches(const std::filesystem::path& file, const WriteOptions& options);
 
-/// A file format and what this library does with it.
+/// A file format and its support in this library.
 struct FileFormat {
   std::string_view name;         ///< for ReadOptions and WriteOptions
-  std::string_view extension;    ///< with the dot; empty: has to be asked for by name
+  std::string_view extension;    ///< including the dot; empty: the format must be requested by name
   std::string_view description;  ///< a few words
   bool readsMaps = false;
   bool writesMaps = false;
@@ -231,21 +230,20 @@ struct FileFormat {
   bool readsSurfaces = false;  ///< readTriangleMesh(), see <hexhex/fill.hpp>
 };
 
-/// All formats of this build. Of several with one extension, the first that fits is what a file
-/// name means.
+/// All formats of this build. If several share an extension, the first suitable one is the default.
 [[nodiscard]] std::span<const FileFormat> fileFormats();
 
-/// A program that computes on hexahedra, and what it reads of what this library writes.
+/// A solver for hexahedral meshes and the formats in which it reads meshes from this library.
 struct SolverFormat {
   std::string_view name;         ///< for WriteOptions::format: "dealii"
   std::string_view program;      ///< "deal.II"
-  std::string_view format;       ///< of straight cells: its name
-  std::string_view extension;    ///< that the program expects, with the dot
-  std::string_view curved = {};  ///< the format of cells of higher order; empty: there is none
+  std::string_view format;       ///< name of the format for straight cells
+  std::string_view extension;    ///< expected by the program, including the dot
+  std::string_view curved = {};  ///< format for higher-order cells; empty if there is none
 };
-/// In the order of their names.
+/// Sorted by name.
 [[nodiscard]] std::span<const SolverFormat> solverFormats() noexcept;
-/// Null if there is no solver of this name.
+/// Null if there is no solver with this name.
 [[nodiscard]] const SolverFormat* findSolver(std::string_view name) noexcept;
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -1,4 +1,4 @@
-// From tets alone to a hexahedral mesh, in one go.
+// From tets alone to a hexahedral mesh, in a single call.
 #pragma once
 
 #include <cstdint>
@@ -21,43 +21,45 @@ struct MeshOptions {
   ImproveOptions improve = {.pillow = PillowMode::Auto, .snapCurves = true};
 };
 
-/// What one way led to, and what its mesh is judged by.
+/// Outcome of one method and the criteria for its mesh.
 struct WayReport {
   ShapeMethod method = ShapeMethod::Auto;
   bool hasMesh = false;
-  std::string refusal;  ///< why there is no mesh; empty if there is one, or none was needed
+  std::string refusal;  ///< why there is no mesh; empty if there is one, or if none was needed
   bool isCertified = false;
-  double minimum = 0;         ///< scaled Jacobian
-  double distance = 0;        ///< between the boundaries, the larger one, in diagonals
+  double minimum = 0;   ///< minimum scaled Jacobian
+  double distance = 0;  ///< between the boundaries, the larger of both directions, in diagonals
   double curvesFollowed = 0;  ///< share of the length of sharp edges, 0 to 1
-  double merit = -1;          ///< 0 to 1 for a certified mesh: the product of how good each is
+  double merit = -1;          ///< 0 to 1 for a certified mesh: the product of the individual scores
 };
 
 struct MeshedPart {
   HexMesh mesh;
-  TetMap map;  ///< an integer-grid map, which the generators of the mesh refer to
+  TetMap map;  ///< an integer-grid map, to which the generators of the mesh refer
   ShapeReport shape;
   QuantizeReport quantization;
   VerifyReport verification;
   ImproveReport improvement;
-  /// Whether vertices may have left edges that have a tag, as cells were not positive otherwise.
+  /// Whether vertices could leave tagged edges because cells were not positive otherwise.
   bool tagsReleased = false;
-  /// Pieces of tagged curves of the part that no edges of the mesh were found along.
+  /// Segments of tagged curves for which no mesh edges were found.
   std::uint64_t missingCurves = 0;
-  std::vector<WayReport> ways;  ///< with ShapeMethod::Auto: both
-  std::string whyThisWay;       ///< with ShapeMethod::Auto: why this mesh was kept, half a sentence
+  std::vector<WayReport> ways;  ///< with ShapeMethod::Auto: both methods
+  std::string whyThisWay;  ///< with ShapeMethod::Auto: why this mesh was chosen, as half a sentence
 };
 
 /// Calls mapFromTets(), quantize(), extract(), verify() and improve(). Where vertices on tagged
-/// edges keep cells from being positive, it improves the mesh again and takes these edges for
-/// others. Tags of the tets are those of the mesh: of boundary quads, by the triangles nearest to
-/// their centres; of cells, by the tet that holds their centre; of curves, by the edges that run
-/// along them, or nearest to them. With ShapeMethod::Auto it goes both ways, at once if there are
-/// threads for it, and keeps the mesh that is certified, and better by its least scaled Jacobian
-/// (up to 0.3), its distance and the curves that it follows; unless a polycube is good in all of
-/// these: then no frames are needed. Whether cells are positive in the end, improvement.after says.
-/// @throws Error  as these functions; NotMeshable with both reasons if neither way leads to a mesh;
-///                VerificationFailed if the mesh is not that of the map
+/// edges keep cells from becoming positive, improves the mesh again and treats these edges as
+/// untagged. Transfers the tags of the tets to the mesh: to boundary quads from the triangles
+/// nearest to their centres; to cells from the tet that contains their centre; for curves, to the
+/// edges that run along them or are nearest to them.
+///
+/// With ShapeMethod::Auto, tries both methods, concurrently if there are enough threads, and keeps
+/// the certified mesh with the better combination of minimum scaled Jacobian (up to 0.3), distance
+/// and curves followed. If the polycube is good by all of these criteria, frames are skipped. Check
+/// improvement.after to see whether all cells are positive.
+/// @throws Error  as these functions; NotMeshable with both reasons if neither method yields a
+///         mesh; VerificationFailed if the mesh does not match the map
 [[nodiscard]] MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options,
                                       Context& context);
 

@@ -1,5 +1,5 @@
-// Meshes in parts on MPI, a part in each process; of the component hexhex::mpi, a library of its
-// own. MPI has to be initialized, with MPI_THREAD_FUNNELED at least. (docs/parts.md)
+// Meshes in parts over MPI, one part per process. Belongs to a separate library, the component
+// hexhex::mpi. MPI must be initialized with at least MPI_THREAD_FUNNELED. (docs/parts.md)
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// The processes of a communicator. What it sends does not mix with what others send there.
+/// The processes of a communicator. Its messages do not interfere with others on this communicator.
 class MpiTeam final : public ProcessTeam {
  public:
   explicit MpiTeam(MPI_Comm communicator);
@@ -30,13 +30,14 @@ class MpiTeam final : public ProcessTeam {
   std::uint32_t size_ = 1;
 };
 
-/// extractPart() of a team, for the map of process 0, which all processes get. Others need none.
+/// extractPart() for a team, with the map of process 0, which is sent to all processes. The others
+/// need no map.
 [[nodiscard]] MeshPart extractPart(MPI_Comm communicator, const TetMapView& map,
                                    const ExtractOptions& options, const PartOptions& parts,
                                    Context& context, ExtractStatistics* statistics = nullptr);
 
-/// The same from a file, which process 0 reads.
-/// @throws Error  as readMap(), too
+/// The same with a map from a file, which process 0 reads.
+/// @throws Error  also as readMap()
 [[nodiscard]] MeshPart extractPart(MPI_Comm communicator, const std::filesystem::path& map,
                                    const ExtractOptions& options, const PartOptions& parts,
                                    Context& context, ExtractStatistics* statistics = nullptr);

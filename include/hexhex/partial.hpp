@@ -1,4 +1,4 @@
-// What can be extracted of a map that is not valid: the cells that no defect touches.
+// Partial extraction from invalid maps: the cells that no defect touches.
 #pragma once
 
 #include <cstdint>
@@ -12,38 +12,38 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 
 struct PartialOptions {
   int scale = 1;            ///< as in ExtractOptions
-  double tolerance = 1e-2;  ///< likewise
+  double tolerance = 1e-2;  ///< as in ExtractOptions
 };
 
-/// A place where cells are missing: connected tets that no extracted cells cover completely.
+/// A place where cells are missing: connected tets that extracted cells do not cover completely.
 struct Hole {
-  Index tet = kNone;  ///< the smallest
+  Index tet = kNone;  ///< the smallest tet of the hole
   std::uint64_t tets = 0;
-  std::uint64_t invalidTets = 0;  ///< flipped, flat, off the lattice, or with no way into them
+  std::uint64_t invalidTets = 0;  ///< flipped, flat, off the lattice, or unreachable
   Vec3 position{};                ///< in space: the mean of the tets' vertices
-  double missingCells = 0;        ///< their parametric volume, what is flipped counting negative,
-                                  ///< minus what cells cover: how many cells a valid map would have
+  double missingCells = 0;  ///< expected number of cells in a valid map: the parametric volume of
+                            ///< the tets, negative where flipped, minus the volume covered by cells
 };
 
 struct PartialMesh {
-  /// Without generators and tags. mesh.regions is 1 for each cell at a hole, which has a face that
-  /// neither another cell nor the boundary of the tets is behind, and 0 for the others.
+  /// Has no generators and tags. mesh.regions is 1 for cells at a hole, i.e. with a face that
+  /// borders neither another cell nor the boundary of the tets, and 0 for all others.
   HexMesh mesh;
-  std::vector<Hole> holes;  ///< most missing cells first
+  std::vector<Hole> holes;  ///< in descending order of missing cells
   std::uint64_t invalidTets = 0;
-  double missingCells = 0;          ///< of all holes
-  std::uint64_t faceConflicts = 0;  ///< faces that do not fit: with more than two cells, or two in
-                                    ///< the same direction. Zero, unless cells overlap
+  double missingCells = 0;          ///< sum over all holes
+  std::uint64_t faceConflicts = 0;  ///< faces of more than two cells, or of two that list them in
+                                    ///< the same direction; 0 unless cells overlap
 };
 
-/// Extracts every cell whose whole unit cube lies in valid tets, i.e. in such that are positive on
-/// the sanitized lattice, whose corners sanitization hardly moved, and between which transitions
-/// hold exactly. Each cell is verified by itself: the pieces of tets in its cube add up to its
-/// volume. Time grows with the number of cells times the number of tets that one meets.
+/// Extracts every cell whose unit cube lies entirely in valid tets: tets that are positive on the
+/// sanitized lattice, whose corners were hardly moved by sanitization, and between which
+/// transitions hold exactly. Each cell is verified individually: the pieces of tets in its cube add
+/// up to its volume. Time is proportional to the number of cells times the number of tets per cell.
 ///
-/// Vertices at holes may exist twice where the tets around them are connected through invalid ones
-/// only.
-/// @throws Error  if not even the mesh of tets is valid; InvalidArgument; TooLarge; Cancelled
+/// Vertices at holes may be duplicated where the tets around them are connected only through
+/// invalid tets.
+/// @throws Error  if the tet mesh itself is invalid; InvalidArgument; TooLarge; Cancelled
 [[nodiscard]] PartialMesh extractPartial(const TetMapView& map, const PartialOptions& options,
                                          Context& context);
 

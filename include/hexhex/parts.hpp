@@ -1,5 +1,5 @@
-// A mesh in parts, for programs that work on many machines: each part has its own cells, their
-// vertices with global numbers, and what it shares with its neighbours. (docs/parts.md)
+// Meshes in parts, for distributed programs: each part has its own cells, their vertices with
+// global numbers, and what it shares with its neighbours. (docs/parts.md)
 #pragma once
 
 #include <cstdint>
@@ -19,83 +19,84 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 
 class ProcessTeam;  // <hexhex/team.hpp>
 
-/// Who says which cells make a part.
+/// Method that assigns cells to parts.
 enum class PartitionMethod : std::uint8_t {
-  Curve,   ///< a curve through halves of halves of the object; always there
-  Scotch,  ///< Scotch, if its library is on this machine: smaller borders
-  Metis    ///< METIS 5, likewise
+  Curve,   ///< a curve through recursive bisections of the object; always available
+  Scotch,  ///< Scotch, if its library is installed: smaller interfaces
+  Metis    ///< METIS 5, if its library is installed
 };
 
 struct PartOptions {
-  /// Number of parts, from 1 to kMaxParts. Parts may be empty, as some are if there are more than
-  /// cells.
+  /// Number of parts, from 1 to kMaxParts. Parts may be empty; some are if there are more parts
+  /// than cells.
   std::uint32_t parts = 1;
-  /// Layers of cells of other parts that a part has beside its own, from 0 to kMaxGhostLayers: the
-  /// first one are the cells with a vertex of the part, each further one those with a vertex of the
-  /// one before.
+  /// Number of layers of ghost cells (cells of other parts), from 0 to kMaxGhostLayers. The first
+  /// layer consists of the cells with a vertex of the part, each further one of the cells with a
+  /// vertex of the previous layer.
   std::uint32_t ghostLayers = 0;
   PartitionMethod method = PartitionMethod::Curve;
-  /// Whether each part is proven to be one of the mesh of the map before a sink gets it, as
-  /// verify() proves whole meshes.
+  /// Whether to prove, before a sink receives a part, that it belongs to the mesh of the map, just
+  /// as verify() does for whole meshes.
   bool verify = false;
 };
 
 inline constexpr std::uint32_t kMaxParts = 1U << 20;
 inline constexpr std::uint32_t kMaxGhostLayers = 16;
 
-/// A face of a cell between two parts.
+/// A cell face between two parts.
 struct PartFace {
-  Index cell = 0;         ///< of the part's own cells
-  std::uint8_t side = 0;  ///< of VTK's six faces: 0 4 7 3, 1 2 6 5, 0 1 5 4, 3 7 6 2, 0 3 2 1,
-                          ///< 4 5 6 7
-  std::uint64_t otherCell = 0;  ///< the cell on the other side, by its global number
+  Index cell = 0;         ///< own cell of the part
+  std::uint8_t side = 0;  ///< VTK face number: 0 4 7 3, 1 2 6 5, 0 1 5 4, 3 7 6 2, 0 3 2 1, 4 5 6 7
+  std::uint64_t otherCell = 0;  ///< global number of the cell on the other side
   bool operator==(const PartFace&) const = default;
 };
 
-/// What a part has in common with another one. Both have lists of the same lengths and orders.
+/// Interface between a part and one of its neighbours. The lists of both sides have the same
+/// lengths and orders.
 struct PartNeighbour {
   std::uint32_t part = 0;
-  Array<Index> vertices;  ///< of own cells of both, ascending
-  Array<PartFace> faces;  ///< between own cells of both
+  Array<Index> vertices;  ///< shared by own cells of both parts, ascending
+  Array<PartFace> faces;  ///< between own cells of both parts
 };
 
-/// One part of a mesh. Its numbers are local; global ones are those of the mesh in one piece, that
-/// of extract().
+/// One part of a mesh. Indices are local; global numbers refer to the undivided mesh returned by
+/// extract().
 struct MeshPart {
   std::uint32_t part = 0;
   std::uint32_t parts = 1;
 
-  /// First the vertices of the part's own cells, ascending by global number, then those of ghosts
-  /// alone, likewise. First its own cells, ascending, then ghosts by layer, ascending in each.
-  /// Regions are those of all cells, features those of own cells.
+  /// Vertices of own cells come first, in ascending order of global numbers, then vertices of
+  /// ghosts only, in the same order. Own cells come first, ascending, then ghosts by layer,
+  /// ascending within each. Regions cover all cells, features only own cells.
   HexMesh mesh;
   std::uint64_t ownPoints = 0;
   std::uint64_t ownCells = 0;
 
-  Array<std::uint64_t> globalPoints;  ///< per point of the mesh
+  Array<std::uint64_t> globalPoints;  ///< per point
   Array<std::uint64_t> globalCells;   ///< per cell
-  /// Per point: the part that owns it, the smallest of those with a cell at it.
+  /// Per point: the part that owns it, i.e. the smallest part with a cell at the point.
   Array<std::uint32_t> pointOwners;
-  Array<std::uint32_t> ghostParts;        ///< per ghost: whose own cell it is
-  Array<std::uint32_t> ghostLayers;       ///< per ghost: its layer, from 1
+  Array<std::uint32_t> ghostParts;        ///< per ghost: the part that owns it
+  Array<std::uint32_t> ghostLayers;       ///< per ghost: its layer, starting at 1
   std::vector<PartNeighbour> neighbours;  ///< ascending by part
 };
 
-/// What is known of a mesh in parts before the first part is made.
+/// What is known about a mesh in parts before the first part is made.
 struct PartsInfo {
   std::uint32_t parts = 1;
   std::uint32_t ghostLayers = 0;
-  std::uint64_t pointCount = 0;  ///< of the mesh
+  std::uint64_t pointCount = 0;  ///< of the whole mesh
   std::uint64_t cellCount = 0;
-  // All different ones of the map, ascending; tags without 0, "no feature". Empty without any.
+  // All distinct tags and regions of the map, ascending; tags exclude 0, "no feature". Empty if
+  // there are none.
   std::vector<std::int32_t> vertexTags = {};
   std::vector<std::int32_t> edgeTags = {};
   std::vector<std::int32_t> quadTags = {};
   std::vector<std::int32_t> regions = {};
 };
 
-/// Receives the parts of a mesh, one after the other. All calls come from one thread at a time.
-/// What a sink throws ends the extraction and reaches its caller.
+/// Receives the parts of a mesh one by one, from one thread at a time. An exception thrown by a
+/// sink ends the extraction and propagates to its caller.
 class PartSink {
  public:
   PartSink() = default;
@@ -104,55 +105,57 @@ class PartSink {
   virtual ~PartSink() = default;
 
   virtual void begin(const PartsInfo& info) = 0;
-  /// Parts in order, each of them, empty ones too.
+  /// Called for each part in order, including empty ones.
   virtual void part(MeshPart&& part) = 0;
-  /// After the last one.
+  /// Called after the last part.
   virtual void end() = 0;
-  /// How many layers of ghosts the sink needs, whatever was asked for: parts have at least these.
+  /// Number of ghost layers that the sink needs: parts have at least as many, whatever was
+  /// requested.
   [[nodiscard]] virtual std::uint32_t neededGhostLayers() const { return 0; }
 };
 
-/// Extracts the mesh of extract(), bit for bit, in parts; always with the atlas engine. Nothing in
-/// memory grows with the whole mesh: there are the map, and one part.
+/// Extracts the mesh of extract(), bit for bit, in parts; always uses the atlas engine. Memory
+/// holds the map and one part; nothing grows with the whole mesh.
 /// @throws Error  as extract(); InvalidArgument for options out of range, and for a method whose
-///                library is not on this machine; TooLarge for a part of 2^32 vertices or cells
+///         library is not installed; TooLarge for a part with 2^32 vertices or cells
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
                   const PartOptions& parts, Context& context,
                   ExtractStatistics* statistics = nullptr);
 
-/// All of them.
+/// Returns all parts.
 [[nodiscard]] std::vector<MeshPart> extractParts(const TetMapView& map,
                                                  const ExtractOptions& options,
                                                  const PartOptions& parts, Context& context,
                                                  ExtractStatistics* statistics = nullptr);
 
-/// How even parts are, and how much they share.
+/// Balance of the parts and size of their interfaces.
 struct PartsSummary {
-  std::uint64_t cells = 0;           ///< of all parts
+  std::uint64_t cells = 0;           ///< in all parts
   std::uint64_t vertices = 0;        ///< each counted once, by its owner
-  std::uint64_t largest = 0;         ///< cells of the largest part
-  std::uint64_t smallest = 0;        ///< of the smallest one
+  std::uint64_t largest = 0;         ///< cells in the largest part
+  std::uint64_t smallest = 0;        ///< cells in the smallest part
   std::uint64_t empty = 0;           ///< parts without cells
-  std::uint64_t sharedVertices = 0;  ///< vertices of more than one part, counted once in each
+  std::uint64_t sharedVertices = 0;  ///< vertices of more than one part, counted once per part
   std::uint64_t sharedFaces = 0;     ///< between two parts
-  std::uint64_t mostNeighbours = 0;  ///< of a part
+  std::uint64_t mostNeighbours = 0;  ///< maximum number of neighbours of a part
 };
 
-/// Hands parts on to another sink, and compares what they say of each other: any two that are
-/// neighbours have the same lists of vertices and faces, by global numbers, but for an accident of
-/// one in 2^64; and all numbers of cells and vertices are there. In a team of processes, each has
-/// a survey of its part, and end() adds them up.
+/// Forwards parts to another sink and checks that they are consistent: any two neighbours have the
+/// same lists of vertices and faces, by global numbers, except with a probability of 1 in 2^64; and
+/// all cell and vertex numbers occur. In a team of processes, each process has a survey of its
+/// part, and end() combines them.
 class PartSurvey final : public PartSink {
  public:
   explicit PartSurvey(PartSink& sink, ProcessTeam* team = nullptr) : sink_(sink), team_(team) {}
   void begin(const PartsInfo& info) override;
   void part(MeshPart&& part) override;
-  /// @throws Error VerificationFailed if parts disagree; then the other sink's end() is not called
+  /// @throws Error VerificationFailed if parts are inconsistent; the other sink's end() is not
+  ///         called then
   void end() override;
   [[nodiscard]] std::uint32_t neededGhostLayers() const override {
     return sink_.neededGhostLayers();
   }
-  /// Complete after end().
+  /// Valid after end().
   [[nodiscard]] const PartsSummary& result() const noexcept { return summary_; }
 
  private:
@@ -162,37 +165,38 @@ class PartSurvey final : public PartSink {
   ProcessTeam* team_;
   PartsInfo info_;
   PartsSummary summary_;
-  std::uint64_t cellSum_ = 0;    ///< of the numbers of all own cells
-  std::uint64_t vertexSum_ = 0;  ///< of all owned vertices
-  std::uint64_t borders_ = 0;    ///< what both neighbours say cancels out
+  std::uint64_t cellSum_ = 0;    ///< sum of the numbers of all own cells
+  std::uint64_t vertexSum_ = 0;  ///< sum of the numbers of all owned vertices
+  std::uint64_t borders_ = 0;    ///< sum in which the entries of both neighbours cancel out
 };
 
-/// Opens files for the parts of a mesh; docs/parts.md says which files each format has. They
-/// appear, complete, when end() returns; a sink that is destroyed before leaves nothing. Files of
-/// the same names are replaced; those of earlier runs with more parts go away.
-/// @param options  the format and the patch angle count
-/// @param context  outlives the sink
-/// @param team     if not null, each of its processes opens a sink, in ProcessTeam::run(), whose
-///                 functions are called in all of them together, for the process's own part: that
-///                 of its rank
+/// Opens files for the parts of a mesh; docs/parts.md lists the files of each format. The complete
+/// files appear when end() returns; a sink destroyed earlier leaves nothing behind. Files with the
+/// same names are replaced; additional files from earlier runs with more parts are deleted.
+/// @param options  only the format and the patch angle are used
+/// @param context  must outlive the sink
+/// @param team     if not null, each process of the team opens a sink in ProcessTeam::run(), and
+///                 all processes call its functions together, each for its own part: the one with
+///                 the number of its rank
 /// @throws Error FileUnsupported for a format without parts, or that a team cannot write;
-///         FileWrite, now and later; NotFinite; TooLarge for numbers that the format does not hold
+///         FileWrite, here and from the sink; NotFinite; TooLarge for numbers that the format
+///         cannot store
 [[nodiscard]] std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
                                                      const WriteOptions& options, Context& context,
                                                      ProcessTeam* team = nullptr);
 
-/// Throws FileUnsupported unless openPartSink() knows the format.
-/// @param byTeam  whether for a team
+/// Throws FileUnsupported unless openPartSink() supports the format.
+/// @param byTeam  whether a team writes the files
 void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,
                        bool byTeam = false);
 
-/// A format of parts: its name and extension are those of the format of whole meshes, if there is
-/// one.
+/// A format for meshes in parts. Its name and extension are those of the corresponding format for
+/// whole meshes, if there is one.
 struct PartFormat {
   std::string_view name;
   std::string_view extension;
-  std::string_view description;  ///< which files there are
-  bool byTeams = false;          ///< whether processes can write it together
+  std::string_view description;  ///< the files that it consists of
+  bool byTeams = false;          ///< whether several processes can write it together
 };
 [[nodiscard]] std::span<const PartFormat> partFormats() noexcept;
 

@@ -1,4 +1,4 @@
-// From tets alone to a seamless map: for parts of which nobody has made a map.
+// Computes seamless maps from tets alone, for parts that come without a map.
 #pragma once
 
 #include <array>
@@ -13,51 +13,51 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// How a map is made.
+/// Method for computing a map.
 enum class ShapeMethod : std::uint8_t {
-  Auto,      ///< along frames, and if there is no such map, by a polycube
-  Polycube,  ///< the object becomes one of axis-aligned boxes: no singular edges inside
-  Frames     ///< along a smooth field of frames, aligned with the boundary and its features
+  Auto,      ///< frames; if they yield no map, a polycube
+  Polycube,  ///< deforms the object into axis-aligned boxes: no interior singular edges
+  Frames     ///< follows a smooth frame field, aligned with the boundary and its features
 };
 
 struct ShapeOptions {
   ShapeMethod method = ShapeMethod::Auto;
-  /// Edges where the surface turns by more than that, in degrees, are features of the object. They
-  /// get a tag where they are edges of the map, so that the mesh has them, too. 0 to 180.
+  /// Edges where the surface turns by more than this angle, in degrees, are features of the object.
+  /// Those that are edges of the map receive a tag, so that the mesh has them, too. 0 to 180.
   double featureAngle = 40;
-  /// Of random decisions: another one may find what this one does not.
+  /// Random seed: another one may succeed where this one fails.
   std::uint64_t seed = 1;
 };
 
-/// What is to be said of the labels of a polycube. Charts are connected triangles with one label:
-/// faces of the polycube, if all is well.
+/// Diagnostics of polycube labels. Charts are connected triangles with the same label; in a valid
+/// labelling, they are the faces of the polycube.
 struct LabelReport {
   std::uint64_t charts = 0;
-  std::uint64_t corners = 0;        ///< where three charts or more meet
-  std::uint64_t badLoops = 0;       ///< borders of charts with fewer than four corners
+  std::uint64_t corners = 0;        ///< where at least three charts meet
+  std::uint64_t badLoops = 0;       ///< chart borders with fewer than four corners
   std::uint64_t badCorners = 0;     ///< of more than three charts, or without room for their faces
-  std::uint64_t oppositeEdges = 0;  ///< edges of the mesh between opposite labels
-  std::uint64_t turningPoints = 0;  ///< where edges of the polycube would run back
+  std::uint64_t oppositeEdges = 0;  ///< mesh edges between opposite labels
+  std::uint64_t turningPoints = 0;  ///< where edges of the polycube would reverse direction
   std::uint64_t wrongTurns = 0;     ///< charts whose right angles do not add up
   double deviation = 0;  ///< mean of 1 minus the cosine between a triangle's normal and its label
 
-  /// Whether nothing is known to be wrong with them.
+  /// Whether no problem is known.
   [[nodiscard]] bool isValid() const noexcept {
     return badLoops + badCorners + oppositeEdges + turningPoints + wrongTurns == 0;
   }
 };
 
 struct ShapeReport {
-  ShapeMethod method = ShapeMethod::Auto;  ///< that made the map
-  /// Rows: the axes in space that became those of the map.
+  ShapeMethod method = ShapeMethod::Auto;  ///< method that produced the map
+  /// Rows: the axes in space that became the axes of the map.
   std::array<Vec3, 3> rotation = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   LabelReport labels;
-  std::uint64_t labelMoves = 0;    ///< random changes that were tried
+  std::uint64_t labelMoves = 0;    ///< random changes tried
   std::uint64_t addedTets = 0;     ///< by splits
-  std::uint64_t featureEdges = 0;  ///< of the tets, beyond the angle
-  std::uint64_t taggedEdges = 0;   ///< of these: edges of the map
-  std::uint64_t innerFaces = 0;    ///< triangles inside, with a tag or between regions
-  std::uint64_t alignedFaces = 0;  ///< of these: in planes of the map, so that quads will be there
+  std::uint64_t featureEdges = 0;  ///< edges of the tets above the angle
+  std::uint64_t taggedEdges = 0;   ///< those of them that are edges of the map
+  std::uint64_t innerFaces = 0;    ///< interior triangles with a tag or on a region interface
+  std::uint64_t alignedFaces = 0;  ///< those of them in planes of the map, to be covered by quads
   MapDistortion distortion;
 };
 
@@ -66,22 +66,21 @@ struct ShapedMap {
   ShapeReport report;
 };
 
-/// Makes a seamless map of a tet mesh, which quantize() takes. Parameters are in units of space. Of
-/// the map's points, the given ones come first; of its tets, those that were not split have the
-/// given corners, in another order if that was not positive. Tags of the tets are those of the map;
-/// edges where the surface turns that have none get one of their own. Deterministic, for any number
-/// of threads.
+/// Computes a seamless map of a tet mesh, as input for quantize(). Parameters are in units of
+/// space. The given points come first in the map. Tets that were not split keep their corners, but
+/// in another order if the given one was not positive. The map keeps the tags of the tets; untagged
+/// edges where the surface turns receive a tag of their own. Deterministic for any number of
+/// threads.
 ///
-/// Along frames: the best meshes, but many fields are those of no mesh, which is known in seconds
-/// (Palmer et al. 2020). By a polycube: the object is turned (Gregson et al. 2011); each boundary
-/// triangle gets one of six labels by graph cuts (Livesu et al. 2013), which random cuts in small
-/// places make valid; and mapFromFlags() makes a map of these.
+/// Frames yield the best meshes, but many frame fields do not correspond to a mesh, which is
+/// detected within seconds (Palmer et al. 2020). For a polycube, the object is rotated (Gregson et
+/// al. 2011), each boundary triangle is assigned one of six labels by graph cuts (Livesu et al.
+/// 2013), random cuts in small areas make these labels valid, and mapFromFlags() computes the map.
 ///
-/// @throws Error NotMeshable if there is no map, with the place that keeps it from one;
-///               NonManifoldFace, NonManifoldEdge, NonManifoldVertex; FlippedTet for tets without
-///               volume; Orientation for tets that overlap their neighbours; TooLarge for more
-///               than 500,000 tets; those of broken meshes; InvalidArgument for options out of
-///               range, or if canQuantize() is false
+/// @throws Error NotMeshable if no map was found, with the place that prevents it; NonManifoldFace,
+///         NonManifoldEdge, NonManifoldVertex; FlippedTet for tets without volume; Orientation for
+///         tets that overlap their neighbours; TooLarge for more than 500,000 tets; the errors of
+///         broken meshes; InvalidArgument for options out of range, or if canQuantize() is false
 [[nodiscard]] ShapedMap mapFromTets(const TetMesh& tets, const ShapeOptions& options,
                                     Context& context);
 

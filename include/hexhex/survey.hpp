@@ -1,5 +1,5 @@
-// What a hexahedral mesh adds up to, in memory, in a file, or while it comes in pieces: to compare
-// meshes that need not, or cannot, stand in memory.
+// Summary of a hexahedral mesh in memory, in a file, or arriving in pieces, for comparing meshes
+// that need not or cannot fit into memory.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Sums of a mesh. Meshes with the same points in the same order, bit for bit, have the same
-/// `pointChecksum`; with the same cells in the same order, the same `cellChecksum`; however they
-/// are stored and whatever their pieces are. Different ones have different checksums but for one in
-/// 2^64, unless somebody intends it.
+/// Totals of a mesh. Meshes with the same points in the same order, bit for bit, have the same
+/// `pointChecksum`; meshes with the same cells in the same order have the same `cellChecksum`;
+/// however they are stored and divided into pieces. Different meshes have different checksums
+/// except with a probability of 1 in 2^64, barring deliberate collisions.
 struct MeshSurvey {
   std::uint64_t points = 0;
   std::uint64_t cells = 0;
-  Vec3 lower{};  ///< of the bounding box; 0 without points
+  Vec3 lower{};  ///< corners of the bounding box; 0 without points
   Vec3 upper{};
   std::uint64_t pointChecksum = 0;
   std::uint64_t cellChecksum = 0;
@@ -29,11 +29,11 @@ struct MeshSurvey {
   [[nodiscard]] bool operator==(const MeshSurvey& /*other*/) const = default;
 };
 
-/// A sink that adds up what comes, and refuses what openMeshSink() refuses. Memory: none to speak
-/// of.
+/// A sink that summarizes what it receives and rejects what openMeshSink() rejects. Takes hardly
+/// any memory.
 class SurveySink : public MeshSink {
  public:
-  /// @param context  outlives the sink
+  /// @param context  must outlive the sink
   explicit SurveySink(Context& context);
   ~SurveySink() override;
   void begin(std::uint64_t pointCount, std::uint64_t cellCount) override;
@@ -42,7 +42,7 @@ class SurveySink : public MeshSink {
   void cells(std::uint64_t first, std::span<const Hex64> cells) override;
   void end() override;
 
-  /// Complete after end().
+  /// Valid after end().
   [[nodiscard]] const MeshSurvey& result() const noexcept;
 
  private:
@@ -50,11 +50,11 @@ class SurveySink : public MeshSink {
   std::unique_ptr<Adder> adder_;
 };
 
-/// The survey of a mesh in memory.
+/// Summarizes a mesh in memory.
 /// @throws Error InvalidArgument for cells with vertices that do not exist; NotFinite
 [[nodiscard]] MeshSurvey survey(const HexMesh& mesh, Context& context);
 
-/// The survey of a mesh in a file, read with readHexMeshTo(): piece by piece where possible.
+/// Summarizes a mesh in a file, read with readHexMeshTo(): in pieces where possible.
 /// @throws Error  as readHexMesh()
 [[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
                                     Context& context);

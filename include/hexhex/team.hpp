@@ -1,5 +1,5 @@
-// Processes that make one mesh together, on one machine or on many: each makes a part. How they
-// reach each other is left to a derived class; <hexhex/mpi.hpp> has one over MPI. (docs/parts.md)
+// Processes that make one mesh together, one part each, on one machine or on many. A derived class
+// implements their communication; <hexhex/mpi.hpp> provides one for MPI. (docs/parts.md)
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,17 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// What all processes give, in order of their ranks.
+/// The contributions of all processes, in order of their ranks.
 struct GatheredNumbers {
   std::vector<std::uint64_t> numbers;
-  std::vector<std::uint64_t> begin;  ///< per process (+1): its first number
+  std::vector<std::uint64_t> begin;  ///< per process (+1): index of its first number
 
   [[nodiscard]] std::span<const std::uint64_t> of(std::uint32_t rank) const {
     return std::span(numbers).subspan(begin[rank], begin[rank + 1] - begin[rank]);
   }
 };
 
-/// All calls of one process come from one thread.
+/// Each process must make all its calls from one thread.
 class ProcessTeam {
  public:
   ProcessTeam() = default;
@@ -39,38 +39,41 @@ class ProcessTeam {
   [[nodiscard]] virtual std::uint32_t rank() const noexcept = 0;
   [[nodiscard]] virtual std::uint32_t size() const noexcept = 0;
 
-  /// Runs work(), which all processes call together. It may call the functions below, all processes
-  /// in the same order. Where it fails in one process, it fails in all: each throws the error of
-  /// the first that failed, from the function below that it calls next, or when its work is done.
-  /// @throws Error  what work() throws; OutOfMemory for std::bad_alloc, Internal for all else
+  /// Runs work(); all processes call this together. work() may call the functions below, in the
+  /// same order in all processes. If it fails in one process, it fails in all: each throws the
+  /// error of the first process that failed, from the next function below that it calls, or at the
+  /// end of its work.
+  /// @throws Error  whatever work() throws; OutOfMemory for std::bad_alloc, Internal for anything
+  ///         else
   void run(const std::function<void()>& work);
 
-  /// Returns when all processes are here.
+  /// Blocks until all processes have reached it.
   void barrier();
-  /// Gives bytes of process 0 to all others.
+  /// Broadcasts bytes of process 0 to all others.
   void share(std::span<std::byte> bytes);
-  /// The same for a text of any length. @return that of process 0
+  /// The same for a text of any length. @return the text of process 0
   [[nodiscard]] std::string shareText(const std::string& text);
-  /// Refuses a text that is another one in process 0.
-  /// @param what  it is: "file name"
+  /// Checks that a text equals that of process 0.
+  /// @param what  name of the text, e.g. "file name"
   /// @throws Error InvalidArgument, in all processes, with both texts
   void requireSame(const std::string& text, const std::string& what);
   [[nodiscard]] GatheredNumbers gather(std::span<const std::uint64_t> mine);
-  /// Shows all processes what each has, one after the other, by take(rank, numbers): where each
-  /// needs little of what others have. It takes memory for the numbers of one process.
+  /// Calls take(rank, numbers) in all processes for the numbers of each process in turn. Use it if
+  /// each process needs little of what the others have: it takes memory for the numbers of one
+  /// process only.
   void showAll(std::span<const std::uint64_t> mine,
                const std::function<void(std::uint32_t, std::span<const std::uint64_t>)>& take);
 
  protected:
-  // What a team takes, all of it called by all processes in the same order. What these functions
-  // throw does not reach the other processes.
+  // Functions that a team must implement, all called by all processes in the same order. Their
+  // exceptions do not propagate to the other processes.
 
-  /// Whether all processes say yes.
+  /// Whether `yes` is true in all processes.
   [[nodiscard]] virtual bool doAllSay(bool yes) = 0;
-  /// Gives bytes of one process to all.
+  /// Broadcasts bytes of one process to all.
   virtual void doShare(std::uint32_t from, std::span<std::byte> bytes) = 0;
-  /// Puts what all give behind one another.
-  /// @param counts  of numbers that each process gives
+  /// Concatenates the numbers of all processes.
+  /// @param counts  how many numbers each process contributes
   virtual void doGather(std::span<const std::uint64_t> mine, std::span<const std::uint64_t> counts,
                         std::span<std::uint64_t> all) = 0;
 
@@ -83,21 +86,21 @@ class ProcessTeam {
   bool failed_ = false;
 };
 
-/// Gives the map of process 0 to all others. It counts alone: others need none.
-/// @return in other processes, the map; in process 0, which has it, nothing
+/// Sends the map of process 0 to all others, which need none: any they have is ignored.
+/// @return the map in all other processes; nothing in process 0, which already has it
 [[nodiscard]] TetMap shareMap(ProcessTeam& team, const TetMapView& map);
 
-/// Extracts the part of this process, its rank's, of as many parts as there are processes. All
-/// processes have the same map and options. What a process holds is the map, some tens of bytes per
-/// tet, and its part. That all parts make up one mesh is checked as PartSurvey does.
-/// @param parts  whose number of parts is 1, or that of processes
-/// @throws Error  in all processes the same, as extractParts(); InvalidArgument for another number
-///                of parts, and if maps or options differ; VerificationFailed
+/// Extracts one of as many parts as there are processes: the one with the number of this process's
+/// rank. All processes have the same map and options. Each process holds the map, some tens of
+/// bytes per tet, and its part. Checks that all parts form one mesh, as PartSurvey does.
+/// @param parts  with a number of parts of 1 or that of processes
+/// @throws Error  the same in all processes, as extractParts(); InvalidArgument for another number
+///         of parts, and if maps or options differ; VerificationFailed
 [[nodiscard]] MeshPart extractPart(ProcessTeam& team, const TetMapView& map,
                                    const ExtractOptions& options, const PartOptions& parts,
                                    Context& context, ExtractStatistics* statistics = nullptr);
 
-/// The same into a sink of each process, whose calls come in all processes together.
+/// The same with a sink in each process, whose functions are called by all processes together.
 /// @param[out] summary  of all parts, filled if not null
 void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
                  const ExtractOptions& options, const PartOptions& parts, Context& context,

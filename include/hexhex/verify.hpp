@@ -1,4 +1,5 @@
-// Does a hexahedral mesh agree with the map that it came from? Independent of how it was made.
+// Checks whether a hexahedral mesh matches the map that it came from, independently of how it was
+// made.
 #pragma once
 
 #include <memory>
@@ -32,35 +33,36 @@ struct VerifyReport {
 };
 
 struct VerifyOptions {
-  int scale = 1;            ///< the scale that the mesh was extracted with
+  int scale = 1;            ///< scale with which the mesh was extracted
   double tolerance = 1e-2;  ///< of the map, as in ExtractOptions
-  /// Significant digits of the mesh's coordinates, relative to the largest of them: 1 to 17. 0: 7
-  /// if all are single-precision numbers, otherwise 17.
+  /// Number of significant digits in the coordinates of the mesh, relative to the largest
+  /// coordinate: 1 to 17. 0: 7 if all are single-precision numbers, otherwise 17.
   int digits = 0;
-  /// Whether to count faces, edges and components of the mesh as well: a second opinion, which
-  /// takes longer than the first.
+  /// Also count faces, edges and components of the mesh: a second opinion that takes longer than
+  /// the first.
   bool countElements = false;
 };
 
-/// Passes if and only if the mesh is that of the map, up to the numbers of vertices and of cells
-/// and the 24 orientations of each cell. Linear time, and memory in proportion to map and mesh.
+/// Passes if and only if the mesh is that of the map, up to the numbering of vertices and cells and
+/// the 24 orientations of each cell. Takes linear time, and memory proportional to the sizes of map
+/// and mesh.
 ///
-/// A mesh in canonical order is proven right lattice point by lattice point, by code that shares
-/// the prepared map with extraction, and no decision; any other one is compared with a mesh that
-/// was proven right (docs/verification.md). Vertices at the same place are told apart by their
-/// cells.
+/// A mesh in canonical order is proven correct one lattice point at a time, by code that shares the
+/// prepared map with extraction, but none of its decisions. Any other mesh is compared with one
+/// that was proven correct (docs/verification.md). Vertices at the same position are distinguished
+/// by their cells.
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,
                                   const VerifyOptions& options, Context& context);
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,
                                   const VerifyOptions& options = {});
 
-/// Verifies a mesh that comes in pieces: by the same proof, which passes if and only if the mesh is
-/// that of the map in canonical order, as extractTo() hands it over. Memory: what a map of this
-/// many tets needs, and a few bytes per vertex.
+/// Verifies a mesh that arrives in pieces, with the same proof. Passes if and only if the mesh is
+/// that of the map in canonical order, as produced by extractTo(). Takes as much memory as a map of
+/// this many tets, plus a few bytes per vertex.
 class VerifySink : public MeshSink {
  public:
-  /// @param map      outlives the sink, and so does the context
-  /// @param options  scale and tolerance; coordinates have all their digits
+  /// @param map      must outlive the sink, as must the context
+  /// @param options  scale and tolerance; coordinates are taken to have full precision
   VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context);
   ~VerifySink() override;
   void begin(std::uint64_t pointCount, std::uint64_t cellCount) override;
@@ -69,7 +71,7 @@ class VerifySink : public MeshSink {
   void cells(std::uint64_t first, std::span<const Hex64> cells) override;
   void end() override;
 
-  /// Complete after end().
+  /// Valid after end().
   [[nodiscard]] const VerifyReport& report() const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// The version of the library. That of the headers is HEXHEX_VERSION, in version.h.
+// Version of the library. HEXHEX_VERSION in version.h is the version of the headers.
 #pragma once
 
 #include <hexhex/export.h>
@@ -6,7 +6,7 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// The version of the library that runs, which HEXHEX_VERSION of the headers should agree with.
+/// Version of the library at run time, which should match HEXHEX_VERSION of the headers.
 /// Thread-safe.
 [[nodiscard]] const char* version() noexcept;
 

@@ -1,5 +1,5 @@
-// A page that shows a hexahedral mesh in any browser. An optional part of the project, the target
-// hexhex::view: it takes zlib and nlohmann-json, and the page's script takes npm at build time.
+// A page that shows a hexahedral mesh in any browser. An optional component, the target
+// hexhex::view: it requires zlib and nlohmann-json, and npm to build the page's script.
 #pragma once
 
 #include <filesystem>
@@ -14,48 +14,49 @@
 
 namespace hexhex {
 
-/// What the page shall say beside the mesh.
+/// What the page shows in addition to the mesh.
 struct ViewOptions {
   std::string title = "mesh";  ///< shown, and the name of saved pictures; UTF-8
 
-  /// What verify() said of this mesh, and the name of the map; null: the page says nothing of it.
+  /// Result of verify() for this mesh, and the name of the map; null: the page does not mention it.
   const VerifyReport* verification = nullptr;
   std::string mapName = {};
 
-  /// What scaledJacobians() returned for this mesh, if the caller has it. Empty: computed.
+  /// Result of scaledJacobians() for this mesh, if already available. Empty: computed.
   std::span<const double> scaledJacobians = {};
 
-  /// Where the vertices (of a LagrangeMesh: all nodes) were before the mesh was improved: the page
-  /// goes back and forth between both. Empty: it shows the mesh as it is.
+  /// Positions of the vertices (all nodes, for a LagrangeMesh) before the mesh was improved: the
+  /// page can switch between both. Empty: it shows the mesh as it is.
   std::span<const Vec3> pointsBefore = {};
 };
 
-/// Writes one self-contained HTML file: mesh and script are in it, and it may not use the network.
-/// Positions are rounded to a millionth of the longest side of the bounding box, scaled Jacobians
-/// to 16 bits. About 3 to 10 bytes per cell; with positions before an improvement, up to twice
-/// that.
+/// Writes a self-contained HTML file that contains mesh and script and has no access to the
+/// network. Positions are rounded to a millionth of the longest side of the bounding box, scaled
+/// Jacobians to 16 bits. About 3 to 10 bytes per cell; with positions before an improvement, up to
+/// twice as much.
 ///
 /// The file appears complete or not at all.
-/// @throws Error EmptyMesh without cells; InvalidArgument if arrays disagree, or a cell or a
-///         feature names a vertex that does not exist; NotFinite; TooLarge beyond 2^24 - 1 cells or
-///         vertices, which browsers do not hold, and for a box that no double measures; FileWrite
+/// @throws Error EmptyMesh without cells; InvalidArgument if arrays are inconsistent, or a cell or
+///         a feature names a vertex that does not exist; NotFinite; TooLarge beyond 2^24 - 1 cells
+///         or vertices, which browsers cannot handle, and for a bounding box too large for doubles;
+///         FileWrite
 void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
 
-/// The same for cells of higher order: the page draws them curved or straight. It holds the nodes
-/// on faces of cells: about 120 bytes per cell of order 2, and 260 of order 3.
-/// @throws Error  the same; TooLarge also for more than 2^24 - 1 vertices and nodes on faces
-///         together; InvalidArgument for nodes that do not fit the order
+/// The same for higher-order cells, which the page draws curved or straight. It stores the nodes on
+/// faces of cells: about 120 bytes per cell of order 2, and 260 of order 3.
+/// @throws Error  the same; TooLarge also for more than 2^24 - 1 vertices and face nodes combined;
+///         InvalidArgument for nodes that do not match the order
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
 
-/// A page whose mesh comes separately, for programs that serve it.
+/// A page that loads its mesh separately, for programs that serve it.
 struct ServedPage {
-  std::string html;               ///< asks for `dataUrl` on the same server, and for nothing else
-  std::vector<std::string> data;  ///< one after the other, what is at `dataUrl`
+  std::string html;               ///< requests `dataUrl` from the same server, and nothing else
+  std::vector<std::string> data;  ///< chunks whose concatenation is the content of `dataUrl`
 };
 
-/// The page in two parts. @throws Error as writeViewPage(), but FileWrite
+/// Creates the page in two parts. @throws Error as writeViewPage(), except FileWrite
 [[nodiscard]] ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
                                         const ViewOptions& options, Context& context);
 [[nodiscard]] ServedPage makeServedPage(const LagrangeMesh& mesh, const std::string& dataUrl,

@@ -3,27 +3,27 @@
  * Conventions of this header
  *
  * - Functions that can fail return a hexhex_status and take a hexhex_error* as their last argument,
- *   which may be NULL. It receives the code, a sentence and the place; nothing else keeps them, so
- *   there is no global state. docs/errors.md explains each code.
- * - What such a function makes, it writes to an out parameter, only if it succeeds. Handles are
- *   opaque; each hexhex_..._create or similar has its hexhex_..._destroy, and destroying NULL is
- *   fine.
- * - Structs that may grow begin with `size`, the number of bytes that the caller knows. Make them
- *   with their _INIT macro; a program that was compiled with an older or newer header works with
- *   this library, and gets HEXHEX_INVALID_ARGUMENT if it sets what the library does not know.
+ *   which may be NULL. It receives the code, a message and the place. Errors are stored nowhere
+ *   else: there is no global state. docs/errors.md explains each code.
+ * - Functions return results through out parameters, which they set only on success. Handles are
+ *   opaque; each hexhex_..._create or similar has a matching hexhex_..._destroy, and destroying
+ *   NULL is allowed.
+ * - Structs that may grow begin with `size`, the number of bytes known to the caller. Initialize
+ *   them with their _INIT macro. A program compiled with an older or newer header works with this
+ *   library, and gets HEXHEX_INVALID_ARGUMENT if it sets a member that the library does not know.
  *   Options may be NULL for all defaults.
- * - No exception leaves the library, exhausted memory is HEXHEX_OUT_OF_MEMORY, and nothing is ever
- *   printed.
- * - Threads: functions may run at the same time as long as no two of them use the same handle,
- *   unless both only read it (parameters that are pointers to const). hexhex_context_cancel() and
- *   hexhex_context_cancelled() may be called at any time. docs/api-c.md says it function by
+ * - No exception leaves the library, running out of memory yields HEXHEX_OUT_OF_MEMORY, and nothing
+ *   is ever printed.
+ * - Threads: functions may run concurrently as long as no two of them use the same handle, unless
+ *   both only read it (parameters that are pointers to const). hexhex_context_cancel() and
+ *   hexhex_context_cancelled() may be called at any time. docs/api-c.md has the details for each
  *   function.
- * - Handles that are NULL, destroyed, of another kind, or in use elsewhere are
- *   HEXHEX_INVALID_ARGUMENT; functions without a status then return 0, NULL, or do nothing. What
- *   cannot be known is in docs/reliability.md.
- * - Enumerations are checked: a number that is none of theirs is HEXHEX_INVALID_ARGUMENT.
+ * - Handles that are NULL, destroyed, of the wrong kind, or in use elsewhere yield
+ *   HEXHEX_INVALID_ARGUMENT; functions without a status return 0 or NULL, or do nothing.
+ *   docs/reliability.md lists what cannot be detected.
+ * - Enumerations are checked: values outside their range yield HEXHEX_INVALID_ARGUMENT.
  *
- * Corners of a hexahedron are in the order of VTK_HEXAHEDRON: 0 1 2 3 around one face, 4 5 6 7
+ * The corners of a hexahedron are in the order of VTK_HEXAHEDRON: 0 1 2 3 around one face, 4 5 6 7
  * above them, so that 0-4, 1-5, 2-6, 3-7 are edges:
  *
  *          7--------6
@@ -45,8 +45,8 @@
 #include <hexhex/export.h>
 #include <hexhex/version.h>
 
-/* Enumerations are passed as an int, and a number that is none of theirs is an error. C++ would
- * otherwise regard the number itself as undefined behaviour. */
+/* Enumerations are passed as int, so that a value outside their range is an error. In C++, such a
+ * value would be undefined behaviour otherwise. */
 #ifdef __cplusplus
 #define HEXHEX_AS_INT : int
 extern "C" {
@@ -56,10 +56,10 @@ extern "C" {
 
 /* ---- Version and errors -------------------------------------------------------------------- */
 
-/** The version of the library that runs, e.g. "0.1.0"; HEXHEX_VERSION is that of the headers. */
+/** Version of the library at run time, e.g. "0.1.0"; HEXHEX_VERSION is that of the headers. */
 HEXHEX_API const char* hexhex_version(void);
 
-/** What went wrong. Numbers never change their meaning; new ones may come. */
+/** Status codes. Values never change their meaning; new ones may be added. */
 typedef enum hexhex_status HEXHEX_AS_INT {
   HEXHEX_OK = 0,
   HEXHEX_INVALID_ARGUMENT = 1,
@@ -89,18 +89,18 @@ typedef enum hexhex_status HEXHEX_AS_INT {
   HEXHEX_NOT_MESHABLE = 25
 } hexhex_status;
 
-/** The name of a status as in docs/errors.md, e.g. "FlippedTet"; "Ok"; "Unknown". Never NULL. */
+/** Name of a status as in docs/errors.md, e.g. "FlippedTet"; "Ok"; "Unknown". Never NULL. */
 HEXHEX_API const char* hexhex_status_name(hexhex_status status);
 
-/** What a place is: see hexhex_place. */
+/** Kinds of places: see hexhex_place. */
 typedef enum hexhex_place_kind HEXHEX_AS_INT {
   HEXHEX_PLACE_NONE = 0,
-  HEXHEX_PLACE_TET = 1,    /**< index: the tet */
-  HEXHEX_PLACE_FACE = 2,   /**< index: a tet; second: the corner opposite the face, 0 to 3 */
-  HEXHEX_PLACE_EDGE = 3,   /**< index, second: its vertices */
-  HEXHEX_PLACE_VERTEX = 4, /**< index: the vertex */
-  HEXHEX_PLACE_LINE = 5,   /**< index: a line of a file, from 1 */
-  HEXHEX_PLACE_CELL = 6    /**< index: the hexahedron */
+  HEXHEX_PLACE_TET = 1,    /**< index: tet */
+  HEXHEX_PLACE_FACE = 2,   /**< index: tet; second: the corner opposite the face, 0 to 3 */
+  HEXHEX_PLACE_EDGE = 3,   /**< index, second: the vertices of the edge */
+  HEXHEX_PLACE_VERTEX = 4, /**< index: vertex */
+  HEXHEX_PLACE_LINE = 5,   /**< index: line of a file, starting at 1 */
+  HEXHEX_PLACE_CELL = 6    /**< index: hexahedron */
 } hexhex_place_kind;
 
 typedef struct hexhex_place {
@@ -109,27 +109,28 @@ typedef struct hexhex_place {
   uint64_t second;
 } hexhex_place;
 
-/** A place in words: "tet 12", "edge 3-17", "line 4"; "" for none, and for kinds that are none.
- * Writes at most `size` bytes with the final zero, like snprintf(); text may be NULL if size is 0.
- * @return the length of the whole text, without the final zero */
+/** Formats a place as text: "tet 12", "edge 3-17", "line 4"; "" if there is no place, and for
+ * unknown kinds. Writes at most `size` bytes including the terminating zero, like snprintf(); text
+ * may be NULL if size is 0.
+ * @return the length of the full text, without the terminating zero */
 HEXHEX_API size_t hexhex_place_text(const hexhex_place* place, char* text, size_t size);
 
-/** An error, complete in itself. Belongs to the caller. */
+/** An error with all its data. Owned by the caller. */
 typedef struct hexhex_error {
   hexhex_status status;
   hexhex_place place;
-  char message[1024]; /**< what is wrong, where, what to do; UTF-8, cut off if longer */
+  char message[1024]; /**< what is wrong, where, and what to do; UTF-8, truncated if longer */
 } hexhex_error;
 
 /* ---- Context: threads, progress, cancellation ------------------------------------------------ */
 
-/** What long work gets from its caller. Functions accept NULL: all cores, no progress.
- * One context serves one call at a time; another one, as from its own progress function, is
- * HEXHEX_INVALID_ARGUMENT. The progress function may call whatever uses other handles. */
+/** Execution context of long-running functions. They accept NULL: all cores, no progress. A context
+ * serves one call at a time; using it for another call, even from its own progress function, yields
+ * HEXHEX_INVALID_ARGUMENT. The progress function may call anything that uses other handles. */
 typedef struct hexhex_context hexhex_context;
 
-/** Called with the name of the stage and its finished share in [0, 1], at most a hundred times a
- * stage, from one thread at a time, which may be another one than the caller's. Returns 0 to go on,
+/** Called with the name of the stage and its completed fraction in [0, 1], at most a hundred times
+ * per stage, from one thread at a time, which need not be the caller's. Returns 0 to continue,
  * anything else to cancel. Must return normally: no longjmp(), no exception. */
 typedef int (*hexhex_progress)(void* user, const char* stage, double share);
 
@@ -137,7 +138,7 @@ typedef struct hexhex_context_options {
   size_t size;
   int threads;              /**< 0: all cores */
   hexhex_progress progress; /**< or NULL */
-  void* user;               /**< given to progress */
+  void* user;               /**< passed to progress */
 } hexhex_context_options;
 #define HEXHEX_CONTEXT_OPTIONS_INIT \
   { sizeof(hexhex_context_options), 0, NULL, NULL }
@@ -146,16 +147,17 @@ HEXHEX_API hexhex_status hexhex_context_create(const hexhex_context_options* opt
                                                hexhex_context** context, hexhex_error* error);
 HEXHEX_API void hexhex_context_destroy(hexhex_context* context);
 
-/** Asks running and later work of this context to end soon with HEXHEX_CANCELLED. From any thread,
- * and from a signal handler. */
+/** Requests that current and future work of this context end soon with HEXHEX_CANCELLED. Safe to
+ * call from any thread, and from a signal handler. */
 HEXHEX_API void hexhex_context_cancel(hexhex_context* context);
-/** 1 after hexhex_context_cancel(): for one's own sinks. From any thread. 0 for NULL. */
+/** 1 after hexhex_context_cancel(), otherwise 0; useful in your own sinks. Safe to call from any
+ * thread. 0 for NULL. */
 HEXHEX_API int hexhex_context_cancelled(const hexhex_context* context);
-/** The number of threads it was made with; 0: all cores, and for NULL. */
+/** Number of threads that the context was created with; 0: all cores. 0 for NULL. */
 HEXHEX_API int hexhex_context_threads(const hexhex_context* context);
 
-/** The stages that have run through this context so far: their number, and the name and wall-clock
- * seconds of one. The name lives as long as the context, until its next call. */
+/** Stages completed in this context so far: their number, and the name and wall-clock seconds of
+ * one of them. The name is valid until the next call with this context or its destruction. */
 HEXHEX_API size_t hexhex_context_stage_count(const hexhex_context* context);
 HEXHEX_API hexhex_status hexhex_context_stage(const hexhex_context* context, size_t stage,
                                               const char** name, double* seconds,
@@ -163,16 +165,17 @@ HEXHEX_API hexhex_status hexhex_context_stage(const hexhex_context* context, siz
 
 /* ---- Maps ------------------------------------------------------------------------------------ */
 
-/** The valence offset of an edge: hexahedra around it minus 4 (inside) or 2 (on the boundary). */
+/** Valence offset of an edge: hexahedra around it minus 4 (inside) or 2 (on the boundary). */
 typedef struct hexhex_edge_valence {
   uint32_t vertex0;
   uint32_t vertex1;
   int offset;
 } hexhex_edge_valence;
 
-/** Tagged vertices, edges, triangles of tet meshes and quads of hex meshes, as sharp curves and
- * named surfaces; vertices of edges and triangles in any order, those of quads in order around
- * them. <hexhex/extract.hpp> tells what tags of tets become, and docs/features.md more. */
+/** Tagged vertices, edges and triangles of tet meshes, and quads of hex meshes, such as sharp
+ * curves and named surfaces. Vertices of edges and triangles are in any order, those of quads in
+ * cyclic order. <hexhex/extract.hpp> explains how tags of tets are transferred, and
+ * docs/features.md tells more. */
 typedef struct hexhex_feature_vertex {
   uint32_t vertex;
   int32_t tag;
@@ -190,26 +193,25 @@ typedef struct hexhex_feature_quad {
   int32_t tag;
 } hexhex_feature_quad;
 
-/** The arrays of a tetrahedral mesh with an integer-grid map. */
+/** Arrays of a tetrahedral mesh with an integer-grid map. */
 typedef struct hexhex_map_arrays {
   size_t size;
   const double* points; /**< x, y, z of each vertex */
   size_t point_count;
-  const uint32_t* tets; /**< four vertices of each tet, from 0 */
+  const uint32_t* tets; /**< four vertices of each tet, 0-based */
   size_t tet_count;
-  const double* parameters; /**< u, v, w of corner 0, 1, 2, 3 of each tet, in the tet's own chart */
-  const hexhex_edge_valence* edge_valences; /**< or NULL: computed. Edges not listed are regular */
+  const double* parameters; /**< u, v, w of corners 0, 1, 2, 3 of each tet, in its own chart */
+  const hexhex_edge_valence* edge_valences; /**< or NULL: computed. Unlisted edges are regular */
   size_t edge_valence_count;
-  const int8_t*
-      rotations; /**< or NULL: computed. Four per tet: index 0 to 23 of the rotation across
-                      the face opposite each corner, as in AlgoHex; -1 where unknown */
+  const int8_t* rotations; /**< or NULL: computed. Four per tet: index 0 to 23 of the rotation
+                              across the face opposite each corner, as in AlgoHex; -1 if unknown */
   const hexhex_feature_vertex* feature_vertices; /**< each element at most once */
   size_t feature_vertex_count;
   const hexhex_feature_edge* feature_edges;
   size_t feature_edge_count;
   const hexhex_feature_face* feature_faces;
   size_t feature_face_count;
-  const int32_t* regions; /**< or NULL: none. One per tet, which cells inherit */
+  const int32_t* regions; /**< or NULL: none. One per tet, inherited by cells */
 } hexhex_map_arrays;
 #define HEXHEX_MAP_ARRAYS_INIT                                                                   \
   {                                                                                              \
@@ -220,21 +222,22 @@ typedef struct hexhex_map_arrays {
 /** A tetrahedral mesh with an integer-grid map. */
 typedef struct hexhex_map hexhex_map;
 
-/** A map of the caller's arrays, without a copy: they must outlive the map and may not change. */
+/** Creates a map that uses the caller's arrays without copying them: they must outlive the map and
+ * must not change. */
 HEXHEX_API hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** map,
                                            hexhex_error* error);
 
-/** A map with copies of the arrays. */
+/** Creates a map with copies of the arrays. */
 HEXHEX_API hexhex_status hexhex_map_copy(const hexhex_map_arrays* arrays, hexhex_map** map,
                                          hexhex_error* error);
 
 /** See ReadOptions in <hexhex/io.hpp>. */
 typedef struct hexhex_read_options {
   size_t size;
-  const char* format; /**< by its name, see hexhex_get_format(); NULL: what the extension means */
-  const char* map_array; /**< that holds the map in .vtu and .vtk files; NULL: "igm" */
-  int keep_walls;        /**< 1: walls inside, which .hexex files list, are features with tag 2 */
-  int hexes_only; /**< 1: leaves out other volume cells of a mesh, which are an error otherwise */
+  const char* format;    /**< its name, see hexhex_get_format(); NULL: that of the extension */
+  const char* map_array; /**< array that holds the map in .vtu and .vtk files; NULL: "igm" */
+  int keep_walls;        /**< 1: interior walls listed in .hexex files become features with tag 2 */
+  int hexes_only;        /**< 1: skips other volume cells of a mesh, which are an error otherwise */
 } hexhex_read_options;
 #define HEXHEX_READ_OPTIONS_INIT \
   { sizeof(hexhex_read_options), NULL, NULL, 0, 0 }
@@ -242,47 +245,48 @@ typedef struct hexhex_read_options {
 /** See WriteOptions in <hexhex/io.hpp>. */
 typedef struct hexhex_write_options {
   size_t size;
-  const char* format;             /**< by its name; NULL: what the extension means */
+  const char* format;             /**< name of the format; NULL: that of the extension */
   const char* map_array;          /**< for .vtu and .vtk files; NULL: "igm" */
-  double patch_angle;             /**< of boundary groups, in degrees from 0 to 180 */
-  int compress;                   /**< 1: arrays of .vtu files with zlib */
-  const double* scaled_jacobians; /**< one per cell, if the caller has them; NULL: computed */
+  double patch_angle;             /**< for boundary groups, in degrees, 0 to 180 */
+  int compress;                   /**< 1: compress the arrays of .vtu files with zlib */
+  const double* scaled_jacobians; /**< one per cell, if already available; NULL: computed */
 } hexhex_write_options;
 #define HEXHEX_WRITE_OPTIONS_INIT \
   { sizeof(hexhex_write_options), NULL, NULL, 40, 0, NULL }
 
-/** A map from a file: .hexex, .ovm, .ovmb, .vtu, .vtk. */
+/** Reads a map from a file: .hexex, .ovm, .ovmb, .vtu, .vtk. */
 HEXHEX_API hexhex_status hexhex_map_read(const char* file, const hexhex_read_options* options,
                                          hexhex_context* context, hexhex_map** map,
                                          hexhex_error* error);
-/** Writes a map; the file appears complete or not at all. Of the options, format and map_array. */
+/** Writes a map; the file appears complete or not at all. Uses only the options format and
+ * map_array. */
 HEXHEX_API hexhex_status hexhex_map_write(const hexhex_map* map, const char* file,
                                           const hexhex_write_options* options,
                                           hexhex_context* context, hexhex_error* error);
-/** A tetrahedral mesh without a map from a file: the formats above, .mesh, .meshb and .msh. The
- * result has no parameters. */
+/** Reads a tetrahedral mesh without a map from a file: the formats above, .mesh, .meshb and .msh.
+ * The result has no parameters. */
 HEXHEX_API hexhex_status hexhex_map_read_tets(const char* file, const hexhex_read_options* options,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_error* error);
-/** The map of two files with meshes of the same tets, as polycube tools write them: points of the
- * second are the parameters of the first. */
+/** Reads a map from two files with meshes of the same tets, as written by polycube tools: the
+ * points of the second mesh are the parameters of the first. */
 HEXHEX_API hexhex_status hexhex_map_read_pair(const char* tets, const char* polycube,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_error* error);
-/** The same of arrays, of which points and tets are used; copies. */
+/** The same from arrays, of which only points and tets are used; copies them. */
 HEXHEX_API hexhex_status hexhex_map_from_pair(const hexhex_map_arrays* tets,
                                               const hexhex_map_arrays* polycube,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_error* error);
-/** The seamless map of a polycube, of which hexhex_quantize() makes an integer-grid map, from
- * labels of boundary triangles. See mapFromFlags() in <hexhex/quantize.hpp>.
- * @param tets   of which points and tets are used
- * @param flags  4 per tet, of the faces opposite its corners: 0 to 5 for +x, -x, +y, -y, +z, -z;
+/** Computes the seamless map of a polycube from labels of boundary triangles, as input for
+ * hexhex_quantize(). See mapFromFlags() in <hexhex/quantize.hpp>.
+ * @param tets   only points and tets are used
+ * @param flags  4 per tet, for the faces opposite its corners: 0 to 5 for +x, -x, +y, -y, +z, -z;
  *               -1 inside */
 HEXHEX_API hexhex_status hexhex_map_from_flags(const hexhex_map_arrays* tets, const int8_t* flags,
                                                hexhex_context* context, hexhex_map** map,
                                                hexhex_error* error);
-/** The same of files. See readFlags() in <hexhex/io.hpp>.
+/** The same from files. See readFlags() in <hexhex/io.hpp>.
  * @param surface  NULL: none
  * @param array    NULL: "flags" */
 HEXHEX_API hexhex_status hexhex_map_read_flags(const char* tets, const char* flags,
@@ -294,7 +298,7 @@ typedef enum hexhex_chart_style HEXHEX_AS_INT {
   HEXHEX_CHARTS_ALIGNED = 0,  /**< as many identity transitions as possible */
   HEXHEX_CHARTS_BLOCKS = 1,   /**< a random chart per block */
   HEXHEX_CHARTS_RANDOM = 2,   /**< a random chart per tet */
-  HEXHEX_CHARTS_SCATTERED = 3 /**< a random chart for one tet in eight, aligned for the others */
+  HEXHEX_CHARTS_SCATTERED = 3 /**< random for one tet in eight, aligned for the others */
 } hexhex_chart_style;
 
 /** How hexhex_map_generate() damages a map: see DefectKind in <hexhex/samples.hpp>. */
@@ -308,17 +312,17 @@ typedef enum hexhex_defect_kind HEXHEX_AS_INT {
 /** See SampleOptions in <hexhex/samples.hpp> for the ranges. */
 typedef struct hexhex_sample_options {
   size_t size;
-  int cells;   /**< hexahedra along each block edge */
-  int refine;  /**< tet sub-blocks along each block edge */
-  int valence; /**< of "star" */
+  int cells;   /**< number of hexahedra along each block edge */
+  int refine;  /**< number of tet sub-blocks along each block edge */
+  int valence; /**< for "star" */
   hexhex_chart_style charts;
   double jitter;
   double on_lattice;
   double noise;
   double offset;
   uint64_t seed;
-  int features; /**< 1: tags corners, curves and surfaces, and numbers the blocks as regions */
-  int defects;  /**< at least so many tets are flipped or flat */
+  int features; /**< 1: tag corners, curves and surfaces, and number the blocks as regions */
+  int defects;  /**< minimum number of flipped or flat tets */
   hexhex_defect_kind defect_kind;
 } hexhex_sample_options;
 #define HEXHEX_SAMPLE_OPTIONS_INIT                                                      \
@@ -327,22 +331,22 @@ typedef struct hexhex_sample_options {
         HEXHEX_DEFECTS_INTERIOR                                                         \
   }
 
-/** A map whose mesh is known in advance: see hexhex_map_get_answer().
+/** Generates a map whose mesh is known in advance: see hexhex_map_get_answer().
  * @param kind  "box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body"
  */
 HEXHEX_API hexhex_status hexhex_map_generate(const char* kind, const hexhex_sample_options* options,
                                              hexhex_map** map, hexhex_error* error);
 
-/** The number of kinds of maps that can be generated. */
+/** Number of kinds of maps that can be generated. */
 HEXHEX_API size_t hexhex_sample_kind_count(void);
-/** The name and a description of a kind of maps. Strings live as long as the program.
+/** Name and description of a kind of map. The strings are valid for the lifetime of the program.
  * @param[out] name, description  or NULL */
 HEXHEX_API hexhex_status hexhex_get_sample_kind(size_t number, const char** name,
                                                 const char** description, hexhex_error* error);
-/** The name of a kind of defect, e.g. "interior"; "Unknown" for numbers that are none. */
+/** Name of a kind of defect, e.g. "interior"; "Unknown" for invalid values. */
 HEXHEX_API const char* hexhex_defect_kind_name(hexhex_defect_kind kind);
 
-/** What is known of the mesh of a generated map, at scale 1 and without its defects: see
+/** Known properties of the mesh of a generated map, at scale 1 and without its defects: see
  * SampleAnswer in <hexhex/samples.hpp>. */
 typedef struct hexhex_sample_answer {
   size_t size;
@@ -352,17 +356,17 @@ typedef struct hexhex_sample_answer {
   int64_t euler_characteristic;
   uint64_t components;
   uint64_t boundary_components;
-  uint64_t regions; /**< blocks; 0 without features */
+  uint64_t regions; /**< number of blocks; 0 without features */
 } hexhex_sample_answer;
 #define HEXHEX_SAMPLE_ANSWER_INIT \
   { sizeof(hexhex_sample_answer), 0, 0, 0, 0, 0, 0, 0 }
 
-/** @param map             made by hexhex_map_generate(); others are HEXHEX_INVALID_ARGUMENT
- *  @param[in,out] answer  made with HEXHEX_SAMPLE_ANSWER_INIT */
+/** @param map             made by hexhex_map_generate(); others yield HEXHEX_INVALID_ARGUMENT
+ *  @param[in,out] answer  initialized with HEXHEX_SAMPLE_ANSWER_INIT */
 HEXHEX_API hexhex_status hexhex_map_get_answer(const hexhex_map* map, hexhex_sample_answer* answer,
                                                hexhex_error* error);
 
-/** Tables of an answer: how many elements of the mesh have a key. */
+/** Tables of an answer: number of mesh elements for each key. */
 typedef enum hexhex_answer_table HEXHEX_AS_INT {
   HEXHEX_ANSWER_INNER_EDGES = 0,     /**< singular hex edges inside, by valence */
   HEXHEX_ANSWER_BOUNDARY_EDGES = 1,  /**< singular hex edges on the boundary, by valence */
@@ -371,36 +375,36 @@ typedef enum hexhex_answer_table HEXHEX_AS_INT {
   HEXHEX_ANSWER_TAGGED_QUADS = 4     /**< hex faces, by tag */
 } hexhex_answer_table;
 
-/** @param[out] entries  number of entries of a table */
+/** @param[out] entries  number of entries in the table */
 HEXHEX_API hexhex_status hexhex_map_count_answer(const hexhex_map* map, hexhex_answer_table table,
                                                  size_t* entries, hexhex_error* error);
-/** One entry, in ascending order of keys.
+/** Returns one entry; entries are in ascending order of keys.
  * @param[out] key, count  or NULL */
 HEXHEX_API hexhex_status hexhex_map_get_answer_entry(const hexhex_map* map,
                                                      hexhex_answer_table table, size_t number,
                                                      int32_t* key, uint64_t* count,
                                                      hexhex_error* error);
 
-/** The arrays of a map; they belong to it.
- * @param[in,out] arrays  made with HEXHEX_MAP_ARRAYS_INIT */
+/** Returns the arrays of a map, which owns them.
+ * @param[in,out] arrays  initialized with HEXHEX_MAP_ARRAYS_INIT */
 HEXHEX_API hexhex_status hexhex_map_get_arrays(const hexhex_map* map, hexhex_map_arrays* arrays,
                                                hexhex_error* error);
 HEXHEX_API void hexhex_map_destroy(hexhex_map* map);
 
 /* ---- Meshes ---------------------------------------------------------------------------------- */
 
-/** The arrays of a hexahedral mesh. */
+/** Arrays of a hexahedral mesh. */
 typedef struct hexhex_mesh_arrays {
   size_t size;
   const double* points; /**< x, y, z of each vertex */
   size_t point_count;
-  const uint32_t* cells; /**< eight vertices of each cell, from 0, order as above */
+  const uint32_t* cells; /**< eight vertices of each cell, 0-based, ordered as above */
   size_t cell_count;
   const uint32_t* generator_tet;    /**< per vertex, or NULL: a tet that contains its generator */
   const uint8_t* generator_corners; /**< per vertex, or NULL: the generator (the vertex, edge, face
-                                         or tet in whose interior the vertex lies) by corners of
-                                         that tet: bit i for corner i */
-  const hexhex_feature_vertex* feature_vertices; /**< what of the mesh is tagged */
+                                       or tet whose interior contains the vertex) as corners of that
+                                       tet: bit i for corner i */
+  const hexhex_feature_vertex* feature_vertices; /**< tagged elements of the mesh */
   size_t feature_vertex_count;
   const hexhex_feature_edge* feature_edges;
   size_t feature_edge_count;
@@ -414,18 +418,19 @@ typedef struct hexhex_mesh_arrays {
 /** A hexahedral mesh. */
 typedef struct hexhex_mesh hexhex_mesh;
 
-/** The dimension of a generator: 0 vertex, 1 edge, 2 face, 3 tet; -1 for what is none.
+/** Dimension of a generator: 0 vertex, 1 edge, 2 face, 3 tet; -1 for invalid values.
  * @param corners  as in hexhex_mesh_arrays, 1 to 15 */
 HEXHEX_API int hexhex_generator_kind(uint8_t corners);
 
-/** A mesh with copies of the arrays, e.g. to write or verify it. */
+/** Creates a mesh with copies of the arrays, e.g. to write or verify it. */
 HEXHEX_API hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** mesh,
                                           hexhex_error* error);
-/** A mesh from a file: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. */
+/** Reads a mesh from a file: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. */
 HEXHEX_API hexhex_status hexhex_mesh_read(const char* file, const hexhex_read_options* options,
                                           hexhex_context* context, hexhex_mesh** mesh,
                                           hexhex_error* error);
-/** What a file holds: a mesh or, where there are no hexahedra, a map; the other one is NULL. */
+/** Reads whatever a file holds: a mesh or, if there are no hexahedra, a map; the other one is set
+ * to NULL. */
 HEXHEX_API hexhex_status hexhex_read(const char* file, const hexhex_read_options* options,
                                      hexhex_context* context, hexhex_map** map, hexhex_mesh** mesh,
                                      hexhex_error* error);
@@ -434,11 +439,12 @@ HEXHEX_API hexhex_status hexhex_mesh_write(const hexhex_mesh* mesh, const char* 
                                            const hexhex_write_options* options,
                                            hexhex_context* context, hexhex_error* error);
 
-/** A file format: see FileFormat in <hexhex/io.hpp>. Strings live as long as the program. */
+/** A file format: see FileFormat in <hexhex/io.hpp>. The strings are valid for the lifetime of the
+ * program. */
 typedef struct hexhex_file_format {
   size_t size;
   const char* name;
-  const char* extension; /**< with the dot; "": has to be asked for by name */
+  const char* extension; /**< including the dot; "": the format must be requested by name */
   const char* description;
   int reads_maps;
   int writes_maps;
@@ -451,12 +457,12 @@ typedef struct hexhex_file_format {
 #define HEXHEX_FILE_FORMAT_INIT \
   { sizeof(hexhex_file_format), NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0 }
 
-/** The formats of this build. */
+/** Formats of this build. */
 HEXHEX_API size_t hexhex_format_count(void);
 HEXHEX_API hexhex_status hexhex_get_format(size_t number, hexhex_file_format* format,
                                            hexhex_error* error);
 
-/** What may be written to a file. */
+/** Kinds of output files. */
 typedef enum hexhex_output HEXHEX_AS_INT {
   HEXHEX_OUTPUT_MAP = 0,
   HEXHEX_OUTPUT_MESH = 1,
@@ -465,18 +471,18 @@ typedef enum hexhex_output HEXHEX_AS_INT {
   HEXHEX_OUTPUT_LAGRANGE = 4
 } hexhex_output;
 
-/** HEXHEX_FILE_UNSUPPORTED unless the file's extension, or the format of the options, is known for
- * this: to fail before long work. */
+/** Returns HEXHEX_FILE_UNSUPPORTED unless the file's extension, or the format of the options,
+ * supports this output, so that unsupported formats are detected before long work. */
 HEXHEX_API hexhex_status hexhex_require_format(hexhex_output output, const char* file,
                                                const hexhex_write_options* options,
                                                hexhex_error* error);
 
-/** The arrays of a mesh, borrowed: they belong to it. Empty ones are NULL.
- * @param[in,out] arrays  made with HEXHEX_MESH_ARRAYS_INIT */
+/** Returns the arrays of a mesh, which owns them. Empty arrays are NULL.
+ * @param[in,out] arrays  initialized with HEXHEX_MESH_ARRAYS_INIT */
 HEXHEX_API hexhex_status hexhex_mesh_get_arrays(const hexhex_mesh* mesh, hexhex_mesh_arrays* arrays,
                                                 hexhex_error* error);
 
-/** What keeps an array alive that was taken out of a mesh. */
+/** Owner of an array that was taken from a mesh. */
 typedef struct hexhex_buffer hexhex_buffer;
 
 typedef enum hexhex_mesh_array HEXHEX_AS_INT {
@@ -490,20 +496,21 @@ typedef enum hexhex_mesh_array HEXHEX_AS_INT {
   HEXHEX_FEATURE_QUADS = 7      /**< hexhex_feature_quad */
 } hexhex_mesh_array;
 
-/** Takes an array over, without a copy: the mesh has none afterwards, and the array lives until
+/** Takes over an array without a copy: the mesh loses it, and the array lives until
  * hexhex_buffer_destroy(), whatever happens to the mesh. */
 HEXHEX_API hexhex_status hexhex_mesh_take(hexhex_mesh* mesh, hexhex_mesh_array array,
                                           hexhex_buffer** buffer, hexhex_error* error);
-/** The array's first element (NULL if it is empty), and its size in bytes. It may be written to. */
+/** First element of the array (NULL if it is empty), which is writable, and its size in bytes. */
 HEXHEX_API void* hexhex_buffer_data(hexhex_buffer* buffer);
 HEXHEX_API size_t hexhex_buffer_bytes(const hexhex_buffer* buffer);
 HEXHEX_API void hexhex_buffer_destroy(hexhex_buffer* buffer);
 
 HEXHEX_API void hexhex_mesh_destroy(hexhex_mesh* mesh);
 
-/** The boundary quads, facing outwards, tagged by smooth patch: see <hexhex/patches.hpp>.
- * @param angle       in degrees, 0 to 180: where the boundary turns by more, a patch ends
- * @param[out] quads  of hexhex_feature_quad */
+/** Returns the boundary quads, facing outwards and tagged by smooth patch: see
+ * <hexhex/patches.hpp>.
+ * @param angle       in degrees, 0 to 180: patches end where the boundary turns by more
+ * @param[out] quads  array of hexhex_feature_quad */
 HEXHEX_API hexhex_status hexhex_mesh_boundary_patches(const hexhex_mesh* mesh, double angle,
                                                       hexhex_context* context,
                                                       hexhex_buffer** quads, hexhex_error* error);
@@ -511,7 +518,7 @@ HEXHEX_API hexhex_status hexhex_mesh_boundary_patches(const hexhex_mesh* mesh, d
 /** A singular edge of a hex mesh. */
 typedef struct hexhex_singular_edge {
   uint32_t vertices[2]; /**< ascending */
-  uint32_t valence;     /**< number of cells around */
+  uint32_t valence;     /**< number of cells around the edge */
   uint32_t boundary;    /**< 1 on the boundary */
 } hexhex_singular_edge;
 
@@ -528,34 +535,36 @@ typedef struct hexhex_structure {
 #define HEXHEX_STRUCTURE_INIT \
   { sizeof(hexhex_structure), 0, 0, 0, 0, 0, 0 }
 
-/** @param[out] structure       made with HEXHEX_STRUCTURE_INIT, or NULL
- *  @param[out] singular_edges  of hexhex_singular_edge, or NULL */
+/** @param[out] structure       initialized with HEXHEX_STRUCTURE_INIT, or NULL
+ *  @param[out] singular_edges  array of hexhex_singular_edge, or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_structure(const hexhex_mesh* mesh, hexhex_context* context,
                                                hexhex_structure* structure,
                                                hexhex_buffer** singular_edges, hexhex_error* error);
 
 /* ---- Repair ---------------------------------------------------------------------------------- */
 
-/** 1 if this build can repair (it was made with Eigen). */
+/** 1 if this build supports repair (requires Eigen). */
 HEXHEX_API int hexhex_can_repair(void);
 
 /** See RepairOptions in <hexhex/repair.hpp>. */
 typedef struct hexhex_repair_options {
   size_t size;
   double tolerance; /**< as in hexhex_extract_options */
-  int scale;        /**< the map is going to be scaled by at most this */
-  int round;        /**< 1: moves what is off integers by up to 0.1 onto them first */
-  int refine;       /**< 1: may split edges of the tet mesh */
+  int scale;        /**< upper bound for later scaling of the map */
+  int round;        /**< 1: first round coordinates that deviate from integers by up to 0.1 */
+  int refine;       /**< 1: allow splitting edges of the tet mesh */
 } hexhex_repair_options;
 #define HEXHEX_REPAIR_OPTIONS_INIT \
   { sizeof(hexhex_repair_options), 1e-2, 1, 0, 1 }
 
-/** What a repair did. */
+/** Report of a repair. */
 typedef struct hexhex_repair_report hexhex_repair_report;
 
-/** A valid map: the same where it was valid, bit for bit. See <hexhex/repair.hpp>.
- * @param[out] report  or NULL; also given if the repair fails with another code than
- *                     HEXHEX_INVALID_ARGUMENT and HEXHEX_OUT_OF_MEMORY; else it becomes NULL */
+/** Returns a valid map that is identical, bit for bit, where the input was valid. See
+ * <hexhex/repair.hpp>.
+ * @param[out] report  or NULL; also set if the repair fails, unless the code is
+ *                     HEXHEX_INVALID_ARGUMENT or HEXHEX_OUT_OF_MEMORY, in which case it is set to
+ *                     NULL */
 HEXHEX_API hexhex_status hexhex_repair(const hexhex_map* map, const hexhex_repair_options* options,
                                        hexhex_context* context, hexhex_map** repaired,
                                        hexhex_repair_report** report, hexhex_error* error);
@@ -563,11 +572,11 @@ HEXHEX_API void hexhex_repair_report_destroy(hexhex_repair_report* report);
 
 typedef struct hexhex_repair_summary {
   size_t size;
-  int changed; /**< 0 for a valid map */
+  int changed; /**< 0 if the map was valid */
   size_t region_count;
   uint64_t bad_tets;
   uint64_t moved_vertices;
-  double largest_move; /**< of a coordinate, in parameter units */
+  double largest_move; /**< largest change of a coordinate, in parameter units */
   uint64_t split_edges;
   uint64_t added_tets;
   uint64_t rounded_vertices;
@@ -580,13 +589,13 @@ HEXHEX_API hexhex_status hexhex_repair_get_summary(const hexhex_repair_report* r
                                                    hexhex_repair_summary* summary,
                                                    hexhex_error* error);
 
-/** What a repair did to one place. */
+/** Result of a repair at one place. */
 typedef struct hexhex_repaired_region {
   size_t size;
   hexhex_place place; /**< a bad tet */
   double position[3]; /**< in space */
   uint64_t bad_tets;
-  uint64_t tets; /**< in the patch that was optimized */
+  uint64_t tets; /**< in the optimized patch */
   uint64_t moved_vertices;
   double largest_move;
 } hexhex_repaired_region;
@@ -599,38 +608,38 @@ HEXHEX_API hexhex_status hexhex_repair_get_region(const hexhex_repair_report* re
 
 /* ---- Quantization ---------------------------------------------------------------------------- */
 
-/** 1 if this build can quantize (it was made with Eigen). */
+/** 1 if this build supports quantization (requires Eigen). */
 HEXHEX_API int hexhex_can_quantize(void);
 
-/** See QuantizeOptions in <hexhex/quantize.hpp>: exactly one of the first three is not 0. */
+/** See QuantizeOptions in <hexhex/quantize.hpp>. Set exactly one of the first three. */
 typedef struct hexhex_quantize_options {
   size_t size;
-  double cells;       /**< hexahedra wanted */
-  double scale;       /**< the map's parameters are to be multiplied by about so much */
-  double edge_length; /**< of a hexahedron in space, on the average */
-  int densify;        /**< 1: if no valid map is found so, takes the first denser one that works */
-  int32_t wall_tag;   /**< inner triangles with this tag need not stay planes; 0: none */
-  double tolerance;   /**< share of the map's size by which it may miss being seamless */
+  double cells;       /**< desired number of hexahedra */
+  double scale;       /**< approximate scale factor for the parameters of the map */
+  double edge_length; /**< average edge length of a hexahedron in space */
+  int densify;        /**< 1: if no valid map is found, use the first finer one that works */
+  int32_t wall_tag;   /**< interior triangles with this tag need not remain planes; 0: none */
+  double tolerance;   /**< maximum deviation from seamlessness, relative to the extent of the map */
 } hexhex_quantize_options;
 #define HEXHEX_QUANTIZE_OPTIONS_INIT \
   { sizeof(hexhex_quantize_options), 0, 0, 0, 0, 0, 1e-5 }
 
-/** What a quantization did. See QuantizeReport and MapDistortion in <hexhex/quantize.hpp>. */
+/** Report of a quantization. See QuantizeReport and MapDistortion in <hexhex/quantize.hpp>. */
 typedef struct hexhex_quantize_report {
   size_t size;
   double cells_wanted;
   uint64_t cells;
-  double scale;        /**< of the seamless map's parameters, finally */
-  double displacement; /**< largest change of a parameter that made the map seamless */
-  uint64_t blocks;     /**< of the motorcycle complex */
+  double scale;        /**< final scale of the seamless map's parameters */
+  double displacement; /**< largest change of a parameter needed to make the map seamless */
+  uint64_t blocks;     /**< in the motorcycle complex */
   uint64_t arcs;
   uint64_t shortest_arc; /**< in hexahedra */
   uint64_t longest_arc;
-  char integers_by[16]; /**< "HiGHS", or "rounding" where it is missing */
-  uint64_t attempts;    /**< numbers of cells that were tried */
-  uint64_t split_edges; /**< each adds a vertex to the tet mesh */
+  char integers_by[16]; /**< "HiGHS", or "rounding" if HiGHS is not available */
+  uint64_t attempts;    /**< number of target cell counts tried */
+  uint64_t split_edges; /**< each split adds a vertex to the tet mesh */
   uint64_t added_tets;
-  double worst_before; /**< distortion of the map as scaled Jacobian, at most 1 */
+  double worst_before; /**< distortion of the map as a scaled Jacobian, at most 1 */
   double median_before;
   double worst_after;
   double median_after;
@@ -638,19 +647,19 @@ typedef struct hexhex_quantize_report {
 #define HEXHEX_QUANTIZE_REPORT_INIT \
   { sizeof(hexhex_quantize_report), 0, 0, 0, 0, 0, 0, 0, 0, {0}, 0, 0, 0, 0, 0, 0, 0 }
 
-/** An integer-grid map from a seamless one. See <hexhex/quantize.hpp>.
- * @param options      how fine the mesh is to be: not NULL
- * @param[out] report  made with HEXHEX_QUANTIZE_REPORT_INIT, or NULL */
+/** Computes an integer-grid map from a seamless one. See <hexhex/quantize.hpp>.
+ * @param options      include the target resolution: not NULL
+ * @param[out] report  initialized with HEXHEX_QUANTIZE_REPORT_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_quantize(const hexhex_map* map,
                                          const hexhex_quantize_options* options,
                                          hexhex_context* context, hexhex_map** quantized,
                                          hexhex_quantize_report* report, hexhex_error* error);
 
-/** What lies between a map and an integer-grid map. */
+/** How far a map is from an integer-grid map. */
 typedef enum hexhex_seamless_kind HEXHEX_AS_INT {
-  HEXHEX_SEAMLESS = 0,        /**< for hexhex_quantize() with its default tolerance */
-  HEXHEX_ALMOST_SEAMLESS = 1, /**< up to a hundredth of its size */
-  HEXHEX_NOT_SEAMLESS = 2     /**< also where hexhex_can_quantize() is 0 */
+  HEXHEX_SEAMLESS = 0,        /**< suitable for hexhex_quantize() with its default tolerance */
+  HEXHEX_ALMOST_SEAMLESS = 1, /**< seamless to within a hundredth of its extent */
+  HEXHEX_NOT_SEAMLESS = 2     /**< also if hexhex_can_quantize() is 0 */
 } hexhex_seamless_kind;
 
 /** See SeamlessReport in <hexhex/quantize.hpp>. */
@@ -658,16 +667,16 @@ typedef struct hexhex_seamless_report {
   size_t size;
   hexhex_seamless_kind kind;
   double displacement; /**< of the nearest seamless map, in parameter units; 0 if there is none */
-  double cells;        /**< volume of that in unit cubes */
-  char problem[1024];  /**< why it is not seamless; UTF-8, cut off if longer */
+  double cells;        /**< its volume, in unit cubes */
+  char problem[1024];  /**< why it is not seamless; UTF-8, truncated if longer */
 } hexhex_seamless_report;
 #define HEXHEX_SEAMLESS_REPORT_INIT                                  \
   {                                                                  \
     sizeof(hexhex_seamless_report), HEXHEX_NOT_SEAMLESS, 0, 0, { 0 } \
   }
 
-/** Whether hexhex_quantize() can begin with a map.
- * @param[out] report  made with HEXHEX_SEAMLESS_REPORT_INIT */
+/** Checks whether a map is suitable for hexhex_quantize().
+ * @param[out] report  initialized with HEXHEX_SEAMLESS_REPORT_INIT */
 HEXHEX_API hexhex_status hexhex_examine_seamless(const hexhex_map* map, hexhex_context* context,
                                                  hexhex_seamless_report* report,
                                                  hexhex_error* error);
@@ -675,31 +684,31 @@ HEXHEX_API hexhex_status hexhex_examine_seamless(const hexhex_map* map, hexhex_c
 /* ---- Extraction ------------------------------------------------------------------------------ */
 
 typedef enum hexhex_engine HEXHEX_AS_INT {
-  HEXHEX_ENGINE_ATLAS = 0,    /**< the fast one */
-  HEXHEX_ENGINE_PROPELLER = 1 /**< the paper's algorithm: the same mesh, bit for bit */
+  HEXHEX_ENGINE_ATLAS = 0,    /**< the fast engine */
+  HEXHEX_ENGINE_PROPELLER = 1 /**< the algorithm of the paper: the same mesh, bit for bit */
 } hexhex_engine;
 
-/** Where nodes of cells of higher order are: CurvedNodes in <hexhex/extract.hpp>. */
+/** Placement of the nodes of higher-order cells: see CurvedNodes in <hexhex/extract.hpp>. */
 typedef enum hexhex_curved_nodes {
-  HEXHEX_NODES_BLENDED = 0, /**< on the surface; inside between these, so that no cell folds over */
-  HEXHEX_NODES_EXACT = 1    /**< all where the map has them */
+  HEXHEX_NODES_BLENDED = 0, /**< on the surface; blended inside, so that no cell folds over */
+  HEXHEX_NODES_EXACT = 1    /**< all where the map puts them */
 } hexhex_curved_nodes;
 
 typedef struct hexhex_extract_options {
   size_t size;
   hexhex_engine engine;
-  int scale;        /**< multiplies all parameters: scale^3 times as many cells; at least 1 */
-  double epsilon;   /**< of the propeller engine; changes the time, never the result */
-  double tolerance; /**< how far the map may be from its integer conditions, below 0.25 */
-  int repair;       /**< 1: a map with flipped or flat tets is repaired first */
-  int round;        /**< as in hexhex_repair_options, if there is a repair */
+  int scale;      /**< factor for all parameters: yields scale^3 times as many cells; at least 1 */
+  double epsilon; /**< propeller engine only; affects only the time, never the result */
+  double tolerance; /**< maximum violation of the integer conditions by the map, below 0.25 */
+  int repair;       /**< 1: repair a map with flipped or flat tets first */
+  int round;        /**< as in hexhex_repair_options, if the map is repaired */
   hexhex_curved_nodes curved_nodes;
 } hexhex_extract_options;
 #define HEXHEX_EXTRACT_OPTIONS_INIT \
   { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2, 0, 0, HEXHEX_NODES_BLENDED }
 
-/** What happened on the way. ExtractStatistics in <hexhex/extract.hpp> explains the fields; array
- * indices are kinds of generators: vertex, edge, face, cell. */
+/** Statistics of an extraction. ExtractStatistics in <hexhex/extract.hpp> explains the fields;
+ * arrays are indexed by kind of generator: vertex, edge, face, cell. */
 typedef struct hexhex_statistics {
   size_t size;
   double seconds;
@@ -722,32 +731,31 @@ typedef struct hexhex_statistics {
   uint64_t overlapping_tets;
   uint64_t traced_cells;
   int repaired;                /**< 1 if the map was repaired: see hexhex_mesh_get_repair() */
-  uint64_t straightened_cells; /**< so many have left the surface to be positive */
+  uint64_t straightened_cells; /**< cells that left the surface in order to be positive */
 } hexhex_statistics;
 #define HEXHEX_STATISTICS_INIT \
   { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /** Extracts the hexahedral mesh of a map.
- * @param[out] statistics  made with HEXHEX_STATISTICS_INIT, or NULL */
+ * @param[out] statistics  initialized with HEXHEX_STATISTICS_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_extract(const hexhex_map* map,
                                         const hexhex_extract_options* options,
                                         hexhex_context* context, hexhex_mesh** mesh,
                                         hexhex_statistics* statistics, hexhex_error* error);
 
-/** The map that was extracted instead of one that had to be repaired, and what the repair did. The
- * mesh's generators mean its tets. Handles of their own, to be destroyed; they are NULL if nothing
- * was repaired.
+/** Returns the repaired map, from which the mesh was extracted and to whose tets its generators
+ * refer, and the report of the repair. These are separate handles that the caller must destroy;
+ * they are NULL if nothing was repaired.
  * @param[out] map, report  or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_get_repair(const hexhex_mesh* mesh, hexhex_map** map,
                                                 hexhex_repair_report** report, hexhex_error* error);
-/** The same of the last extraction in pieces with this context, hexhex_extract_to() or
- * hexhex_extract_to_file(), which leave no mesh to ask. The context holds the map until the next
- * one. */
+/** The same for the last extraction in pieces with this context, by hexhex_extract_to() or
+ * hexhex_extract_to_file(), which return no mesh. The context keeps the map until the next one. */
 HEXHEX_API hexhex_status hexhex_context_get_repair(const hexhex_context* context, hexhex_map** map,
                                                    hexhex_repair_report** report,
                                                    hexhex_error* error);
 
-/** What can be extracted of a map that is not valid: see <hexhex/partial.hpp>. */
+/** Options for partial extraction from invalid maps: see <hexhex/partial.hpp>. */
 typedef struct hexhex_partial_options {
   size_t size;
   int scale;
@@ -784,7 +792,7 @@ HEXHEX_API hexhex_status hexhex_holes_get_summary(const hexhex_holes* holes,
 /** See Hole in <hexhex/partial.hpp>. */
 typedef struct hexhex_hole {
   size_t size;
-  uint32_t tet; /**< the smallest */
+  uint32_t tet; /**< the smallest tet of the hole */
   uint64_t tets;
   uint64_t invalid_tets;
   double position[3];
@@ -793,79 +801,78 @@ typedef struct hexhex_hole {
 #define HEXHEX_HOLE_INIT \
   { sizeof(hexhex_hole), 0, 0, 0, {0}, 0 }
 
-/** Most missing cells first. */
+/** Returns a hole; those with the most missing cells come first. */
 HEXHEX_API hexhex_status hexhex_holes_get(const hexhex_holes* holes, size_t number,
                                           hexhex_hole* hole, hexhex_error* error);
 
-/** A prepared map, for several meshes of it. See <hexhex/extractor.hpp>. */
+/** A prepared map for extracting several meshes. See <hexhex/extractor.hpp>. */
 typedef struct hexhex_extractor hexhex_extractor;
 
-/** @param map        which the extractor keeps: its handle may be destroyed before; arrays that it
- *                    borrows may not
+/** @param map        kept by the extractor: its handle may be destroyed earlier, but arrays that it
+ *                    borrows must remain valid
  *  @param tolerance  as in hexhex_extract_options
- *  @param max_scale  the largest scale that will be asked for, times the order; below 256, meshes
- *                    are the same as those of hexhex_extract(), bit for bit */
+ *  @param max_scale  the largest scale that will be requested, times the order; below 256, meshes
+ *                    are identical to those of hexhex_extract(), bit for bit */
 HEXHEX_API hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance,
                                                  int max_scale, hexhex_context* context,
                                                  hexhex_extractor** extractor, hexhex_error* error);
-/** As hexhex_extract(); options->tolerance is ignored. */
+/** Like hexhex_extract(); ignores options->tolerance. */
 HEXHEX_API hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
                                                   const hexhex_extract_options* options,
                                                   hexhex_context* context, hexhex_mesh** mesh,
                                                   hexhex_statistics* statistics,
                                                   hexhex_error* error);
 HEXHEX_API void hexhex_extractor_destroy(hexhex_extractor* extractor);
-/** Number of cells at scale 1; scale^3 times as many at others. 0 for NULL. */
+/** Number of cells at scale 1; there are scale^3 times as many at other scales. 0 for NULL. */
 HEXHEX_API uint64_t hexhex_extractor_cells(const hexhex_extractor* extractor);
 
 /* ---- Extraction in pieces -------------------------------------------------------------------- */
 
 /** Receives a mesh in pieces: begin, then all points in order, then all cells in order, then end;
- * from one thread at a time. Each returns 0 to go on, anything else to cancel, and must return
- * normally. Pointers are valid during the call. Members may be NULL. */
+ * from one thread at a time. Each function returns 0 to continue, anything else to cancel, and must
+ * return normally. Pointers are valid only during the call. Members may be NULL. */
 typedef struct hexhex_sink {
   size_t size;
-  void* user; /**< given to all */
+  void* user; /**< passed to all functions */
   int (*begin)(void* user, uint64_t point_count, uint64_t cell_count);
-  /** Vertices from number `first` on; generator arrays as in hexhex_mesh_arrays, or NULL. */
+  /** Vertices starting at number `first`; generator arrays as in hexhex_mesh_arrays, or NULL. */
   int (*points)(void* user, uint64_t first, size_t count, const double* points,
                 const uint32_t* generator_tet, const uint8_t* generator_corners);
-  /** Cells from number `first` on, in meshes of up to 2^32 - 2 vertices. */
+  /** Cells starting at number `first`, for meshes of up to 2^32 - 2 vertices. */
   int (*cells)(void* user, uint64_t first, size_t count, const uint32_t* cells);
-  /** The same in larger meshes. If NULL, these are HEXHEX_TOO_LARGE. */
+  /** The same for larger meshes. If NULL, these yield HEXHEX_TOO_LARGE. */
   int (*cells64)(void* user, uint64_t first, size_t count, const uint64_t* cells);
   int (*end)(void* user);
 } hexhex_sink;
 #define HEXHEX_SINK_INIT \
   { sizeof(hexhex_sink), NULL, NULL, NULL, NULL, NULL, NULL }
 
-/** Extracts the same mesh as hexhex_extract(), bit for bit, with the atlas engine, but never holds
- * all of it. */
+/** Extracts the same mesh as hexhex_extract(), bit for bit, using the atlas engine, but never holds
+ * all of it in memory. */
 HEXHEX_API hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
                                            const hexhex_extract_options* options,
                                            hexhex_context* context, hexhex_statistics* statistics,
                                            hexhex_error* error);
-/** The same of a prepared map. */
+/** The same for a prepared map. */
 HEXHEX_API hexhex_status hexhex_extractor_extract_to(
     hexhex_extractor* extractor, const hexhex_sink* sink, const hexhex_extract_options* options,
     hexhex_context* context, hexhex_statistics* statistics, hexhex_error* error);
-/** The same into a file, .vtu or .mesh. */
+/** The same, to a file, .vtu or .mesh. */
 HEXHEX_API hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
                                                 const hexhex_extract_options* options,
                                                 hexhex_context* context,
                                                 hexhex_statistics* statistics, hexhex_error* error);
-/** Reads a mesh from a file and hands it over in pieces. */
+/** Reads a mesh from a file and passes it on in pieces. */
 HEXHEX_API hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
                                              const hexhex_read_options* options,
                                              hexhex_context* context, hexhex_error* error);
 
-/** A file for a mesh that comes in pieces from the caller: see openMeshSink() in <hexhex/io.hpp>.
- */
+/** Writes a mesh to a file in pieces from the caller: see openMeshSink() in <hexhex/io.hpp>. */
 typedef struct hexhex_mesh_writer hexhex_mesh_writer;
 
-/** Then: begin, all points in order, all cells in order, end. The file appears, complete, with end;
- * a writer that is destroyed before leaves nothing.
- * @param context  serves this writer alone, which keeps it; or NULL */
+/** Call this, then begin, all points in order, all cells in order, and end. The complete file
+ * appears at end; a writer destroyed earlier leaves nothing behind.
+ * @param context  used by this writer only, which keeps it; or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_writer_create(const char* file,
                                                    const hexhex_write_options* options,
                                                    hexhex_context* context,
@@ -887,18 +894,18 @@ HEXHEX_API hexhex_status hexhex_mesh_writer_cells64(hexhex_mesh_writer* writer, 
                                                     hexhex_error* error);
 HEXHEX_API hexhex_status hexhex_mesh_writer_end(hexhex_mesh_writer* writer, hexhex_error* error);
 HEXHEX_API void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer);
-/** The writer as a sink, for the functions above: pieces go to it directly, and what it refuses is
- * the error of the function.
- * @param[out] sink  made with HEXHEX_SINK_INIT; valid as long as the writer */
+/** Returns the writer as a sink for the functions above. Pieces go directly to it; whatever it
+ * rejects becomes the error of the calling function.
+ * @param[out] sink  initialized with HEXHEX_SINK_INIT; valid as long as the writer */
 HEXHEX_API hexhex_status hexhex_mesh_writer_sink(hexhex_mesh_writer* writer, hexhex_sink* sink,
                                                  hexhex_error* error);
 
-/** What a mesh adds up to: see MeshSurvey in <hexhex/survey.hpp>. */
+/** Summary of a mesh: see MeshSurvey in <hexhex/survey.hpp>. */
 typedef struct hexhex_survey {
   size_t size;
   uint64_t points;
   uint64_t cells;
-  double lower[3]; /**< of the bounding box */
+  double lower[3]; /**< corners of the bounding box */
   double upper[3];
   uint64_t point_checksum;
   uint64_t cell_checksum;
@@ -911,8 +918,8 @@ HEXHEX_API hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_cont
 HEXHEX_API hexhex_status hexhex_file_survey(const char* file, const hexhex_read_options* options,
                                             hexhex_context* context, hexhex_survey* survey,
                                             hexhex_error* error);
-/** A writer without a file: it adds up what comes, and is asked after its end.
- * @param context  as of hexhex_mesh_writer_create() */
+/** Creates a writer without a file that summarizes what it receives; query it after end.
+ * @param context  as for hexhex_mesh_writer_create() */
 HEXHEX_API hexhex_status hexhex_survey_writer_create(hexhex_context* context,
                                                      hexhex_mesh_writer** writer,
                                                      hexhex_error* error);
@@ -921,19 +928,19 @@ HEXHEX_API hexhex_status hexhex_survey_writer_get(const hexhex_mesh_writer* writ
 
 /* ---- Checking maps --------------------------------------------------------------------------- */
 
-/** What a map is, what its mesh will be, and what is wrong with it. */
+/** Properties of a map, the mesh to expect, and the defects of the map. */
 typedef struct hexhex_check_report hexhex_check_report;
 
-/** Collects every violated condition instead of stopping at the first; a map that violates some is
- * no error of this function.
+/** Collects all violated conditions instead of stopping at the first. A map that violates some is
+ * not an error of this function.
  * @param tolerance  as in hexhex_extract_options
- * @param scale      of the mesh to expect */
+ * @param scale      of the expected mesh */
 HEXHEX_API hexhex_status hexhex_check(const hexhex_map* map, double tolerance, int scale,
                                       hexhex_context* context, hexhex_check_report** report,
                                       hexhex_error* error);
 HEXHEX_API void hexhex_check_report_destroy(hexhex_check_report* report);
 
-/** The numbers of a report: see CheckReport and Expectation in <hexhex/check.hpp>. */
+/** Numbers in a report: see CheckReport and Expectation in <hexhex/check.hpp>. */
 typedef struct hexhex_check_summary {
   size_t size;
   int valid; /**< 1 if there are no defects */
@@ -952,7 +959,7 @@ typedef struct hexhex_check_summary {
   double max_transition_residual;
   double max_displacement;
   uint64_t singular_nodes;
-  /* Of the mesh to expect, if valid: */
+  /* Of the expected mesh, if valid: */
   uint64_t cells;
   uint64_t boundary_quads;
   int64_t euler_characteristic;
@@ -966,13 +973,13 @@ HEXHEX_API hexhex_status hexhex_check_get_summary(const hexhex_check_report* rep
                                                   hexhex_check_summary* summary,
                                                   hexhex_error* error);
 
-/** One violated condition; what it points to belongs to the report. */
+/** A violated condition; the report owns what it points to. */
 typedef struct hexhex_defect {
   size_t size;
   hexhex_status code;
   const char* sentence; /**< what is wrong and what to do */
-  uint64_t count;       /**< all occurrences */
-  size_t worst_count;   /**< places that can be asked for: at most ten, worst first */
+  uint64_t count;       /**< number of all occurrences */
+  size_t worst_count;   /**< number of places available: at most ten, worst first */
 } hexhex_defect;
 #define HEXHEX_DEFECT_INIT \
   { sizeof(hexhex_defect), HEXHEX_OK, NULL, 0, 0 }
@@ -985,12 +992,12 @@ HEXHEX_API hexhex_status hexhex_check_get_occurrence(const hexhex_check_report* 
                                                      hexhex_place* place, double* amount,
                                                      hexhex_error* error);
 
-/** Genus of each boundary component, in descending order, one by one.
+/** Returns the genus of one boundary component; components are in descending order of genus.
  * @param[out] genus  -1 if there is no such component */
 HEXHEX_API void hexhex_check_boundary_genus(const hexhex_check_report* report, size_t component,
                                             int64_t* genus);
 
-/** Tables of edges by valence (hexahedra around an edge). */
+/** Tables of edges by valence (number of hexahedra around an edge). */
 typedef enum hexhex_valence_table HEXHEX_AS_INT {
   HEXHEX_INNER_HEX_EDGES = 0, /**< expected singular edges of the mesh */
   HEXHEX_BOUNDARY_HEX_EDGES = 1,
@@ -998,34 +1005,34 @@ typedef enum hexhex_valence_table HEXHEX_AS_INT {
   HEXHEX_BOUNDARY_TET_EDGES = 3
 } hexhex_valence_table;
 
-/** The number of edges of a valence; 0 if there are none. */
+/** Number of edges with a valence; 0 if there are none. */
 HEXHEX_API uint64_t hexhex_check_edges_of_valence(const hexhex_check_report* report,
                                                   hexhex_valence_table table, int valence);
-/** The smallest valence in the table above `valence` (begin with -1), or -1 if there is none. */
+/** The smallest valence in the table above `valence` (start with -1), or -1 if there is none. */
 HEXHEX_API int hexhex_check_next_valence(const hexhex_check_report* report,
                                          hexhex_valence_table table, int valence);
 
-/** What one wants to see of a map: see <hexhex/map_structure.hpp>. */
+/** Structure of a map, for visualization: see <hexhex/map_structure.hpp>. */
 typedef struct hexhex_map_structure hexhex_map_structure;
 
-/** An inner face whose two tets have different charts: the transition takes parameters u in the
- * chart of tets[0] to R u + t in that of tets[1]. */
+/** An inner face between tets with different charts. Its transition maps parameters u in the chart
+ * of tets[0] to R u + t in the chart of tets[1]. */
 typedef struct hexhex_chart_jump {
   uint32_t tets[2];      /**< ascending */
   uint32_t vertices[3];  /**< of the face, in the order of the corners of tets[0] */
-  int8_t rotation[9];    /**< R by rows */
+  int8_t rotation[9];    /**< R, row by row */
   double translation[3]; /**< t; integers */
 } hexhex_chart_jump;
 
-/** An edge of the tets with another number of hexahedra around than 4 inside, 2 on the boundary. */
+/** An edge of the tet mesh whose number of hexahedra is not 4 (inside) or 2 (on the boundary). */
 typedef struct hexhex_singular_tet_edge {
   uint32_t vertices[2]; /**< ascending */
-  int32_t valence;      /**< number of hexahedra around */
+  int32_t valence;      /**< number of hexahedra around the edge */
   uint32_t boundary;    /**< 1 on the boundary */
 } hexhex_singular_tet_edge;
 
-/** Finds chart jumps and singular edges, also of a map with defects as far as they allow: a map
- * that violates conditions is no error of this function.
+/** Finds chart jumps and singular edges, as far as possible even for a map with defects: a map that
+ * violates conditions is not an error of this function.
  * @param tolerance  as in hexhex_extract_options */
 HEXHEX_API hexhex_status hexhex_map_find_structure(const hexhex_map* map, double tolerance,
                                                    hexhex_context* context,
@@ -1033,14 +1040,14 @@ HEXHEX_API hexhex_status hexhex_map_find_structure(const hexhex_map* map, double
                                                    hexhex_error* error);
 HEXHEX_API void hexhex_map_structure_destroy(hexhex_map_structure* structure);
 
-/** The lists, borrowed: they belong to the structure. Empty ones are NULL. */
+/** The lists of a structure, which owns them. Empty lists are NULL. */
 typedef struct hexhex_map_structure_arrays {
   size_t size;
-  const hexhex_chart_jump* chart_jumps; /**< by tets[0], then the corner opposite the face */
+  const hexhex_chart_jump* chart_jumps; /**< sorted by tets[0], then the corner opposite the face */
   size_t chart_jump_count;
-  const hexhex_singular_tet_edge* singular_edges; /**< by vertices */
+  const hexhex_singular_tet_edge* singular_edges; /**< sorted by vertices */
   size_t singular_edge_count;
-  size_t defect_count; /**< what is wrong with the map; hexhex_check() tells it */
+  size_t defect_count; /**< number of defects of the map; hexhex_check() describes them */
 } hexhex_map_structure_arrays;
 #define HEXHEX_MAP_STRUCTURE_ARRAYS_INIT \
   { sizeof(hexhex_map_structure_arrays), NULL, 0, NULL, 0, 0 }
@@ -1051,13 +1058,13 @@ HEXHEX_API hexhex_status hexhex_map_structure_get_arrays(const hexhex_map_struct
 
 /* ---- Verifying meshes ------------------------------------------------------------------------ */
 
-/** Whether a mesh agrees with its map, check by check. */
+/** Result of comparing a mesh with its map, check by check. */
 typedef struct hexhex_verify_report hexhex_verify_report;
 
-/** Passes the mesh of the map in any numbering, with cells in any orientation, and no other mesh.
- * One that does not agree is no error of this function.
+/** Passes for the mesh of the map, in any numbering and with cells in any orientation, and for no
+ * other mesh. A mesh that does not match is not an error of this function.
  * @param tolerance  of the map, as in hexhex_extract_options
- * @param scale      that the mesh was extracted with */
+ * @param scale      with which the mesh was extracted */
 HEXHEX_API hexhex_status hexhex_verify(const hexhex_map* map, const hexhex_mesh* mesh,
                                        double tolerance, int scale, hexhex_context* context,
                                        hexhex_verify_report** report, hexhex_error* error);
@@ -1067,7 +1074,7 @@ HEXHEX_API void hexhex_verify_report_destroy(hexhex_verify_report* report);
 HEXHEX_API int hexhex_verify_passed(const hexhex_verify_report* report);
 HEXHEX_API size_t hexhex_verify_item_count(const hexhex_verify_report* report);
 
-/** One check; strings belong to the report. */
+/** One check; the report owns the strings. */
 typedef struct hexhex_verify_item {
   size_t size;
   const char* name;     /**< stable key */
@@ -1083,7 +1090,7 @@ HEXHEX_API hexhex_status hexhex_verify_get_item(const hexhex_verify_report* repo
 
 /* ---- Quality --------------------------------------------------------------------------------- */
 
-/** Scaled Jacobian of one hexahedron in [-1, 1]: see <hexhex/quality.hpp>.
+/** Scaled Jacobian of a hexahedron, in [-1, 1]: see <hexhex/quality.hpp>.
  * @param corners  x, y, z of the eight corners; NULL: 0 */
 HEXHEX_API double hexhex_scaled_jacobian(const double corners[24]);
 
@@ -1100,22 +1107,22 @@ typedef struct hexhex_quality {
   }
 
 /** @param[out] scaled_jacobians  one per cell, or NULL
- *  @param[out] quality           made with HEXHEX_QUALITY_INIT, or NULL */
+ *  @param[out] quality           initialized with HEXHEX_QUALITY_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* context,
                                              double* scaled_jacobians, hexhex_quality* quality,
                                              hexhex_error* error);
 
-/** The same of numbers that the caller has, e.g. of a part of the cells.
+/** The same for values that the caller provides, e.g. for a subset of the cells.
  * @param values  `count` scaled Jacobians */
 HEXHEX_API hexhex_status hexhex_summarize_quality(const double* values, size_t count,
                                                   hexhex_quality* quality, hexhex_error* error);
 
-/** Whether the determinant of a cell's Jacobian matrix is positive everywhere: see Validity in
+/** Whether the Jacobian determinant of a cell is positive everywhere: see Validity in
  * <hexhex/quality.hpp>. */
 typedef enum hexhex_validity HEXHEX_AS_INT {
   HEXHEX_POSITIVE = 0,
   HEXHEX_REFUTED = 1,  /**< negative or zero somewhere, or not finite */
-  HEXHEX_UNDECIDED = 2 /**< closer to zero than a search of bounded length tells */
+  HEXHEX_UNDECIDED = 2 /**< closer to zero than a search of bounded length can resolve */
 } hexhex_validity;
 
 /** A cell that is not positive, and where. */
@@ -1123,18 +1130,18 @@ typedef struct hexhex_refuted_cell {
   uint64_t cell;
   double place[3]; /**< in the cell: u, v, w in [0, 1], along the edges from corner 0 to 1, 3, 4 */
   double position[3];     /**< in space */
-  double scaled_jacobian; /**< there; not positive */
+  double scaled_jacobian; /**< the value there; not positive */
 } hexhex_refuted_cell;
 
-/** What is proven of a mesh: see Certificate in <hexhex/quality.hpp>. */
+/** What is proven about a mesh: see Certificate in <hexhex/quality.hpp>. */
 typedef struct hexhex_certificate {
   size_t size;
-  uint64_t positive; /**< numbers of cells */
+  uint64_t positive; /**< number of cells */
   uint64_t refuted;
   uint64_t undecided;
-  double minimum;     /**< the scaled Jacobian is nowhere less, inside of cells included */
+  double minimum;     /**< lower bound of the scaled Jacobian, including the interior of cells */
   size_t worst_count; /**< at most 10 */
-  hexhex_refuted_cell worst[10]; /**< the most negative first */
+  hexhex_refuted_cell worst[10]; /**< most negative first */
 } hexhex_certificate;
 #define HEXHEX_CERTIFICATE_INIT                  \
   {                                              \
@@ -1143,73 +1150,72 @@ typedef struct hexhex_certificate {
     }                                            \
   }
 
-/** Whether cells are positive everywhere; one pass gives their quality, too.
- *  @param[out] validity          a hexhex_validity per cell, or NULL
- *  @param[out] scaled_jacobians  one per cell, as of hexhex_mesh_quality(), or NULL
- *  @param[out] certificate       made with HEXHEX_CERTIFICATE_INIT, or NULL */
+/** Determines whether cells are positive everywhere, and their quality, in a single pass.
+ * @param[out] validity          a hexhex_validity per cell, or NULL
+ * @param[out] scaled_jacobians  one per cell, as in hexhex_mesh_quality(), or NULL
+ * @param[out] certificate       initialized with HEXHEX_CERTIFICATE_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_certify(const hexhex_mesh* mesh, hexhex_context* context,
                                              uint8_t* validity, double* scaled_jacobians,
                                              hexhex_certificate* certificate, hexhex_error* error);
 
 /* ---- Improvement ----------------------------------------------------------------------------- */
 
-/** Whether a layer of cells is added under the boundary; see PillowMode in <hexhex/improve.hpp>. */
+/** Whether to add a layer of cells under the boundary; see PillowMode in <hexhex/improve.hpp>. */
 typedef enum hexhex_pillow_mode HEXHEX_AS_INT {
   HEXHEX_PILLOW_NEVER = 0,
-  HEXHEX_PILLOW_AUTO = 1,  /**< where it makes the mesh better */
-  HEXHEX_PILLOW_ALWAYS = 2 /**< an error where there cannot be one */
+  HEXHEX_PILLOW_AUTO = 1,  /**< if it improves the mesh */
+  HEXHEX_PILLOW_ALWAYS = 2 /**< report an error if it is impossible */
 } hexhex_pillow_mode;
 
 /** See ImproveOptions in <hexhex/improve.hpp>. */
 typedef struct hexhex_improve_options {
   size_t size;
-  double target;        /**< cells with a smaller scaled Jacobian are improved; 0 to 1 */
-  int passes;           /**< over all vertices in the end; 0 to 1000 */
-  int fix_boundary;     /**< 1: vertices on the surface stay */
-  double feature_angle; /**< where the surface turns by more is a curve; degrees, 0 to 180 */
-  double
-      slack; /**< so far may vertices leave the surface if nothing else helps; diagonals, to 0.1 */
-  hexhex_pillow_mode pillow; /**< of straight cells only */
-  int snap_curves; /**< 1: edges are laid onto curves that none follows; of straight cells only */
+  double target;        /**< improve cells with a smaller scaled Jacobian; 0 to 1 */
+  int passes;           /**< final passes over all vertices; 0 to 1000 */
+  int fix_boundary;     /**< 1: keep vertices on the surface fixed */
+  double feature_angle; /**< sharper edges of the surface are curves; degrees, 0 to 180 */
+  double slack;         /**< how far vertices may leave the surface, if needed; diagonals, to 0.1 */
+  hexhex_pillow_mode pillow; /**< straight cells only */
+  int snap_curves; /**< 1: snap mesh edges to curves that none follows; straight cells only */
 } hexhex_improve_options;
 #define HEXHEX_IMPROVE_OPTIONS_INIT \
   { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3, HEXHEX_PILLOW_NEVER, 0 }
 
-/** What an improvement did. See ImproveReport in <hexhex/improve.hpp>; lengths are in diagonals of
- * the surface's bounding box. hexhex_mesh_certify() says which cells are not positive. */
+/** Report of an improvement. See ImproveReport in <hexhex/improve.hpp>; lengths are in diagonals of
+ * the surface's bounding box. hexhex_mesh_certify() finds the cells that are not positive. */
 typedef struct hexhex_improve_report {
   size_t size;
-  uint64_t not_positive_before; /**< cells that are not certified positive everywhere */
+  uint64_t not_positive_before; /**< cells that are not certified as positive everywhere */
   uint64_t not_positive_after;
-  double minimum_before; /**< of scaled Jacobians */
+  double minimum_before; /**< minimum scaled Jacobian */
   double minimum_after;
   double mean_before;
   double mean_after;
   double diagonal;
-  double from_mesh_before;    /**< largest distance of the mesh's boundary from the object's, */
-  double from_surface_before; /**< and of the object's from the mesh's */
+  double from_mesh_before;    /**< maximum distance from the mesh boundary to the object's */
+  double from_surface_before; /**< maximum distance from the object's boundary to the mesh's */
   double from_mesh_after;
   double from_surface_after;
   uint64_t far_cells_before; /**< cells whose boundary is more than 1e-3 from the surface */
   uint64_t far_cells_after;
   uint64_t free_vertices;
-  uint64_t patch_vertices; /**< that slide on the surface, */
-  uint64_t curve_vertices; /**< on curves, */
-  uint64_t fixed_vertices; /**< and not at all */
+  uint64_t patch_vertices; /**< vertices that slide on the surface */
+  uint64_t curve_vertices; /**< vertices that slide on curves */
+  uint64_t fixed_vertices; /**< vertices that do not move */
   uint64_t moved_vertices;
   double largest_move;
-  double mean_move;     /**< of those that moved */
+  double mean_move;     /**< mean over the moved vertices */
   uint64_t off_surface; /**< vertices that used the slack */
   double seconds;
-  double inner_distance_before; /**< largest distance of faces inside, tagged or between regions, */
-  double inner_distance_after;  /**< from such triangles; 0 if there are none */
-  uint64_t tagged_vertices;     /**< of fixed_vertices: that have a tag, */
-  uint64_t boundary_vertices;   /**< and that only fix_boundary holds; the rest are corners */
-  uint64_t off_creases;   /**< vertices that left creases, where nothing else made cells positive */
-  uint64_t added_cells;   /**< of a pillow, last in the mesh */
-  double curve_length;    /**< of the object's sharp and tagged edges, */
-  double curves_followed; /**< and the share of it that edges of the mesh follow */
-  uint64_t snapped_curves; /**< pieces of curves onto which edges were laid */
+  double inner_distance_before; /**< maximum, of interior faces with a tag or between regions, */
+  double inner_distance_after;  /**< from the corresponding triangles; 0 if there are none */
+  uint64_t tagged_vertices;     /**< fixed vertices with a tag */
+  uint64_t boundary_vertices;   /**< fixed only by fix_boundary; all others are corners */
+  uint64_t off_creases; /**< vertices that left creases because nothing else made cells positive */
+  uint64_t added_cells; /**< cells of a pillow; they come last in the mesh */
+  double curve_length;  /**< total length of the object's sharp and tagged edges */
+  double curves_followed;  /**< share of that length that mesh edges follow */
+  uint64_t snapped_curves; /**< curve segments to which edges were snapped */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
@@ -1217,11 +1223,12 @@ typedef struct hexhex_improve_report {
         0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                                              \
   }
 
-/** Moves vertices until cells are positive, and better. See <hexhex/improve.hpp>. With a pillow,
- * the mesh gets more vertices and cells: arrays that were asked for before are no longer there.
- * @param map          that the mesh was extracted from, or NULL: the surface is the mesh's boundary
+/** Moves vertices to make cells positive, then better. See <hexhex/improve.hpp>. A pillow adds
+ * vertices and cells to the mesh: arrays requested earlier become invalid.
+ * @param map          the map that the mesh was extracted from, or NULL: the surface is the
+ *                     boundary of the mesh
  * @param options      or NULL
- * @param[out] report  made with HEXHEX_IMPROVE_REPORT_INIT, or NULL */
+ * @param[out] report  initialized with HEXHEX_IMPROVE_REPORT_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
                                              const hexhex_improve_options* options,
                                              hexhex_context* context, hexhex_improve_report* report,
@@ -1229,44 +1236,44 @@ HEXHEX_API hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map
 
 /* ---- From tets alone ------------------------------------------------------------------------- */
 
-/** How a map is made: see ShapeMethod in <hexhex/shape.hpp>. */
+/** Method for computing a map: see ShapeMethod in <hexhex/shape.hpp>. */
 typedef enum hexhex_shape_method HEXHEX_AS_INT {
-  HEXHEX_METHOD_AUTO = 0,     /**< what fits best */
-  HEXHEX_METHOD_POLYCUBE = 1, /**< the object becomes one of axis-aligned boxes */
-  HEXHEX_METHOD_FRAMES = 2    /**< along a smooth field of frames */
+  HEXHEX_METHOD_AUTO = 0,     /**< whichever fits best */
+  HEXHEX_METHOD_POLYCUBE = 1, /**< deforms the object into axis-aligned boxes */
+  HEXHEX_METHOD_FRAMES = 2    /**< follows a smooth frame field */
 } hexhex_shape_method;
 
 /** See ShapeOptions in <hexhex/shape.hpp>. */
 typedef struct hexhex_shape_options {
   size_t size;
   hexhex_shape_method method;
-  double feature_angle; /**< where the surface turns by more is a feature; degrees, 0 to 180 */
-  uint64_t seed;        /**< of random decisions: another one may find what this one does not */
+  double feature_angle; /**< sharper edges of the surface are features; degrees, 0 to 180 */
+  uint64_t seed;        /**< random seed: another one may succeed where this one fails */
 } hexhex_shape_options;
 #define HEXHEX_SHAPE_OPTIONS_INIT \
   { sizeof(hexhex_shape_options), HEXHEX_METHOD_AUTO, 40, 1 }
 
-/** How a map was made. See ShapeReport and LabelReport in <hexhex/shape.hpp>. */
+/** Report on the computation of a map. See ShapeReport and LabelReport in <hexhex/shape.hpp>. */
 typedef struct hexhex_shape_report {
   size_t size;
-  hexhex_shape_method method; /**< that made the map */
-  double rotation[9];         /**< by rows: the axes in space that became those of the map */
-  uint64_t charts;            /**< of a polycube, as the next eight: its faces */
-  uint64_t corners;           /**< where three charts or more meet */
-  uint64_t bad_loops;         /**< borders of charts with fewer than four corners, */
-  uint64_t bad_corners;       /**< of more than three charts, or without room for their faces, */
-  uint64_t opposite_edges;    /**< edges of the mesh between opposite labels, */
-  uint64_t turning_points;    /**< places where edges of the polycube would run back, */
-  uint64_t wrong_turns;   /**< charts whose right angles do not add up: labels are valid without */
-  double deviation;       /**< mean of 1 minus the cosine between normals and labels */
-  uint64_t label_moves;   /**< random changes that were tried */
-  uint64_t added_tets;    /**< by splits */
-  uint64_t feature_edges; /**< of the tets, beyond the angle */
-  uint64_t tagged_edges;  /**< of these: edges of the map */
-  double worst;           /**< distortion of the map as scaled Jacobian, at most 1 */
+  hexhex_shape_method method; /**< method that produced the map */
+  double rotation[9];         /**< row by row: the axes in space that became the axes of the map */
+  uint64_t charts;    /**< faces of the polycube; this and the next eight are for polycubes only */
+  uint64_t corners;   /**< where at least three charts meet */
+  uint64_t bad_loops; /**< invalid: chart borders with fewer than four corners */
+  uint64_t bad_corners;    /**< invalid: of more than three charts, or without room for faces */
+  uint64_t opposite_edges; /**< invalid: mesh edges between opposite labels */
+  uint64_t turning_points; /**< invalid: where edges of the polycube would reverse direction */
+  uint64_t wrong_turns;    /**< invalid: charts whose right angles do not add up */
+  double deviation;        /**< mean of 1 minus the cosine between normals and labels */
+  uint64_t label_moves;    /**< random changes tried */
+  uint64_t added_tets;     /**< by splits */
+  uint64_t feature_edges;  /**< edges of the tets above the angle */
+  uint64_t tagged_edges;   /**< those of them that are edges of the map */
+  double worst;            /**< distortion of the map as a scaled Jacobian, at most 1 */
   double median;
-  uint64_t inner_faces;   /**< triangles inside, with a tag or between regions, */
-  uint64_t aligned_faces; /**< and those of them that are planes of the map */
+  uint64_t inner_faces;   /**< interior triangles with a tag or between regions */
+  uint64_t aligned_faces; /**< those of them that lie in planes of the map */
 } hexhex_shape_report;
 #define HEXHEX_SHAPE_REPORT_INIT                                                                 \
   {                                                                                              \
@@ -1274,18 +1281,18 @@ typedef struct hexhex_shape_report {
         0, 0, 0                                                                                  \
   }
 
-/** A seamless map of tets that have none, for hexhex_quantize(). Where there is none, the status is
- * HEXHEX_NOT_MESHABLE, with the place that keeps the tets from it. See mapFromTets() in
- * <hexhex/shape.hpp>; hexhex_can_quantize() says whether this build can.
- * @param tets         of which points, tets, features and regions are used
+/** Computes a seamless map for tets without one, as input for hexhex_quantize(). If none is found,
+ * the status is HEXHEX_NOT_MESHABLE, with the place that prevents it. See mapFromTets() in
+ * <hexhex/shape.hpp>; requires hexhex_can_quantize().
+ * @param tets         only points, tets, features and regions are used
  * @param options      or NULL
- * @param[out] report  made with HEXHEX_SHAPE_REPORT_INIT, or NULL */
+ * @param[out] report  initialized with HEXHEX_SHAPE_REPORT_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_map_from_tets(const hexhex_map_arrays* tets,
                                               const hexhex_shape_options* options,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_shape_report* report, hexhex_error* error);
 
-/** What fills surfaces with tets. */
+/** Meshers that fill surfaces with tets. */
 typedef enum hexhex_mesher HEXHEX_AS_INT {
   HEXHEX_MESHER_AUTO = 0, /**< the first of the others that is installed */
   HEXHEX_MESHER_TETWILD = 1,
@@ -1298,9 +1305,9 @@ typedef enum hexhex_mesher HEXHEX_AS_INT {
 typedef struct hexhex_fill_options {
   size_t size;
   hexhex_mesher mesher;
-  double tet_size;      /**< length of an edge; 0: as cells says */
-  double cells;         /**< hexahedra that are wanted; 0: for 20,000 tets, about */
-  double feature_angle; /**< degrees: edges where the surface turns by more stay */
+  double tet_size;      /**< edge length; 0: derived from cells */
+  double cells;         /**< desired number of hexahedra; 0: about 20,000 tets */
+  double feature_angle; /**< degrees: preserve edges where the surface turns by more */
 } hexhex_fill_options;
 #define HEXHEX_FILL_OPTIONS_INIT \
   { sizeof(hexhex_fill_options), HEXHEX_MESHER_AUTO, 0, 0, 40 }
@@ -1308,10 +1315,10 @@ typedef struct hexhex_fill_options {
 /** See FillReport in <hexhex/fill.hpp>. */
 typedef struct hexhex_fill_report {
   size_t size;
-  char mesher[64]; /**< with its version; empty if the file held tets; UTF-8, cut off if longer */
+  char mesher[64]; /**< with its version; empty if the file held tets; UTF-8, truncated if longer */
   double tet_size;
   uint64_t tets;
-  uint64_t triangles; /**< of a surface, as the rest */
+  uint64_t triangles; /**< of a surface, like the following */
   uint64_t bodies;
   uint64_t voids;
   double volume;
@@ -1320,46 +1327,46 @@ typedef struct hexhex_fill_report {
 #define HEXHEX_FILL_REPORT_INIT \
   { sizeof(hexhex_fill_report), {0}, 0, 0, 0, 0, 0, 0, 0 }
 
-/** The tets of a part from a file that hexhex_map_read_tets() reads; or of a closed surface, .stl,
- * .obj, .ply or .off, or a STEP file, which a mesher that is installed fills. The result has no
+/** Reads the tets of a part from a file in a format of hexhex_map_read_tets(), or uses an installed
+ * mesher to fill a closed surface, .stl, .obj, .ply or .off, or a STEP file. The result has no
  * parameters.
  * @param options      or NULL
- * @param[out] report  made with HEXHEX_FILL_REPORT_INIT, or NULL */
+ * @param[out] report  initialized with HEXHEX_FILL_REPORT_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_map_read_part(const char* file, const hexhex_fill_options* options,
                                               hexhex_context* context, hexhex_map** map,
                                               hexhex_fill_report* report, hexhex_error* error);
 
-/** Options of the steps of hexhex_mesh_from_tets(); NULL for those of a step: all defaults. */
+/** Options for the steps of hexhex_mesh_from_tets(); NULL for a step: all defaults. */
 typedef struct hexhex_mesh_options {
   size_t size;
   const hexhex_shape_options* shape;
-  const hexhex_quantize_options* quantize; /**< how fine the mesh is to be: not NULL */
-  const hexhex_improve_options* improve; /**< NULL: with a pillow where it helps, and snap_curves */
+  const hexhex_quantize_options* quantize; /**< include the target resolution: not NULL */
+  const hexhex_improve_options* improve;   /**< NULL: with a pillow if it helps, and snap_curves */
 } hexhex_mesh_options;
 #define HEXHEX_MESH_OPTIONS_INIT \
   { sizeof(hexhex_mesh_options), NULL, NULL, NULL }
 
-/** Where hexhex_mesh_from_tets() reports. Pointers are the caller's, to structs that are made with
- * their _INIT macro, or NULL. */
+/** Reports of hexhex_mesh_from_tets(). The pointers refer to structs of the caller, initialized
+ * with their _INIT macro, or are NULL. */
 typedef struct hexhex_mesh_reports {
   size_t size;
   hexhex_shape_report* shape;
   hexhex_quantize_report* quantization;
   hexhex_improve_report* improvement;
-  int tags_released; /**< 1: vertices may have left edges with a tag, to make cells positive */
-  char why[512]; /**< with HEXHEX_METHOD_AUTO: why this way was taken; UTF-8, cut off if longer */
-  uint64_t missing_curves; /**< pieces of tagged curves that no edges were found along */
+  int tags_released; /**< 1: vertices were allowed to leave tagged edges to make cells positive */
+  char why[512];     /**< with HEXHEX_METHOD_AUTO: why this mesh; UTF-8, truncated if longer */
+  uint64_t missing_curves; /**< segments of tagged curves for which no mesh edges were found */
 } hexhex_mesh_reports;
 #define HEXHEX_MESH_REPORTS_INIT \
   { sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, {0}, 0 }
 
-/** A hexahedral mesh of tets that have no map: hexhex_map_from_tets(), hexhex_quantize(),
- * hexhex_extract(), hexhex_verify() and hexhex_mesh_improve(). Cells may still not be positive in
- * the end: the report of the improvement says how many. See <hexhex/mesh.hpp>.
- * @param tets             of which points, tets, features and regions are used
+/** Computes a hexahedral mesh from tets without a map: hexhex_map_from_tets(), hexhex_quantize(),
+ * hexhex_extract(), hexhex_verify() and hexhex_mesh_improve(). Some cells may not be positive even
+ * at the end: the report of the improvement has their number. See <hexhex/mesh.hpp>.
+ * @param tets             only points, tets, features and regions are used
  * @param options          not NULL
- * @param[out] map         the integer-grid map that the mesh is of, or NULL
- * @param[in,out] reports  made with HEXHEX_MESH_REPORTS_INIT, or NULL */
+ * @param[out] map         the integer-grid map of the mesh, or NULL
+ * @param[in,out] reports  initialized with HEXHEX_MESH_REPORTS_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_from_tets(const hexhex_map_arrays* tets,
                                                const hexhex_mesh_options* options,
                                                hexhex_context* context, hexhex_mesh** mesh,
@@ -1372,7 +1379,7 @@ HEXHEX_API hexhex_status hexhex_mesh_from_tets(const hexhex_map_arrays* tets,
  * PiecewiseLinearMesh in <hexhex/curved.hpp>. */
 typedef struct hexhex_piecewise_mesh hexhex_piecewise_mesh;
 
-/** @param patches  0: arcs only; 1: and patches */
+/** @param patches  0: arcs only; 1: arcs and patches */
 HEXHEX_API hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int patches,
                                                   const hexhex_extract_options* options,
                                                   hexhex_context* context,
@@ -1381,7 +1388,7 @@ HEXHEX_API hexhex_status hexhex_extract_piecewise(const hexhex_map* map, int pat
                                                   hexhex_error* error);
 HEXHEX_API void hexhex_piecewise_mesh_destroy(hexhex_piecewise_mesh* mesh);
 
-/** The mesh of straight cells, which belongs to this one. NULL for NULL. */
+/** The mesh of straight cells, owned by this mesh. NULL for NULL. */
 HEXHEX_API const hexhex_mesh* hexhex_piecewise_mesh_straight(const hexhex_piecewise_mesh* mesh);
 
 /** See Arcs in <hexhex/curved.hpp>. Empty arrays are NULL. */
@@ -1389,7 +1396,7 @@ typedef struct hexhex_arc_arrays {
   size_t size;
   size_t arc_count;
   const uint32_t* ends;        /**< 2 per arc */
-  const uint64_t* point_begin; /**< per arc, +1: its inner points; segments from arc + this on */
+  const uint64_t* point_begin; /**< per arc, +1: its inner points; its segments: add arc */
   size_t point_count;
   const double* points;     /**< 3 per inner point */
   const double* parameters; /**< per inner point, in (0, 1) */
@@ -1402,8 +1409,8 @@ typedef struct hexhex_arc_arrays {
 #define HEXHEX_ARC_ARRAYS_INIT \
   { sizeof(hexhex_arc_arrays), 0, NULL, NULL, 0, NULL, NULL, NULL, NULL, 0, NULL, NULL }
 
-/** See Patches in <hexhex/curved.hpp>. Points are numbered: hex vertices, inner points of arcs,
- * inner points of patches. */
+/** See Patches in <hexhex/curved.hpp>. Points are numbered in the order hex vertices, inner points
+ * of arcs, inner points of patches. */
 typedef struct hexhex_patch_arrays {
   size_t size;
   size_t face_count;
@@ -1416,7 +1423,7 @@ typedef struct hexhex_patch_arrays {
   const uint32_t* polygon_tet;
   const uint8_t* polygon_corners;
   size_t corner_count;
-  const uint32_t* corners;  /**< points */
+  const uint32_t* corners;  /**< numbers of points */
   const double* parameters; /**< (u, v) per corner */
   size_t point_count;
   const double* points; /**< 3 per inner point of a face */
@@ -1429,15 +1436,15 @@ typedef struct hexhex_patch_arrays {
         NULL, NULL, NULL                                                                           \
   }
 
-/** The arrays belong to the mesh. */
+/** The mesh owns the arrays. */
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_arcs(const hexhex_piecewise_mesh* mesh,
                                                         hexhex_arc_arrays* arrays,
                                                         hexhex_error* error);
-/** Without patches, all is empty. */
+/** All arrays are empty if the mesh has no patches. */
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_get_patches(const hexhex_piecewise_mesh* mesh,
                                                            hexhex_patch_arrays* arrays,
                                                            hexhex_error* error);
-/** .vtu, .vtp, .ovmb. */
+/** Formats: .vtu, .vtp, .ovmb. */
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs(const hexhex_piecewise_mesh* mesh,
                                                           const char* file, hexhex_context* context,
                                                           hexhex_error* error);
@@ -1445,9 +1452,9 @@ HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches(const hexhex_piecew
                                                              const char* file,
                                                              hexhex_context* context,
                                                              hexhex_error* error);
-/** The same with the map that was extracted, so that .ovmb files tell the indices of the tet
- * simplices that points, edges and polygons lie in. A map that was repaired for the extraction is
- * replaced by the repaired one. */
+/** The same with the map that the mesh was extracted from, so that .ovmb files include the indices
+ * of the tet simplices that contain points, edges and polygons. If the map was repaired for the
+ * extraction, the repaired map is used instead. */
 HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_arcs_with_map(
     const hexhex_piecewise_mesh* mesh, const hexhex_map* map, const char* file,
     hexhex_context* context, hexhex_error* error);
@@ -1455,10 +1462,10 @@ HEXHEX_API hexhex_status hexhex_piecewise_mesh_write_patches_with_map(
     const hexhex_piecewise_mesh* mesh, const hexhex_map* map, const char* file,
     hexhex_context* context, hexhex_error* error);
 
-/** Hexahedra of a higher order: see LagrangeMesh in <hexhex/curved.hpp>. */
+/** Hexahedra of higher order: see LagrangeMesh in <hexhex/curved.hpp>. */
 typedef struct hexhex_lagrange_mesh hexhex_lagrange_mesh;
 
-/** The highest order. */
+/** The maximum order. */
 #define HEXHEX_MAX_ORDER 9
 
 /** @param order  1 to HEXHEX_MAX_ORDER */
@@ -1470,7 +1477,7 @@ HEXHEX_API hexhex_status hexhex_extract_lagrange(const hexhex_map* map, int orde
                                                  hexhex_error* error);
 HEXHEX_API void hexhex_lagrange_mesh_destroy(hexhex_lagrange_mesh* mesh);
 
-/** Both of a prepared map; scale times order is at most what the extractor was made for. */
+/** Both for a prepared map; scale times order must not exceed the extractor's max_scale. */
 HEXHEX_API hexhex_status hexhex_extractor_extract_piecewise(
     hexhex_extractor* extractor, int patches, const hexhex_extract_options* options,
     hexhex_context* context, hexhex_piecewise_mesh** mesh, hexhex_statistics* statistics,
@@ -1482,17 +1489,17 @@ HEXHEX_API hexhex_status hexhex_extractor_extract_lagrange(hexhex_extractor* ext
                                                            hexhex_statistics* statistics,
                                                            hexhex_error* error);
 
-/** As hexhex_mesh_get_repair(). */
+/** Like hexhex_mesh_get_repair(). */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_repair(const hexhex_lagrange_mesh* mesh,
                                                          hexhex_map** map,
                                                          hexhex_repair_report** report,
                                                          hexhex_error* error);
 
-/** Cells of higher order from a file: see readLagrangeMesh() in <hexhex/curved.hpp>. */
+/** Reads higher-order cells from a file: see readLagrangeMesh() in <hexhex/curved.hpp>. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_read(const char* file, hexhex_context* context,
                                                    hexhex_lagrange_mesh** mesh,
                                                    hexhex_error* error);
-/** @param[out] holds  1 if the file has such cells, else 0 */
+/** @param[out] holds  1 if the file has such cells, otherwise 0 */
 HEXHEX_API hexhex_status hexhex_file_holds_lagrange(const char* file, hexhex_context* context,
                                                     int* holds, hexhex_error* error);
 
@@ -1501,13 +1508,13 @@ typedef struct hexhex_lagrange_arrays {
   int order;
   const double* points; /**< 3 per node */
   size_t point_count;
-  size_t vertex_count;   /**< the first so many nodes are the hex vertices */
+  size_t vertex_count;   /**< number of nodes that are hex vertices; these come first */
   const uint32_t* nodes; /**< (order + 1)^3 per cell: node (i, j, k), i along 0-1, j along 0-3, k
-                              along 0-4, is number i + (order + 1) (j + (order + 1) k) */
+                            along 0-4, has index i + (order + 1) (j + (order + 1) k) */
   size_t cell_count;
   const uint32_t* generator_tet; /**< per node, or NULL */
   const uint8_t* generator_corners;
-  /* Of the straight mesh, as in hexhex_mesh_arrays: */
+  /* From the straight mesh, as in hexhex_mesh_arrays: */
   const hexhex_feature_vertex* feature_vertices;
   size_t feature_vertex_count;
   const hexhex_feature_edge* feature_edges;
@@ -1522,9 +1529,9 @@ typedef struct hexhex_lagrange_arrays {
         NULL                                                                                       \
   }
 
-/** Cells with copies of the arrays, e.g. to write them.
- * @param arrays  order, points, vertex_count and nodes at least; what uses the mesh refuses arrays
- *                that do not fit each other with HEXHEX_INVALID_ARGUMENT */
+/** Creates a mesh with copies of the arrays, e.g. to write it.
+ * @param arrays  at least order, points, vertex_count and nodes; functions that use the mesh reject
+ *                arrays of inconsistent sizes with HEXHEX_INVALID_ARGUMENT */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,
                                                    hexhex_lagrange_mesh** mesh,
                                                    hexhex_error* error);
@@ -1532,32 +1539,32 @@ HEXHEX_API hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays*
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_get_arrays(const hexhex_lagrange_mesh* mesh,
                                                          hexhex_lagrange_arrays* arrays,
                                                          hexhex_error* error);
-/** Takes an array over, as hexhex_mesh_take(); HEXHEX_CELLS are the nodes. What needs the array is
- * HEXHEX_INVALID_ARGUMENT afterwards. */
+/** Takes over an array, like hexhex_mesh_take(); HEXHEX_CELLS are the nodes. Functions that need
+ * the array yield HEXHEX_INVALID_ARGUMENT afterwards. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_take(hexhex_lagrange_mesh* mesh,
                                                    hexhex_mesh_array array, hexhex_buffer** buffer,
                                                    hexhex_error* error);
-/** The straight mesh between the corners, with tags and regions, and the repair; a copy. */
+/** Returns a copy of the straight mesh of the corners, with its tags, regions and repair. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_straight(const hexhex_lagrange_mesh* mesh,
                                                        hexhex_mesh** straight, hexhex_error* error);
-/** As hexhex_mesh_quality(), of curved cells: see scaledJacobians() in <hexhex/curved.hpp>. */
+/** Like hexhex_mesh_quality(), for curved cells: see scaledJacobians() in <hexhex/curved.hpp>. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh* mesh,
                                                       hexhex_context* context,
                                                       double* scaled_jacobians,
                                                       hexhex_quality* quality, hexhex_error* error);
 
-/** As hexhex_mesh_certify(), of curved cells. */
+/** Like hexhex_mesh_certify(), for curved cells. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_certify(const hexhex_lagrange_mesh* mesh,
                                                       hexhex_context* context, uint8_t* validity,
                                                       double* scaled_jacobians,
                                                       hexhex_certificate* certificate,
                                                       hexhex_error* error);
-/** As hexhex_mesh_improve(), of cells of order 1 to 3: all nodes move, and vertices in the report
- * are nodes. */
+/** Like hexhex_mesh_improve(), for cells of order 1 to 3: moves all nodes, and vertices in the
+ * report are nodes. */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_improve(
     hexhex_lagrange_mesh* mesh, const hexhex_map* map, const hexhex_improve_options* options,
     hexhex_context* context, hexhex_improve_report* report, hexhex_error* error);
-/** .vtu, .msh, .mesh (MFEM). */
+/** Formats: .vtu, .msh, .mesh (MFEM). */
 HEXHEX_API hexhex_status hexhex_lagrange_mesh_write(const hexhex_lagrange_mesh* mesh,
                                                     const char* file,
                                                     const hexhex_write_options* options,

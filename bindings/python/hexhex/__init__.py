@@ -8,8 +8,8 @@
 >>> bool(hexhex.verify(map, mesh, scale=2))
 True
 
-All functions but quantize() and mesh() may be called from several threads at once. They release the GIL while
-they work, and Ctrl-C cancels them.
+All functions except quantize() and mesh() may be called from several threads at once. They release
+the GIL while they work, and Ctrl-C cancels them.
 """
 
 from __future__ import annotations
@@ -105,11 +105,11 @@ __all__ = [
 
 
 if sys.modules.get("pyvista") is not None:
-    from . import _accessor  # noqa: F401  where nobody else makes PyVista find it
+    from . import _accessor  # noqa: F401  in case nothing else registers it with PyVista
 
 
 def _find_highs() -> None:
-    """Names the library HiGHS of the package highsbox, if that is there, to the extension."""
+    """Points the extension to the HiGHS library of the package highsbox, if it is installed."""
     box = importlib.util.find_spec("highsbox")
     if "HEXHEX_HIGHS" in os.environ or box is None or box.origin is None:
         return
@@ -169,37 +169,41 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
 
     Args:
         points: a Map, or positions: float64 of shape (n, 3).
-        tets: vertices of each tet, from 0: integers of shape (m, 4).
+        tets: 0-based vertices of each tet: integers of shape (m, 4).
         igm: parameters of the corners of each tet, in units of one hexahedron: float64 of shape
-            (m, 4, 3) or (m, 12); or of vertices, (n, 3), where there is one chart.
-        scale: multiplies all parameters: scale**3 times as many cells.
-        threads: None for all cores. The result does not depend on it, bit for bit.
-        order: of cells, 1 to 9: above 1, ``mesh.curved`` has cells of that order, too.
-        curved_nodes: "blended": nodes of these on the surface are where the map has them, others
-            between those; cells are positive wherever straight ones are, and those that have left
-            the surface for it are in ``mesh.statistics["straightened_cells"]``. "exact": all nodes
-            are where the map has them, and cells may fold over.
-        arcs: ``mesh.arcs`` gets the exact shapes of edges.
-        patches: ``mesh.patches`` gets those of faces, and ``mesh.arcs`` those of edges.
-        repair: a map with flipped or flat tets is repaired first: see ``mesh.repair`` and
-            ``mesh.repaired_map``. Otherwise it is an error.
-        round: if there is a repair: moves what is off integers by up to 0.1 onto them first.
-        engine: "atlas", or "propeller" for the algorithm of the paper; the same mesh.
-        tolerance: how far the map may be from its integer conditions, below 0.25.
-        epsilon: of the propeller engine; changes the time, never the result.
-        quantize: the map is seamless, and is made an integer-grid map first, as quantize() does: see
+            (m, 4, 3) or (m, 12); or, for a map with a single chart, of the vertices, (n, 3).
+        scale: factor for all parameters: yields scale**3 times as many cells.
+        threads: number of threads; None for all cores. Does not affect the result, bit for bit.
+        order: order of the cells, 1 to 9. Above 1, ``mesh.curved`` holds cells of that order in
+            addition.
+        curved_nodes: placement of their nodes. "blended": nodes on the surface lie where the map
+            puts them, and all others are blended between these. Cells are positive wherever
+            straight ones are; those that left the surface to achieve this are listed in
+            ``mesh.statistics["straightened_cells"]``. "exact": all nodes lie where the map puts
+            them, and cells may fold over.
+        arcs: store the exact shapes of edges in ``mesh.arcs``.
+        patches: store the exact shapes of faces in ``mesh.patches``, and of edges in ``mesh.arcs``.
+        repair: first repair a map with flipped or flat tets, which is an error otherwise: see
+            ``mesh.repair`` and ``mesh.repaired_map``.
+        round: if the map is repaired: first round coordinates that deviate from integers by up to
+            0.1.
+        engine: "atlas", or "propeller" for the algorithm of the paper; both yield the same mesh.
+        tolerance: maximum violation of the integer conditions by the map, below 0.25.
+        epsilon: propeller engine only; affects only the time, never the result.
+        quantize: turn a seamless map into an integer-grid map first, like quantize(): see
             ``mesh.quantization`` and ``mesh.quantized_map``.
-        cells, edge_length: of that, as in quantize().
-        progress: called with the name of the stage and its finished share in [0, 1], from any
-            thread; a TqdmProgress shows a bar. What it raises ends the extraction and is raised here.
+        cells, edge_length: target resolution of the quantization, as in quantize().
+        progress: called with the name of the stage and its completed fraction in [0, 1], from any
+            thread; a TqdmProgress shows a bar. An exception raised by it ends the extraction and
+            propagates to the caller.
 
     Returns:
-        The mesh, with ``mesh.statistics`` of the extraction, and tags and regions of the map.
+        The mesh, with ``mesh.statistics`` of the extraction and the tags and regions of the map.
 
     Raises:
         MapError: for the first violated condition, with its place.
-        ArgumentError: for shapes, types and options out of range.
-        MemoryExhaustedError: if memory does not suffice.
+        ArgumentError: for invalid shapes and types, and options out of range.
+        MemoryExhaustedError: if there is not enough memory.
         KeyboardInterrupt: after Ctrl-C.
 
     >>> map = hexhex.generate("box", cells=2)
@@ -229,7 +233,7 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
 
 def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable[[], Any],
                extract_pieces: Callable[[], Any], extract_order: Callable[[], Any]) -> Mesh:
-    """A mesh of what is asked for; each function gives a handle and notes."""
+    """Assembles a mesh from what is requested; each function returns a handle and notes."""
     if arcs or patches:
         pieces, notes = extract_pieces()
         mesh = Mesh._from_handle(pieces.mesh, notes)
@@ -248,32 +252,35 @@ def _assembled(order: int, arcs: bool, patches: bool, extract_straight: Callable
 
 
 class MeshSink(Protocol):
-    """Receives a mesh in pieces, in this order, from one thread at a time (any thread). What a
-    method raises ends the extraction and is raised by it."""
+    """Receives a mesh in pieces, in this order, from one thread at a time (any thread). An
+    exception raised by a method ends the extraction and propagates to its caller."""
 
     def begin(self, points: int, cells: int, /) -> object:
-        """Numbers of points and cells of the whole mesh."""
+        """Receives the numbers of points and cells of the whole mesh."""
 
     def points(self, first: int, points: Any, generator_tet: Any, generator_corners: Any,
                /) -> object:
-        """Points from number first on: float64 (n, 3), and as in Mesh uint32 (n,), uint8 (n,)."""
+        """Receives points, starting at number first: float64 (n, 3); and, as in Mesh, uint32 (n,),
+        uint8 (n,)."""
 
     def cells(self, first: int, cells: Any, /) -> object:
-        """Cells from number first on: uint32 (m, 8); uint64 beyond 2**32 - 2 points."""
+        """Receives cells, starting at number first: uint32 (m, 8); uint64 beyond 2**32 - 2
+        points."""
 
     def end(self) -> object:
-        """That was all."""
+        """Called after the last piece."""
 
 
 def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None = None,
                repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                progress: Progress | None = None) -> dict[str, Any]:
-    """Extracts the same mesh as extract(), bit for bit, but hands it over in pieces and never holds
-    all of it. Without tags and regions. Other arguments and errors as of extract().
+    """Extracts the same mesh as extract(), bit for bit, but passes it on in pieces and never holds
+    all of it in memory. Excludes tags and regions. Other arguments and errors are as in extract().
 
     Returns:
-        Statistics, and as there is no mesh to hold them, ``repair`` and ``repaired_map``: what a
-        repair did, and the map that was extracted instead; None if there was none.
+        Statistics. Since there is no mesh to hold them, these include ``repair`` and
+        ``repaired_map``: the report of the repair and the repaired map, from which the mesh was
+        extracted; None if there was no repair.
 
     >>> class Count:
     ...     total = 0
@@ -299,11 +306,11 @@ def _with_repair(notes: tuple[dict[str, Any], Any, Any]) -> dict[str, Any]:
 def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None = None,
                     threads: int | None = None, repair: bool = False, round: bool = False,
                     tolerance: float = 1e-2, progress: Progress | None = None) -> dict[str, Any]:
-    """The same into a file, .vtu, .mesh, .meshb, .vtk or .msh, which appears complete or not at
-    all. Returns the same.
+    """Extracts the same mesh to a file, .vtu, .mesh, .meshb, .vtk or .msh, which appears complete
+    or not at all. Returns the same.
 
     Raises:
-        FileError: if it cannot be written; and as extract().
+        FileError: if the file cannot be written; and as extract().
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -328,18 +335,19 @@ def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "cu
                   verify: bool = False, scale: int = 1, threads: int | None = None,
                   repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                   progress: Progress | None = None) -> list[MeshPart]:
-    """The mesh of extract() in parts, for programs that work on many machines. docs/parts.md tells
-    what a part has.
+    """Extracts the mesh of extract() in parts, for distributed programs. docs/parts.md describes
+    the contents of a part.
 
     Args:
-        parts: how many; some may be empty.
+        parts: number of parts; some may be empty.
         ghosts: layers of cells of other parts around each part.
-        partition: who cuts the mesh: "curve"; "metis" or "scotch", if that library is there.
-        verify: whether each part is proven to be one of the mesh of the map, as verify() does.
+        partition: method that partitions the mesh: "curve"; "metis" or "scotch", if that library is
+            installed.
+        verify: whether to prove that each part belongs to the mesh of the map, like verify().
         scale, threads, repair, round, tolerance, progress: as in extract().
 
     Raises:
-        ArgumentError: for numbers out of range, and without the library; and as extract().
+        ArgumentError: for numbers out of range, and if the library is missing; and as extract().
 
     >>> parts = hexhex.extract_parts(hexhex.generate("box"), 4)
     >>> [part.own_cells for part in parts]
@@ -361,11 +369,11 @@ def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
                           format: str | None = None, threads: int | None = None,
                           repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                           progress: Progress | None = None) -> dict[str, Any]:
-    """The same into files; docs/parts.md has the formats. One part at a time is in memory. Returns
-    how even parts are, and how much they share.
+    """Extracts the same parts to files; docs/parts.md lists the formats. Keeps only one part at a
+    time in memory. Returns the balance of the parts and the size of their interfaces.
 
     Raises:
-        FileError: if they cannot be written; and as extract_parts().
+        FileError: if the files cannot be written; and as extract_parts().
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -382,13 +390,13 @@ def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
 
 
 class MeshWriter:
-    """A file, .vtu, .mesh, .meshb, .vtk or .msh, for a mesh that comes in pieces: begin(), points()
-    in order, cells() in order, end(). It appears, complete, with end(); a writer that is forgotten
-    before leaves nothing. Itself a MeshSink.
+    """Writes a file, .vtu, .mesh, .meshb, .vtk or .msh, for a mesh that arrives in pieces:
+    begin(), points() in order, cells() in order, end(). The complete file appears at end(); a
+    writer dropped earlier leaves nothing behind. Also a MeshSink.
 
     Raises:
         FileError: if the file cannot be written.
-        ArgumentError: for calls in the wrong order, vertices that do not exist.
+        ArgumentError: for calls in the wrong order, and vertices that do not exist.
 
     >>> import pathlib, tempfile
     >>> mesh = hexhex.extract(hexhex.generate("box"))
@@ -407,7 +415,7 @@ class MeshWriter:
         self._writer = _hexhex.MeshWriter(os.fspath(file), format or "")
 
     def begin(self, points: int, cells: int, /) -> None:
-        """Numbers of points and cells of the whole mesh."""
+        """Sets the numbers of points and cells of the whole mesh."""
         if points < 0 or cells < 0:
             raise ArgumentError("A mesh cannot have fewer than none.", "InvalidArgument")
         self._writer.begin(points, cells)
@@ -415,17 +423,18 @@ class MeshWriter:
     def points(self, first: int, points: npt.ArrayLike,
                generator_tet: npt.ArrayLike | None = None,
                generator_corners: npt.ArrayLike | None = None, /) -> None:
-        """Points from number first on: float64 (n, 3), and as in Mesh uint32 (n,), uint8 (n,)."""
+        """Writes points, starting at number first: float64 (n, 3); and, as in Mesh, uint32 (n,),
+        uint8 (n,)."""
         places = _floats(points, (3,), "points")
         self._writer.points(first, places, *_generators(generator_tet, generator_corners,
                                                         len(places)))
 
     def cells(self, first: int, cells: npt.ArrayLike, /) -> None:
-        """Cells from number first on: integers (m, 8)."""
+        """Writes cells, starting at number first: integers (m, 8)."""
         _cells_to(self._writer, first, cells)
 
     def end(self) -> None:
-        """That was all: the file appears."""
+        """Completes the file, which appears now."""
         self._writer.end()
 
 
@@ -439,10 +448,10 @@ def _cells_to(sink: _hexhex.MeshWriter | _hexhex.SurveySink, first: int,
 
 
 class SurveySink:
-    """A MeshSink that adds up what comes: result() is then what survey() says of the mesh.
+    """A MeshSink that summarizes what it receives: result() then equals survey() of the mesh.
 
     Raises:
-        ArgumentError: for calls in the wrong order, vertices that do not exist.
+        ArgumentError: for calls in the wrong order, and vertices that do not exist.
 
     >>> sink, map = hexhex.SurveySink(), hexhex.generate("box")
     >>> statistics = hexhex.extract_to(sink, map)
@@ -455,27 +464,27 @@ class SurveySink:
         self._ended = False
 
     def begin(self, points: int, cells: int, /) -> None:
-        """Numbers of points and cells of the whole mesh."""
+        """Sets the numbers of points and cells of the whole mesh."""
         if points < 0 or cells < 0:
             raise ArgumentError("A mesh cannot have fewer than none.", "InvalidArgument")
         self._sink.begin(points, cells)
 
     def points(self, first: int, points: npt.ArrayLike, generator_tet: object = None,
                generator_corners: object = None, /) -> None:
-        """Points from number first on: float64 (n, 3). Generators are not added up."""
+        """Adds points, starting at number first: float64 (n, 3). Ignores generators."""
         self._sink.points(first, _floats(points, (3,), "points"))
 
     def cells(self, first: int, cells: npt.ArrayLike, /) -> None:
-        """Cells from number first on: integers (m, 8)."""
+        """Adds cells, starting at number first: integers (m, 8)."""
         _cells_to(self._sink, first, cells)
 
     def end(self) -> None:
-        """That was all."""
+        """Completes the summary."""
         self._sink.end()
         self._ended = True
 
     def result(self) -> Survey:
-        """The sums, after end(). Raises ArgumentError before."""
+        """Returns the summary, after end(). Raises ArgumentError before."""
         if not self._ended:
             raise ArgumentError("The mesh has not ended yet.", "InvalidArgument")
         return Survey(**self._sink.result())
@@ -483,8 +492,9 @@ class SurveySink:
 
 def read_to(sink: MeshSink, file: Path, *, format: str | None = None, threads: int | None = None,
             progress: Progress | None = None) -> None:
-    """Reads a hexahedral mesh and hands it over in pieces; a .vtu file with appended data, as this
-    library writes it, in a few megabytes of memory. Raises FileError, and what the sink raises.
+    """Reads a hexahedral mesh and passes it on in pieces. A .vtu file with appended data, as
+    written by this library, takes a few megabytes of memory. Raises FileError, and whatever the
+    sink raises.
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -498,8 +508,9 @@ def read_to(sink: MeshSink, file: Path, *, format: str | None = None, threads: i
 
 
 class Extractor:
-    """A prepared map, for several meshes of it: what does not depend on the scale is done once.
-    Serves one call at a time; another one, as from a progress function, is an ArgumentError.
+    """A prepared map for extracting several meshes: work that does not depend on the scale is done
+    once. Serves one call at a time; another call, even from a progress function, is an
+    ArgumentError.
 
     >>> extractor = hexhex.Extractor(hexhex.generate("box", cells=2))
     >>> [len(extractor.extract(scale=s).cells) for s in (1, 2, 3)]
@@ -508,12 +519,12 @@ class Extractor:
     64
 
     Args:
-        points, tets, igm: as in extract(); they must not change while the extractor lives.
+        points, tets, igm: as in extract(); must not change during the lifetime of the extractor.
         tolerance, threads, progress: as in extract().
-        max_scale: the largest scale that will be asked for, times the order.
+        max_scale: the largest scale that will be requested, times the order.
 
     Raises:
-        As extract().
+        The errors of extract().
     """
 
     def __init__(self, points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
@@ -525,15 +536,15 @@ class Extractor:
 
     @property
     def cells(self) -> int:
-        """Number of cells at scale 1; scale**3 times as many at others."""
+        """Number of cells at scale 1; there are scale**3 times as many at other scales."""
         return self._extractor.cells()
 
     def extract(self, *, scale: int = 1, threads: int | None = None, order: int = 1,
                 curved_nodes: str = "blended", arcs: bool = False, patches: bool = False,
                 engine: str = "atlas", epsilon: float = 1e-6,
                 progress: Progress | None = None) -> Mesh:
-        """The mesh at a scale: the same as that of hexhex.extract(). The scale times the order is at
-        most ``max_scale``."""
+        """Extracts the mesh at a scale, which is identical to that of hexhex.extract(). The scale
+        times the order must not exceed ``max_scale``."""
         last = (_options(scale, engine, 0, epsilon, False, False, curved_nodes), _threads(threads),
                 progress)
         return _assembled(
@@ -543,13 +554,13 @@ class Extractor:
 
     def extract_to(self, sink: MeshSink, *, scale: int = 1, threads: int | None = None,
                    progress: Progress | None = None) -> dict[str, Any]:
-        """The same in pieces, as hexhex.extract_to()."""
+        """Extracts the same mesh in pieces, like hexhex.extract_to()."""
         options = _options(scale, "atlas", 0, 0, False, False)
         return _with_repair(self._extractor.extract_to(sink, options, _threads(threads), progress))
 
 
 def can_repair() -> bool:
-    """Whether this build can repair maps (it was made with Eigen).
+    """Whether this build supports repair (requires Eigen).
 
     >>> isinstance(hexhex.can_repair(), bool)
     True
@@ -560,19 +571,19 @@ def can_repair() -> bool:
 def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = False,
            refine: bool = True, threads: int | None = None,
            progress: Progress | None = None) -> tuple[Map, RepairReport]:
-    """A valid map: the same where it was valid, bit for bit. docs/defects.md tells what can be
-    repaired, and how.
+    """Returns a valid map that is identical, bit for bit, where the given map was valid.
+    docs/defects.md explains what can be repaired, and how.
 
     Args:
-        scale: the map is going to be scaled by at most this.
-        round: moves what is off integers by up to 0.1 onto them first.
-        refine: may split edges of the tet mesh.
+        scale: upper bound for later scaling of the map.
+        round: first round coordinates that deviate from integers by up to 0.1.
+        refine: allow splitting edges of the tet mesh.
         tolerance, threads, progress: as in extract().
 
     Raises:
-        MapError: if the map has other defects, or the repair fails; its ``repair`` tells what was
+        MapError: if the map has other defects, or the repair fails; its ``repair`` reports what was
             done until then.
-        ArgumentError: if there is something to repair and can_repair() is False.
+        ArgumentError: if the map needs repair and can_repair() is False.
 
     >>> repaired, report = hexhex.repair(hexhex.generate("sphere"))
     >>> report.changed, report.bad_tets
@@ -590,7 +601,7 @@ def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = F
 
 
 def can_quantize() -> bool:
-    """Whether this build can quantize maps (it was made with Eigen).
+    """Whether this build supports quantization (requires Eigen).
 
     >>> isinstance(hexhex.can_quantize(), bool)
     True
@@ -602,21 +613,21 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
              edge_length: float | None = None, densify: bool = False, wall_tag: int = 0,
              tolerance: float = 1e-5, threads: int | None = None,
              progress: Progress | None = None) -> tuple[Map, QuantizeReport]:
-    """An integer-grid map from a seamless one: chooses integers, and bends the map onto them.
-    Features and regions come along; edges of tets may be split.
+    """Computes an integer-grid map from a seamless one: chooses integers and deforms the map to
+    match them. Preserves features and regions; may split edges of tets.
 
     Args:
-        cells: hexahedra wanted; or one of the next two instead.
-        scale: the map's parameters are to be multiplied by about so much.
-        edge_length: of a hexahedron in space, on the average.
-        densify: if no valid map is found so, takes the first denser one that works.
-        wall_tag: tagged triangles inside of the object stay planes of the mesh, but for those with
-            this tag; 0 for none. Walls that read_map(keep_walls=True) has read have the tag 2.
-        tolerance: share of its size by which the map may miss being seamless.
+        cells: desired number of hexahedra; or set one of the next two instead.
+        scale: approximate scale factor for the parameters of the map.
+        edge_length: average edge length of a hexahedron in space.
+        densify: if no valid map is found at this resolution, use the first finer one that works.
+        wall_tag: tagged interior triangles remain planes of the mesh, except those with this tag; 0
+            for no exception. Walls read by read_map(keep_walls=True) have tag 2.
+        tolerance: maximum deviation from seamlessness, relative to the extent of the map.
         threads, progress: as in extract().
 
     Raises:
-        MapError: if the map is not seamless, or cannot be bent onto integers.
+        MapError: if the map is not seamless, or cannot be deformed to match integers.
         ArgumentError: for options out of range, or if can_quantize() is False.
 
     >>> map = hexhex.generate("sphere")  # 448 cells
@@ -633,16 +644,16 @@ def quantize(map: Map, *, cells: float | None = None, scale: float | None = None
 
 
 def _densities(*values: float | None) -> list[float]:
-    """0 is what stands for None there, and is no number of cells."""
+    """Converts None to 0, which the library uses for it, and rejects 0 as a number of cells."""
     return [0.0 if value is None else float(value) or float("nan") for value in values]
 
 
-_quantize = quantize  # where an argument has that name
+_quantize = quantize  # for functions with an argument of that name
 
 
 def examine_seamless(map: Map, *, threads: int | None = None,
                      progress: Progress | None = None) -> SeamlessReport:
-    """Whether quantize() can begin with a map.
+    """Checks whether a map is suitable for quantize().
 
     >>> hexhex.examine_seamless(hexhex.generate("box")).kind if hexhex.can_quantize() else "seamless"
     'seamless'
@@ -653,7 +664,7 @@ def examine_seamless(map: Map, *, threads: int | None = None,
 def _part_of(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None, mesher: str,
              tet_size: float | None, cells: float, feature_angle: float, threads: int,
              progress: Progress | None) -> tuple[_hexhex.TetMesh, FillReport | None]:
-    """Arrays for the library, or what a file holds; and how it was filled."""
+    """Returns arrays for the library, or the contents of a file; and how it was filled."""
     if isinstance(points, (str, os.PathLike)):
         if tets is not None:
             raise ArgumentError("Give a file alone, or points and tets.", "InvalidArgument")
@@ -678,28 +689,28 @@ def map_from_tets(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = Non
                   method: str = "auto", feature_angle: float = 40.0, seed: int = 1,
                   mesher: str = "auto", tet_size: float | None = None, threads: int | None = None,
                   progress: Progress | None = None) -> tuple[Map, ShapeReport]:
-    """A seamless map of tets that have none, of which quantize() makes an integer-grid map. The given
-    points come first in it; tets may be split.
+    """Computes a seamless map for tets without one, as input for quantize(). The given points come
+    first in the map; tets may be split.
 
     Args:
-        points: positions, float64 of shape (n, 3); or a file: one that read_tets() reads, whose tags
-            those of the map are; or a closed surface (.stl, .obj, .ply, .off) or a STEP file, which a
-            mesher fills with tets.
-        tets: vertices of each tet, from 0: integers of shape (m, 4).
-        method: "frames" (along a smooth field: good cells, where there is such a map), "polycube" (the
-            object becomes one of axis-aligned boxes), or "auto": what fits best.
-        feature_angle: edges where the surface turns by more degrees, 0 to 180, get a tag where they
-            are edges of the map.
-        seed: of random decisions: another one may find a map where this one does not.
-        mesher: of surfaces and STEP files: "tetwild", "netgen", "gmsh", "tetgen", or "auto": the first
-            that is installed.
-        tet_size: length of the edges of its tets; None: so that there are 20,000, or as many as cells
-            ask for, about.
+        points: positions, float64 of shape (n, 3); or a file: either one that read_tets() reads,
+            whose tags the map inherits, or a closed surface (.stl, .obj, .ply, .off) or STEP file,
+            which a mesher fills with tets.
+        tets: 0-based vertices of each tet: integers of shape (m, 4).
+        method: "frames" (follows a smooth frame field: good cells, if there is such a map),
+            "polycube" (deforms the object into axis-aligned boxes), or "auto": whichever fits best.
+        feature_angle: edges where the surface turns by more degrees, 0 to 180, receive a tag if
+            they are edges of the map.
+        seed: random seed: another one may succeed where this one fails.
+        mesher: for surfaces and STEP files: "tetwild", "netgen", "gmsh", "tetgen", or "auto": the
+            first that is installed.
+        tet_size: edge length of the mesher's tets; None: about 20,000 tets, or as many as ``cells``
+            requires.
         threads, progress: as in extract().
 
     Raises:
-        MapError: if there is no map, with the place that keeps the tets from one; for tets that are
-            no mesh of a solid.
+        MapError: if no map was found, with the place that prevents it; and for tets that do not
+            form the mesh of a solid.
         ArgumentError: for options out of range, or if can_quantize() is False.
         FileError: if the file cannot be read.
 
@@ -722,24 +733,24 @@ def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
          fix_boundary: bool = False, slack: float = 1e-3, pillow: str = "auto",
          snap_curves: bool = True, mesher: str = "auto", tet_size: float | None = None,
          threads: int | None = None, progress: Progress | None = None) -> MeshedPart:
-    """A hexahedral mesh of tets that have no map: map_from_tets(), quantize(), extract(), verify() and
-    improve() in one go.
+    """Computes a hexahedral mesh from tets without a map: map_from_tets(), quantize(), extract(),
+    verify() and improve() in a single call.
 
     Args:
-        points, tets, method, seed, mesher, tet_size: as in map_from_tets(). Tags of a file are those
-            of the mesh.
-        cells: hexahedra wanted; there are more if a map of so few cannot be found.
-        edge_length: of a hexahedron in space, on the average; instead of cells.
+        points, tets, method, seed, mesher, tet_size: as in map_from_tets(). The mesh inherits the
+            tags of a file.
+        cells: desired number of hexahedra; the mesh has more if no map with so few cells is found.
+        edge_length: average edge length of a hexahedron in space; instead of cells.
         feature_angle: as in map_from_tets() and improve().
         target, passes, fix_boundary, slack, pillow, snap_curves: as in improve().
         threads, progress: as in extract().
 
     Returns:
-        The mesh, its map, and reports. ``all_positive`` says whether all cells are proven to be
-        positive: a mesh is returned also if they are not.
+        The mesh, its map, and reports. ``all_positive`` tells whether all cells are proven to be
+        positive: the mesh is returned even if they are not.
 
     Raises:
-        As map_from_tets().
+        The errors of map_from_tets().
 
     >>> tets = hexhex.generate("cylinder")
     >>> if hexhex.can_quantize():
@@ -764,11 +775,11 @@ def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
                     threads: int | None = None, progress: Progress | None = None) -> PartialMesh:
-    """Extracts the cells of a map that no defect touches, and tells where others are missing.
-    Arguments as in extract().
+    """Extracts the cells of a map that no defect touches, and reports where others are missing.
+    Arguments are as in extract().
 
     Raises:
-        MapError: if not even the mesh of tets is valid.
+        MapError: if the tet mesh itself is invalid.
 
     >>> part = hexhex.extract_partial(hexhex.generate("sphere", cells=8, refine=4, defects=2))
     >>> len(part.holes) > 0, len(part.mesh.cells) < 3584
@@ -782,7 +793,7 @@ def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,
 def check(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
           igm: npt.ArrayLike | None = None, *, tolerance: float = 1e-2, scale: int = 1,
           threads: int | None = None, progress: Progress | None = None) -> CheckReport:
-    """Examines a map and collects every violated condition. Arguments as in extract().
+    """Checks a map and collects all violated conditions. Arguments are as in extract().
 
     >>> report = hexhex.check(hexhex.generate("sphere"), scale=2)
     >>> report.valid, report.expected["cells"], report.expected["inner_singular_edges"]
@@ -797,8 +808,8 @@ def check(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
 def map_structure(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
                   igm: npt.ArrayLike | None = None, *, tolerance: float = 1e-2,
                   threads: int | None = None, progress: Progress | None = None) -> MapStructure:
-    """Where the charts of a map differ, and which edges of its tets are singular; of a map with
-    defects as far as they allow. Arguments as in extract().
+    """Finds where the charts of a map change and which edges of its tets are singular, as far as
+    possible even for a map with defects. Arguments are as in extract().
 
     >>> structure = hexhex.map_structure(hexhex.generate("star", valence=5, charts="blocks"))
     >>> len(structure.jump_tets) > 0, set(structure.valences[~structure.boundary].tolist())
@@ -813,9 +824,10 @@ def map_structure(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None
 
 def verify(map: Map, mesh: Mesh, *, scale: int = 1, tolerance: float = 1e-2, digits: int = 0,
            threads: int | None = None, progress: Progress | None = None) -> VerifyReport:
-    """Whether a mesh is that of its map, however it is numbered and its cells are turned: no other
-    mesh passes. Of a mesh with a ``repaired_map``, give that one. ``digits``: how many significant
-    digits its coordinates have, 1 to 17; 0: 7 if all are single-precision numbers, otherwise 17.
+    """Checks whether a mesh is that of its map, in any numbering and with cells in any orientation:
+    no other mesh passes. If the mesh has a ``repaired_map``, pass that map. ``digits``: number of
+    significant digits in the coordinates of the mesh, 1 to 17; 0: 7 if all are single-precision
+    numbers, otherwise 17.
 
     >>> map = hexhex.generate("torus")
     >>> report = hexhex.verify(map, hexhex.extract(map))
@@ -835,18 +847,18 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
              charts: str = "aligned", jitter: float = 0, on_lattice: float = 0, noise: float = 0,
              offset: float = 0, seed: int = 1, features: bool = False, defects: int = 0,
              defect_kind: str = "interior") -> Map:
-    """A map whose mesh is known in advance: see ``answer`` of the Map.
+    """Generates a map whose mesh is known in advance: see ``answer`` of the Map.
 
     Args:
         kind: "box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "handle-body".
-        cells: hexahedra along each block edge.
-        refine: tet sub-blocks along each block edge.
-        valence: hexahedra around the inner edge of a "star", 3 to 12.
-        charts: "aligned", "blocks" (a random chart per block), "random" (per tet) or "scattered" (for
-            one tet in eight).
+        cells: number of hexahedra along each block edge.
+        refine: number of tet sub-blocks along each block edge.
+        valence: number of hexahedra around the inner edge of a "star", 3 to 12.
+        charts: "aligned", "blocks" (a random chart per block), "random" (one per tet) or
+            "scattered" (one for one tet in eight).
         jitter, on_lattice, noise, offset, seed: see docs/command.md.
-        features: tags corners, curves and surfaces, and numbers the blocks as regions.
-        defects: at least so many tets are flipped or flat.
+        features: tag corners, curves and surfaces, and number the blocks as regions.
+        defects: minimum number of flipped or flat tets.
         defect_kind: "interior", "singular", "boundary" or "sliver".
 
     Raises:
@@ -868,7 +880,7 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
 
 
 def sample_kinds() -> list[SampleKind]:
-    """The kinds of maps that generate() makes.
+    """Returns the kinds of maps for generate().
 
     >>> [kind.name for kind in hexhex.sample_kinds()][:4]
     ['box', 'cylinder', 'sphere', 'star']
@@ -877,7 +889,7 @@ def sample_kinds() -> list[SampleKind]:
 
 
 def defect_kinds() -> list[str]:
-    """The kinds of defects that generate() makes.
+    """Returns the kinds of defects for generate().
 
     >>> hexhex.defect_kinds()
     ['interior', 'singular', 'boundary', 'sliver']
@@ -889,13 +901,13 @@ def defect_kinds() -> list[str]:
 def read_map(file: Path, *, format: str | None = None, map_array: str = "igm",
              keep_walls: bool = False, threads: int | None = None, progress: Progress | None = None) -> Map:
     """Reads a map: .hexex, .ovm, .ovmb, .vtu, .vtk, .npz. Raises FileError with the line as its
-    place; of a missing file it is a FileNotFoundError, too.
+    place; for a missing file, this is also a FileNotFoundError.
 
     Args:
-        format: whatever the extension is: see formats().
-        map_array: the name of the array that holds the map in .vtu and .vtk files.
-        keep_walls: walls of a motorcycle complex that a .hexex file lists, inside of the object,
-            become features with the tag 2: faces between blocks.
+        format: name of the format, whatever the extension: see formats().
+        map_array: name of the array that holds the map in .vtu and .vtk files.
+        keep_walls: import interior walls of a motorcycle complex, which .hexex files list, as
+            features with tag 2: faces between blocks.
     """
     if _npz.is_npz(os.fspath(file), format):
         return _read_npz(file, Map)  # type: ignore[no-any-return]
@@ -924,16 +936,16 @@ def read_tets(file: Path, *, format: str | None = None, threads: int | None = No
 
 def read_pair(tets: Path, polycube: Path, *, threads: int | None = None,
               progress: Progress | None = None) -> Map:
-    """The map of two files with meshes of the same tets, as polycube tools write them: points of
-    the second are parameters of the first. Raises FileError."""
+    """Reads a map from two files with meshes of the same tets, as written by polycube tools: the
+    points of the second are the parameters of the first. Raises FileError."""
     return Map._from_handle(_hexhex.read_pair(os.fspath(tets), os.fspath(polycube),
                                               _threads(threads), progress))
 
 
 def map_from_pair(points: npt.ArrayLike, tets: npt.ArrayLike, polycube_points: npt.ArrayLike,
                   polycube_tets: npt.ArrayLike | None = None) -> Map:
-    """The same of arrays: float64 (n, 3), integers (m, 4), float64 (n, 3), and tets with the same
-    vertices, maybe in another order (None: as they are). Raises ArgumentError."""
+    """Makes such a map from arrays: float64 (n, 3), integers (m, 4), float64 (n, 3), and tets with
+    the same vertices, possibly in another order (None: the same tets). Raises ArgumentError."""
     corners = _indices(tets, 4, "tets")
     others = corners if polycube_tets is None else _indices(polycube_tets, 4, "polycube_tets")
     return Map._from_handle(_hexhex.map_from_pair(
@@ -943,19 +955,19 @@ def map_from_pair(points: npt.ArrayLike, tets: npt.ArrayLike, polycube_points: n
 
 def read_flags(tets: Path, flags: Path, *, surface: Path | None = None, array: str = "flags",
                threads: int | None = None, progress: Progress | None = None) -> Map:
-    """The seamless map of a polycube, which quantize() makes an integer-grid map, from a tet mesh and
-    labels of its boundary triangles: 0 to 5 for +x, -x, +y, -y, +z, -z.
+    """Reads the seamless map of a polycube, as input for quantize(), from a tet mesh and labels of
+    its boundary triangles: 0 to 5 for +x, -x, +y, -y, +z, -z.
 
     Args:
-        flags: a text with four numbers per tet, one for the face opposite each corner, -1 inside; or
-            with one per triangle of ``surface``; or a .vtu or .vtk file with triangles.
+        flags: a text file with four numbers per tet, one for the face opposite each corner, -1
+            inside; or with one per triangle of ``surface``; or a .vtu or .vtk file with triangles.
         surface: an .obj file.
-        array: name of the cell array of .vtu and .vtk files that holds the labels.
+        array: name of the cell array with the labels in .vtu and .vtk files.
 
     Raises:
-        FileError: for files that cannot be read, or do not fit together.
-        ArgumentError: for labels of no polycube, or if can_quantize() is False.
-        MapError: for tets that are inverted in space, or cannot be bent.
+        FileError: for files that cannot be read, or that do not match.
+        ArgumentError: for labels that define no polycube, or if can_quantize() is False.
+        MapError: for tets that are inverted in space, or cannot be deformed to match.
     """
     return Map._from_handle(_hexhex.read_flags(
         os.fspath(tets), os.fspath(flags), "" if surface is None else os.fspath(surface), array,
@@ -964,8 +976,8 @@ def read_flags(tets: Path, flags: Path, *, surface: Path | None = None, array: s
 
 def map_from_flags(points: npt.ArrayLike, tets: npt.ArrayLike, flags: npt.ArrayLike, *,
                    threads: int | None = None, progress: Progress | None = None) -> Map:
-    """The same of arrays: float64 (n, 3), integers (m, 4), integers (m, 4): a label for the face
-    opposite each corner, -1 inside. Raises ArgumentError, MapError.
+    """Makes such a map from arrays: float64 (n, 3), integers (m, 4), integers (m, 4): a label for
+    the face opposite each corner, -1 inside. Raises ArgumentError, MapError.
 
     >>> import numpy
     >>> hexhex.map_from_flags(numpy.eye(4, 3), [[0, 1, 2, 3]], [[6, 1, 3, 5]])  # doctest: +IGNORE_EXCEPTION_DETAIL
@@ -986,7 +998,7 @@ def map_from_flags(points: npt.ArrayLike, tets: npt.ArrayLike, flags: npt.ArrayL
 def read_mesh(file: Path, *, format: str | None = None, hexes_only: bool = False,
               threads: int | None = None, progress: Progress | None = None) -> Mesh:
     """Reads a hexahedral mesh: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb, .npz. Raises
-    FileError, also for a file with other volume cells; with hexes_only, these are left out."""
+    FileError, also for a file with other volume cells unless hexes_only skips them."""
     if _npz.is_npz(os.fspath(file), format):
         return _read_npz(file, Mesh)  # type: ignore[no-any-return]
     return Mesh._from_handle(_hexhex.read_mesh(os.fspath(file), format or "", hexes_only,
@@ -995,11 +1007,11 @@ def read_mesh(file: Path, *, format: str | None = None, hexes_only: bool = False
 
 def read_curved(file: Path, *, threads: int | None = None,
                 progress: Progress | None = None) -> LagrangeMesh:
-    """Reads the hexahedra of higher order of a .vtu file: what write() wrote of ``mesh.curved``, but
-    without regions, or cells of VTK_LAGRANGE_HEXAHEDRON of others, all of one order.
+    """Reads the higher-order hexahedra of a .vtu file: ``mesh.curved`` as written by write(), but
+    without regions; or VTK_LAGRANGE_HEXAHEDRON cells from other programs, all of the same order.
 
     Raises:
-        FileError: without such cells; and for other files than .vtu.
+        FileError: if there are no such cells; and for files other than .vtu.
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -1013,18 +1025,18 @@ def read_curved(file: Path, *, threads: int | None = None,
 
 
 def holds_curved(file: Path) -> bool:
-    """Whether a file is a .vtu file with hexahedra of higher order. Raises FileError."""
+    """Whether a file is a .vtu file with higher-order hexahedra. Raises FileError."""
     return bool(_hexhex.holds_lagrange(os.fspath(file)))
 
 
 def read(file: Path, *, format: str | None = None, map_array: str = "igm",
          keep_walls: bool = False, hexes_only: bool = False, threads: int | None = None,
          progress: Progress | None = None) -> Map | Mesh:
-    """Reads what a file holds: a mesh or, where there are no hexahedra, a map. Arguments as of
+    """Reads whatever a file holds: a mesh or, if it has no hexahedra, a map. Arguments are as in
     read_map() and read_mesh().
 
     Raises:
-        FileError: if it can be read as neither; place and index tell the line.
+        FileError: if it can be read as neither; place and index give the line.
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -1044,28 +1056,29 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
           map_array: str = "igm", map: Map | None = None,
           scaled_jacobians: npt.ArrayLike | None = None, threads: int | None = None,
           progress: Progress | None = None) -> None:
-    """Writes a map, a mesh, or what of it is curved; docs/formats.md has the formats. The file
+    """Writes a map, a mesh, or its curved parts; docs/formats.md lists the formats. The file
     appears complete or not at all.
 
     Args:
         what: a Map (.hexex, .ovm, .ovmb, .vtu, .vtk), a Mesh (see formats()), ``mesh.curved``
-            (.vtu, .msh, .inp, MFEM's .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb). Maps and
-            meshes also as .npz: their arrays by name, for numpy.load().
-            A Mesh and ``mesh.curved`` also as .html: the page of view().
-        format: of a map or mesh, whatever the extension is: see formats(), or "npz"; or the solver
-            that shall read a mesh: "dealii", "ngsolve" and so on (``hexhex formats`` lists them).
-        compress: arrays of .vtu and .npz files, with zlib; of a map or mesh.
-        patch_angle: of a mesh, curved or not, without tagged quads, for formats with groups: where
-            the boundary turns by more degrees, a group ends; 0 to 180.
-        map_array: the name of the array that holds the map in .vtu and .vtk files.
-        map: of arcs and patches, the one that they were extracted from (of a mesh with a
-            ``repaired_map``, that one): .ovmb files then tell the indices of the tet simplices that
-            hold each point and edge.
-        scaled_jacobians: those of quality(), if they are known: float64, one per cell of a Mesh or
-            LagrangeMesh; otherwise they are computed for formats that hold them.
+            (.vtu, .msh, .inp, MFEM's .mesh), ``mesh.arcs`` or ``mesh.patches`` (.vtu, .vtp, .ovmb).
+            Maps and meshes also as .npz: their arrays by name, for numpy.load(). A Mesh and
+            ``mesh.curved`` also as .html: the page of view().
+        format: name of the format of a map or mesh, whatever the extension: see formats(), or
+            "npz"; or the solver that will read a mesh: "dealii", "ngsolve" etc. (``hexhex formats``
+            lists them).
+        compress: compress the arrays of a map or mesh with zlib, in .vtu and .npz files.
+        patch_angle: for meshes, curved or not, without tagged quads, in formats with groups: a
+            group ends where the boundary turns by more degrees; 0 to 180.
+        map_array: name of the array that holds the map in .vtu and .vtk files.
+        map: for arcs and patches, the map that they were extracted from (for a mesh with a
+            ``repaired_map``, that map): .ovmb files then include the indices of the tet simplices
+            that contain each point and edge.
+        scaled_jacobians: those of quality(), if already available: float64, one per cell of a Mesh
+            or LagrangeMesh; otherwise computed for formats that store them.
 
     Raises:
-        FileError: if it cannot be written.
+        FileError: if the file cannot be written.
         ArgumentError: for options out of range.
     """
     name, workers = os.fspath(file), _threads(threads)
@@ -1097,10 +1110,10 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
 
 
 class ViewPage:
-    """A page that shows a mesh: inline in notebooks, or as a file by write().
+    """A page that shows a mesh: inline in notebooks, or written to a file by write().
 
     Attributes:
-        html: the page, complete in itself.
+        html: the complete, self-contained page.
     """
 
     def __init__(self, html: str) -> None:
@@ -1116,11 +1129,12 @@ class ViewPage:
 
 def view(mesh: Mesh | LagrangeMesh, *, title: str = "mesh", threads: int | None = None,
          progress: Progress | None = None) -> ViewPage:
-    """A page with a mesh to turn, cut and colour, as ``hexhex view`` makes it: the last line of a
-    notebook's cell shows it. Needs no other package, no server and no network.
+    """Creates an interactive page to rotate, cut and colour a mesh, like ``hexhex view``. Shown by
+    a notebook cell if it is the value of its last line. Requires no other package, no server and no
+    network.
 
     Raises:
-        FileError: if this hexhex was built without the viewer; wheels have it.
+        FileError: if hexhex was built without the viewer; wheels include it.
     """
     with tempfile.TemporaryDirectory(prefix="hexhex-view-") as folder:
         file = os.path.join(folder, "view.html")
@@ -1130,15 +1144,15 @@ def view(mesh: Mesh | LagrangeMesh, *, title: str = "mesh", threads: int | None 
 
 def require_format(what: str, file: Path, *, format: str | None = None, compress: bool = False,
                    patch_angle: float = 40, map_array: str = "igm") -> None:
-    """Does nothing if write() knows the file's extension, or the format, and can do what the options
-    say: to fail before long work.
+    """Does nothing if write() supports the file's extension or the format, and the options. Use it
+    to detect unsupported formats before long work.
 
     Args:
         what: "map", "mesh", "curved", "arcs" or "patches".
 
     Raises:
         FileError: if it does not.
-        ArgumentError: for anything else as `what`.
+        ArgumentError: for any other value of `what`.
 
     >>> hexhex.require_format("mesh", "later.vtu")
     >>> hexhex.require_format("mesh", "later.stl")  # doctest: +IGNORE_EXCEPTION_DETAIL
@@ -1150,7 +1164,7 @@ def require_format(what: str, file: Path, *, format: str | None = None, compress
 
 
 def formats() -> list[FileFormat]:
-    """The file formats of this build.
+    """Returns the file formats of this build.
 
     >>> sorted({f.extension for f in hexhex.formats() if f.streams})
     ['.mesh', '.meshb', '.msh', '.vtk', '.vtu']
@@ -1160,8 +1174,9 @@ def formats() -> list[FileFormat]:
 
 def quality(mesh: Mesh | LagrangeMesh, *, threads: int | None = None,
             progress: Progress | None = None) -> Quality:
-    """Scaled Jacobian of each cell: of straight ones as in the Verdict library, of curved ones
-    (``mesh.curved``) the smallest at nodes and Gauss points; and whether it is positive everywhere.
+    """Computes the scaled Jacobian of each cell, and whether the Jacobian is positive everywhere in
+    it. For straight cells as in the Verdict library, for curved cells (``mesh.curved``) the minimum
+    over nodes and Gauss points.
 
     >>> hexhex.quality(hexhex.extract(hexhex.generate("box"))).minimum
     1.0
@@ -1179,25 +1194,26 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
             fix_boundary: bool = False, feature_angle: float = 40.0, slack: float = 1e-3,
             pillow: str = "never", snap_curves: bool = False, threads: int | None = None,
             progress: Progress | None = None) -> tuple[AnyMesh, ImproveReport]:
-    """The same mesh with vertices moved: all cells become positive, then the worst ones better, then
-    all. Vertices on the surface slide on it; the given mesh stays as it is.
+    """Moves vertices: first makes all cells positive, then improves the worst cells, then all.
+    Vertices on the surface slide on it. Returns a new mesh and leaves the given one unchanged.
 
     Args:
-        mesh: straight, or curved of order 1 to 3 (``mesh.curved``), of which all nodes move.
-        map: that the mesh was extracted from, whose surface is the one to stay on. Without, that is
-            the boundary of the mesh.
-        target: cells with a smaller scaled Jacobian are improved until nothing helps, 0 to 1.
-        passes: over all vertices in the end, 0 to 1000.
-        fix_boundary: vertices on the surface stay where they are.
-        feature_angle: edges where the surface turns by more degrees are curves, and so are tagged
-            ones: vertices do not leave them.
-        slack: where nothing else makes cells positive, vertices without tags may leave the surface
-            by so much, in diagonals of its bounding box, 0 to 0.1; in meshes with bad cells also to
-            raise cells below the target.
-        pillow: whether straight cells get a layer of cells under the boundary: "never", "always", or
-            "auto" if fewer cells stay that are not positive, or the minimum rises by 0.02 at least.
-        snap_curves: whether edges of straight cells are laid onto curves that none follows, with
-            layers that make room for them, where the mesh becomes better by that.
+        mesh: straight, or curved of order 1 to 3 (``mesh.curved``), in which case all nodes move.
+        map: the map that the mesh was extracted from, whose surface vertices stay on. Without it,
+            the surface is the boundary of the mesh.
+        target: improve cells with a smaller scaled Jacobian until nothing helps, 0 to 1.
+        passes: final passes over all vertices, 0 to 1000.
+        fix_boundary: keep vertices on the surface fixed.
+        feature_angle: edges where the surface turns by more degrees are curves, as are tagged
+            edges: vertices do not leave them.
+        slack: how far untagged vertices may leave the surface where nothing else makes cells
+            positive, in diagonals of its bounding box, 0 to 0.1; in meshes with bad cells, this
+            also applies to raising cells below the target.
+        pillow: whether to add a layer of straight cells under the boundary: "never", "always", or
+            "auto": if it leaves fewer cells that are not positive, or raises the minimum by at
+            least 0.02.
+        snap_curves: whether to snap edges of straight cells to curves that none follows, adding
+            layers that make room for them, if that improves the mesh.
         threads, progress: as in extract().
 
     >>> map = hexhex.generate("torus", cells=2, jitter=0.6)
@@ -1225,7 +1241,8 @@ def _improvement_of(fields: Any) -> ImproveReport:
 
 
 def scaled_jacobian(corners: npt.ArrayLike) -> float:
-    """That of one hexahedron, in [-1, 1]. Raises ArgumentError for another shape.
+    """Computes the scaled Jacobian of one hexahedron, in [-1, 1]. Raises ArgumentError for other
+    shapes.
 
     Args:
         corners: positions in the order of VTK_HEXAHEDRON, float64 (8, 3).
@@ -1238,8 +1255,9 @@ def scaled_jacobian(corners: npt.ArrayLike) -> float:
 
 
 def same_mesh(a: Mesh, b: Mesh) -> bool:
-    """Whether two meshes are the same up to numbers: of vertices, of cells, and of corners of cells as
-    they are turned. Positions are compared bit for bit; tags, names and regions are, too.
+    """Whether two meshes are the same up to the numbering of vertices, of cells, and of corners
+    under rotations of cells. Positions are compared bit for bit; tags, names and regions are
+    compared, too.
 
     >>> mesh = hexhex.extract(hexhex.generate("torus"))
     >>> other = hexhex.Mesh(mesh.points[::-1], len(mesh.points) - 1 - mesh.cells[::-1].astype(int))
@@ -1251,11 +1269,11 @@ def same_mesh(a: Mesh, b: Mesh) -> bool:
 
 def survey(mesh: Mesh | Path, *, format: str | None = None, threads: int | None = None,
            progress: Progress | None = None) -> Survey:
-    """What a mesh adds up to, in memory or in a file of any size: to compare meshes.
+    """Summarizes a mesh in memory or in a file of any size, for comparing meshes.
 
     Args:
         mesh: a Mesh, or a file.
-        format: of the file, whatever its extension is: see formats().
+        format: name of the file's format, whatever its extension: see formats().
 
     >>> map = hexhex.generate("box")
     >>> hexhex.survey(hexhex.extract(map)) == hexhex.survey(hexhex.extract(map, threads=1))

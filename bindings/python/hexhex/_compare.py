@@ -1,4 +1,4 @@
-"""Whether meshes are the same, and how they differ."""
+"""Comparison of meshes: whether they are the same, and how they differ."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[Any]
 
-# The 24 ways to turn a hexahedron: its corners in VTK's order.
+# Generators of the 24 rotations of a hexahedron, as orders of its corners (VTK).
 _QUARTER_X = [3, 2, 6, 7, 0, 1, 5, 4]
 _QUARTER_Z = [1, 2, 3, 0, 5, 6, 7, 4]
 
@@ -30,18 +30,19 @@ def _turns() -> list[list[int]]:
 
 
 def same_arrays(a: Any, b: Any, names: tuple[str, ...]) -> bool:
-    """Whether all these attributes are equal."""
+    """Whether all of these attributes are equal."""
     return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in names)
 
 
 def _ranks(rows: Array) -> Array:
-    """A number for each row, by its place among the different ones in order."""
+    """Returns a number for each row: its rank among the distinct rows in sorted order."""
     ranks: Array = np.unique(rows + 0.0, axis=0, return_inverse=True)[1].reshape(-1)  # -0 is 0
     return ranks
 
 
 def _turned(cells: Array, ranks: Array) -> tuple[Array, Array]:
-    """Cells, each turned so that the ranks of its corners come first in order; and these."""
+    """Rotates each cell such that the sequence of its corners' ranks is minimal; returns cells and
+    ranks."""
     best, least = cells, ranks[cells]
     for turn in _turns()[1:]:
         other = ranks[cells[:, turn]]
@@ -52,9 +53,9 @@ def _turned(cells: Array, ranks: Array) -> tuple[Array, Array]:
 
 
 def canonical(mesh: Mesh) -> Mesh:
-    """The mesh with numbers that follow from positions and cells alone: cells turned and in order of
-    where they are, vertices in order of their first cells, tags in order. Cells in one place stay in
-    the order in which they are given."""
+    """Renumbers a mesh based on positions and cells alone: rotates cells and sorts them by
+    location, orders vertices by their first cells, and sorts tags. Cells at the same location keep
+    their order."""
     from ._types import Features, Mesh
 
     ranks = _ranks(mesh.points)
@@ -81,7 +82,7 @@ def canonical(mesh: Mesh) -> Mesh:
 
 
 def _difference(what: str, a: Array, b: Array) -> list[str]:
-    """A line for arrays of one shape that differ."""
+    """Returns a line that describes how two arrays of the same shape differ."""
     rows = np.flatnonzero((a != b).any(axis=tuple(range(1, a.ndim))))
     if not len(rows):
         return []
@@ -92,7 +93,7 @@ def _difference(what: str, a: Array, b: Array) -> list[str]:
 
 
 def _missing(what: str, a: Array, b: Array, rows: Array) -> list[str]:
-    """A line for rows of a that b lacks. @param rows  what is shown of them"""
+    """Returns a line about rows of a that b lacks. @param rows  what is shown of them"""
     ranks = _ranks(np.concatenate((a, b)))
     lacking = np.flatnonzero(~np.isin(ranks[:len(a)], ranks[len(a):]))
     if not len(lacking):
@@ -115,7 +116,7 @@ def _tags(a: Features, b: Features) -> list[str]:
 
 
 def difference(a: Mesh, b: Mesh) -> str:
-    """Lines that say how b differs from a; none if they are equal."""
+    """Returns lines that describe how b differs from a; empty if they are equal."""
     lines = [f"{name}: {len(getattr(a, name))} here, {len(getattr(b, name))} there"
              for name in ("points", "cells") if len(getattr(a, name)) != len(getattr(b, name))]
     if not lines and np.array_equal(a.cells, b.cells):

@@ -1,4 +1,4 @@
-"""What the package raises: one class per family, each with code and place."""
+"""Exceptions of the package: one class per family, each with a code and a place."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ if TYPE_CHECKING:
 
 
 class HexhexError(Exception):
-    """Base of all errors of the library.
+    """Base class of all errors of the library.
 
     Attributes:
-        code: what went wrong, e.g. ``"FlippedTet"``: docs/errors.md explains each.
-        place: where, e.g. ``"tet 12"``; empty if it is about no place.
+        code: what went wrong, e.g. ``"FlippedTet"``: docs/errors.md explains each code.
+        place: where, e.g. ``"tet 12"``; empty if the error has no place.
         index: number of the tet, vertex, cell, or line of a file; 0 without a place.
         second: the second number of a place (an edge's other vertex, a face's opposite corner).
-        repair: of an error of repair(): what it had done until then, a RepairReport; else None.
+        repair: for errors of repair(): the RepairReport of what was done until then; otherwise
+            None.
     """
 
     def __init__(self, message: str, code: str = "Internal", place: str = "", index: int = 0,
@@ -40,9 +41,9 @@ class ArgumentError(HexhexError, ValueError):
 
 
 class FileError(HexhexError, OSError):
-    """A file cannot be read, understood, or written. ``errno`` is the system's reason, if it has one;
-    then it is also a FileNotFoundError, PermissionError, IsADirectoryError or NotADirectoryError
-    where it fits."""
+    """A file cannot be read, understood, or written. ``errno`` is the system's reason, if there is
+    one; the error is then also a FileNotFoundError, PermissionError, IsADirectoryError or
+    NotADirectoryError, as appropriate."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -69,7 +70,7 @@ _BY_ERRNO: dict[int, type[FileError]] = {
     errno.EISDIR: _IsFolder, errno.ENOTDIR: _NoFolder}
 for _class in (_NotFound, _Forbidden, _IsFolder, _NoFolder):
     _class.__doc__ = FileError.__doc__
-# The library ends its sentences with the system's, or with what to do instead of this one.
+# The library ends its messages with the system's message, or replaces this one by advice.
 _MISSING_FOLDER = "its folder does not exist; make it with "
 _ERRNOS = {os.strerror(number): number for number in errno.errorcode}
 _ERRNOS["it is a folder"] = errno.EISDIR
@@ -80,15 +81,15 @@ class MapError(HexhexError, ValueError):
 
 
 class CancelledError(HexhexError):
-    """The caller asked to stop."""
+    """The caller cancelled the work."""
 
 
 class MemoryExhaustedError(HexhexError, MemoryError):
-    """Memory was exhausted."""
+    """Memory is exhausted."""
 
 
 class InternalError(HexhexError, RuntimeError):
-    """A bug of the library, or a result that failed its verification."""
+    """A bug in the library, or a result that failed verification."""
 
 
 _FAMILIES: dict[str, type[HexhexError]] = {
@@ -105,7 +106,7 @@ _FAMILIES: dict[str, type[HexhexError]] = {
 
 
 def make(code: str, message: str, place: str, index: int, second: int) -> HexhexError:
-    """The error for a code of the library."""
+    """Creates the error for a code of the library."""
     family = _FAMILIES.get(code, MapError)
     number = None
     if family is FileError:
@@ -121,6 +122,6 @@ def make(code: str, message: str, place: str, index: int, second: int) -> Hexhex
 
 
 def from_os_error(code: str, file: str, what: str, error: OSError) -> HexhexError:
-    """The same for a file that Python could not read or write."""
+    """Creates the error for a file that Python could not read or write."""
     reason = os.strerror(error.errno) if error.errno else str(error)
     return make(code, f"{file}: the file {what}: {reason}.", "", 0, 0)

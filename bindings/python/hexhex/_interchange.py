@@ -1,5 +1,5 @@
-"""Meshes and maps of other packages: VTK, PyVista and meshio, which are imported when they are used.
-Arrays have the names of .vtu files (docs/formats.md)."""
+"""Conversion of meshes and maps from and to VTK, PyVista and meshio, which are imported on first
+use. Arrays have the same names as in .vtu files (docs/formats.md)."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 
     Arrays = dict[str, npt.NDArray[Any]]
 
-TETRA, HEXAHEDRON, LAGRANGE_HEXAHEDRON = 10, 12, 72  # numbers of VTK
+TETRA, HEXAHEDRON, LAGRANGE_HEXAHEDRON = 10, 12, 72  # VTK cell types
 
 
 @dataclasses.dataclass(frozen=True)
 class Grid:
-    """Points, cells of one type, and arrays by name; a feature array has rows of vertices and a tag."""
+    """Points, cells of one type, and named arrays; the rows of a feature array are vertices and a
+    tag."""
 
     points: npt.NDArray[np.float64]
     cells: npt.NDArray[Any]
@@ -46,7 +47,7 @@ def _features(features: Features, faces: str, points: int, grid_points: Arrays,
 
 
 def grid_of_mesh(mesh: Mesh, quality: bool) -> Grid:
-    """A mesh with what is known of it."""
+    """Converts a mesh, with all its known data."""
     of_points: Arrays = {}
     of_cells: Arrays = {}
     of_field: Arrays = {}
@@ -62,7 +63,7 @@ def grid_of_mesh(mesh: Mesh, quality: bool) -> Grid:
 
 
 def grid_of_map(map: Map) -> Grid:
-    """A map: its parameters are the cell array igm of 12 components."""
+    """Converts a map; its parameters become the cell array igm with 12 components."""
     of_points: Arrays = {}
     of_cells: Arrays = {"igm": map.igm.reshape(len(map.igm), 12)}
     of_field: Arrays = {}
@@ -73,7 +74,7 @@ def grid_of_map(map: Map) -> Grid:
 
 
 def _known(names: Arrays, name: str, count: int, width: int) -> npt.NDArray[Any] | None:
-    """An array if it is one of integers with so many rows."""
+    """Returns an array if it holds integers in this number of rows."""
     array = names.get(name)
     fits = (array is not None and array.dtype.kind in "iu" and len(array) == count
             and array.shape[1:] == ((width,) if width else ()))
@@ -81,7 +82,7 @@ def _known(names: Arrays, name: str, count: int, width: int) -> npt.NDArray[Any]
 
 
 def _tags_of(grid: Grid, faces: str, corners: int) -> dict[str, Any]:
-    """Arguments of Features."""
+    """Returns arguments for Features."""
     vertex = _known(grid.of_points, "feature_vertex", len(grid.points), 0)
     tagged = None
     if vertex is not None and vertex.any():
@@ -109,7 +110,7 @@ def mesh_of_grid(grid: Grid) -> Mesh:
 
 
 def map_of_grid(grid: Grid, name: str) -> Map:
-    """The inverse of grid_of_map(). The array may also be one of points, with three components."""
+    """The inverse of grid_of_map(). The array may also be a point array with three components."""
     from ._types import Features, Map
 
     igm = grid.of_cells.get(name)
@@ -117,7 +118,7 @@ def map_of_grid(grid: Grid, name: str) -> Map:
     if igm is not None and igm.ndim > 1 and igm[0:1].size in (0, 12):
         igm = igm.reshape(-1, 4, 3)
     elif of_point is not None and of_point.shape[1:] == (3,):
-        igm = of_point[grid.cells]  # one chart
+        igm = of_point[grid.cells]  # a single chart
     else:
         known = ", ".join(sorted({*grid.of_cells, *grid.of_points})) or "none"
         raise ArgumentError(
@@ -129,24 +130,24 @@ def map_of_grid(grid: Grid, name: str) -> Map:
 
 
 def none_of(what: str, where: str) -> ArgumentError:
-    """There are no cells of the type that is wanted."""
+    """The error for a missing type of cells."""
     return ArgumentError(f"The {where} has no {what}.", "InvalidArgument")
 
 
 # meshio ---------------------------------------------------------------------------------------
 
 def to_meshio(grid: Grid, name: str) -> Any:
-    """A meshio.Mesh of cells of one type, with the arrays of points and cells."""
+    """Creates a meshio.Mesh with cells of one type, and the arrays of points and cells."""
     import meshio
 
-    # meshio wants signed indices for some of its writers.
+    # Some writers of meshio require signed indices.
     return meshio.Mesh(grid.points, [(name, grid.cells.astype(np.int64))],
                        point_data=grid.of_points,
                        cell_data={key: [array] for key, array in grid.of_cells.items()})
 
 
 def from_meshio(mesh: Any, name: str, what: str) -> Grid:
-    """All blocks of a type; arrays of cells are those that all of these blocks have."""
+    """Combines all blocks of a type, with the cell arrays of these blocks."""
     blocks = [i for i, block in enumerate(mesh.cells) if block.type == name]
     if not blocks:
         raise none_of(what, "mesh")
@@ -161,7 +162,8 @@ _OWN_SETS = re.compile(r"boundary|hexahedra|patch_\d+|region_m?\d+|curve_m?\d+|s
 
 
 def _tag_in(name: str) -> int | None:
-    """7 of "surface_7", -7 of "surface_m7"; 0 of what stands for none; None of a name."""
+    """7 for "surface_7", -7 for "surface_m7"; 0 for names that mean no tag; None for other
+    names."""
     if not _OWN_SETS.fullmatch(name):
         return None
     word, _, number = name.partition("_")
@@ -169,7 +171,7 @@ def _tag_in(name: str) -> int | None:
 
 
 def meshio_of_mesh(mesh: Mesh, patch_angle: float) -> Any:
-    """The hexahedra, then quads and lines, and groups of them as cell sets."""
+    """Converts the hexahedra, then quads and lines, with their groups as cell sets."""
     import meshio
 
     grid, f = grid_of_mesh(mesh, False), mesh.features
@@ -193,7 +195,7 @@ def meshio_of_mesh(mesh: Mesh, patch_angle: float) -> Any:
 
     for number, (kind, _, values, dimension, word) in enumerate(blocks):
         begin = 0
-        for patch in patches if kind == "quad" else []:  # with the names that files have
+        for patch in patches if kind == "quad" else []:  # with their names in files
             add(patch.name, number, np.arange(begin, begin + len(patch.quads)))
             begin += len(patch.quads)
         for tag in np.unique(values[begin:]):
@@ -209,10 +211,12 @@ def meshio_of_mesh(mesh: Mesh, patch_angle: float) -> Any:
 
 
 def _sets_of(mesh: Any, kind: str, numbers: Any) -> tuple[Any, dict[int, str]] | None:
-    """A tag for each element of a kind by the sets that have it, and names; None without sets.
+    """Returns a tag for each element of a kind, according to the sets that contain it, and names;
+    None without sets.
 
     Args:
-        numbers: of elements, which name sets where they agree in all of a set; or None.
+        numbers: numbers of the elements, which become the tag of a set if all its elements have the
+            same; or None.
     """
     begins, total = {}, 0
     for i, block in enumerate(mesh.cells):
@@ -237,7 +241,7 @@ def _sets_of(mesh: Any, kind: str, numbers: Any) -> tuple[Any, dict[int, str]] |
 
 
 def mesh_of_meshio(mesh: Any) -> Mesh:
-    """The inverse of meshio_of_mesh(), and what other files have."""
+    """The inverse of meshio_of_mesh(), also for files from other programs."""
     from ._types import Features, Mesh
 
     made = mesh_of_grid(from_meshio(mesh, "hexahedron", "hexahedra"))
@@ -265,7 +269,7 @@ def mesh_of_meshio(mesh: Any) -> Mesh:
 # VTK and PyVista ------------------------------------------------------------------------------
 
 def _vtk_array(values: npt.NDArray[Any], name: str = "") -> Any:
-    """A VTK array on the same memory, which it keeps alive."""
+    """Creates a VTK array that shares the memory and keeps it alive."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
 
     array = numpy_to_vtk(np.ascontiguousarray(values), deep=False)
@@ -274,7 +278,7 @@ def _vtk_array(values: npt.NDArray[Any], name: str = "") -> Any:
 
 
 def _vtk_cells(cells: npt.NDArray[Any]) -> Any:
-    """A vtkCellArray. VTK knows indices of 32 bits, with a sign: larger ones are copied."""
+    """Creates a vtkCellArray. VTK supports signed 32-bit indices; larger ones are copied."""
     from vtkmodules.vtkCommonCore import vtkTypeInt32Array, vtkTypeInt64Array
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
@@ -290,13 +294,14 @@ def _vtk_cells(cells: npt.NDArray[Any]) -> Any:
     for values in (ends, corners):
         arrays.append(kind())
         arrays[-1].SetVoidArray(values, len(values), 1)
-        arrays[-1].__dict__["_numpy_reference"] = values  # lives as long
+        arrays[-1].__dict__["_numpy_reference"] = values  # keeps it alive
     array.SetData(*arrays)
     return array
 
 
 def to_vtk(grid: Grid, cell_type: int) -> Any:
-    """A vtkUnstructuredGrid of cells of one type, on the same memory; needs vtk alone."""
+    """Creates a vtkUnstructuredGrid with cells of one type on the same memory; requires only
+    vtk."""
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
@@ -314,10 +319,10 @@ def to_vtk(grid: Grid, cell_type: int) -> Any:
 
 
 def to_pyvista(grid: Grid, cell_type: int) -> Any:
-    """The same as a pyvista.UnstructuredGrid."""
+    """Creates the same as a pyvista.UnstructuredGrid."""
     import pyvista
 
-    from . import _accessor  # noqa: F401  grid.hexhex from now on
+    from . import _accessor  # noqa: F401  enables grid.hexhex
 
     made = pyvista.wrap(to_vtk(grid, cell_type))
     if "scaled_jacobian" in grid.of_cells:
@@ -326,7 +331,7 @@ def to_pyvista(grid: Grid, cell_type: int) -> Any:
 
 
 def from_pyvista(given: Any, cell_type: int, what: str) -> Grid:
-    """The cells of a type of a PyVista or VTK data set."""
+    """Extracts the cells of one type from a PyVista or VTK data set."""
     import pyvista
 
     data = pyvista.wrap(given)
@@ -348,7 +353,8 @@ def from_pyvista(given: Any, cell_type: int, what: str) -> Grid:
 
 
 def vtk_order(p: int) -> npt.NDArray[np.int64]:
-    """Nodes of a cell of order p in the order of VTK_LAGRANGE_HEXAHEDRON (VTK 9.1 and later)."""
+    """Returns the nodes of a cell of order p in VTK_LAGRANGE_HEXAHEDRON order (VTK 9.1 and
+    later)."""
     inner = range(1, p)
     nodes = [(0, 0, 0), (p, 0, 0), (p, p, 0), (0, p, 0), (0, 0, p), (p, 0, p), (p, p, p), (0, p, p)]
     for k in (0, p):
@@ -364,17 +370,18 @@ def vtk_order(p: int) -> npt.NDArray[np.int64]:
 
 
 class _AsGrid:
-    """Stands where PyVista keeps its classes for those of VTK; makes a grid instead."""
+    """Replaces a VTK class in PyVista's table of wrappers; creates a grid instead."""
 
     def __new__(cls, mesh: Any) -> Any:
         return mesh.to_pyvista()
 
 
 class Wrappable:
-    """What pyvista.wrap() takes: it asks for the name of a class of VTK, and looks it up."""
+    """Makes an object acceptable to pyvista.wrap(), which asks for the name of a VTK class and
+    looks it up."""
 
     def GetClassName(self) -> str:
-        """A name that PyVista finds."""
+        """Returns a name that PyVista finds."""
         pyvista = sys.modules.get("pyvista")
         if pyvista is not None:
             pyvista._wrappers.setdefault("hexhex", _AsGrid)

@@ -1,5 +1,4 @@
-"""Maps and meshes in numpy's .npz files: the arrays by the names of their attributes, as numpy.load()
-gives them."""
+"""Maps and meshes in numpy's .npz files: arrays named after the attributes, for numpy.load()."""
 
 from __future__ import annotations
 
@@ -20,12 +19,12 @@ _OF_MESH = ("points", "cells", "generator_tet", "generator_corners", "regions")
 
 
 def is_npz(file: str, format: str | None) -> bool:
-    """Whether it is such a file by its format or else its name."""
+    """Whether the file is an .npz file according to its format or, without one, its name."""
     return format == "npz" if format else file.lower().endswith(".npz")
 
 
 def write(what: object, file: str, compress: bool) -> None:
-    """The file appears complete or not at all. Raises FileError."""
+    """Writes a file, which appears complete or not at all. Raises FileError."""
     if not isinstance(what, (Map, Mesh)):
         raise ArgumentError(f"A {type(what).__name__} cannot be written to .npz files; a Map or Mesh "
                             "can.", "InvalidArgument")
@@ -34,7 +33,7 @@ def write(what: object, file: str, compress: bool) -> None:
     arrays.update((f"feature_{name}", getattr(what.features, name)) for name in _FEATURES)
     arrays["feature_names"] = np.array([(str(dimension), str(tag), name) for dimension, tag, name
                                         in what.features._name_rows()], dtype=str)
-    # What is not known has no rows, and no place in the file.
+    # Unknown arrays have no rows and are omitted from the file.
     always = ("points", "tets", "cells", "igm")
     arrays = {name: array for name, array in arrays.items() if len(array) or name in always}
     save = np.savez_compressed if compress else np.savez
@@ -55,7 +54,7 @@ def write(what: object, file: str, compress: bool) -> None:
 
 
 def read(file: str) -> Map | Mesh:
-    """A map or mesh. Raises FileError."""
+    """Reads a map or mesh. Raises FileError."""
 
     def fail(why: str) -> HexhexError:
         return make("FileSyntax", f"{file}: {why}.", "", 0, 0)
@@ -69,7 +68,7 @@ def read(file: str) -> Map | Mesh:
             arrays = {name: archive[name] for name in archive.files}
     except OSError as error:
         raise from_os_error("FileNotFound", file, "cannot be read", error) from error
-    except Exception as error:  # of numpy, zipfile and zlib, about ten kinds
+    except Exception as error:  # about ten types, from numpy, zipfile and zlib
         raise fail(f"it is no .npz file, or damaged ({error})") from error
     rows = {name: arrays.pop(f"feature_{name}", None) for name in _FEATURES}
     named = arrays.pop("feature_names", np.empty((0, 3), dtype=str))

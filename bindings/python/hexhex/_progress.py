@@ -1,4 +1,4 @@
-"""Progress on a bar of tqdm."""
+"""Progress shown by a tqdm bar."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import Any
 
 
 class TqdmProgress:
-    """A progress function that shows a bar of tqdm, in terminals and notebooks. It closes when all is
-    done, or with the ``with`` statement.
+    """A progress function that shows a tqdm bar, in terminals and notebooks. The bar closes when
+    the work is done, or at the end of a ``with`` statement.
 
     >>> import hexhex
     >>> with hexhex.TqdmProgress(disable=True) as progress:  # other arguments are those of tqdm
@@ -24,7 +24,7 @@ class TqdmProgress:
         self._bar = tqdm(**{"total": 1.0, "bar_format": form, "leave": True, **options})
 
     def __call__(self, stage: str, share: float) -> None:
-        """Shows that so much is done, and the name of what is being done."""
+        """Shows the completed fraction and the name of the current stage."""
         self._bar.set_description(stage, refresh=False)
         step = share - self._bar.n
         if step > 0:
@@ -39,5 +39,5 @@ class TqdmProgress:
         self.close()
 
     def close(self) -> None:
-        """Leaves the bar as it is."""
+        """Closes the bar and leaves it as it is."""
         self._bar.close()

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Ints = npt.NDArray[np.int32]
     Corners = npt.NDArray[np.uint8]
 
-# Faces of a hexahedron in VTK's order, counter-clockwise seen from outside.
+# Faces of a hexahedron (VTK corner numbers), counterclockwise seen from outside.
 _FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [3, 7, 6, 2], [1, 2, 6, 5],
                    [0, 4, 7, 3]])
 
@@ -35,10 +35,10 @@ def _floats(values: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
 
 
 def _igm(values: npt.ArrayLike, points: Floats, tets: Indices) -> Floats:
-    """Parameters per corner; those of vertices are those of all corners there."""
+    """Returns parameters per corner; parameters of a vertex apply to all corners there."""
     array = np.asarray(values)
     if array.ndim == 2 and array.shape[1] == 3 and len(array) == len(points) > 0:
-        # Tets that name no vertex are refused with their numbers later.
+        # Tets with invalid vertices are rejected later, with their numbers.
         array = array[np.minimum(tets, len(points) - 1)]
     elif array.ndim == 2 and array.shape[1] == 3:
         raise ArgumentError(f"The array igm has shape {array.shape}, which is one per vertex; there are "
@@ -55,7 +55,7 @@ def _indices(values: npt.ArrayLike, width: int, name: str) -> Indices:
         raise ArgumentError(f"The array {name} has dtype {array.dtype}; it needs integers.",
                             "InvalidArgument")
     if array.dtype == np.int32 and array.flags.c_contiguous:
-        return array.view(np.uint32)  # negative numbers become ones that are out of range
+        return array.view(np.uint32)  # negative numbers become out of range
     if array.dtype != np.uint32 and array.size and not (
             0 <= int(array.min()) and int(array.max()) < 2**32):
         raise ArgumentError(f"The array {name} has numbers that are no indices.",
@@ -65,7 +65,7 @@ def _indices(values: npt.ArrayLike, width: int, name: str) -> Indices:
 
 def _ints(values: npt.ArrayLike | None, width: int, name: str,
           dtype: type[np.signedinteger[Any]] = np.int32) -> npt.NDArray[Any]:
-    """Integers of shape (n, width), or (n,) for width 0; none for None."""
+    """Returns integers of shape (n, width), or (n,) for width 0; an empty array for None."""
     if values is None:
         return np.empty((0, width) if width else (0,), dtype=dtype)
     array = np.asarray(values)
@@ -87,7 +87,7 @@ def _ints(values: npt.ArrayLike | None, width: int, name: str,
 
 
 def _whole(value: object, name: str) -> int:
-    """A whole number of 32 bits; also 2.0."""
+    """Returns a 32-bit integer; also accepts values such as 2.0."""
     try:
         if isinstance(value, (float, np.floating)) and float(value).is_integer():
             value = int(value)
@@ -102,7 +102,7 @@ def _whole(value: object, name: str) -> int:
 
 def _generators(tet: npt.ArrayLike | None, corners: npt.ArrayLike | None,
                 count: int) -> tuple[Indices, Corners]:
-    """Both, one per point, or none."""
+    """Returns both arrays, with one number per point, or both empty."""
     known = [np.asarray([] if given is None else given) for given in (tet, corners)]
     if any(array.ndim != 1 for array in known) or not (
             len(known[0]) == len(known[1]) and len(known[0]) in (0, count)):
@@ -113,7 +113,7 @@ def _generators(tet: npt.ArrayLike | None, corners: npt.ArrayLike | None,
 
 
 def _kind(corners: Corners) -> Corners:
-    """Number of corners of each set, minus one."""
+    """Returns the number of corners in each set, minus one."""
     bits: Corners = np.unpackbits(corners[:, None], axis=1).sum(axis=1, dtype=np.uint8)
     return bits - np.uint8(1)
 
@@ -123,18 +123,19 @@ def _names_of(handle: Any) -> dict[tuple[int, int], str]:
 
 
 class Features:
-    """Tagged vertices, edges, and triangles of tets or quads of a mesh, as sharp curves and named
-    surfaces. A row has the vertices, in any order but that of quads, and then the tag.
+    """Tagged vertices, edges, and triangles of tets or quads of a mesh, such as sharp curves and
+    named surfaces. A row lists the vertices, in any order except for quads, and then the tag.
 
     Attributes:
         vertices: int32 of shape (k, 2): vertex, tag.
         edges: int32 of shape (k, 3): two vertices, tag.
-        faces: of a Map, int32 of shape (k, 4): three vertices, tag. Of a Mesh, (k, 5).
-        names: what files call tags: (dimension, tag) to name; dimensions are 0 for vertices, 1 for
-            edges, 2 for faces and 3 for regions.
+        faces: for a Map, int32 of shape (k, 4): three vertices, tag; for a Mesh, (k, 5): four
+            vertices, tag.
+        names: names of tags in files, as a dict from (dimension, tag) to name; dimensions are 0 for
+            vertices, 1 for edges, 2 for faces and 3 for regions.
 
     Raises:
-        ArgumentError: shapes or types that do not fit.
+        ArgumentError: for invalid shapes or types.
     """
 
     def __init__(self, vertices: npt.ArrayLike | None = None, edges: npt.ArrayLike | None = None,
@@ -154,7 +155,7 @@ class Features:
         return [(dimension, tag, name) for (dimension, tag), name in self.names.items()]
 
     def __eq__(self, other: object) -> bool:
-        """The same rows in the same order, and names."""
+        """Compares rows, in the same order, and names."""
         return isinstance(other, Features) and self.names == other.names and _compare.same_arrays(
             self, other, ("vertices", "edges", "faces"))
 
@@ -171,25 +172,25 @@ class Map(_interchange.Wrappable):
 
     Attributes:
         points: positions, float64 of shape (n, 3).
-        tets: vertices of each tet from 0, uint32 of shape (m, 4).
+        tets: 0-based vertices of each tet, uint32 of shape (m, 4).
         igm: parameters (u, v, w) of the four corners of each tet, in units of one hexahedron,
-            float64 of shape (m, 4, 3). May be given per vertex, (n, 3), where there is one chart.
+            float64 of shape (m, 4, 3). May be given per vertex, (n, 3), if there is a single chart.
         features: tagged vertices, edges and triangles: Features.
-        regions: a number for each tet, which the cells inherit: int32 (m,); empty without.
-        edge_valences: what is known of singular edges, int32 (k, 3): two vertices, and the number
-            of hexahedra around minus the regular one; empty: computed.
-        rotations: what is known of transitions, int8 (m, 4), numbers as in AlgoHex; empty: computed.
-        answer: of a map that generate() made, what is known of its mesh at scale 1, without
+        regions: a number for each tet, inherited by the cells: int32 (m,); empty if there are none.
+        edge_valences: known singular edges, int32 (k, 3): two vertices, and the number of hexahedra
+            around the edge minus the regular one; empty: computed.
+        rotations: known transitions, int8 (m, 4), numbered as in AlgoHex; empty: computed.
+        answer: for a map from generate(), the known properties of its mesh at scale 1, without
             defects: a dict with cells, vertices, boundary_quads, inner_singular_edges and
             boundary_singular_edges (by valence), euler_characteristic, components,
             boundary_components, tagged_vertices, tagged_edges and tagged_quads (by tag), and
-            regions; or None.
+            regions; otherwise None.
 
-    Arrays of these types in C order are used without a copy, and so is ``tets`` as int32; others
-    are converted. Do not change them while a function works on them.
+    Arrays of these types in C order are used without a copy, as is an int32 array of ``tets``;
+    others are converted. Do not modify them while a function uses them.
 
     Raises:
-        ArgumentError: shapes or types that do not fit.
+        ArgumentError: for invalid shapes or types.
 
     >>> map = hexhex.generate("box", features=True)
     >>> map.features, sorted(set(map.regions.tolist()))
@@ -218,7 +219,7 @@ class Map(_interchange.Wrappable):
                    rotations=handle.rotations)
 
     def _arrays(self) -> _hexhex.MapArrays:
-        """For the library: whatever the attributes are now."""
+        """Returns the current attributes as arrays for the library."""
         f = self.features
         return _hexhex.MapArrays(
             _floats(self.points, (3,), "points"), _indices(self.tets, 4, "tets"),
@@ -228,7 +229,7 @@ class Map(_interchange.Wrappable):
             _ints(self.rotations, 4, "rotations", np.int8), f._name_rows())
 
     def __eq__(self, other: object) -> bool:
-        """The same arrays and tags, bit for bit."""
+        """Compares arrays and tags, bit for bit."""
         return isinstance(other, Map) and self.features == other.features and _compare.same_arrays(
             self, other, ("points", "tets", "igm", "regions", "edge_valences", "rotations"))
 
@@ -236,45 +237,48 @@ class Map(_interchange.Wrappable):
         return f"<hexhex.Map: {len(self.tets)} tets, {len(self.points)} points>"
 
     def _repr_html_(self) -> str:
-        """For notebooks: with a picture of the boundary, on which the integer grid is a checkerboard."""
+        """For notebooks: includes a picture of the boundary, with the integer grid as a
+        checkerboard."""
         return _picture.html(repr(self), lambda: _picture.of_map(self.points, self.tets, self.igm))
 
     @classmethod
     def from_pyvista(cls, grid: Any, array: str = "igm") -> Map:
-        """The tetrahedra of a PyVista (or VTK) data set, with the map in an array of cells with 12
-        components, or of points with 3; tags and regions as to_pyvista() names them.
+        """Converts the tetrahedra of a PyVista (or VTK) data set, with the map in a cell array with
+        12 components or a point array with 3, and tags and regions named as in to_pyvista().
 
         Raises:
-            ArgumentError: without tetrahedra or such an array.
+            ArgumentError: if there are no tetrahedra or no such array.
             ImportError: without pyvista.
         """
         return _interchange.map_of_grid(
             _interchange.from_pyvista(grid, _interchange.TETRA, "tetrahedra"), array)
 
     def to_vtk(self) -> Any:
-        """A ``vtkUnstructuredGrid`` of tetrahedra on the same memory, with the map in the cell array
-        ``igm`` of 12 components, tags and regions as in .vtu files. Raises ImportError without vtk."""
+        """Returns a ``vtkUnstructuredGrid`` of tetrahedra on the same memory, with the map in the
+        cell array ``igm`` with 12 components, and tags and regions as in .vtu files. Raises
+        ImportError without vtk."""
         return _interchange.to_vtk(_interchange.grid_of_map(self), _interchange.TETRA)
 
     def to_pyvista(self) -> Any:
-        """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
+        """Returns the same as a ``pyvista.UnstructuredGrid``. Raises ImportError without
+        pyvista."""
         return _interchange.to_pyvista(_interchange.grid_of_map(self), _interchange.TETRA)
 
     @classmethod
     def from_meshio(cls, mesh: Any, array: str = "igm") -> Map:
-        """The tetrahedra of a ``meshio.Mesh``, with a map as of from_pyvista()."""
+        """Converts the tetrahedra of a ``meshio.Mesh``, with a map as in from_pyvista()."""
         return _interchange.map_of_grid(
             _interchange.from_meshio(mesh, "tetra", "tetrahedra"), array)
 
     def to_meshio(self) -> Any:
-        """A ``meshio.Mesh`` with the map in the cell array ``igm``, regions, and tags of vertices.
-        Raises ImportError without meshio."""
+        """Returns a ``meshio.Mesh`` with the map in the cell array ``igm``, regions, and tags of
+        vertices. Raises ImportError without meshio."""
         return _interchange.to_meshio(_interchange.grid_of_map(self), "tetra")
 
 
 @dataclasses.dataclass(frozen=True)
 class SampleKind:
-    """A kind of map that generate() makes."""
+    """A kind of map for generate()."""
 
     name: str
     description: str
@@ -282,25 +286,25 @@ class SampleKind:
 
 @dataclasses.dataclass(frozen=True)
 class RepairedRegion:
-    """What a repair did to one place."""
+    """Result of a repair at one place."""
 
     place: str  #: a bad tet
-    index: int  #: its number
+    index: int  #: number of that tet
     position: tuple[float, float, float]  #: in space
-    bad_tets: int  #: flipped or flat, before
-    tets: int  #: in the patch that was optimized
+    bad_tets: int  #: flipped or flat before the repair
+    tets: int  #: in the optimized patch
     moved_vertices: int
-    largest_move: float  #: of a coordinate, in parameter units
+    largest_move: float  #: largest change of a coordinate, in parameter units
 
 
 @dataclasses.dataclass(frozen=True)
 class RepairReport:
-    """What a repair did; see docs/defects.md."""
+    """Report of a repair; see docs/defects.md."""
 
     changed: bool  #: False for a valid map
     bad_tets: int
     moved_vertices: int
-    largest_move: float  #: of a coordinate, in parameter units
+    largest_move: float  #: largest change of a coordinate, in parameter units
     split_edges: int
     added_tets: int
     rounded_vertices: int
@@ -314,75 +318,75 @@ class RepairReport:
 
 @dataclasses.dataclass(frozen=True)
 class SeamlessReport:
-    """Whether a map is seamless: charts differ by rotations and translations, and singular edges and
-    the boundary are aligned with axes."""
+    """Whether a map is seamless: charts differ by rotations and translations, and singular edges
+    and the boundary are axis-aligned."""
 
-    kind: str  #: "seamless", "almost seamless" (up to a hundredth of its size), or "neither"
+    kind: str  #: "seamless", "almost seamless" (to within a hundredth of its extent), or "neither"
     displacement: float  #: of the nearest seamless map, in parameter units; 0 if there is none
-    cells: float  #: volume of that in unit cubes
-    problem: str  #: why it is neither; empty where can_quantize() is False
+    cells: float  #: its volume, in unit cubes
+    problem: str  #: why it is "neither"; empty if can_quantize() is False
 
 
 @dataclasses.dataclass(frozen=True)
 class QuantizeReport:
-    """What a quantization did. Distortion is the scaled Jacobian of the map, at most 1."""
+    """Report of a quantization. Distortion is the scaled Jacobian of the map, at most 1."""
 
     cells_wanted: float
     cells: int
-    scale: float  #: of the seamless map's parameters, finally
-    displacement: float  #: largest change of a parameter that made the map seamless
-    blocks: int  #: of the motorcycle complex
+    scale: float  #: final scale of the seamless map's parameters
+    displacement: float  #: largest change of a parameter needed to make the map seamless
+    blocks: int  #: in the motorcycle complex
     arcs: int
     shortest_arc: int  #: in hexahedra
     longest_arc: int
-    integers_by: str  #: "HiGHS", or "rounding" where it is missing
-    attempts: int  #: numbers of cells that were tried
-    split_edges: int  #: each adds a vertex to the tet mesh
-    added_tets: int  #: by that
+    integers_by: str  #: "HiGHS", or "rounding" if HiGHS is not available
+    attempts: int  #: number of target cell counts tried
+    split_edges: int  #: each split adds a vertex to the tet mesh
+    added_tets: int  #: by these splits
     worst_before: float
     median_before: float
     worst_after: float
     median_after: float
     stages: list[tuple[str, float]] = dataclasses.field(default_factory=list)
-    #: name and seconds; of a MeshedPart, its own list has them
+    #: (name, seconds); for a MeshedPart, they are in its own list
 
 
 @dataclasses.dataclass(frozen=True)
 class ShapeReport:
-    """How map_from_tets() made a map."""
+    """Report on the computation of a map by map_from_tets()."""
 
     method: str  #: "frames" or "polycube"
-    rotation: Floats  #: rows: the axes in space that became those of the map, float64 (3, 3)
-    charts: int  #: of a polycube, as the next eight: its faces
-    corners: int  #: where three charts or more meet
-    bad_loops: int  #: borders of charts with fewer than four corners
-    bad_corners: int  #: of more than three charts, or without room for their faces
-    opposite_edges: int  #: edges of the mesh between opposite labels
-    turning_points: int  #: where edges of the polycube would run back
+    rotation: Floats  #: rows: the axes in space that became the axes of the map, float64 (3, 3)
+    charts: int  #: faces of the polycube; this and the next eight are for polycubes only
+    corners: int  #: where at least three charts meet
+    bad_loops: int  #: chart borders with fewer than four corners
+    bad_corners: int  #: corners of more than three charts, or without room for their faces
+    opposite_edges: int  #: mesh edges between opposite labels
+    turning_points: int  #: where edges of the polycube would reverse direction
     wrong_turns: int  #: charts whose right angles do not add up
     deviation: float  #: mean of 1 minus the cosine between a triangle's normal and its label
-    label_moves: int  #: random changes that were tried
+    label_moves: int  #: random changes tried
     added_tets: int  #: by splits
-    feature_edges: int  #: of the tets, beyond the angle
-    tagged_edges: int  #: of these: edges of the map
-    inner_faces: int  #: triangles inside, with a tag or between regions
-    aligned_faces: int  #: of these: planes of the map, which the mesh follows
-    worst: float  #: distortion of the map as scaled Jacobian, at most 1
+    feature_edges: int  #: edges of the tets above the angle
+    tagged_edges: int  #: those of them that are edges of the map
+    inner_faces: int  #: interior triangles with a tag or between regions
+    aligned_faces: int  #: those of them that lie in planes of the map, which the mesh follows
+    worst: float  #: distortion of the map as a scaled Jacobian, at most 1
     median: float
 
 
 @dataclasses.dataclass(frozen=True)
 class Arcs:
-    """Hex edges as polylines: arc e has the inner points point_begin[e] to point_begin[e + 1] - 1,
-    and one segment more than inner points, from number point_begin[e] + e on."""
+    """Hex edges as polylines. Arc e has inner points point_begin[e] to point_begin[e + 1] - 1 and
+    one segment more than inner points, numbered from point_begin[e] + e."""
 
-    ends: Indices  #: hex vertices at the ends of each arc, uint32 (e, 2)
+    ends: Indices  #: hex vertices at both ends of each arc, uint32 (e, 2)
     point_begin: npt.NDArray[np.uint64]  #: uint64 (e + 1,)
-    points: Floats  #: of inner points, float64 (n, 3)
-    parameters: Floats  #: places of inner points along their arcs, in (0, 1), float64 (n,)
-    generator_tet: Indices  #: the simplex that an inner point crosses, as in Mesh, uint32 (n,)
+    points: Floats  #: positions of inner points, float64 (n, 3)
+    parameters: Floats  #: positions of inner points along their arcs, in (0, 1), float64 (n,)
+    generator_tet: Indices  #: simplex crossed at an inner point, as in Mesh, uint32 (n,)
     generator_corners: Corners  #: uint8 (n,)
-    segment_tet: Indices  #: the simplex that a segment lies in, uint32 (n + e,)
+    segment_tet: Indices  #: simplex that contains a segment, uint32 (n + e,)
     segment_corners: Corners  #: uint8 (n + e,)
     _handle: Any = dataclasses.field(repr=False, compare=False)
 
@@ -402,19 +406,19 @@ class Arcs:
 
 @dataclasses.dataclass(frozen=True)
 class Patches:
-    """Hex faces as planar polygons. Points are numbered: hex vertices, inner points of arcs, inner
-    points of patches."""
+    """Hex faces as planar polygons. Points are numbered in the order hex vertices, inner points of
+    arcs, inner points of patches."""
 
     vertices: Indices  #: of each face, uint32 (f, 4)
     arcs: Indices  #: of each face, from vertex i to i + 1, uint32 (f, 4)
-    reversed_arcs: Corners  #: bit i: that arc runs the other way, uint8 (f,)
+    reversed_arcs: Corners  #: bit i: that arc runs in the other direction, uint8 (f,)
     polygon_begin: npt.NDArray[np.uint64]  #: polygons of each face, uint64 (f + 1,)
     corner_begin: npt.NDArray[np.uint64]  #: corners of each polygon, uint64 (p + 1,)
-    polygon_tet: Indices  #: the simplex whose interior a polygon lies in, uint32 (p,)
+    polygon_tet: Indices  #: simplex whose interior contains a polygon, uint32 (p,)
     polygon_corners: Corners  #: uint8 (p,)
-    corners: Indices  #: points, counter-clockwise in (u, v), uint32 (c,)
+    corners: Indices  #: numbers of points, counterclockwise in (u, v), uint32 (c,)
     parameters: Floats  #: (u, v) of each corner in its face, in [0, 1], float64 (c, 2)
-    points: Floats  #: of inner points of faces, float64 (n, 3)
+    points: Floats  #: positions of inner points of faces, float64 (n, 3)
     generator_tet: Indices  #: uint32 (n,)
     generator_corners: Corners  #: uint8 (n,)
     _handle: Any = dataclasses.field(repr=False, compare=False)
@@ -435,19 +439,19 @@ class Patches:
 
 
 class LagrangeMesh(_interchange.Wrappable):
-    """Hexahedra of an order p: ``mesh.curved`` of ``extract(..., order=p)``, from read_curved(), or of
-    arrays of one's own, which are copied.
+    """Hexahedra of order p: ``mesh.curved`` from ``extract(..., order=p)``, the result of
+    read_curved(), or a mesh made from copies of your own arrays.
 
     Args:
         order: p, 1 to 9.
         points: positions of nodes, float64 (n, 3).
-        nodes: of each cell, integers (m, (p + 1)**3) in the order below.
-        vertex_count: the first so many nodes are the hex vertices.
-        generator_tet, generator_corners, features, regions: as of a Mesh; optional.
+        nodes: nodes of each cell, integers (m, (p + 1)**3), in the order below.
+        vertex_count: number of nodes that are hex vertices; these come first.
+        generator_tet, generator_corners, features, regions: as in Mesh; optional.
 
     Raises:
-        ArgumentError: shapes or types that do not fit. Numbers of nodes that do not exist are one
-            where the mesh is used.
+        ArgumentError: for invalid shapes or types. Functions that use the mesh raise it for nodes
+            that do not exist.
 
     >>> curved = hexhex.extract(hexhex.generate("box", cells=1), order=2).curved
     >>> hexhex.LagrangeMesh(2, curved.points, curved.nodes, curved.vertex_count)
@@ -479,7 +483,7 @@ class LagrangeMesh(_interchange.Wrappable):
         return mesh
 
     def __eq__(self, other: object) -> bool:
-        """The same nodes, cells, tags and regions, bit for bit."""
+        """Compares nodes, cells, tags and regions, bit for bit."""
         return isinstance(other, LagrangeMesh) and self.features == other.features and (
             _compare.same_arrays(self, other, ("order", "vertex_count", "points", "nodes", "regions")))
 
@@ -487,12 +491,12 @@ class LagrangeMesh(_interchange.Wrappable):
         return f"<hexhex.LagrangeMesh: {len(self.nodes)} cells of order {self.order}>"
 
     def _repr_html_(self) -> str:
-        """For notebooks: with a picture of the straight mesh."""
+        """For notebooks: includes a picture of the straight mesh."""
         return _picture.html(repr(self), lambda: _picture.of_mesh(self.straight()))
 
     @property
     def order(self) -> int:
-        """p, 1 to 9."""
+        """The order p, 1 to 9."""
         return self._handle.order
 
     @property
@@ -513,27 +517,27 @@ class LagrangeMesh(_interchange.Wrappable):
 
     @property
     def generator_tet(self) -> Indices:
-        """As of a Mesh, per node, uint32 (n,)."""
+        """As in Mesh, per node, uint32 (n,)."""
         return self._handle.generator_tet
 
     @property
     def generator_corners(self) -> Corners:
-        """As of a Mesh, per node, uint8 (n,)."""
+        """As in Mesh, per node, uint8 (n,)."""
         return self._handle.generator_corners
 
     @property
     def features(self) -> Features:
-        """Of the straight mesh, as of a Mesh."""
+        """Features of the straight mesh, as in Mesh."""
         return Features._of_mesh(self._handle)
 
     @property
     def regions(self) -> Ints:
-        """Per cell its region, int32 (m,); empty if unknown."""
+        """Region of each cell, int32 (m,); empty if unknown."""
         return self._handle.regions
 
     def straight(self) -> Mesh:
-        """The straight mesh between the corners, with generators, tags and regions; a copy. Raises
-        ArgumentError for nodes that do not exist."""
+        """Returns a copy of the straight mesh of the corners, with generators, tags and regions.
+        Raises ArgumentError for nodes that do not exist."""
         return Mesh._from_handle(self._handle.straight())
 
     def _grid(self) -> _interchange.Grid:
@@ -543,28 +547,31 @@ class LagrangeMesh(_interchange.Wrappable):
                                  kind, regions, {})
 
     def to_meshio(self) -> Any:
-        """A ``meshio.Mesh`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without meshio."""
+        """Returns a ``meshio.Mesh`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without
+        meshio."""
         return _interchange.to_meshio(self._grid(), "VTK_LAGRANGE_HEXAHEDRON")
 
     def to_vtk(self) -> Any:
-        """A ``vtkUnstructuredGrid`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without vtk."""
+        """Returns a ``vtkUnstructuredGrid`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without
+        vtk."""
         return _interchange.to_vtk(self._grid(), _interchange.LAGRANGE_HEXAHEDRON)
 
     def to_pyvista(self) -> Any:
-        """The same as a ``pyvista.UnstructuredGrid``. Raises ImportError without pyvista."""
+        """Returns the same as a ``pyvista.UnstructuredGrid``. Raises ImportError without
+        pyvista."""
         return _interchange.to_pyvista(self._grid(), _interchange.LAGRANGE_HEXAHEDRON)
 
 
 @dataclasses.dataclass(frozen=True)
 class BoundaryPatch:
-    """A part of the boundary with the name that files give it."""
+    """A part of the boundary with its name in files."""
 
-    name: str  #: "inlet", "surface_7" for a tag 7, "patch_1", or "boundary"
-    tag: int  #: of its quads; 0: none
+    name: str  #: "inlet", "surface_7" for tag 7, "patch_1", or "boundary"
+    tag: int  #: tag of its quads; 0: none
     quads: Indices  #: facing outwards, uint32 (k, 4)
     area: float
     centre: tuple[float, ...]
-    normal: tuple[float, ...]  #: mean of unit normals by area: of length 1 where flat, 0 if closed
+    normal: tuple[float, ...]  #: area-weighted mean of unit normals: length 1 if flat, 0 if closed
 
     def __repr__(self) -> str:
         return f"<hexhex.BoundaryPatch: {self.name}, {len(self.quads)} quads, area {self.area:.4g}>"
@@ -572,35 +579,36 @@ class BoundaryPatch:
 
 @dataclasses.dataclass(frozen=True)
 class SingularCurve:
-    """A chain of singular edges of one valence; closed if its last vertex is the first."""
+    """A chain of singular edges of the same valence; closed if its last vertex is the first."""
 
     vertices: Indices  #: uint32 (k,)
     valence: int  #: number of cells around each edge
-    boundary: bool  #: all edges are on the boundary, or none
+    boundary: bool  #: whether its edges are on the boundary; either all are or none
 
 
 @dataclasses.dataclass(frozen=True)
 class IrregularVertices:
-    """Vertices with the same singular edges."""
+    """Vertices with the same configuration of singular edges."""
 
     boundary: bool  #: whether they are on the boundary
-    inner_valences: list[int]  #: of their singular edges inside, ascending
-    boundary_valences: list[int]  #: and on the boundary
+    inner_valences: list[int]  #: of their interior singular edges, ascending
+    boundary_valences: list[int]  #: of their boundary singular edges, ascending
     vertices: Indices  #: ascending, uint32 (k,)
 
 
 @dataclasses.dataclass(frozen=True)
 class BaseComplex:
-    """What a mesh is made of; numbers are in order of first cells. Edges are in one sheet if they are
-    across from each other in a face, faces in one chord if they are so in a cell."""
+    """Decomposition of a mesh into sheets, chords and blocks, numbered in order of their first
+    cells. Opposite edges of a face belong to the same sheet, opposite faces of a cell to the same
+    chord."""
 
-    cell_sheets: Indices  #: of the edges from corner 0 to 1, 3 and 4, uint32 (m, 3)
-    sheets: int  #: how many
-    cell_chords: Indices  #: that pass a cell along these axes, uint32 (m, 3)
-    chords: int
+    cell_sheets: Indices  #: sheets of the edges from corner 0 to 1, 3 and 4, uint32 (m, 3)
+    sheets: int  #: number of sheets
+    cell_chords: Indices  #: chords through a cell along these axes, uint32 (m, 3)
+    chords: int  #: number of chords
     cell_blocks: Indices  #: uint32 (m,)
     block_sizes: npt.NDArray[np.uint64]  #: cells along the axes of the first cell, uint64 (b, 3);
-    #: 0, 0, 0 of a block that is no box
+    #: 0, 0, 0 for a block that is not a box
     block_cells: npt.NDArray[np.uint64]  #: uint64 (b,)
     curves: list[SingularCurve]
     irregular: list[IrregularVertices]
@@ -613,22 +621,23 @@ class BaseComplex:
 class Mesh(_interchange.Wrappable):
     """A hexahedral mesh.
 
-    ``Mesh(points, cells)`` copies arrays of one's own: float64 (n, 3) and integers (m, 8), and if
-    given, generators (uint32 (n,) and uint8 (n,)), tags and regions (int32 (m,)).
+    ``Mesh(points, cells)`` copies your own arrays: float64 (n, 3) and integers (m, 8), and
+    optionally generators (uint32 (n,) and uint8 (n,)), tags and regions (int32 (m,)).
 
     Attributes:
-        statistics: of the extraction, e.g. ``seconds``, and ``stages``, a list of (name, seconds);
-            empty for other meshes.
-        repair: what a repair of the map did: RepairReport, or None.
-        repaired_map: the map that this is the mesh of, if it had to be repaired; or None.
-        quantization: what a quantization of the map did: QuantizeReport, or None.
-        quantized_map: the integer-grid map that it made; or None.
-        arcs: the exact shapes of edges: Arcs, if asked for; or None.
-        patches: the exact shapes of faces: Patches, if asked for; or None.
-        curved: the cells of higher order: LagrangeMesh, if asked for; or None.
+        statistics: statistics of the extraction, e.g. ``seconds``, and ``stages``, a list of
+            (name, seconds); empty for other meshes.
+        repair: RepairReport, if the map was repaired; otherwise None.
+        repaired_map: the repaired map, from which the mesh was extracted, if the map needed repair;
+            otherwise None.
+        quantization: QuantizeReport, if the map was quantized; otherwise None.
+        quantized_map: the resulting integer-grid map; otherwise None.
+        arcs: the exact shapes of edges, if requested: Arcs; otherwise None.
+        patches: the exact shapes of faces, if requested: Patches; otherwise None.
+        curved: the higher-order cells, if requested: LagrangeMesh; otherwise None.
 
     Raises:
-        ArgumentError: shapes or types that do not fit.
+        ArgumentError: for invalid shapes or types.
     """
 
     def __init__(self, points: npt.ArrayLike, cells: npt.ArrayLike, *,
@@ -664,14 +673,14 @@ class Mesh(_interchange.Wrappable):
         return mesh
 
     def __eq__(self, other: object) -> bool:
-        """The same points, cells, tags, names and regions, in the same order and bit for bit, wherever
-        they come from. hexhex.same_mesh() compares whatever the numbers are."""
+        """Compares points, cells, tags, names and regions, in the same order and bit for bit,
+        whatever their origin. hexhex.same_mesh() ignores differences in numbering."""
         return isinstance(other, Mesh) and self.features == other.features and _compare.same_arrays(
             self, other, ("points", "cells", "regions"))
 
     def diff(self, other: Mesh) -> str:
-        """How another mesh differs: a few lines with counts and the first differences; empty for one
-        that is equal.
+        """Describes how another mesh differs, in a few lines with counts and the first differences;
+        empty if it is equal.
 
         >>> mesh = hexhex.extract(hexhex.generate("box"))
         >>> moved = hexhex.Mesh(mesh.points, mesh.cells)
@@ -685,12 +694,12 @@ class Mesh(_interchange.Wrappable):
         return f"<hexhex.Mesh: {len(self.cells)} cells, {len(self.points)} points>"
 
     def _repr_html_(self) -> str:
-        """For notebooks: with a picture."""
+        """For notebooks: includes a picture."""
         return _picture.html(repr(self), lambda: _picture.of_mesh(self))
 
     @property
     def points(self) -> Floats:
-        """Positions, float64 of shape (n, 3). A view: what is written here is in the mesh."""
+        """Positions, float64 of shape (n, 3). A view: writing to it changes the mesh."""
         return self._handle.points
 
     @property
@@ -700,34 +709,36 @@ class Mesh(_interchange.Wrappable):
 
     @property
     def generator_tet(self) -> Indices:
-        """Per vertex a tet that contains its generator, uint32 of shape (n,); empty if unknown."""
+        """Per vertex: a tet that contains its generator, uint32 of shape (n,); empty if unknown."""
         return self._handle.generator_tet
 
     @property
     def generator_corners(self) -> npt.NDArray[np.uint8]:
-        """Per vertex its generator by corners of that tet: bit i for corner i, uint8 (n,)."""
+        """Per vertex: its generator as corners of that tet, bit i for corner i, uint8 (n,)."""
         return self._handle.generator_corners
 
     @property
     def generator_kind(self) -> npt.NDArray[np.uint8]:
-        """Per vertex the dimension of its generator: 0 vertex, 1 edge, 2 face, 3 tet; uint8 (n,)."""
+        """Per vertex: dimension of its generator, 0 vertex, 1 edge, 2 face, 3 tet; uint8 (n,)."""
         return _kind(self.generator_corners)
 
     @property
     def features(self) -> Features:
-        """What of the mesh is tagged, with quads as faces; views."""
+        """Tagged elements of the mesh, with quads as faces; views."""
         return Features._of_mesh(self._handle)
 
     @property
     def regions(self) -> Ints:
-        """Per cell its region, int32 (m,); empty if unknown."""
+        """Region of each cell, int32 (m,); empty if unknown."""
         return self._handle.regions
 
     def boundary_patches(self, angle: float = 40) -> list[BoundaryPatch]:
-        """The boundary by name, as write() groups it: by tags, or else its smooth patches.
+        """Returns the named parts of the boundary, as grouped by write(): by tag, or else its
+        smooth patches.
 
         Args:
-            angle: in degrees: where a boundary without tags turns by more, a patch ends; 0: one.
+            angle: in degrees: patches of an untagged boundary end where it turns by more; 0: a
+                single one.
 
         >>> patches = hexhex.extract(hexhex.generate("box")).boundary_patches()
         >>> [(p.name, len(p.quads), p.area, p.normal) for p in patches][0]
@@ -738,9 +749,9 @@ class Mesh(_interchange.Wrappable):
                 in _hexhex.named_patches(self._handle, angle, 0)]
 
     def base_complex(self) -> BaseComplex:
-        """Sheets, chords, blocks between the walls that go straight on from singular edges, singular
-        curves, and irregular vertices by type. Raises ArgumentError for cells that do not fit
-        together.
+        """Finds sheets, chords, blocks between the walls that extend straight from singular edges,
+        singular curves, and irregular vertices by type. Raises ArgumentError for cells that do not
+        fit together.
 
         >>> complex = hexhex.extract(hexhex.generate("sphere")).base_complex()
         >>> complex.sheets, complex.chords, complex.block_sizes.tolist()[0], len(complex.curves)
@@ -753,13 +764,14 @@ class Mesh(_interchange.Wrappable):
                            [IrregularVertices(*kind) for kind in types])
 
     def structure(self) -> dict[str, int]:
-        """Numbers of faces, edges, boundary_quads, components, boundary_components, and the
-        euler_characteristic."""
+        """Returns the numbers of faces, edges, boundary_quads, components and boundary_components,
+        and the euler_characteristic."""
         counts: dict[str, int] = _hexhex.structure(self._handle, 0, None)[1]
         return counts
 
     def boundary_quads(self) -> Indices:
-        """Quads on the boundary, counter-clockwise seen from outside, uint32 of shape (k, 4)."""
+        """Returns the quads on the boundary, counterclockwise seen from outside, uint32 of shape
+        (k, 4)."""
         quads = self.cells[:, _FACES].reshape(-1, 4)
         _, first, count = np.unique(np.sort(quads, axis=1), axis=0, return_index=True,
                                     return_counts=True)
@@ -767,7 +779,7 @@ class Mesh(_interchange.Wrappable):
         return boundary
 
     def singular_edges(self) -> tuple[Indices, npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-        """Edges with another number of cells around them than 4 (inside) or 2 (on the boundary).
+        """Finds edges whose number of cells is not 4 (inside) or 2 (on the boundary).
 
         Returns:
             Vertices of each edge, uint32 of shape (k, 2), the smaller first; the number of cells
@@ -782,23 +794,24 @@ class Mesh(_interchange.Wrappable):
 
     @classmethod
     def from_pyvista(cls, grid: Any) -> Mesh:
-        """The hexahedra of a PyVista (or VTK) data set, with generators, tags and regions as
-        to_pyvista() names them. Raises ArgumentError without hexahedra, ImportError without pyvista."""
+        """Converts the hexahedra of a PyVista (or VTK) data set, with generators, tags and regions
+        named as in to_pyvista(). Raises ArgumentError without hexahedra, ImportError without
+        pyvista."""
         return _interchange.mesh_of_grid(
             _interchange.from_pyvista(grid, _interchange.HEXAHEDRON, "hexahedra"))
 
     @classmethod
     def from_meshio(cls, mesh: Any) -> Mesh:
-        """The hexahedra of a ``meshio.Mesh``, likewise. Its lines and quads are tagged, and its cells in
-        regions, by cell sets with their names, or else by the arrays ``tag`` and ``region``,
-        ``gmsh:physical`` or ``medit:ref``. Sets called ``boundary``, ``patch_1`` and so on are no
-        tags. Raises ArgumentError without hexahedra."""
+        """Converts the hexahedra of a ``meshio.Mesh``. Tags of its lines and quads, and regions of
+        its cells, come from cell sets, with their names, or else from the arrays ``tag`` and
+        ``region``, ``gmsh:physical`` or ``medit:ref``. Sets called ``boundary``, ``patch_1`` and
+        the like are not tags. Raises ArgumentError without hexahedra."""
         return _interchange.mesh_of_meshio(mesh)
 
     def to_meshio(self, patch_angle: float = 40) -> Any:
-        """The mesh as a ``meshio.Mesh``: hexahedra with the array ``region``; quads of the boundary,
-        tagged quads inside, and tagged edges as lines, with the array ``tag``. All groups that
-        write() makes are cell sets by their names. Generators and tags of vertices are arrays.
+        """Returns a ``meshio.Mesh`` of the hexahedra with the array ``region``; boundary quads,
+        tagged interior quads, and tagged edges as lines, with the array ``tag``. All groups made by
+        write() become cell sets with their names. Generators and tags of vertices are arrays.
         Raises ImportError without meshio.
 
         Args:
@@ -807,10 +820,10 @@ class Mesh(_interchange.Wrappable):
         return _interchange.meshio_of_mesh(self, patch_angle)
 
     def to_vtk(self, *, quality: bool = True) -> Any:
-        """The mesh as a ``vtkUnstructuredGrid`` on the same memory: what is written to points there
-        is in the mesh. Its arrays are those of .vtu files, if they are known: of points
-        ``generator_kind``, ``generator_tet``, ``generator_corners`` and ``feature_vertex``, of
-        cells ``scaled_jacobian`` and ``region``, of the field ``feature_edges`` and
+        """Returns a ``vtkUnstructuredGrid`` on the same memory: writing to its points changes the
+        mesh. It has the same arrays as .vtu files, if known: the point arrays ``generator_kind``,
+        ``generator_tet``, ``generator_corners`` and ``feature_vertex``, the cell arrays
+        ``scaled_jacobian`` and ``region``, and the field arrays ``feature_edges`` and
         ``feature_quads``. Raises ImportError without vtk.
 
         Args:
@@ -820,8 +833,8 @@ class Mesh(_interchange.Wrappable):
                                    _interchange.HEXAHEDRON)
 
     def to_pyvista(self, *, quality: bool = True) -> Any:
-        """The same as a ``pyvista.UnstructuredGrid``; ``pyvista.wrap(mesh)`` is one, too. Raises
-        ImportError without pyvista."""
+        """Returns the same as a ``pyvista.UnstructuredGrid``, as does ``pyvista.wrap(mesh)``.
+        Raises ImportError without pyvista."""
         return _interchange.to_pyvista(_interchange.grid_of_mesh(self, quality),
                                        _interchange.HEXAHEDRON)
 
@@ -830,19 +843,19 @@ class Mesh(_interchange.Wrappable):
 class Hole:
     """A place where cells are missing."""
 
-    tet: int  #: the smallest
+    tet: int  #: the smallest tet of the hole
     tets: int
     invalid_tets: int
     position: tuple[float, float, float]  #: in space
-    missing_cells: float  #: how many cells a valid map would have there
+    missing_cells: float  #: expected number of cells there in a valid map
 
 
 @dataclasses.dataclass(frozen=True)
 class PartialMesh:
-    """What could be extracted of a map that is not valid."""
+    """Result of a partial extraction from an invalid map."""
 
     mesh: Mesh  #: its regions are 1 for cells at holes and 0 for others
-    holes: list[Hole]  #: most missing cells first
+    holes: list[Hole]  #: in descending order of missing cells
     invalid_tets: int
     missing_cells: float
     face_conflicts: int
@@ -854,11 +867,11 @@ class PartialMesh:
 
 @dataclasses.dataclass(frozen=True)
 class Survey:
-    """What a mesh adds up to; equal for meshes that are equal, bit for bit."""
+    """Summary of a mesh; equal for meshes that are equal, bit for bit."""
 
     points: int
     cells: int
-    lower: tuple[float, float, float]  #: of the bounding box
+    lower: tuple[float, float, float]  #: corners of the bounding box
     upper: tuple[float, float, float]
     point_checksum: int
     cell_checksum: int
@@ -866,10 +879,10 @@ class Survey:
 
 @dataclasses.dataclass(frozen=True)
 class FileFormat:
-    """A file format, and what this build does with it."""
+    """A file format and its support in this build."""
 
     name: str  #: for ``format=``
-    extension: str  #: with the dot; empty: has to be asked for by name
+    extension: str  #: including the dot; empty: the format must be requested by name
     description: str
     reads_maps: bool
     writes_maps: bool
@@ -882,27 +895,27 @@ class FileFormat:
 
 @dataclasses.dataclass(frozen=True)
 class Defect:
-    """One violated condition of a map."""
+    """A violated condition of a map."""
 
     code: str  #: as in docs/errors.md
     sentence: str  #: what is wrong and what to do
-    count: int  #: all occurrences
-    worst: list[tuple[str, int, int, float]]  #: place, its two numbers, and by how much; worst first
+    count: int  #: number of all occurrences
+    worst: list[tuple[str, int, int, float]]  #: place, its two numbers, and the amount; worst first
 
 
 @dataclasses.dataclass(frozen=True)
 class MapStructure:
-    """Where the charts of a map differ, and where it is singular. A transition takes parameters u in
-    the chart of the first tet to R u + t in that of the second."""
+    """Where the charts of a map change, and where it is singular. A transition maps parameters u in
+    the chart of the first tet to R u + t in the chart of the second."""
 
-    jump_tets: Indices  #: of each inner face with different charts, ascending, uint32 (j, 2)
+    jump_tets: Indices  #: tets of each inner face with different charts, ascending, uint32 (j, 2)
     jump_vertices: Indices  #: of that face, in the order of the first tet's corners, uint32 (j, 3)
     rotations: npt.NDArray[np.int8]  #: R, int8 (j, 3, 3)
     translations: Floats  #: t, integers, float64 (j, 3)
     edges: Indices  #: vertices of each singular edge of the tets, ascending, uint32 (k, 2)
-    valences: Ints  #: number of hexahedra around each, int32 (k,)
-    boundary: npt.NDArray[np.bool_]  #: whether it is on the boundary, bool (k,)
-    defects: list[Defect]  #: as of check(); what one keeps from being found is left out above
+    valences: Ints  #: number of hexahedra around each edge, int32 (k,)
+    boundary: npt.NDArray[np.bool_]  #: whether the edge is on the boundary, bool (k,)
+    defects: list[Defect]  #: as from check(); what they hide is missing from the arrays above
 
     def __repr__(self) -> str:
         return (f"<hexhex.MapStructure: {len(self.jump_tets)} faces between charts, "
@@ -911,11 +924,11 @@ class MapStructure:
 
 @dataclasses.dataclass(frozen=True)
 class CheckReport:
-    """What a map is, what its mesh will be, and what is wrong with it."""
+    """Properties of a map, the mesh to expect, and the defects of the map."""
 
     counts: dict[str, Any]  #: points, tets, edges, singular edges by valence, ...
     defects: list[Defect]  #: empty for a valid map
-    expected: dict[str, Any] | None  #: what the mesh will have, if the map is valid
+    expected: dict[str, Any] | None  #: properties of the mesh, if the map is valid
 
     @property
     def valid(self) -> bool:
@@ -941,7 +954,7 @@ class VerifyItem:
 
 @dataclasses.dataclass(frozen=True)
 class VerifyReport:
-    """Whether a mesh agrees with its map. True as a condition if all checks passed."""
+    """Result of comparing a mesh with its map. True as a condition if all checks passed."""
 
     items: list[VerifyItem]
 
@@ -962,18 +975,18 @@ class VerifyReport:
 
 @dataclasses.dataclass(frozen=True)
 class RefutedCell:
-    """A cell that is not positive, and where it is least."""
+    """A cell that is not positive, and where its smallest value was found."""
 
     cell: int
     place: tuple[float, float, float]  #: in the cell: (u, v, w) in [0, 1]^3
     position: tuple[float, float, float]  #: in space
-    scaled_jacobian: float  #: there; not positive
+    scaled_jacobian: float  #: the value there; not positive
 
 
 @dataclasses.dataclass(frozen=True)
 class Quality:
-    """Scaled Jacobians of a mesh, and whether cells are valid: the determinant of the Jacobian
-    matrix is proven to be positive everywhere in the cell, not only at corners."""
+    """Scaled Jacobians of a mesh, and validity of its cells: a cell is valid if its Jacobian
+    determinant is proven to be positive everywhere in it, not only at corners."""
 
     scaled_jacobians: Floats  #: one per cell in [-1, 1], 1 for a cube; float64 (m,)
     minimum: float  #: 0 for a mesh without cells
@@ -981,11 +994,11 @@ class Quality:
     not_positive: int  #: cells with scaled Jacobian <= 0
     histogram: list[int]  #: of [-1, 1] in steps of 0.1
     validity: npt.NDArray[np.uint8]  #: 0 positive everywhere, 1 refuted, 2 undecided; uint8 (m,)
-    positive: int  #: numbers of cells
+    positive: int  #: number of cells
     refuted: int
     undecided: int
-    minimum_everywhere: float  #: the scaled Jacobian is nowhere less, inside of cells included
-    worst: list[RefutedCell]  #: at most ten, the most negative first
+    minimum_everywhere: float  #: lower bound of the scaled Jacobian, also inside cells
+    worst: list[RefutedCell]  #: at most ten, most negative first
 
     @property
     def all_positive(self) -> bool:
@@ -999,47 +1012,47 @@ class Quality:
 
 @dataclasses.dataclass(frozen=True)
 class ImproveReport:
-    """What an improvement did. Lengths are in diagonals of the surface's bounding box."""
+    """Report of an improvement. Lengths are in diagonals of the surface's bounding box."""
 
     before: Quality
     after: Quality
-    not_positive: npt.NDArray[np.uint64]  #: cells that are not certified in the end, ascending
-    far_cells: npt.NDArray[np.uint64]  #: whose boundary ends more than 1e-3 from the surface
-    far_cells_before: int  #: how many were
+    not_positive: npt.NDArray[np.uint64]  #: cells that are not certified at the end, ascending
+    far_cells: npt.NDArray[np.uint64]  #: boundary more than 1e-3 from the surface at the end
+    far_cells_before: int  #: number of such cells before
     diagonal: float
-    from_mesh_before: float  #: largest distance of the mesh's boundary from the object's,
-    from_surface_before: float  #: and of the object's from the mesh's
+    from_mesh_before: float  #: maximum distance from the mesh boundary to the object's
+    from_surface_before: float  #: maximum distance from the object's boundary to the mesh's
     from_mesh_after: float
     from_surface_after: float
-    inner_distance_before: float  #: of faces inside, tagged or between regions, from such triangles
+    inner_distance_before: float  #: of tagged and interface faces inside, from such triangles
     inner_distance_after: float
     free_vertices: int
-    patch_vertices: int  #: that slide on the surface,
-    curve_vertices: int  #: on curves,
-    fixed_vertices: int  #: and not at all:
-    tagged_vertices: int  #: of these, that have a tag,
-    boundary_vertices: int  #: and that only fix_boundary holds; the rest are corners
+    patch_vertices: int  #: vertices that slide on the surface
+    curve_vertices: int  #: vertices that slide on curves
+    fixed_vertices: int  #: vertices that do not move
+    tagged_vertices: int  #: fixed vertices with a tag
+    boundary_vertices: int  #: fixed only by fix_boundary; the other fixed ones are corners
     moved_vertices: int
     largest_move: float
-    mean_move: float  #: of those that moved
+    mean_move: float  #: mean over the moved vertices
     off_surface: int  #: vertices that used the slack
-    off_creases: int  #: that left creases, where nothing else made cells positive
-    added_cells: int  #: of a pillow, last in the mesh; ``before`` lacks them
-    curve_length: float  #: of the object's sharp and tagged edges,
-    curves_followed: float  #: and the share of it that edges of the mesh follow
-    snapped_curves: int  #: pieces of curves onto which edges were laid
+    off_creases: int  #: vertices that left creases because nothing else made cells positive
+    added_cells: int  #: cells of a pillow, last in the mesh and not included in ``before``
+    curve_length: float  #: total length of the object's sharp and tagged edges
+    curves_followed: float  #: share of that length that mesh edges follow
+    snapped_curves: int  #: curve segments to which edges were snapped
     seconds: float
 
 
 @dataclasses.dataclass(frozen=True)
 class WayReport:
-    """What one way led to, and what its mesh is judged by."""
+    """Outcome of one method and the criteria for its mesh."""
 
     method: str  #: "frames" or "polycube"
     has_mesh: bool
-    refusal: str  #: why there is no mesh; empty if there is one, or none was needed
-    certified: bool  #: all cells are positive
-    minimum: float  #: scaled Jacobian
+    refusal: str  #: why there is no mesh; empty if there is one, or if none was needed
+    certified: bool  #: whether all cells are positive
+    minimum: float  #: minimum scaled Jacobian
     distance: float  #: between the boundaries, in diagonals
     curves_followed: float  #: share of the length of sharp edges
     merit: float  #: 0 to 1 for a certified mesh; otherwise -1
@@ -1049,32 +1062,32 @@ class WayReport:
 class FillReport:
     """How a mesher filled a surface or STEP file with tets."""
 
-    mesher: str  #: with its version, where it tells
-    tet_size: float  #: that was asked for; 0 of a STEP file: the mesher chose it
+    mesher: str  #: including its version, if known
+    tet_size: float  #: requested edge length; 0 for a STEP file if the mesher chose it
     tets: int
-    triangles: int  #: of a surface, as the rest
-    bodies: int  #: filled one by one
-    voids: int  #: in them
-    volume: float  #: inside of the surface
+    triangles: int  #: of a surface, like the following
+    bodies: int  #: each filled separately
+    voids: int  #: inside the bodies
+    volume: float  #: enclosed by the surface
     filled_volume: float  #: of the tets
 
 
 @dataclasses.dataclass(frozen=True)
 class MeshedPart:
-    """What hexhex.mesh() makes of tets."""
+    """Result of hexhex.mesh()."""
 
     mesh: Mesh
-    map: Map  #: an integer-grid map, which generators of the mesh refer to
+    map: Map  #: an integer-grid map, to which the generators of the mesh refer
     shape: ShapeReport
     quantization: QuantizeReport
-    verification: VerifyReport  #: before vertices moved
+    verification: VerifyReport  #: done before vertices moved
     improvement: ImproveReport
-    ways: list[WayReport]  #: with the method "auto": both
-    why: str  #: with the method "auto": why this mesh was kept
-    tags_released: bool  #: vertices may have left edges with a tag, to make cells positive
-    missing_curves: int  #: pieces of tagged curves that no edges were found along
+    ways: list[WayReport]  #: with the method "auto": both methods
+    why: str  #: with the method "auto": why this mesh was chosen
+    tags_released: bool  #: vertices could leave tagged edges to make cells positive
+    missing_curves: int  #: segments of tagged curves for which no mesh edges were found
     stages: list[tuple[str, float]]  #: name and seconds
-    filled: FillReport | None  #: what made tets of a surface or STEP file
+    filled: FillReport | None  #: how a surface or STEP file was filled with tets
 
     @property
     def all_positive(self) -> bool:
@@ -1087,8 +1100,7 @@ class MeshedPart:
                 f"{len(self.improvement.not_positive)} not positive>")
 
 
-# How to pickle what the library holds: by the arrays that it is made of. Everything else is a plain
-# object.
+# Pickle handles of the library by their arrays. Everything else is a plain object.
 _of_hexes = operator.attrgetter("generator_tet", "generator_corners", "feature_vertices",
                                 "feature_edges", "feature_quads", "regions", "tag_names")
 copyreg.pickle(_hexhex.Mesh, lambda h: (_hexhex.Mesh, (h.points, h.cells, *_of_hexes(h))))
@@ -1099,27 +1111,28 @@ copyreg.pickle(_hexhex.PiecewiseMesh, lambda h: (
 
 
 class PartNeighbour(NamedTuple):
-    """What a part has in common with another one; both have the same lists, in the same order."""
+    """Interface between a part and one of its neighbours; the lists of both sides have the same
+    order."""
 
     part: int
     vertices: Indices  #: local, ascending, uint32 of shape (n,)
-    faces: npt.NDArray[np.uint64]  #: of shape (m, 3): own cell, its side, global number of the other
+    faces: npt.NDArray[np.uint64]  #: (m, 3): own cell, its side, global number of the other
 
 
 @dataclasses.dataclass(frozen=True)
 class MeshPart:
-    """One part of a mesh: of extract_parts(). Numbers are local but for those that are called
-    global, which are those of the mesh in one piece."""
+    """One part of a mesh from extract_parts(). Numbers are local unless called global: those refer
+    to the undivided mesh."""
 
-    mesh: Mesh  #: own vertices and cells, then those of ghosts
+    mesh: Mesh  #: own vertices and cells first, then those of ghosts
     part: int
     own_points: int
     own_cells: int
     global_points: npt.NDArray[np.uint64]  #: per vertex
     global_cells: npt.NDArray[np.uint64]  #: per cell
     point_owners: Indices  #: per vertex: the smallest part with a cell at it
-    ghost_parts: Indices  #: per ghost: whose own cell it is
-    ghost_layers: Indices  #: per ghost: from 1 on
+    ghost_parts: Indices  #: per ghost: the part that owns it
+    ghost_layers: Indices  #: per ghost: its layer, starting at 1
     neighbours: list[PartNeighbour]  #: ascending by part
 
     @classmethod

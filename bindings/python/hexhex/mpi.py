@@ -1,8 +1,8 @@
-"""Meshes in parts on MPI: each process makes one. Needs mpi4py; hexhex itself links no MPI.
+"""Meshes in parts over MPI, one per process. Requires mpi4py; hexhex itself is not linked with MPI.
 
-Every function here is called by all processes of a communicator together, with the same arguments
-but for the map, which only the first one needs to have. What fails in one process is raised in all.
-docs/parts.md tells what a part has.
+All processes of a communicator must call each function together, with the same arguments except for
+the map, which only the first process needs to have. An error in one process is raised in all of
+them. docs/parts.md describes the contents of a part.
 
     mpirun -n 4 python solver.py
 """
@@ -30,17 +30,17 @@ def extract_part(comm: MPI.Comm, map: Map | Path | None, *, ghosts: int = 0,
                  partition: str = "curve", verify: bool = False, scale: int = 1,
                  threads: int | None = 1, repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                  progress: Progress | None = None) -> MeshPart:
-    """The part of this process, with the same numbers as the one of that rank in extract_parts().
+    """Extracts the part of this process, identical to the part with its rank from extract_parts().
 
     Args:
-        comm: as many parts as it has processes are made.
-        map: a map or its file; only that of the first process counts, and is sent to all others.
-        threads: of each process; None for as many as there are cores.
+        comm: communicator; there are as many parts as processes.
+        map: a map or its file; only that of the first process is used, and sent to all others.
+        threads: threads per process; None for as many as there are cores.
         ghosts, partition, verify, scale, repair, round, tolerance, progress: as in extract_parts().
 
     Raises:
-        ArgumentError: where MPI was initialized for one thread, and as extract_parts(); of the
-            first process that failed, in all of them.
+        ArgumentError: if MPI was initialized for a single thread; and as extract_parts(): the error
+            of the first process that failed, in all processes.
     """
     _check_partition(1, ghosts, partition)
     with _Team(comm) as team:
@@ -54,11 +54,11 @@ def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *,
                           format: str | None = None, threads: int | None = 1,
                           repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                           progress: Progress | None = None) -> dict[str, Any]:
-    """The same into files that all processes write together; docs/parts.md has the formats. Returns
-    what hexhex.extract_parts_to_file() does, in all processes.
+    """Extracts the same parts to files that all processes write together; docs/parts.md lists the
+    formats. Returns the result of hexhex.extract_parts_to_file() in all processes.
 
     Raises:
-        FileError: if they cannot be written; and as extract_part().
+        FileError: if the files cannot be written; and as extract_part().
     """
     _check_partition(1, ghosts, partition)
     with _Team(comm) as team:
@@ -69,11 +69,12 @@ def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *,
 
 
 def _given(map: Map | Path | None, team: _Team) -> tuple[_hexhex.MapArrays | None, str]:
-    """The map of the first process, as arrays or as a path. Without one, nobody waits for it."""
+    """Returns the map of the first process, as arrays or as a path. If it has none, all processes
+    learn of it instead of waiting."""
     arrays, path, failure = None, "", None
     try:
         if team.rank > 0:
-            pass  # what other processes have does not count
+            pass  # arguments on other ranks are ignored
         elif isinstance(map, Map):
             arrays = map._arrays()
         elif map is not None:
@@ -88,9 +89,10 @@ def _given(map: Map | Path | None, team: _Team) -> tuple[_hexhex.MapArrays | Non
 
 
 class _Team:
-    """What hexhex asks of connected processes, in a thread other than the main one."""
+    """Communication that hexhex requires between processes, from a thread other than the main
+    one."""
 
-    _PIECE = 1 << 30  # MPI counts by int: longer messages go in pieces
+    _PIECE = 1 << 30  # MPI counts are ints: split longer messages
 
     def __init__(self, comm: MPI.Comm) -> None:
         if MPI.Query_thread() < MPI.THREAD_SERIALIZED:
@@ -109,7 +111,7 @@ class _Team:
         self._comm.Free()
 
     def all_say(self, yes: bool) -> bool:
-        """Whether all processes say yes. Those that wait leave their core to others."""
+        """Whether `yes` is true in all processes. Waiting processes yield their core to others."""
         all_yes = np.zeros(1, np.int32)
         request = self._comm.Iallreduce(np.array([yes], np.int32), all_yes, MPI.MIN)
         pause = 1e-6
@@ -119,13 +121,13 @@ class _Team:
         return bool(all_yes[0])
 
     def share(self, rank: int, data: npt.NDArray[Any]) -> None:
-        """Gives an array of one process to all."""
+        """Broadcasts an array of one process to all."""
         for begin in range(0, len(data), self._PIECE):
             self._comm.Bcast(data[begin:begin + self._PIECE], rank)
 
     def gather(self, mine: npt.NDArray[np.uint64], counts: npt.NDArray[np.uint64],
                everything: npt.NDArray[np.uint64]) -> None:
-        """Puts what all give behind one another."""
+        """Concatenates the arrays of all processes."""
         if len(everything) <= self._PIECE:
             self._comm.Allgatherv(mine, [everything, counts.astype(np.int64).tolist()])
             return
@@ -138,5 +140,5 @@ class _Team:
             begin += count
 
     def abort(self) -> None:
-        """Ends all processes."""
+        """Terminates all processes."""
         self._comm.Abort(1)
