@@ -347,14 +347,15 @@ def from_pyvista(given: Any, cell_type: int, what: str) -> Grid:
                 arrays(data.point_data), arrays(data.cell_data, chosen), arrays(data.field_data))
 
 
-def vtk_order(p: int) -> npt.NDArray[np.int64]:
-    """Nodes of a cell of order p in the order of VTK_LAGRANGE_HEXAHEDRON (VTK 9.1 and later)."""
+def vtk_order(p: int, *, row_by_row: bool = False) -> npt.NDArray[np.int64]:
+    """Nodes of a cell of order p in the order of VTK_LAGRANGE_HEXAHEDRON (VTK 9.1 and later), or with
+    upright edges row by row, as before VTK 9 and in the .vtu files that meshio reads and writes."""
     inner = range(1, p)
     nodes = [(0, 0, 0), (p, 0, 0), (p, p, 0), (0, p, 0), (0, 0, p), (p, 0, p), (p, p, p), (0, p, p)]
     for k in (0, p):
         nodes += [(i, 0, k) for i in inner] + [(p, j, k) for j in inner]
         nodes += [(i, p, k) for i in inner] + [(0, j, k) for j in inner]
-    for i, j in ((0, 0), (p, 0), (p, p), (0, p)):
+    for i, j in ((0, 0), (p, 0), (0, p), (p, p)) if row_by_row else ((0, 0), (p, 0), (p, p), (0, p)):
         nodes += [(i, j, k) for k in inner]
     nodes += [(i, j, k) for i in (0, p) for k in inner for j in inner]
     nodes += [(i, j, k) for j in (0, p) for k in inner for i in inner]

@@ -536,15 +536,18 @@ class LagrangeMesh(_interchange.Wrappable):
         ArgumentError for nodes that do not exist."""
         return Mesh._from_handle(self._handle.straight())
 
-    def _grid(self) -> _interchange.Grid:
+    def _grid(self, *, row_by_row: bool = False) -> _interchange.Grid:
         kind = {"generator_kind": _kind(self.generator_corners)} if len(self.generator_tet) else {}
         regions = {"region": self.regions} if len(self.regions) else {}
-        return _interchange.Grid(self.points, self.nodes[:, _interchange.vtk_order(self.order)],
-                                 kind, regions, {})
+        order = _interchange.vtk_order(self.order, row_by_row=row_by_row)
+        return _interchange.Grid(self.points, self.nodes[:, order], kind, regions, {})
 
     def to_meshio(self) -> Any:
-        """A ``meshio.Mesh`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without meshio."""
-        return _interchange.to_meshio(self._grid(), "VTK_LAGRANGE_HEXAHEDRON")
+        """A ``meshio.Mesh``, as meshio reads it from a .vtu file: of hexahedron27 if the order is 2, else
+        of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without meshio."""
+        if self.order == 2:
+            return _interchange.to_meshio(self._grid(), "hexahedron27")
+        return _interchange.to_meshio(self._grid(row_by_row=True), "VTK_LAGRANGE_HEXAHEDRON")
 
     def to_vtk(self) -> Any:
         """A ``vtkUnstructuredGrid`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without vtk."""

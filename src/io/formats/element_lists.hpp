@@ -174,9 +174,13 @@ class ElementTags {
 void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std::size_t>& cells,
                 const std::string& fileName);
 
+/// How Lagrange cells of VTK list their edges along z: around the cell, or, as before VTK 9 and in
+/// its XML files before version 2.1, row by row.
+enum class VtkEdges : std::uint8_t { Around, RowByRow };
+
 /// Of a mesh whose cells list their nodes in VTK's order: puts them in that of LagrangeMesh, and
 /// vertices in front of other nodes.
-void fromVtkOrder(LagrangeMesh& mesh, Stage& stage);
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright = VtkEdges::Around);
 
 /// Whether there are hexahedra with 20 or 27 nodes.
 [[nodiscard]] bool areCurved(const ElementLists& lists);
