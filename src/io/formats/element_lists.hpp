@@ -17,6 +17,7 @@
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
 #include <io/core/input_file.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
@@ -173,10 +174,6 @@ class ElementTags {
 /// @param cells  which rows lack the last 7
 void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std::size_t>& cells,
                 const std::string& fileName);
-
-/// How Lagrange cells of VTK list their edges along z: around the cell, or, as before VTK 9 and in
-/// its XML files before version 2.1, row by row.
-enum class VtkEdges : std::uint8_t { Around, RowByRow };
 
 /// Of a mesh whose cells list their nodes in VTK's order: puts them in that of LagrangeMesh, and
 /// vertices in front of other nodes.

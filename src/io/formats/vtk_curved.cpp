@@ -53,40 +53,6 @@ const CellKind* quadraticKind(const VtkSource& source) {
   return nullptr;
 }
 
-/// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
-/// along x and y around the bottom, then around the top, then those along z, counter-clockwise
-/// (since VTK 9; before, row by row); faces across x, y, z, the lower of each pair first.
-std::vector<std::uint32_t> vtkNodeOrder(int order, VtkEdges upright = VtkEdges::Around) {
-  auto edges = adjacency::kHexEdges;
-  if (upright == VtkEdges::Around) std::swap(edges[10], edges[11]);
-  std::vector<Node> nodes;
-  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, 0, order));
-  for (const auto& [a, b] : edges) {
-    append(nodes, between(corner(a, 0, order), corner(b, 0, order), order - 1));
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t first = axis == 0 ? 1 : 0;
-    const std::size_t second = axis == 2 ? 1 : 2;
-    for (const int side : {0, order}) {
-      for (int j = 1; j < order; ++j) {
-        for (int i = 1; i < order; ++i) {
-          Node node{};
-          node[axis] = side;
-          node[first] = i;
-          node[second] = j;
-          nodes.push_back(node);
-        }
-      }
-    }
-  }
-  for (int k = 1; k < order; ++k) {
-    for (int j = 1; j < order; ++j) {
-      for (int i = 1; i < order; ++i) nodes.push_back({i, j, k});
-    }
-  }
-  return placesOf(nodes, order);
-}
-
 /// The order of cells with (p + 1)^3 nodes; 0 if no p from 1 to 9 has as many.
 int orderOf(std::uint64_t nodes) {
   for (int order = 1; order <= kMaxOrder; ++order) {

@@ -27,8 +27,8 @@
 #include <io/core/input_file.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 #include <io/formats/vtk_data_set.hpp>
 
 namespace hexhex::io {
