@@ -13,16 +13,17 @@ import subprocess
 import sys
 import tempfile
 
-DEBIANS_PYTHON = "/usr/bin/python3"
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "parts"))
+from common import python_with  # noqa: E402
 
 try:
     import numpy
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
 except ImportError:
-    # Debian's packages are for Debian's Python, which need not be the first one.
-    if sys.executable != DEBIANS_PYTHON and os.access(DEBIANS_PYTHON, os.X_OK):
-        os.execv(DEBIANS_PYTHON, [DEBIANS_PYTHON, *sys.argv])
+    python = python_with("vtk, numpy, meshio") or python_with("vtk, numpy")
+    if python is not None:
+        os.execv(python, [python, *sys.argv])
     print("skipped: VTK for Python is missing")
     sys.exit(77)
 

@@ -607,6 +607,19 @@ class BaseComplex:
     block_cells: npt.NDArray[np.uint64]  #: uint64 (b,)
     curves: list[SingularCurve]
     irregular: list[IrregularVertices]
+    mesh: Mesh  #: whose complex it is
+
+    def to_pyvista(self) -> Any:
+        """A ``pyvista.MultiBlock``: ``cells`` with the arrays block, sheets and chords; the data sets ``walls``
+        (faces between blocks), ``sheets`` (a quad through the middle of each cell that a sheet passes),
+        ``chords`` (a line from face to face), ``singular_curves`` (a polyline each, with valence and
+        boundary) and ``irregular_vertices``. Raises ImportError without pyvista.
+
+        >>> parts = hexhex.extract(hexhex.generate("sphere")).base_complex().to_pyvista()
+        >>> parts["singular_curves"].n_cells, parts["sheets"]["sheet"].max()
+        (20, 15)
+        """
+        return _interchange.complex_to_pyvista(self)
 
     def __repr__(self) -> str:
         return (f"<hexhex.BaseComplex: {self.sheets} sheets, {self.chords} chords, "
@@ -753,7 +766,7 @@ class Mesh(_interchange.Wrappable):
          types) = _hexhex.base_complex(self._handle, 0, None)
         return BaseComplex(sheets, sheet_count, chords, chord_count, blocks, sizes[:, :3], sizes[:, 3],
                            [SingularCurve(*curve) for curve in curves],
-                           [IrregularVertices(*kind) for kind in types])
+                           [IrregularVertices(*kind) for kind in types], self)
 
     def structure(self) -> dict[str, int]:
         """Numbers of faces, edges, boundary_quads, components, boundary_components, and the
