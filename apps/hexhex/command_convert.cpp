@@ -15,6 +15,7 @@
 #include "command.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
+#include "patch_names.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
@@ -26,6 +27,7 @@ struct ConvertArguments {
   OutputChoice choice;
   RunOptions run;
   PatchAngle patchAngle;
+  PatchNames names;
   bool stream = false;
   bool reorient = false;
   bool hexesOnly = false;
@@ -89,7 +91,8 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
   }
   WriteOptions writing = arguments.choice.options();
   writing.patchAngle = arguments.patchAngle.degrees;
-  const LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
+  LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
+  arguments.names.apply(mesh, writing.patchAngle, context);
   writeLagrangeMesh(mesh, arguments.output, writing, context);
   if (arguments.patchAngle.isGiven) {
     arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
@@ -125,6 +128,7 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
              });
   const std::string turned =
       arguments.reorient ? fmt::format(", of which {} turned", reorient(mesh, context)) : "";
+  arguments.names.apply(mesh, writing.patchAngle, context);
   writeHexMesh(mesh, arguments.output, writing, context);
   arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
   return fmt::format("a mesh of {}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
@@ -190,6 +194,7 @@ Command addConvert(CLI::App& app) {
       ->option_text("NAME");
   addHexesOnly(*parser, arguments->hexesOnly);
   addPatchAngle(*parser, arguments->patchAngle);
+  addPatchNames(*parser, arguments->names);
   parser->add_flag("--stream", arguments->stream,
                    "Read and write a mesh piece by piece, for meshes larger\n"
                    "than the memory, from .vtu to " +

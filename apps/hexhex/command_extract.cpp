@@ -150,6 +150,7 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = record.certificate->scaledJacobians;
   writing.patchAngle = arguments.patchAngle.degrees;
+  arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
   noteBoundary(arguments, mesh, mesh.cells.size(), longRun, record);
   writeMeshPage(arguments, mesh, before, longRun, record);
@@ -174,6 +175,7 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
   WriteOptions options = arguments.choice.options();
   options.scaledJacobians = record.certificate->scaledJacobians;
   options.patchAngle = arguments.patchAngle.degrees;
+  arguments.names.apply(mesh, options.patchAngle, context);
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
   noteBoundary(arguments, mesh, mesh.cellCount(), longRun, record);
   writeMeshPage(arguments, mesh, before, longRun, record);

@@ -14,6 +14,7 @@
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
+#include "patch_names.hpp"
 #include "shared_options.hpp"
 #include "view_page.hpp"
 
@@ -28,6 +29,7 @@ struct ImproveArguments {
   OutputChoice choice;
   std::string report;
   PatchAngle patchAngle;
+  PatchNames names;
   ImproveOptions options;
   RunOptions run;
   bool hexesOnly = false;
@@ -75,6 +77,7 @@ ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRu
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle.degrees;
+  arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
   arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
   writeComparison(arguments, mesh, pointsBefore(before, report), report, longRun);
@@ -90,6 +93,7 @@ ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun)
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle.degrees;
+  arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
   if (arguments.patchAngle.isGiven) {
     arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
@@ -153,6 +157,7 @@ Command addImprove(CLI::App& app) {
   addHexesOnly(*parser, arguments->hexesOnly);
   addMeshChoice(*parser, arguments->choice, arguments->output);
   addPatchAngle(*parser, arguments->patchAngle);
+  addPatchNames(*parser, arguments->names);
   addReport(*parser, arguments->report,
             "Write in JSON: quality and certificates before and after,\n"
             "distances to the surface, how far vertices moved");

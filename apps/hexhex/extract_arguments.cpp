@@ -156,7 +156,7 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
       parser
           .add_option("--order", arguments.order,
                       "Write cells of this order, curved as the surface is: .vtu,\n"
-                      ".msh, .inp (order 2), or .mesh (MFEM)")
+                      ".msh, .mesh (MFEM); order 2 also .inp, .exo, .cgns")
           ->check(CLI::Range(1, kMaxOrder))
           ->option_text("P [1]");
   addCurvedNodes(parser, arguments.options.curvedNodes, order);
@@ -184,6 +184,7 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   addMethod(parser, arguments);
   addTolerance(parser, arguments.options.tolerance);
   addPatchAngle(parser, arguments.patchAngle);
+  addPatchNames(parser, arguments.names);
   addRepairOptions(parser, arguments);
   addQuantization(parser, arguments.quantize, arguments.quantizeOptions);
   addImprovement(parser, arguments);
@@ -202,6 +203,13 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
 }
 
 void requireOutputs(const ExtractArguments& arguments) {
+  if (arguments.names.isGiven() &&
+      (arguments.stream || arguments.partial || arguments.parts.parts)) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--names and --split-tags take a whole mesh in memory. Leave them out, or --stream, "
+        "--parts and --partial; `hexhex convert` has them, too.");
+  }
   requireAllDifferent(arguments.input.files(), {arguments.output, arguments.report, arguments.arcs,
                                                 arguments.patches, arguments.page});
   requireCurvedOutputs(arguments);

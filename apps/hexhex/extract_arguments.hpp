@@ -13,6 +13,7 @@
 
 #include "extract_parts.hpp"
 #include "long_run.hpp"
+#include "patch_names.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
@@ -32,6 +33,7 @@ struct ExtractArguments {
   bool improve = false;
   ImproveOptions improveOptions;
   PatchAngle patchAngle;
+  PatchNames names;
   RunOptions run;
   bool stream = false;
   PartsChoice parts;

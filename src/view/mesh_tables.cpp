@@ -256,7 +256,8 @@ Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes,
 std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quantization,
                                   const CellQuality& quality,
                                   std::span<const SingularHexEdge> singularEdges, Stage& stage,
-                                  const SurfaceNodes& nodes, const StateBefore& before) {
+                                  const SurfaceNodes& nodes, const StateBefore& before,
+                                  std::span<const std::uint32_t> skinPatches) {
   TableList list(stage);
   const std::size_t vertices = mesh.points.size();
   const auto stored = [&quantization](const Vec3& point, std::size_t axis) {
@@ -283,6 +284,7 @@ std::vector<PackedTable> packMesh(const HexMesh& mesh, const Quantization& quant
   addQuality(quality, "");
   const std::vector<std::uint64_t> skin = adjacency::boundaryPlaces(mesh, stage);
   list.addColumn("skin", skin.size(), [&](std::size_t i) { return skin[i] / 8 * 6 + skin[i] % 8; });
+  list.addColumn("skin_patches", skinPatches.size(), [&](std::size_t i) { return skinPatches[i]; });
   list.add("nodes", nodes.perCell > 0 ? mesh.cells.size() : 0, nodes.perCell,
            [&](std::size_t c, std::uint32_t* to) {
              return std::copy_n(nodes.numbers.data() + c * nodes.perCell, nodes.perCell, to);

@@ -83,16 +83,14 @@ struct Quantization {
 inline constexpr double kQualitySteps = 65534;
 
 /// Tables `points` (3 columns: vertices, then nodes), `cells` (8), `quality` (1), `skin` (1: the
-/// faces of the boundary, 6 * cell + face) and, where the mesh has them, `nodes`
-/// (SurfaceNodes::perCell), `generator_kinds` (1), `regions` (1), `singular_edges` (vertex, vertex,
-/// 2 * valence + (1 on the boundary)), `feature_edges` (vertex, vertex, tag), `feature_quads` (4
-/// vertices, tag), `not_positive` (1), `points_before` (3: what is to be added to `points`, modulo
-/// 2^32), `quality_before` (1) and `not_positive_before` (1).
-[[nodiscard]] std::vector<PackedTable> packMesh(const HexMesh& mesh,
-                                                const Quantization& quantization,
-                                                const CellQuality& quality,
-                                                std::span<const SingularHexEdge> singularEdges,
-                                                Stage& stage, const SurfaceNodes& nodes = {},
-                                                const StateBefore& before = {});
+/// faces of the boundary, 6 * cell + face), `skin_patches` (1: their groups) and, where the mesh
+/// has them, `nodes` (SurfaceNodes::perCell), `generator_kinds` (1), `regions` (1),
+/// `singular_edges` (vertex, vertex, 2 * valence + (1 on the boundary)), `feature_edges` (vertex,
+/// vertex, tag), `feature_quads` (4 vertices, tag), `not_positive` (1), `points_before` (3: what is
+/// to be added to `points`, modulo 2^32), `quality_before` (1) and `not_positive_before` (1).
+[[nodiscard]] std::vector<PackedTable> packMesh(
+    const HexMesh& mesh, const Quantization& quantization, const CellQuality& quality,
+    std::span<const SingularHexEdge> singularEdges, Stage& stage, const SurfaceNodes& nodes = {},
+    const StateBefore& before = {}, std::span<const std::uint32_t> skinPatches = {});
 
 }  // namespace hexhex::view

@@ -7,16 +7,19 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <hexhex/error.hpp>
+#include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
 #include <hexhex/version.hpp>
 #include <hexhex/view.hpp>
 
 #include <base/parallel.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <view/mesh_tables.hpp>
 #include <view/page_template.hpp>
@@ -165,6 +168,30 @@ StateBefore stateBefore(std::span<const Vec3> points, std::span<const Vec3> node
   return {points, nodes, {certificate.scaledJacobians, notPositive(certificate)}};
 }
 
+/// The groups of boundary quads that files get: their names, and which one each face of the
+/// boundary is in, in order of (cell, face).
+struct NamedSkin {
+  nlohmann::json names = nlohmann::json::array();
+  std::vector<std::uint32_t> groups;
+};
+
+NamedSkin namedSkin(const HexMesh& mesh, Stage& stage) {
+  const io::QuadGroups quads = io::groupQuads(mesh, WriteOptions{}.patchAngle, stage);
+  NamedSkin skin;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> faces;
+  for (const io::ElementGroup& group : quads.groups) {
+    const std::size_t end = quads.boundaryEnd(group);
+    if (end == group.begin) continue;
+    for (std::size_t i = group.begin; i < end; ++i) {
+      faces.emplace_back(quads.places[i], static_cast<std::uint32_t>(skin.names.size()));
+    }
+    skin.names.push_back({{"name", group.name}, {"quads", end - group.begin}});
+  }
+  std::sort(faces.begin(), faces.end());
+  for (const auto& [place, group] : faces) skin.groups.push_back(group);
+  return skin;
+}
+
 /// @param before  of subject.before, if that has points
 PageContent makeContent(const Subject& subject, const Certificate& certificate,
                         const Certificate& before, const ViewOptions& options, Context& context) {
@@ -175,10 +202,13 @@ PageContent makeContent(const Subject& subject, const Certificate& certificate,
   const MeshStructure structure = findStructure(mesh, context);
 
   PageContent content;
+  NamedSkin skin;
   withThreads(context.threads(), [&] {
     Stage stage(context, "pack mesh");
-    content.tables = packMesh(mesh, quantization, {quality, notPositive(certificate)},
-                              structure.singularEdges, stage, subject.nodes, subject.before);
+    skin = namedSkin(mesh, stage);
+    content.tables =
+        packMesh(mesh, quantization, {quality, notPositive(certificate)}, structure.singularEdges,
+                 stage, subject.nodes, subject.before, skin.groups);
   });
   content.info = {
       {"format", 1},
@@ -200,6 +230,7 @@ PageContent makeContent(const Subject& subject, const Certificate& certificate,
         {"eulerCharacteristic", structure.eulerCharacteristic}}},
       {"singular",
        {{"inner", countValences(structure, false)}, {"boundary", countValences(structure, true)}}},
+      {"patches", std::move(skin.names)},
       {"hasGenerators", !mesh.generatorCorners.empty()},
       {"verification", verificationAsJson(options)},
       {"tables", tablesAsJson(content.tables)}};

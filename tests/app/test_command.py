@@ -562,6 +562,36 @@ class Pipeline(CommandTest):
         told = self.run_command("extract", box, "-o", "a.msh", "--patch-angle", "95").stderr
         self.assertIn("turns by more than 95 degrees", told)
 
+    def test_groups_are_named_and_tags_split(self):
+        def groups(*command):
+            """Names of quads in the file that a command writes, and how many there are of each."""
+            self.run_command(*command, "a.msh", "--format", "msh22-ascii")
+            lines = (self.folder / "a.msh").read_text().splitlines()
+            names = {line.split()[1]: line.split('"')[1] for line in lines if line.startswith("2 ") and '"' in line}
+            quads = [line.split()[3] for line in lines if re.match(r"[0-9]+ 3 2 ", line)]
+            return {name: quads.count(number) for number, name in names.items()}
+        box, names = self.generate("box"), self.folder / "names.txt"
+        names.write_text("# of the viewer\npatch_2 inlet\n\npatch_5 outlet # here\n")
+        expected = {"patch_1": 64, "inlet": 64, "patch_3": 64, "patch_4": 64, "outlet": 64, "patch_6": 64}
+        self.assertEqual(groups("extract", box, "--names", names, "-o"), expected)
+        self.run_command("extract", box, "-o", "b.exo", "--order", "2", "--names", names)
+        self.assertEqual(set(expected), set(re.findall("patch_[0-9]|inlet|outlet",
+                                                       (self.folder / "b.exo").read_bytes().decode("latin-1"))))
+        # All of the boundary under one name, then by smooth patches.
+        self.assertEqual(groups("extract", box, "--patch-angle", "0", "-o"), {"boundary": 384})
+        text = (self.folder / "a.msh").read_text().replace('"boundary"', '"wall"')
+        (self.folder / "wall.msh").write_text(text)
+        self.assertEqual(groups("convert", "wall.msh"), {"wall": 384})
+        self.assertEqual(groups("convert", "wall.msh", "--split-tags"), {f"wall_{i}": 64 for i in range(1, 7)})
+        names.write_text("wall_3 outlet\n")
+        self.assertEqual(groups("convert", "wall.msh", "--split-tags", "--names", names)["outlet"], 64)
+        told = self.run_command("convert", "wall.msh", "f.msh", "--names", names, expect=BAD_USAGE).stderr
+        self.assertIn('no group of boundary quads has the name "wall_3". Groups: wall.', told)
+        names.write_text("patch_1\n")
+        told = self.run_command("extract", box, "-o", "f.msh", "--names", names, expect=BAD_USAGE).stderr
+        self.assertIn("line 1: expected a name that a group has and a new one", told)
+        self.run_command("extract", box, "-o", "f.vtu", "--stream", "--split-tags", expect=BAD_USAGE)
+
     def test_info_in_pieces(self):
         map_file = self.generate("sphere", "--jitter", "0.3")
         sums = set()

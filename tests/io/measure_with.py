@@ -137,9 +137,9 @@ def measure_with_vtk(file):
                 for y in places:
                     for z in places:
                         cell.InterpolateDerivs((x, y, z), values)
-                        # Cells of higher order list them node by node.
-                        rows.append(numpy.array(values).reshape(3, count) if cell.IsLinear()
-                                    else numpy.array(values).reshape(count, 3).T)
+                        # Lagrange cells list them node by node.
+                        rows.append(numpy.array(values).reshape(count, 3).T if cell.IsA("vtkLagrangeHexahedron")
+                                    else numpy.array(values).reshape(3, count))
             derivatives[count] = numpy.array(rows)
         points = numpy.array([cell.GetPoints().GetPoint(i) for i in range(count)])
         determinants = numpy.linalg.det(derivatives[count] @ points)

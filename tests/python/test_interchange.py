@@ -249,6 +249,11 @@ def test_meshio(tagged, mesh, tmp_path):
     meshio = pytest.importorskip("meshio")
     bare = hexhex.Map(tagged.points, tagged.tets, tagged.igm, regions=tagged.regions)
     assert same_maps(hexhex.Map.from_meshio(bare.to_meshio()), bare)
+    for order in (2, 3):  # what meshio makes of the file
+        curved = hexhex.extract(tagged, order=order).curved
+        hexhex.write(curved, tmp_path / "c.vtu")
+        (read,), (made,) = meshio.read(tmp_path / "c.vtu").cells, curved.to_meshio().cells
+        assert read.type == made.type and np.array_equal(read.data, made.data)
     back = hexhex.Mesh.from_meshio(mesh.to_meshio())
     assert hexhex.survey(back) == hexhex.survey(mesh) and np.array_equal(back.regions, mesh.regions)
     assert np.array_equal(back.generator_corners, mesh.generator_corners)

@@ -364,3 +364,54 @@ def test_pages(tmp_path):
     code = "import sys, hexhex; hexhex.view(hexhex.extract(hexhex.generate('box')));" \
            "assert not {'trame', 'pyvista', 'IPython'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
+@pytest.mark.parametrize("kind", ["box", "sphere", "torus"])
+def test_base_complex_in_pyvista(meshes, kind):
+    pytest.importorskip("pyvista")
+    mesh = meshes[kind]
+    parts, (_, _, blocks, singular) = mesh.base_complex(), by_sets(mesh)
+    made = parts.to_pyvista()
+    assert made.keys() == ["cells", "walls", "sheets", "chords", "singular_curves", "irregular_vertices"]
+    assert np.array_equal(made["cells"]["block"], parts.cell_blocks)
+    # Faces of two cells in different blocks, found by names of vertices.
+    cells_at = {}
+    for c, cell in enumerate(mesh.cells):
+        for axis in range(3):
+            for face in faces_of(axis):
+                cells_at.setdefault(named(cell, face), []).append(c)
+    walls = {face for face, cells in cells_at.items() if len({blocks.find(c) for c in cells}) == 2}
+    assert {tuple(sorted(q)) for q in made["walls"].regular_faces.tolist()} == walls
+    # Edges of the polylines are the singular edges, each once.
+    curves = made["singular_curves"]
+    edges = [tuple(sorted(e)) for i in range(curves.n_cells)
+             for ids in [curves.get_cell(i).point_ids] for e in zip(ids, ids[1:])]
+    assert set(edges) == singular and len(edges) == len(singular)
+    assert made["irregular_vertices"].n_points == sum(len(each.vertices) for each in parts.irregular)
+    # A sheet is one piece, and so is a chord; each passes its cells as often as they say.
+    for name, array, of_cells in (("sheets", "sheet", parts.cell_sheets), ("chords", "chord", parts.cell_chords)):
+        for number in range(int(of_cells.max()) + 1):
+            piece = made[name].extract_cells(made[name][array] == number)
+            assert piece.n_cells == (of_cells == number).sum()
+            assert piece.connectivity()["RegionId"].max() == 0
+    if kind == "box":  # of edge length 2: 3 sheets each way, and 9 chords
+        sizes = made["sheets"].compute_cell_sizes()
+        assert np.allclose(np.bincount(sizes["sheet"], sizes["Area"]), 4)
+        sizes = made["chords"].compute_cell_sizes()
+        assert np.allclose(np.bincount(sizes["chord"], sizes["Length"]), 2)
+
+
+def test_module_opens_pages(monkeypatch, tmp_path, capsys):
+    from hexhex import __main__ as module
+    opened = []
+    monkeypatch.setattr(module.webbrowser, "open", opened.append)
+    page = tmp_path / "hexhex.html"
+    monkeypatch.setattr(module, "_PAGE", page)
+    assert "without the page hexhex.html" in module.main([])
+    page.write_text("<!doctype html>")
+    assert module.main([]) is None and opened == [page.as_uri()]
+    assert "missing.vtu" in module.main([str(tmp_path / "missing.vtu")])
+    assert module.main(["a", "b"]).startswith("usage:")
+    hexhex.write(hexhex.generate("box"), tmp_path / "box.hexex")
+    problem = module.main([str(tmp_path / "box.hexex")])
+    assert ("viewer" in problem) if problem else opened[-1].endswith("/box.html")

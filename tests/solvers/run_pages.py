@@ -4,7 +4,7 @@
     run_pages.py PATH-OF-HEXHEX
 
 A snippet computes `error`, the largest difference from a linear function that the boundary was given,
-`volume` and, if it can, the `area` of patch_1. The part is an octagonal prism of height 1 around a unit circle.
+`volume` and, if it can, the `area` of patch_1; a program in C++ prints these three. The part is an octagonal prism of height 1 around a unit circle.
 Exit code 77 if no solver is installed. HEXHEX_PYTHON names a Python with modules of solvers.
 """
 
@@ -21,7 +21,11 @@ from common import python_with  # noqa: E402
 
 PAGES = pathlib.Path(__file__).resolve().parents[2] / "docs" / "solvers"
 # Page: what it needs, how exact its numbers are, and options of more runs.
-NEEDS = {"scikit-fem": "skfem", "ngsolve": "ngsolve", "mfem": "mfem", "getfem": "getfem", "calculix": None}
+NEEDS = {"scikit-fem": "skfem", "ngsolve": "ngsolve", "mfem": "mfem", "getfem": "getfem", "calculix": None,
+         "dealii": None, "openfoam": None}
+# What else tells that a solver is installed.
+SIGNS = {"calculix": lambda: shutil.which("ccx"), "openfoam": lambda: shutil.which("checkMesh"),
+         "dealii": lambda: pathlib.Path("/usr/share/cmake/deal.II").exists()}
 DIGITS = {"calculix": 1e-6}
 MORE_RUNS = {"calculix": ["--order", "2"]}
 
@@ -30,7 +34,7 @@ OCTAGON = 2 * math.sqrt(2)
 
 def python_for(page):
     if NEEDS[page] is None:
-        return sys.executable if shutil.which("ccx") else None
+        return sys.executable if SIGNS[page]() else None
     return python_with(NEEDS[page])
 
 
@@ -41,6 +45,23 @@ def run(*words, folder):
     return result.stdout
 
 
+def run_python(snippets, python, folder):
+    (pathlib.Path(folder) / "snippet.py").write_text(
+        snippets["python"] + "\nprint(float(error), float(volume), float(globals().get('area', volume)))\n",
+        encoding="utf-8")
+    return run(python, "snippet.py", folder=folder)
+
+
+def run_cpp(snippets, folder):
+    """Compiles `part.cpp`, quickly."""
+    (pathlib.Path(folder) / "part.cpp").write_text(snippets["cpp"], encoding="utf-8")
+    (pathlib.Path(folder) / "CMakeLists.txt").write_text(
+        snippets["cmake"] + "target_compile_options(part PRIVATE -O0)\n", encoding="utf-8")
+    run("cmake", "-S", ".", "-B", "build", "-DCMAKE_BUILD_TYPE=Release", folder=folder)
+    run("cmake", "--build", "build", folder=folder)
+    return run("build/part", folder=folder)
+
+
 def check_page(page, command, python, options):
     text = (PAGES / f"{page}.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as name:
@@ -49,12 +70,9 @@ def check_page(page, command, python, options):
             sys.exit(f"{page}.md does not write a mesh with --for {page}")
         for line in lines:
             run(command, *line.split(), *(options if "--for" in line else []), folder=name)
-        snippet = re.search(r"(?ms)^```python\n(.*?)^```$", text)[1]
-        (pathlib.Path(name) / "snippet.py").write_text(
-            snippet + "\nprint('found', float(error), float(volume), float(globals().get('area', volume)))\n",
-            encoding="utf-8")
-        said = run(python, "snippet.py", folder=name)
-    found = [float(x) for x in re.search(r"(?m)^found (.*)$", said)[1].split()]
+        snippets = dict(re.findall(r"(?ms)^```(\w+)\n(.*?)^```$", text))
+        said = run_cpp(snippets, name) if "cpp" in snippets else run_python(snippets, python, name)
+    found = [float(x) for x in said.split()[-3:]]
     limit = DIGITS.get(page, 1e-12)
     for value, expected, what in zip(found, (0, OCTAGON, OCTAGON), ("error", "volume", "area")):
         if not abs(value - expected) < limit:

@@ -426,9 +426,9 @@ TEST(ServedPage, HoldsAnEarlierStateOfCurvedCells) {
   const ServedPage page = makeServedPage(mesh, "/mesh", options, context);
   EXPECT_TRUE(contains(page.html, "\"refuted\":8"));  // mirrored: all of them
   EXPECT_TRUE(contains(page.html, "\"name\":\"points_before\",\"rows\":117,"));
-  // Points, cells, quality, skin, nodes, singular edges; and before: points, quality, the bad
-  // cells.
-  EXPECT_EQ(page.data.size(), 9U);
+  // Points, cells, quality, skin, patches, nodes, singular edges; and before: points, quality, the
+  // bad cells.
+  EXPECT_EQ(page.data.size(), 10U);
   earlier.points[3][1] = std::nan("");
   options.pointsBefore = earlier.points;
   EXPECT_EQ(
@@ -443,7 +443,7 @@ TEST(ServedPage, HasTheMeshApart) {
   EXPECT_TRUE(contains(page.html, "connect-src 'self'"));
   EXPECT_TRUE(contains(page.html, "\"data\":\"/mesh\""));
   EXPECT_FALSE(contains(page.html, "id=\"data-cells-0\""));
-  EXPECT_EQ(page.data.size(), 5U);  // points, cells, quality, skin, singular edges
+  EXPECT_EQ(page.data.size(), 6U);  // points, cells, quality, skin, patches, singular edges
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ import { element, grouped } from "./ui/dom";
 import { Histogram } from "./ui/histogram";
 import { Legend } from "./ui/legend";
 import { askedPicture, savePng } from "./ui/picture";
+import { listPatches } from "./ui/patches";
 import { infoAt, showImprovement, showPicked, showStatistics } from "./ui/statistics";
 import { ballAround, worstKept } from "./worst";
 import type { LoadedMesh } from "./worker/messages";
@@ -29,6 +30,16 @@ const kAxes: Record<"x" | "y" | "z", [number, number, number]> = {
 
 /** A share of a cell of a mesh of 100 cells per side: steps of the slice by keys. */
 const kSliceStep = 0.01;
+
+/** Points of the mesh that show how large it is: not all of many. */
+function outlineOf({ points }: MeshInfo, { after, before }: LoadedMesh): Float32Array {
+  const step = 4 * Math.ceil(points / 1e5);
+  const outline: number[] = [];
+  for (const moment of [after, before]) {
+    for (let at = 0; moment && at < 4 * points; at += step) outline.push(...moment.positions.subarray(at, at + 4));
+  }
+  return Float32Array.from(outline);
+}
 
 export class App {
   private state: ViewState;
@@ -58,7 +69,7 @@ export class App {
 
     const { half } = sceneOf(info);
     const canvas = element<HTMLCanvasElement>("canvas");
-    this.viewport = new Viewport(canvas, half, () => this.saveFragment());
+    this.viewport = new Viewport(canvas, half, outlineOf(info, mesh), () => this.saveFragment());
     this.moments = new Moments(mesh.after, mesh.before);
     this.moments.show(this.state.moment);
     this.surface = new Surface(mesh, this.moments);
@@ -305,6 +316,7 @@ export class App {
   private hasColour(mode: ColourMode): boolean {
     if (mode === "generator") return this.info.hasGenerators;
     if (mode === "feature") return this.mesh.quadTags.length > 0;
+    if (mode === "patch") return this.info.patches.length > 0;
     if (mode === "region") return this.mesh.regionTags.length > 0;
     return true;
   }
@@ -359,6 +371,7 @@ export class App {
     }
     element("moments").hidden = !this.info.before;
     showImprovement(this.info);
+    listPatches(this.info, () => this.showFacts());
     element("show-curved").closest("label")!.hidden = this.mesh.order === 1;
     const noFeatures = this.mesh.featureEdges.length === 0;
     element("show-features").closest("label")!.hidden = noFeatures;

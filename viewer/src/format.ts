@@ -62,6 +62,8 @@ export interface MeshInfo {
   };
   /** Number of singular edges by valence. */
   singular: { inner: [number, number][]; boundary: [number, number][] };
+  /** Groups of boundary quads, as files name them, and how many quads they have. */
+  patches: { name: string; quads: number }[];
   hasGenerators: boolean;
   verification: { map: string; passed: boolean; items: CheckItem[] } | null;
   tables: TableInfo[];

@@ -45,7 +45,7 @@ export const kStart: ViewState = {
   moment: 1,
   colour: "quality",
   grid: true,
-  inner: false,
+  inner: true,
   boundary: false,
   ghost: true,
   features: true,

@@ -72,7 +72,12 @@ async function lookAt(page: Page, png: Buffer) {
     const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
     const pixels = new Uint32Array(data.buffer);
     const middle = 4 * (Math.floor(image.height / 2) * image.width + Math.floor(image.width / 2));
+    // A body that runs off the canvas is cut off at both sides.
+    const isBody = (column: number) =>
+      Array.from({ length: image.height }, (_, row) => pixels[row * image.width + column] !== pixels[0]).some(Boolean);
     return {
+      runsOff: isBody(0) || isBody(image.width - 1),
+      share: pixels.reduce((sum, pixel) => sum + Number(pixel !== pixels[0]), 0) / pixels.length,
       colours: new Set(pixels).size,
       covered: pixels.reduce((sum, pixel) => sum + Number(pixel !== pixels[0]), 0),
       corner: [...data.slice(0, 4)],

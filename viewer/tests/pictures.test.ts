@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs";
 import { expect, open, press, savePicture, test } from "./page";
 
-const kFrom = "camera=1.5,-2.5,1.45,0,0,0";
+const kFrom = "camera=1.5,-2.5,1.45,0,0,0&inner=0";
 
 const kViews: [name: string, page: string, fragment: string, keys: string][] = [
   ["boundary", "sphere.html", kFrom, ""],
@@ -14,6 +14,7 @@ const kViews: [name: string, page: string, fragment: string, keys: string][] = [
   ["not-positive", "broken.html", kFrom, ""],
   ["curved", "curved.html", kFrom, "ye"],
   ["features", "features.html", `${kFrom}&colour=feature`, ""],
+  ["patches", "features.html", `${kFrom}&colour=patch`, ""],
   ["generators-dark", "sphere.html", `${kFrom}&colour=generator&theme=dark`, "z"],
 ];
 

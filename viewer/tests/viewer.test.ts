@@ -1,6 +1,6 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { kHostileName, kPages, serve } from "./make_pages";
+import { hexhex, kHostileName, kPages, serve } from "./make_pages";
 import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, pixelsOfPng, press, quads, settle, shotOfCanvas, sizeOfPng, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
@@ -297,6 +297,7 @@ test("colours, and says in the legend how", async ({ page }) => {
   await open(page, "sphere.html");
   const legend = page.locator("#legend");
   await expect(legend).toContainText("scaled Jacobian");
+  await page.locator("#show-inner").uncheck();
   await expect(legend).not.toContainText("valence");
   await page.locator("#show-inner").check();
   await expect(legend).toContainText(`3 (${20 * kSide})`);
@@ -561,9 +562,52 @@ test("works on a phone", async ({ browser }) => {
   await settle(page);
   await expect(page.locator("#picked-cell")).toHaveText(/^\d+$/);
   await page.screenshot(shot("phone"));
+  // The list of keys is longer than the screen, and begins at its top.
+  await page.locator("#help").tap();
+  expect(await page.locator("#shortcuts").evaluate((list) => [list.scrollTop, list.scrollHeight > list.clientHeight])).toEqual([0, true]);
+  await page.keyboard.press("Escape");
+  // Without the panel, the canvas is taller, and the mesh still fits.
+  await page.locator('[data-slice="off"]').tap();
+  await page.locator('[data-look="home"]').tap();
+  await settle(page);
+  const before = await lookAtCanvas(page);
   await page.locator("#panel-toggle").tap();
   await expect(page.locator("#controls")).toBeHidden();
+  await settle(page);
+  expect([before.runsOff, (await lookAtCanvas(page)).runsOff]).toEqual([false, false]);
   await context.close();
+});
+
+test("the mesh fills the canvas at first, with its singular edges", async ({ page }) => {
+  await open(page, "sphere.html");
+  const first = await lookAtCanvas(page);
+  expect(first.runsOff).toBe(false);
+  expect(first.share).toBeGreaterThan(0.55);
+  await expect(page.locator("#show-inner")).toBeChecked();
+  for (const name of ["Peel", "Dig"]) {
+    expect(await page.locator("legend", { hasText: name }).first().getAttribute("title")).toMatch(/ells/);
+  }
+});
+
+test("names patches, and saves names for the command", async ({ page }) => {
+  await open(page, "features.html", "#colour=patch");
+  const names = page.locator("#patch-list input");
+  await expect(names).toHaveCount(3);
+  await expect(page.locator("#legend")).toContainText("surface_2");
+  await expect(page.locator("#save-names")).toBeDisabled();
+  // Two groups with one name would be one.
+  await names.nth(1).fill("Surface_1");
+  await names.nth(1).blur();
+  await expect(names.nth(1)).toHaveValue("surface_2");
+  await names.nth(1).fill("my inlet");
+  await names.nth(1).blur();
+  await expect(page.locator("#legend")).toContainText("my_inlet");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save-names").click()]);
+  const saved = await download.path();
+  expect(readFileSync(saved, "utf8")).toBe("surface_2 my_inlet\n");
+  hexhex("convert", "features.ovmb", "named.msh", "--names", saved, "--quiet");
+  expect(hexhex("info", "named.msh")).toMatch(/my_inlet +\d/);
+  await page.screenshot(shot("patches"));
 });
 
 test("says so if its data is damaged", async ({ page }) => {

@@ -15,7 +15,7 @@ from ._errors import ArgumentError
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from ._types import Features, Map, Mesh
+    from ._types import BaseComplex, Features, Map, Mesh
 
     Arrays = dict[str, npt.NDArray[Any]]
 
@@ -352,15 +352,77 @@ def from_pyvista(given: Any, cell_type: int, what: str) -> Grid:
                 arrays(data.point_data), arrays(data.cell_data, chosen), arrays(data.field_data))
 
 
-def vtk_order(p: int) -> npt.NDArray[np.int64]:
-    """Returns the nodes of a cell of order p in VTK_LAGRANGE_HEXAHEDRON order (VTK 9.1 and
-    later)."""
+# Corners of the edges along each axis, around the cell; and of the faces across it, the lower first.
+_EDGES = np.array([[[0, 1], [3, 2], [7, 6], [4, 5]], [[0, 3], [1, 2], [5, 6], [4, 7]],
+                   [[0, 4], [1, 5], [2, 6], [3, 7]]])
+_SIDES = np.array([[[0, 3, 7, 4], [1, 2, 6, 5]], [[0, 1, 5, 4], [3, 2, 6, 7]], [[0, 1, 2, 3], [4, 5, 6, 7]]])
+
+
+def _middles(points: npt.NDArray[np.float64], elements: npt.NDArray[Any]) -> tuple[Any, Any]:
+    """The middle of each of the different elements, rows of vertices; and per element, which one it is."""
+    rows = np.sort(elements.reshape(-1, elements.shape[-1]), axis=1)
+    unique, which = np.unique(rows, axis=0, return_inverse=True)
+    return points[unique].mean(axis=1), which.reshape(elements.shape[:-1])
+
+
+def complex_to_pyvista(parts: BaseComplex) -> Any:
+    """What BaseComplex.to_pyvista() says."""
+    import pyvista
+
+    points, cells = np.array(parts.mesh.points), np.array(parts.mesh.cells)
+    number = np.repeat(np.arange(len(cells)), 3)  # of the cell, once for each axis
+
+    def add(to: Any, **arrays: Any) -> None:
+        for name, array in arrays.items():
+            if len(array):  # PyVista takes no empty ones
+                to[name] = array
+
+    def surfaces(nodes: Any, quads: Any, **arrays: Any) -> Any:
+        made = pyvista.PolyData.from_regular_faces(nodes, quads)
+        add(made.cell_data, **arrays)
+        return made
+
+    def lines(nodes: Any, polylines: Any, **arrays: Any) -> Any:
+        made = pyvista.PolyData(nodes)
+        made.verts = np.empty(0, dtype=np.int64)
+        made.lines = np.concatenate([[len(line), *line] for line in polylines] or [[]]).astype(np.int64)
+        add(made.cell_data, **arrays)
+        return made
+
+    grid = parts.mesh.to_pyvista()
+    add(grid.cell_data, block=parts.cell_blocks, sheets=parts.cell_sheets, chords=parts.cell_chords)
+    of_edges, edges = _middles(points, cells[:, _EDGES])  # (m, 3, 4)
+    of_faces, faces = _middles(points, cells[:, _SIDES])  # (m, 3, 2)
+    order = np.argsort(faces.ravel(), kind="stable")
+    twice = np.flatnonzero(np.diff(faces.ravel()[order]) == 0)
+    both = np.stack((order[twice], order[twice + 1]), axis=1)  # places of inner faces in two cells
+    blocks = parts.cell_blocks[both // 6]
+    apart = blocks[:, 0] != blocks[:, 1]
+    made = pyvista.MultiBlock()
+    made["cells"] = grid
+    made["walls"] = surfaces(points, cells[:, _SIDES].reshape(-1, 4)[both[apart, 0]], blocks=blocks[apart])
+    made["sheets"] = surfaces(of_edges, edges.reshape(-1, 4), sheet=parts.cell_sheets.ravel(), cell=number)
+    made["chords"] = lines(of_faces, faces.reshape(-1, 2), chord=parts.cell_chords.ravel(), cell=number)
+    made["singular_curves"] = lines(points, [curve.vertices for curve in parts.curves],
+                                    valence=np.array([curve.valence for curve in parts.curves], dtype=int),
+                                    boundary=np.array([curve.boundary for curve in parts.curves], dtype=bool))
+    irregular = [(kind, vertex) for kind, each in enumerate(parts.irregular) for vertex in each.vertices]
+    kinds, vertices = np.array(irregular, dtype=int).reshape(-1, 2).T
+    made["irregular_vertices"] = pyvista.PolyData(points[vertices])
+    add(made["irregular_vertices"].point_data, kind=kinds, vertex=vertices)
+    return made
+
+
+def vtk_order(p: int, *, row_by_row: bool = False) -> npt.NDArray[np.int64]:
+    """Returns the nodes of a cell of order p in VTK_LAGRANGE_HEXAHEDRON order (VTK 9.1 and later).
+    With row_by_row, upright edges come row by row, as before VTK 9 and in the .vtu files that
+    meshio reads and writes."""
     inner = range(1, p)
     nodes = [(0, 0, 0), (p, 0, 0), (p, p, 0), (0, p, 0), (0, 0, p), (p, 0, p), (p, p, p), (0, p, p)]
     for k in (0, p):
         nodes += [(i, 0, k) for i in inner] + [(p, j, k) for j in inner]
         nodes += [(i, p, k) for i in inner] + [(0, j, k) for j in inner]
-    for i, j in ((0, 0), (p, 0), (p, p), (0, p)):
+    for i, j in ((0, 0), (p, 0), (0, p), (p, p)) if row_by_row else ((0, 0), (p, 0), (p, p), (0, p)):
         nodes += [(i, j, k) for k in inner]
     nodes += [(i, j, k) for i in (0, p) for k in inner for j in inner]
     nodes += [(i, j, k) for j in (0, p) for k in inner for i in inner]

@@ -540,16 +540,18 @@ class LagrangeMesh(_interchange.Wrappable):
         Raises ArgumentError for nodes that do not exist."""
         return Mesh._from_handle(self._handle.straight())
 
-    def _grid(self) -> _interchange.Grid:
+    def _grid(self, *, row_by_row: bool = False) -> _interchange.Grid:
         kind = {"generator_kind": _kind(self.generator_corners)} if len(self.generator_tet) else {}
         regions = {"region": self.regions} if len(self.regions) else {}
-        return _interchange.Grid(self.points, self.nodes[:, _interchange.vtk_order(self.order)],
-                                 kind, regions, {})
+        order = _interchange.vtk_order(self.order, row_by_row=row_by_row)
+        return _interchange.Grid(self.points, self.nodes[:, order], kind, regions, {})
 
     def to_meshio(self) -> Any:
-        """Returns a ``meshio.Mesh`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without
-        meshio."""
-        return _interchange.to_meshio(self._grid(), "VTK_LAGRANGE_HEXAHEDRON")
+        """Returns a ``meshio.Mesh`` as meshio reads it from a .vtu file: of hexahedron27 for order
+        2, otherwise of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without meshio."""
+        if self.order == 2:
+            return _interchange.to_meshio(self._grid(), "hexahedron27")
+        return _interchange.to_meshio(self._grid(row_by_row=True), "VTK_LAGRANGE_HEXAHEDRON")
 
     def to_vtk(self) -> Any:
         """Returns a ``vtkUnstructuredGrid`` of VTK_LAGRANGE_HEXAHEDRON. Raises ImportError without
@@ -612,6 +614,19 @@ class BaseComplex:
     block_cells: npt.NDArray[np.uint64]  #: uint64 (b,)
     curves: list[SingularCurve]
     irregular: list[IrregularVertices]
+    mesh: Mesh  #: whose complex it is
+
+    def to_pyvista(self) -> Any:
+        """A ``pyvista.MultiBlock``: ``cells`` with the arrays block, sheets and chords; the data sets ``walls``
+        (faces between blocks), ``sheets`` (a quad through the middle of each cell that a sheet passes),
+        ``chords`` (a line from face to face), ``singular_curves`` (a polyline each, with valence and
+        boundary) and ``irregular_vertices``. Raises ImportError without pyvista.
+
+        >>> parts = hexhex.extract(hexhex.generate("sphere")).base_complex().to_pyvista()
+        >>> parts["singular_curves"].n_cells, parts["sheets"]["sheet"].max()
+        (20, 15)
+        """
+        return _interchange.complex_to_pyvista(self)
 
     def __repr__(self) -> str:
         return (f"<hexhex.BaseComplex: {self.sheets} sheets, {self.chords} chords, "
@@ -761,7 +776,7 @@ class Mesh(_interchange.Wrappable):
          types) = _hexhex.base_complex(self._handle, 0, None)
         return BaseComplex(sheets, sheet_count, chords, chord_count, blocks, sizes[:, :3], sizes[:, 3],
                            [SingularCurve(*curve) for curve in curves],
-                           [IrregularVertices(*kind) for kind in types])
+                           [IrregularVertices(*kind) for kind in types], self)
 
     def structure(self) -> dict[str, int]:
         """Returns the numbers of faces, edges, boundary_quads, components and boundary_components,

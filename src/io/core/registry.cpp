@@ -46,6 +46,7 @@ constexpr ReadMesh* kReadCgns = CgnsFormat::readMesh;
 constexpr ReadTets* kReadCgnsTets = CgnsFormat::readTets;
 constexpr HoldsCurved* kHoldsCurvedCgns = CgnsFormat::holdsCurved;
 constexpr ReadCurved* kReadCurvedCgns = CgnsFormat::readCurved;
+constexpr WriteCurved* kWriteCurvedCgns = writeQuadraticCgns;
 constexpr OpenPartSink* kOpenVtkHdf = openVtkHdfPartSink;
 constexpr OpenPartSink* kOpenCgns = openCgnsPartSink;
 #else
@@ -55,6 +56,7 @@ constexpr ReadMesh* kReadCgns = nullptr;
 constexpr ReadTets* kReadCgnsTets = nullptr;
 constexpr HoldsCurved* kHoldsCurvedCgns = nullptr;
 constexpr ReadCurved* kReadCurvedCgns = nullptr;
+constexpr WriteCurved* kWriteCurvedCgns = nullptr;
 constexpr OpenPartSink* kOpenVtkHdf = nullptr;
 constexpr OpenPartSink* kOpenCgns = nullptr;
 #endif
@@ -69,7 +71,10 @@ constexpr Format exodusFormat(std::string_view name, std::string_view extension,
   return {.label = {name, extension, "Exodus II"},
           .readTets = ExodusFormat::readTets,
           .meshes = {ExodusFormat::readMesh, writeExodusFile},
-          .curved = {ExodusFormat::holdsCurved, ExodusFormat::readCurved},
+          .curved = {.isIn = ExodusFormat::holdsCurved,
+                     .read = ExodusFormat::readCurved,
+                     .write = writeQuadraticExodus,
+                     .onlyOrder = 2},
           .parts = {openExodusPartSink, parts}};
 }
 
@@ -168,7 +173,10 @@ constexpr std::array kFormatTable = {
     Format{.label = {"cgns", ".cgns", "CGNS"},
            .readTets = kReadCgnsTets,
            .meshes = {kReadCgns, kWriteCgns},
-           .curved = {kHoldsCurvedCgns, kReadCurvedCgns},
+           .curved = {.isIn = kHoldsCurvedCgns,
+                      .read = kReadCurvedCgns,
+                      .write = kWriteCurvedCgns,
+                      .onlyOrder = 2},
            .parts = {kOpenCgns, "CGNS: one file with a zone for each part", false},
            .overHdf5 = true},
     exodusFormat("exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"),

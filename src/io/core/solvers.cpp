@@ -22,7 +22,7 @@ std::span<const SolverFormat> solverFormats() noexcept {
       SolverFormat{"febio", "FEBio Studio", "inp", ".inp", "inp"},
       SolverFormat{"getfem", "GetFEM", "msh22-ascii", ".msh"},
       SolverFormat{"mfem", "MFEM", "mfem", ".mesh", "mfem"},
-      SolverFormat{"moose", "MOOSE", "exodus-e", ".e"},
+      SolverFormat{"moose", "MOOSE", "exodus-e", ".e", "exodus-e"},
       SolverFormat{"ngsolve", "NGSolve", "msh22-ascii", ".msh"},
       SolverFormat{"openfoam", "OpenFOAM", "openfoam", ".foam"},
       SolverFormat{"scikit-fem", "scikit-fem", "msh", ".msh", "msh"},

@@ -14,25 +14,52 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/hdf_file.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
 namespace {
 
-/// The standard's numbers of elements with so many corners.
-constexpr int elementType(std::size_t corners) {
-  return corners == 8 ? 17 : corners == 4 ? 7 : corners == 2 ? 3 : 2;
+/// The standard's numbers of elements with so many nodes: of order 1, or 2.
+constexpr int elementType(std::size_t nodes) {
+  switch (nodes) {
+    case 27:
+      return 19;
+    case 9:
+      return 9;
+    case 8:
+      return 17;
+    case 4:
+      return 7;
+    case 3:
+      return 4;
+    case 2:
+      return 3;
+    default:
+      return 2;
+  }
 }
+
+/// What cells of order 2 have in place of the corners of straight ones.
+struct QuadraticNodes {
+  const LagrangeMesh& mesh;
+  GroupNodes ofGroups;
+  std::vector<std::uint32_t> order = quadraticOrder(kCgnsPlaces);
+};
 
 /// Numbers of nodes; "MT" of those without.
 struct CgnsData {
@@ -130,61 +157,78 @@ HdfObject addBase(const CgnsFile& file) {
 template <class Number>
 class CgnsWriter {
  public:
-  CgnsWriter(const CgnsFile& file, const HexMesh& mesh, Stage& stage)
-      : file_(file), mesh_(mesh), progress_(stage, mesh.points.size() + mesh.cells.size()) {}
+  /// @param curved  null: cells are straight
+  CgnsWriter(const CgnsFile& file, const HexMesh& mesh, Stage& stage,
+             const QuadraticNodes* curved = nullptr)
+      : file_(file),
+        mesh_(mesh),
+        curved_(curved),
+        points_(curved != nullptr ? curved->mesh.points : mesh.points),
+        progress_(stage, points_.size() + mesh.cells.size()) {}
 
   /// @param name  of the zone
   HdfObject writeZone(hid_t base, const std::string& name, const MeshGroups& groups) {
-    const std::array<Number, 3> size = {static_cast<Number>(mesh_.points.size()),
+    const std::array<Number, 3> size = {static_cast<Number>(points_.size()),
                                         static_cast<Number>(groups.cells.groups.back().end), 0};
     HdfObject zone = file_.add(base, name, "Zone_t", {size.data(), {3, 1}});
     static_cast<void>(file_.addText(zone.id(), "ZoneType", "ZoneType_t", "Unstructured"));
     writePoints(zone.id());
     for (const ElementGroup& group : groups.cells.groups) {
-      writeSection(zone.id(), group,
-                   [&](std::size_t i) -> const Hex& { return mesh_.cells[groups.cells.at(i)]; });
+      writeSection(zone.id(), group, curved_ != nullptr ? kCgnsPlaces.size() : 8,
+                   [&](std::size_t i, std::size_t k) { return nodeOf(groups.cells.at(i), k); });
     }
     progress_.advance(mesh_.cells.size());
     const Number firstQuad = next_;
-    const auto writeAll = [&](const auto& ofKind) {
+    // Elements, or their nodes if they are curved.
+    const auto writeAll = [&](const auto& ofKind, const Array<Index>* nodes) {
       for (const ElementGroup& group : ofKind.groups) {
-        writeSection(
-            zone.id(), group, [&](std::size_t i) -> const auto& { return ofKind.elements[i]; });
+        const std::size_t corners = std::tuple_size_v<std::decay_t<decltype(ofKind.elements[0])>>;
+        const std::size_t each =
+            nodes == nullptr ? corners : nodes->size() / ofKind.elements.size();
+        writeSection(zone.id(), group, each, [&](std::size_t i, std::size_t k) {
+          return nodes == nullptr ? ofKind.elements[i][k] : (*nodes)[i * each + k];
+        });
       }
     };
-    writeAll(groups.quads);
+    writeAll(groups.quads, curved_ != nullptr ? &curved_->ofGroups.quads : nullptr);
     writeBoundary(zone.id(), groups.quads, firstQuad);
-    writeAll(groups.edges);
-    writeAll(groups.vertices);
+    writeAll(groups.edges, curved_ != nullptr ? &curved_->ofGroups.edges : nullptr);
+    writeAll(groups.vertices, nullptr);
     return zone;
   }
 
  private:
+  /// The node that a cell lists at place k.
+  [[nodiscard]] Index nodeOf(std::size_t cell, std::size_t k) const {
+    if (curved_ == nullptr) return mesh_.cells[cell][k];
+    return curved_->mesh.nodes[cell * kCgnsPlaces.size() + curved_->order[k]];
+  }
+
   void writePoints(hid_t zone) {
     const HdfObject points = file_.add(zone, "GridCoordinates", "GridCoordinates_t");
-    Array<double> values(mesh_.points.size());
+    Array<double> values(points_.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = mesh_.points[i][axis];
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = points_[i][axis];
       static_cast<void>(file_.add(points.id(), std::string("Coordinate") + "XYZ"[axis],
                                   "DataArray_t", {values.data(), {values.size()}}));
     }
-    progress_.advance(mesh_.points.size());
+    progress_.advance(points_.size());
   }
 
-  /// @param elementAt  the element at a place of the sorted list
+  /// @param each  nodes of an element
+  /// @param nodeAt  the k-th node of the element at a place of the sorted list
   template <class F>
-  void writeSection(hid_t zone, const ElementGroup& group, const F& elementAt) {
+  void writeSection(hid_t zone, const ElementGroup& group, std::size_t each, const F& nodeAt) {
     if (group.begin == group.end) return;
-    const std::size_t corners = elementAt(group.begin).size();
-    Array<Number> vertices((group.end - group.begin) * corners);
+    Array<Number> vertices((group.end - group.begin) * each);
     Number* place = vertices.data();
     for (std::size_t i = group.begin; i < group.end; ++i) {
-      for (const Index vertex : elementAt(i)) *place++ = static_cast<Number>(vertex) + 1;
+      for (std::size_t k = 0; k < each; ++k) *place++ = static_cast<Number>(nodeAt(i, k)) + 1;
     }
     const auto end = static_cast<Number>(next_ + static_cast<Number>(group.end - group.begin));
     const std::array<Number, 2> range = {next_, static_cast<Number>(end - 1)};
     next_ = end;
-    const std::array<std::int32_t, 2> kind = {elementType(corners), 0};
+    const std::array<std::int32_t, 2> kind = {elementType(each), 0};
     const HdfObject section =
         file_.add(zone, group.name, "Elements_t", {kind.data(), {kind.size()}});
     static_cast<void>(
@@ -214,14 +258,17 @@ class CgnsWriter {
 
   const CgnsFile& file_;
   const HexMesh& mesh_;
+  const QuadraticNodes* curved_;
+  const Array<Vec3>& points_;
   LoopProgress progress_;
   Number next_ = 1;  ///< number of the next element
 };
 
 /// Whether libraries, which count the numbers of a section with the same integers, need wide ones.
-bool needsWide(const HexMesh& mesh, const MeshGroups& groups) {
-  const auto largest =
-      std::max<std::uint64_t>({mesh.points.size(), groups.elementCount(), 8 * mesh.cells.size()});
+bool needsWide(const HexMesh& mesh, const MeshGroups& groups,
+               const QuadraticNodes* curved = nullptr) {
+  const std::size_t nodes = curved != nullptr ? curved->mesh.nodes.size() : 8 * mesh.cells.size();
+  const auto largest = std::max<std::uint64_t>({mesh.points.size(), groups.elementCount(), nodes});
   return largest > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
 }
 
@@ -322,16 +369,11 @@ class CgnsPartSink final : public PartSink {
 
 }  // namespace
 
-void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-               Context& context) {
-  Stage stage(context, "write mesh");
-  // First, so that a folder that is not writable shows at once.
-  OutputFile target(file, OutputFile::Target::Regular);
-  if (mesh.points.empty() || mesh.cells.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
-  }
-  const MeshGroups groups(mesh, options.patchAngle, stage);
+namespace {
+
+/// @param curved  null: cells are straight
+void writeBase(OutputFile& target, const HexMesh& mesh, const MeshGroups& groups, Stage& stage,
+               const QuadraticNodes* curved = nullptr) {
   CgnsFile tree(target);
   {
     const HdfObject base = addBase(tree);
@@ -339,16 +381,47 @@ void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const Wri
       if (groups.quads.boundaryEnd(group) == group.begin) continue;
       static_cast<void>(tree.add(base.id(), group.name, "Family_t"));
     }
-    if (needsWide(mesh, groups)) {
+    if (needsWide(mesh, groups, curved)) {
       static_cast<void>(
-          CgnsWriter<std::int64_t>(tree, mesh, stage).writeZone(base.id(), "Zone", groups));
+          CgnsWriter<std::int64_t>(tree, mesh, stage, curved).writeZone(base.id(), "Zone", groups));
     } else {
       static_cast<void>(
-          CgnsWriter<std::int32_t>(tree, mesh, stage).writeZone(base.id(), "Zone", groups));
+          CgnsWriter<std::int32_t>(tree, mesh, stage, curved).writeZone(base.id(), "Zone", groups));
     }
   }
   tree.close();
   target.commit();
+}
+
+void refuseEmpty(std::size_t cells, const std::filesystem::path& file) {
+  if (cells > 0) return;
+  throw Error(ErrorCode::InvalidArgument,
+              file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
+}
+
+}  // namespace
+
+void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
+               Context& context) {
+  Stage stage(context, "write mesh");
+  // First, so that a folder that is not writable shows at once.
+  OutputFile target(file, OutputFile::Target::Regular);
+  refuseEmpty(mesh.cells.size(), file);
+  writeBase(target, mesh, MeshGroups(mesh, options.patchAngle, stage), stage);
+}
+
+void writeQuadraticCgns(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                        const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile target(file, OutputFile::Target::Regular);
+  refuseEmpty(mesh.cellCount(), file);
+  const HexMesh straight = straightMesh(mesh);
+  const MeshGroups groups(straight, options.patchAngle, stage);
+  QuadraticNodes nodes = {mesh, {}};
+  withThreads(context.threads(), [&] {
+    nodes.ofGroups = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
+  });
+  writeBase(target, straight, groups, stage, &nodes);
 }
 
 std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file,

@@ -59,12 +59,6 @@ constexpr std::array<CgnsType, 20> kCgnsTypes = {{{2, 1, 1},
                                                   {21, 13, 5, "pyramids"},
                                                   {24, 4, 2}}};
 
-/// VTK's place k is this place of CGNS, which lists upright edges before those of the top, and
-/// faces from the bottom on around the cell.
-constexpr std::array<std::uint8_t, 27> kCgnsPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
-                                                      9,  10, 11, 16, 17, 18, 19, 12, 13,
-                                                      14, 15, 24, 22, 21, 23, 20, 25, 26};
-
 class CgnsReader {
  public:
   CgnsReader(const Input& input, ElementParts parts)

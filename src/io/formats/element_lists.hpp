@@ -17,6 +17,7 @@
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
 #include <io/core/input_file.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
@@ -176,7 +177,7 @@ void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std:
 
 /// Of a mesh whose cells list their nodes in VTK's order: puts them in that of LagrangeMesh, and
 /// vertices in front of other nodes.
-void fromVtkOrder(LagrangeMesh& mesh, Stage& stage);
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright = VtkEdges::Around);
 
 /// Whether there are hexahedra with 20 or 27 nodes.
 [[nodiscard]] bool areCurved(const ElementLists& lists);

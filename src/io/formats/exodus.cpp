@@ -11,9 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/version.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/hdf_reader.hpp>
 #include <io/core/input_file.hpp>
@@ -23,6 +25,7 @@
 #include <io/core/text_scanner.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 #include <io/formats/netcdf.hpp>
 
 namespace hexhex::io {
@@ -33,6 +36,12 @@ namespace {
 constexpr std::array<std::int32_t, 6> kExodusSides = {4, 2, 1, 3, 5, 6};
 /// The corner of a tetrahedron that each of its sides lacks.
 constexpr std::array<std::size_t, 6> kExodusOpposite = {2, 0, 1, 3, 4, 4};
+
+/// VTK's place k is this place of Exodus, which lists the edges along z before those of the top,
+/// and the node inside before those of the faces.
+constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                        9,  10, 11, 16, 17, 18, 19, 12, 13,
+                                                        14, 15, 23, 24, 25, 26, 21, 22, 20};
 
 /// Bytes of a name; the last one is 0.
 constexpr std::size_t kExodusNameBytes = 33;
@@ -66,13 +75,19 @@ struct ExodusList {
 class ExodusFile {
  public:
   /// @param allGroups  whether there are sets for groups without elements, too
-  ExodusFile(const HexMesh& mesh, const MeshGroups& groups, Stage& stage, bool allGroups = false)
+  /// @param curved  of order 2: what the mesh is the straight one of; null: cells are straight
+  /// @param edgeNodes  of its tagged edges, as nodesOfGroups() returns them
+  ExodusFile(const HexMesh& mesh, const MeshGroups& groups, Stage& stage, bool allGroups = false,
+             const LagrangeMesh* curved = nullptr, Array<Index> edgeNodes = {})
       : mesh_(mesh),
+        curved_(curved),
+        points_(curved != nullptr ? curved->points : mesh.points),
+        edgeNodes_(std::move(edgeNodes)),
         groups_(groups),
         allGroups_(allGroups),
-        progress_(stage, 3 * mesh.points.size() + mesh.cells.size()) {
+        progress_(stage, 3 * points_.size() + mesh.cells.size()) {
     describe();
-    if (!mesh.points.empty()) addPoints();
+    if (!points_.empty()) addPoints();
     if (groups.cells.groups.back().end > 0 || allGroups) addBlocks();
     addSideSets();
     addNodeSets();
@@ -150,13 +165,13 @@ class ExodusFile {
   }
 
   void addPoints() {
-    const std::uint32_t length = addDimension("num_nodes", mesh_.points.size());
+    const std::uint32_t length = addDimension("num_nodes", points_.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Write write = [this, axis](LineWriter& values) {
         const auto put = [&](char* place, std::size_t i) {
-          return putBigBytes(place, mesh_.points[i][axis]);
+          return putBigBytes(place, points_[i][axis]);
         };
-        values.write(mesh_.points.size(), sizeof(double), put, &progress_);
+        values.write(points_.size(), sizeof(double), put, &progress_);
       };
       addVariable(
           std::string("coord") + "xyz" [axis], NetcdfType::Double, { length }, write);
@@ -172,20 +187,27 @@ class ExodusFile {
       const std::size_t count = group.end - group.begin;
       const std::string n = blocks.add(static_cast<std::int32_t>(group.number), group.name, count);
       if (count == 0) continue;
-      const Write write = [this, &group, count](LineWriter& values) {
+      const std::size_t each = curved_ != nullptr ? kExodusPlaces.size() : 8;
+      const Write write = [this, &group, count, each](LineWriter& values) {
         const auto put = [&](char* place, std::size_t i) {
-          for (const Index vertex : mesh_.cells[groups_.cells.at(group.begin + i)]) {
-            place = putBigBytes(place, fromOne(vertex));
-          }
+          const std::size_t cell = groups_.cells.at(group.begin + i);
+          for (std::size_t k = 0; k < each; ++k) place = putBigBytes(place, nodeOf(cell, k));
           return place;
         };
-        values.write(count, 8 * sizeof(std::int32_t), put, &progress_);
+        values.write(count, each * sizeof(std::int32_t), put, &progress_);
       };
       const std::uint32_t length = addDimension("num_el_in_blk" + n, count);
-      addVariable("connect" + n, NetcdfType::Int, {length, addDimension("num_nod_per_el" + n, 8)},
-                  write, "elem_type", "HEX8");
+      addVariable("connect" + n, NetcdfType::Int,
+                  {length, addDimension("num_nod_per_el" + n, each)}, write, "elem_type",
+                  "HEX" + std::to_string(each));
     }
     addList("eb", "num_el_blk", blocks);
+  }
+
+  /// The node that a cell lists at place k.
+  [[nodiscard]] std::int32_t nodeOf(std::size_t cell, std::size_t k) const {
+    if (curved_ == nullptr) return fromOne(mesh_.cells[cell][k]);
+    return fromOne(curved_->nodes[cell * kExodusPlaces.size() + order_[k]]);
   }
 
   /// The sides of each group of boundary quads.
@@ -212,13 +234,18 @@ class ExodusFile {
     addList("ss", "num_side_sets", sets);
   }
 
-  /// The vertices of each group of edges and of vertices.
+  /// The nodes of each group of edges and of vertices.
   void addNodeSets() {
     ExodusList& sets = nodes_;
     const auto add = [&](const auto& ofKind) {
       for (const ElementGroup& group : ofKind.groups) {
         std::vector<std::int32_t> vertices;
         for (const Index vertex : verticesOf(ofKind, group)) vertices.push_back(fromOne(vertex));
+        if (curved_ != nullptr && &ofKind.groups == &groups_.edges.groups) {
+          for (std::size_t i = group.begin; i < group.end; ++i) {
+            vertices.push_back(fromOne(edgeNodes_[3 * i + 2]));  // between two vertices
+          }
+        }
         const std::string n = sets.add(fromOne(sets.names.size()), group.name, vertices.size());
         if (vertices.empty()) continue;
         const std::uint32_t length = addDimension("num_nod_ns" + n, vertices.size());
@@ -231,6 +258,10 @@ class ExodusFile {
   }
 
   const HexMesh& mesh_;
+  const LagrangeMesh* curved_;
+  const Array<Vec3>& points_;
+  std::vector<std::uint32_t> order_ = quadraticOrder(kExodusPlaces);  ///< of curved cells
+  Array<Index> edgeNodes_;  ///< of curved meshes: three of each tagged edge
   const MeshGroups& groups_;
   bool allGroups_;
   mutable LoopProgress progress_;
@@ -242,12 +273,6 @@ class ExodusFile {
 };
 
 // Reading.
-
-/// VTK's place k is this place of Exodus, which lists the edges along z before those of the top,
-/// and the node inside before those of the faces.
-constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
-                                                        9,  10, 11, 16, 17, 18, 19, 12, 13,
-                                                        14, 15, 23, 24, 25, 26, 21, 22, 20};
 
 class ExodusReader {
  public:
@@ -734,6 +759,21 @@ void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
   requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
   const MeshGroups groups(mesh, options.patchAngle, stage);
   ExodusFile(mesh, groups, stage).write(target, context.threads(), mostBytes);
+  target.commit();
+}
+
+void writeQuadraticExodus(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                          const WriteOptions& options, Context& context) {
+  Stage stage(context, "write mesh");
+  OutputFile target(file);
+  requireInt32(mesh.points.size(), "An Exodus file numbers nodes");
+  const HexMesh straight = straightMesh(mesh);
+  const MeshGroups groups(straight, options.patchAngle, stage);
+  GroupNodes nodes;
+  withThreads(context.threads(),
+              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
+  ExodusFile(straight, groups, stage, false, &mesh, std::move(nodes.edges))
+      .write(target, context.threads(), kMostExodusBytes);
   target.commit();
 }
 

@@ -297,6 +297,8 @@ inline constexpr std::uint64_t kMostExodusBytes = 0xffff'fff0;
 void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
                  const WriteOptions& options, Context& context,
                  std::uint64_t mostBytes = kMostExodusBytes);
+/// Order 2 only: blocks of HEX27. Node sets of edges have the nodes in their middle, too.
+WriteCurved writeQuadraticExodus;
 /// `NAME.e.N.K` for NAME.e: with Nemesis' maps of inner and shared nodes and cells. No ghosts.
 OpenPartSink openExodusPartSink;
 
@@ -306,6 +308,8 @@ OpenPartSink openExodusPartSink;
 // groups; and a boundary condition, of the type FamilySpecified, for each group of boundary quads.
 // The cells are in order of their regions. An empty mesh is an error.
 WriteMesh writeCgns;
+/// Order 2 only: sections HEXA_27, QUAD_9 and BAR_3.
+WriteCurved writeQuadraticCgns;
 /// Unstructured zones; several only where 1-to-1 connections say which vertices they share.
 /// Sections of cells are regions where there are several, or this library named them. Boundary
 /// conditions of faces and edges tag these, and those of cells are regions; the name of their

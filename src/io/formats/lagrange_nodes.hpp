@@ -5,6 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include <hexhex/curved.hpp>
+#include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/mesh_groups.hpp>
+
 namespace hexhex::io {
 
 /// Where a node is in a cell, from 0 to the order along each axis.
@@ -42,5 +48,42 @@ using Node = std::array<int, 3>;
 inline void append(std::vector<Node>& nodes, const std::vector<Node>& more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
+
+/// Appends the nodes of a quadrangle: its corners, sides, and what is inside, which is a smaller
+/// one.
+void appendQuad(std::vector<Node>& nodes, std::array<Node, 4> corners, int order);
+
+/// How Lagrange cells of VTK list their edges along z: around the cell, or, as before VTK 9 and in
+/// its XML files before version 2.1, row by row.
+enum class VtkEdges : std::uint8_t { Around, RowByRow };
+
+/// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
+/// along x and y around the bottom, then around the top, then those along z; faces across x, y, z,
+/// the lower of each pair first.
+[[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order,
+                                                      VtkEdges upright = VtkEdges::Around);
+
+/// The same of cells of order 2 in another format.
+/// @param places  entry k: where the format lists the node that VTK lists at place k
+[[nodiscard]] std::vector<std::uint32_t> quadraticOrder(const std::array<std::uint8_t, 27>& places);
+
+/// Such places of CGNS, which lists upright edges before those of the top, and faces from the
+/// bottom on around the cell.
+inline constexpr std::array<std::uint8_t, 27> kCgnsPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                             9,  10, 11, 16, 17, 18, 19, 12, 13,
+                                                             14, 15, 24, 22, 21, 23, 20, 25, 26};
+
+/// Nodes of tagged edges and of quads, order + 1 or (order + 1)^2 each, as Gmsh and CGNS list them:
+/// corners, nodes on sides, nodes inside. Boundary quads run counter-clockwise seen from outside,
+/// quads inside the mesh so seen from outside of the first cell that they belong to.
+struct GroupNodes {
+  Array<Index> edges;
+  Array<Index> quads;
+};
+/// @param straight  what straightMesh() returns
+/// @throws Error InvalidArgument for an element that is none of a cell
+[[nodiscard]] GroupNodes nodesOfGroups(const LagrangeMesh& mesh, const HexMesh& straight,
+                                       const EdgeGroups& edges, const QuadGroups& quads,
+                                       Stage& stage);
 
 }  // namespace hexhex::io

@@ -53,40 +53,6 @@ const CellKind* quadraticKind(const VtkSource& source) {
   return nullptr;
 }
 
-/// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
-/// along x and y around the bottom, then around the top, then those along z, counter-clockwise
-/// (since VTK 9); faces across x, y, z, the lower of each pair first.
-std::vector<std::uint32_t> vtkNodeOrder(int order) {
-  auto edges = adjacency::kHexEdges;
-  std::swap(edges[10], edges[11]);  // where VTK 9 differs
-  std::vector<Node> nodes;
-  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, 0, order));
-  for (const auto& [a, b] : edges) {
-    append(nodes, between(corner(a, 0, order), corner(b, 0, order), order - 1));
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t first = axis == 0 ? 1 : 0;
-    const std::size_t second = axis == 2 ? 1 : 2;
-    for (const int side : {0, order}) {
-      for (int j = 1; j < order; ++j) {
-        for (int i = 1; i < order; ++i) {
-          Node node{};
-          node[axis] = side;
-          node[first] = i;
-          node[second] = j;
-          nodes.push_back(node);
-        }
-      }
-    }
-  }
-  for (int k = 1; k < order; ++k) {
-    for (int j = 1; j < order; ++j) {
-      for (int i = 1; i < order; ++i) nodes.push_back({i, j, k});
-    }
-  }
-  return placesOf(nodes, order);
-}
-
 /// The order of cells with (p + 1)^3 nodes; 0 if no p from 1 to 9 has as many.
 int orderOf(std::uint64_t nodes) {
   for (int order = 1; order <= kMaxOrder; ++order) {
@@ -125,9 +91,9 @@ int findOrder(const VtkSource& source) {
 }
 
 /// From the order of VTK to that of LagrangeMesh.
-void reorderNodes(LagrangeMesh& mesh, Stage& stage) {
+void reorderNodes(LagrangeMesh& mesh, VtkEdges upright, Stage& stage) {
   constexpr std::size_t kGrain = std::size_t{1} << 10;
-  const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);
+  const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order, upright);
   parallelBlocks(stage, mesh.cellCount(), kGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    std::vector<Index> row(places.size());
@@ -219,14 +185,14 @@ LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, 
   readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
   mesh.regions = readVtkRegions(source, numbers);
   mesh.features = readVtkHexFeatures(source);
-  fromVtkOrder(mesh, stage);
+  fromVtkOrder(mesh, stage, isLagrange ? source.uprightEdges : VtkEdges::Around);
   return mesh;
 }
 
 }  // namespace
 
-void fromVtkOrder(LagrangeMesh& mesh, Stage& stage) {
-  reorderNodes(mesh, stage);
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright) {
+  reorderNodes(mesh, upright, stage);
   putCornersFirst(mesh);
 }
 
@@ -261,7 +227,12 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
                       const WriteOptions& options, Context& context) {
   OutputFile output(file);  // first, so that a folder that is not writable shows at once
   const std::size_t perCell = mesh.nodesPerCell();
-  const std::vector<std::uint32_t> order = vtkNodeOrder(mesh.order);
+  // Files of version 1.0, which meshio takes: VTK 9 turns the edges of their Lagrange cells round.
+  // Order 2 has a type that more programs know, whose nodes stand as VTK 9 has those of others.
+  const bool hasOwnType = mesh.order == 2;
+  const std::uint8_t type = hasOwnType ? kQuadratic.back().vtkType : kVtkLagrangeHexahedron;
+  const std::vector<std::uint32_t> order =
+      vtkNodeOrder(mesh.order, hasOwnType ? VtkEdges::Around : VtkEdges::RowByRow);
   const PointPiece nodes = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
   VtkDataSet data(mesh.points.size(), mesh.cellCount());
   data.curved = true;
@@ -276,7 +247,7 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
   data.addComputed<std::int64_t>(VtkSection::Cells, "offsets", data.cells,
                                  [perCell](std::size_t i) { return perCell * (i + 1); });
   data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
-                                 [](std::size_t) { return kVtkLagrangeHexahedron; });
+                                 [type](std::size_t) { return type; });
   Stage stage(context, "write mesh");
   writeVtkXml(output, data, false, stage);
 }

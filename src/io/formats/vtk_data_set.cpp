@@ -39,25 +39,25 @@ std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
   return rows;
 }
 
-/// Number of rows of an array that lists of points have all, or none of them.
+/// Whether lists with points lack these values, as meshes without generators do.
 template <class Value>
-std::uint64_t rowsIn(const VtkDataSet& data, std::span<const PointPiece> lists,
-                     std::span<const Value> PointPiece::*values) {
-  const auto isEmpty = [values](const PointPiece& list) { return (list.*values).empty(); };
-  return std::all_of(lists.begin(), lists.end(), isEmpty) ? 0 : data.points;
+bool lack(std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
+  return std::any_of(lists.begin(), lists.end(), [values](const PointPiece& list) {
+    return !list.points.empty() && (list.*values).empty();
+  });
 }
 
-/// What lists of points have in memory.
+/// What lists of points have in memory, if they have it.
 /// @tparam T  the number type
 template <class T, class Value>
 void addLists(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
               std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
-  data.add<T>(section, name, components, rowsIn(data, lists, values),
-              [lists, values](const VtkBytes& output) {
-                for (const PointPiece& list : lists) {
-                  output((list.*values).data(), (list.*values).size_bytes());
-                }
-              });
+  if (lack(lists, values)) return;
+  data.add<T>(section, name, components, data.points, [lists, values](const VtkBytes& output) {
+    for (const PointPiece& list : lists) {
+      output((list.*values).data(), (list.*values).size_bytes());
+    }
+  });
 }
 
 void addCoordinates(VtkDataSet& data, std::span<const PointPiece> lists) {
@@ -75,6 +75,7 @@ void addGeneratorCorners(VtkDataSet& data, std::span<const PointPiece> lists) {
 }
 
 void addGeneratorKinds(VtkDataSet& data, std::span<const PointPiece> lists) {
+  if (lack(lists, &PointPiece::generatorCorners)) return;
   const auto kinds = [lists](const VtkBytes& output) {
     for (const PointPiece& list : lists) {
       writeValues<std::uint8_t>(output, list.generatorCorners.size(), [&](std::size_t i) {
@@ -82,8 +83,7 @@ void addGeneratorKinds(VtkDataSet& data, std::span<const PointPiece> lists) {
       });
     }
   };
-  data.add<std::uint8_t>(VtkSection::PointData, "generator_kind", 1,
-                         rowsIn(data, lists, &PointPiece::generatorCorners), kinds);
+  data.add<std::uint8_t>(VtkSection::PointData, "generator_kind", 1, data.points, kinds);
 }
 
 /// @tparam Corner  the number type in the file

@@ -94,8 +94,7 @@ class VtkDataSet {
   std::uint64_t points;
   std::uint64_t cells;
   VtkSection elements;
-  /// Arcs, patches or cells of higher order. Their files are of version 2.2: from 2.1 on, VTK takes
-  /// the edges of higher-order hexahedra in the order of VTK 9.
+  /// Arcs, patches or cells of higher order.
   bool curved = false;
 
   /// In the order of their sections.

@@ -28,6 +28,7 @@
 #include <io/core/number_source.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 #include <io/formats/vtk_data_set.hpp>
 
 namespace hexhex::io {
@@ -96,6 +97,7 @@ class VtkSource {
   std::size_t stride = 0;
   VtkColumn connectivity;
   std::size_t gap = 0;  ///< how many numbers stand in `connectivity` in front of a cell's corners
+  VtkEdges uprightEdges = VtkEdges::Around;  ///< of Lagrange cells
 
   std::shared_ptr<CellCounts> counts;  ///< of the input
 

@@ -331,6 +331,9 @@ class VtuFile final : public VtkSource {
     }
     const std::string_view header = tag.attribute("header_type");
     lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+    const std::string_view version = tag.attribute("version");
+    const bool isOld = version.empty() || version == "2.0" || version[0] < '2';
+    uprightEdges = isOld ? VtkEdges::RowByRow : VtkEdges::Around;
   }
 
   void readPieceTag(const XmlTag& tag) {

@@ -62,9 +62,9 @@ std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offset
   const bool isGrid = data.elements == VtkSection::Cells;
   const std::string type = isGrid ? "UnstructuredGrid" : "PolyData";
   const bool little = std::endian::native == std::endian::little;
-  std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type + "\" version=\"" +
-                     (data.curved ? "2.2" : "1.0") + "\" byte_order=\"" +
-                     (little ? "LittleEndian" : "BigEndian") + "\" header_type=\"UInt64\"";
+  std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
+                     "\" version=\"1.0\" byte_order=\"" + (little ? "LittleEndian" : "BigEndian") +
+                     "\" header_type=\"UInt64\"";
   if (compressed) head += " compressor=\"vtkZLibDataCompressor\"";
   head += ">\n  <" + type + ">\n";
   const auto addSection = [&](std::string_view name, VtkSection section) {

@@ -137,7 +137,8 @@ vec3 base(bool inside) {
     int corner = vSquare.y < 0.5 ? (vSquare.x < 0.5 ? 0 : 1) : (vSquare.x < 0.5 ? 3 : 2);
     return look(${kColourRows.generators}, int(vKinds[corner] + 0.5));
   }
-  uint feature = vCell.y >> 1;
+  uint feature = vCell.y >> 1 & 0xffffu;
+  if (mode == 6 && !inside) return look(${kColourRows.categories}, int((vCell.y >> 17) % 256u));
   if (mode == 2 && feature > 0u) return look(${kColourRows.categories}, int((feature - 1u) % 256u));
   int index = int(vCell.x);
   ivec2 at = ivec2(index % ${kTextureWidth}, index / ${kTextureWidth});
@@ -172,7 +173,7 @@ void main() {
   // A broad light from over the left shoulder, in two tones; what the sky does not reach is darker.
   float tone = smoothstep(0.1, 0.9, 0.5 + 0.5 * dot(normalHere(), normalize(vec3(-0.4, 0.6, 0.8))));
   float open = mix(mix(vLight.x, vLight.y, vSquare.x), mix(vLight.w, vLight.z, vSquare.x), vSquare.y);
-  float lit = mix(0.55, 1.0, tone) * mix(0.25, 1.0, open);
+  float lit = mix(0.55, 1.0, tone) * mix(0.15, 1.0, open * sqrt(open));
   // What is bad glows in the shade.
   if (mode == 0) lit = mix(1.0, lit, smoothstep(0.0, 0.4, vQuality) * 0.4 + 0.6);
   // Shade keeps the hue: it deepens a colour more than it greys it.

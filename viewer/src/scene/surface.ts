@@ -34,7 +34,7 @@ import {
   kColourRows, kFragmentShader, kGhostFragmentShader, kGhostVertexShader, kVertexShader,
 } from "./shaders";
 
-export const kColourModes = ["quality", "generator", "feature", "layer", "plain", "region"] as const;
+export const kColourModes = ["quality", "generator", "feature", "layer", "plain", "region", "patch"] as const;
 export type ColourMode = (typeof kColourModes)[number];
 
 const kGhostTint = new Vector3(...rgbOf(0x5f7288).map((channel) => channel / 255));

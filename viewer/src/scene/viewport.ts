@@ -38,10 +38,15 @@ export class Viewport {
   private frame = 0;
   private surface: Surface | null = null;
 
-  /** @param half  half the sides of the box around what is drawn  @throws if the browser has no WebGL 2 */
+  /**
+   * @param half  half the sides of the box around what is drawn
+   * @param outline  points, four numbers each, that are in the picture at first
+   * @throws if the browser has no WebGL 2
+   */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly half: Triple,
+    private readonly outline: Float32Array,
     onMoved: () => void,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -56,7 +61,7 @@ export class Viewport {
     this.look([1, -1.6, 0.9]);
     this.controls.addEventListener("change", () => this.redraw());
     this.controls.addEventListener("end", onMoved);
-    new ResizeObserver(() => this.resize()).observe(canvas);
+    new ResizeObserver(() => this.reshape()).observe(canvas);
   }
 
   add(object: Object3D): void {
@@ -96,16 +101,16 @@ export class Viewport {
     this.redraw();
   }
 
-  /** From where on a direction all corners of the box are in the picture. */
+  /** From where on a direction all of the outline is in the picture. */
   private distanceAlong(direction: Vector3): number {
     const right = new Vector3(0, 0, 1).cross(direction).normalize();
     const up = direction.clone().cross(right);
     const tall = Math.tan((kFieldOfView / 2) * (Math.PI / 180)) * kFilled;
     const wide = tall * this.camera.aspect;
     let distance = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const [x, y, z] = this.half.map((side, axis) => (corner >> axis & 1 ? side : -side)) as Triple;
-      const place = new Vector3(x, y, z);
+    const place = new Vector3();
+    for (let at = 0; at < this.outline.length; at += 4) {
+      place.fromArray(this.outline, at);
       const across = Math.max(Math.abs(place.dot(right)) / wide, Math.abs(place.dot(up)) / tall);
       distance = Math.max(distance, across + place.dot(direction));
     }
@@ -211,6 +216,17 @@ export class Viewport {
     this.camera.near = Math.max(distance - radius, closest);
     this.camera.far = Math.max(distance + radius, 2 * this.camera.near);
     this.camera.updateProjectionMatrix();
+  }
+
+  /** The canvas has another shape: as much of the mesh is in the picture as before. */
+  private reshape(): void {
+    const direction = new Vector3(...this.viewDirection());
+    const before = this.distanceAlong(direction);
+    this.resize();
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(offset, this.distanceAlong(direction) / before);
+    this.controls.update();
+    this.redraw();
   }
 
   private resize(): void {

@@ -8,6 +8,7 @@ import type { ViewState } from "../state";
 import type { LoadedMesh } from "../worker/messages";
 import type { Layers } from "../worker/topology";
 import { grouped, make } from "./dom";
+import { namesOf } from "./patches";
 
 interface Chip {
   colour: string;
@@ -24,10 +25,10 @@ interface Part {
 
 const chip = (hex: number, text: string, edge = false): Chip => ({ colour: cssOf(hex), text, edge });
 
-/** Chips for the first of many tags. */
-function tagChips(tags: number[]): Chip[] {
-  const chips = tags.slice(0, 12).map((tag, i) => chip(featureColour(i), String(tag)));
-  if (tags.length > chips.length) chips.push(chip(kNoCategory, `${tags.length - chips.length} more`));
+/** Chips for the first of many. */
+function firstChips(names: (string | number)[]): Chip[] {
+  const chips = names.slice(0, 12).map((name, i) => chip(featureColour(i), String(name)));
+  if (names.length > chips.length) chips.push(chip(kNoCategory, `${names.length - chips.length} more`));
   return chips;
 }
 
@@ -52,12 +53,17 @@ function cellPart(state: ViewState, info: MeshInfo, mesh: LoadedMesh, layers: La
     case "feature":
       return {
         title: quadTags.length > 0 ? "tag of the face" : "no tagged faces",
-        chips: tagChips(quadTags),
+        chips: firstChips(quadTags),
+      };
+    case "patch":
+      return {
+        title: "patch of the boundary",
+        chips: [...firstChips(namesOf(info)), chip(kInsideColour, "cut")],
       };
     case "region":
       return {
         title: regionTags.length > 0 ? "region of the cell" : "no regions",
-        chips: tagChips(regionTags),
+        chips: firstChips(regionTags),
       };
     case "layer":
       return {

@@ -29,6 +29,10 @@ export function askedPicture(canvas: HTMLElement): WantedPicture | null {
 export async function savePng(picture: HTMLCanvasElement, name: string): Promise<void> {
   const blob = await new Promise<Blob | null>((resolve) => picture.toBlob(resolve));
   if (!blob) throw new Error("The browser could not make a picture.");
+  saveFile(blob, name);
+}
+
+export function saveFile(blob: Blob, name: string): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;

@@ -20,8 +20,8 @@ export const kHistogramBins = 64;
 
 export interface Visible {
   /**
-   * Six numbers per quad: four vertices, the cell, and twice the feature of the quad (0: none), plus 1
-   * where the quad is not on the boundary of the mesh.
+   * Six numbers per quad: four vertices, the cell, and whether the quad is inside of the mesh (bit 0), its
+   * feature (bits 1 to 16, 0: none), and on the boundary its patch (bits 17 to 31).
    */
   quads: Uint32Array<ArrayBuffer>;
   /** The same for the outline of what is not kept: the boundary, or the cells around a single one. */
@@ -46,6 +46,8 @@ export interface Mesh {
   quality: Uint16Array<ArrayBuffer>;
   /** The faces of the boundary: 6 * cell + face. */
   skin: Uint32Array;
+  /** Of each of these the patch; empty: not known. */
+  skinPatches: Uint32Array;
   /** Per face of a cell the feature of its quad, 1 and up; null if the mesh has none. */
   quadFeatures: Uint16Array | null;
 }
@@ -86,7 +88,18 @@ function markKept(mesh: Mesh, inside: Inside, filter: Filter, kept: Uint8Array, 
   result.kept = count;
 }
 
-/** @param inside  null: all faces are on the boundary */
+/** Where a face is in the skin, which is sorted. */
+function placeInSkin(skin: Uint32Array, face: number): number {
+  let from = 0;
+  for (let to = skin.length; from < to;) {
+    const middle = (from + to) >> 1;
+    if (skin[middle]! < face) from = middle + 1;
+    else to = middle;
+  }
+  return from;
+}
+
+/** @param inside  null: the faces are those of the skin */
 function quadsOf(mesh: Mesh, inside: Inside | null, faces: ArrayLike<number>): Uint32Array<ArrayBuffer> {
   const quads = new Uint32Array(6 * faces.length);
   let next = 0;
@@ -97,7 +110,11 @@ function quadsOf(mesh: Mesh, inside: Inside | null, faces: ArrayLike<number>): U
     for (let k = 0; k < 4; ++k) quads[next++] = mesh.cells[8 * cell + kFaceCorners[corner + k]!]!;
     quads[next++] = cell;
     const feature = mesh.quadFeatures ? mesh.quadFeatures[face]! : 0;
-    quads[next++] = 2 * feature + Number(inside !== null && inside.neighbours[face] !== kNone);
+    const isInside = inside !== null && inside.neighbours[face] !== kNone;
+    const patch = isInside || mesh.skinPatches.length === 0
+      ? 0
+      : mesh.skinPatches[inside === null ? i : placeInSkin(mesh.skin, face)]!;
+    quads[next++] = (patch << 17) | (feature << 1) | Number(isInside);
   }
   return quads;
 }

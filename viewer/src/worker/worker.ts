@@ -146,7 +146,8 @@ function finish(): void {
   const nodes = takeTable("nodes");
   const regions = numberRegions();
   const features = placeQuadFeatures(cells);
-  mesh = { cells, quality: moments.quality, skin: takeTable("skin"), quadFeatures: features.places };
+  mesh = { cells, quality: moments.quality, skin: takeTable("skin"),
+    skinPatches: takeTable("skin_patches"), quadFeatures: features.places };
   kept = new Uint8Array(info.cells);
   curvedCells = { order: info.order, cells, nodes, positions: moments.positions };
   const loaded: LoadedMesh = {

@@ -1,0 +1,42 @@
+// How people divide and name the boundary: --split-tags and --names.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <hexhex/curved.hpp>
+#include <hexhex/types.hpp>
+
+namespace hexhex::command {
+
+/// What each group of boundary quads shall be called, by the name that it has.
+class PatchNames {
+ public:
+  /// Whether tagged groups are divided into smooth patches first: NAME_1, NAME_2, ...
+  bool split = false;
+
+  /// Reads a file with two words on each line: a name that a group has, and its new one. '#' begins
+  /// a comment.
+  void read(const std::filesystem::path& file);
+
+  /// Divides groups, if that is asked for. If there are names: tags smooth patches where the
+  /// boundary is not tagged, and names groups.
+  /// @param angle  of smooth patches, as in namedPatches()
+  /// @throws Error InvalidArgument for a group that there is not, naming those that there are
+  void apply(HexMesh& mesh, double angle, Context& context) const;
+  void apply(LagrangeMesh& mesh, double angle, Context& context) const;
+
+  [[nodiscard]] bool isGiven() const noexcept { return split || !names_.empty(); }
+
+ private:
+  std::string file_;
+  std::map<std::string, std::string> names_;
+};
+
+/// Adds both.
+void addPatchNames(CLI::App& parser, PatchNames& names);
+
+}  // namespace hexhex::command
