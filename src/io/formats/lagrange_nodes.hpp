@@ -43,4 +43,14 @@ inline void append(std::vector<Node>& nodes, const std::vector<Node>& more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
 
+// Entry k is the place of the node that a format lists at place k.
+
+/// Corners, edges, faces, inside; edges along x and y around the bottom, then around the top, then
+/// those along z, counter-clockwise (since VTK 9); faces across x, y, z, the lower of each pair
+/// first.
+[[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order);
+/// Corners, edges, faces, inside, which is a smaller cell. The first 20 of order 2 are those of
+/// cells with 20 nodes.
+[[nodiscard]] std::vector<std::uint32_t> gmshNodeOrder(int order);
+
 }  // namespace hexhex::io

@@ -53,40 +53,6 @@ const CellKind* quadraticKind(const VtkSource& source) {
   return nullptr;
 }
 
-/// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
-/// along x and y around the bottom, then around the top, then those along z, counter-clockwise
-/// (since VTK 9); faces across x, y, z, the lower of each pair first.
-std::vector<std::uint32_t> vtkNodeOrder(int order) {
-  auto edges = adjacency::kHexEdges;
-  std::swap(edges[10], edges[11]);  // where VTK 9 differs
-  std::vector<Node> nodes;
-  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, 0, order));
-  for (const auto& [a, b] : edges) {
-    append(nodes, between(corner(a, 0, order), corner(b, 0, order), order - 1));
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t first = axis == 0 ? 1 : 0;
-    const std::size_t second = axis == 2 ? 1 : 2;
-    for (const int side : {0, order}) {
-      for (int j = 1; j < order; ++j) {
-        for (int i = 1; i < order; ++i) {
-          Node node{};
-          node[axis] = side;
-          node[first] = i;
-          node[second] = j;
-          nodes.push_back(node);
-        }
-      }
-    }
-  }
-  for (int k = 1; k < order; ++k) {
-    for (int j = 1; j < order; ++j) {
-      for (int i = 1; i < order; ++i) nodes.push_back({i, j, k});
-    }
-  }
-  return placesOf(nodes, order);
-}
-
 /// The order of cells with (p + 1)^3 nodes; 0 if no p from 1 to 9 has as many.
 int orderOf(std::uint64_t nodes) {
   for (int order = 1; order <= kMaxOrder; ++order) {
@@ -198,7 +164,49 @@ void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string&
   addMiddles(mesh.points, mesh.nodes, cells, fileName);
 }
 
-LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
+}  // namespace
+
+std::vector<std::uint32_t> vtkNodeOrder(int order) {
+  auto edges = adjacency::kHexEdges;
+  std::swap(edges[10], edges[11]);  // where VTK 9 differs
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < 8; ++i) nodes.push_back(corner(i, 0, order));
+  for (const auto& [a, b] : edges) {
+    append(nodes, between(corner(a, 0, order), corner(b, 0, order), order - 1));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t first = axis == 0 ? 1 : 0;
+    const std::size_t second = axis == 2 ? 1 : 2;
+    for (const int side : {0, order}) {
+      for (int j = 1; j < order; ++j) {
+        for (int i = 1; i < order; ++i) {
+          Node node{};
+          node[axis] = side;
+          node[first] = i;
+          node[second] = j;
+          nodes.push_back(node);
+        }
+      }
+    }
+  }
+  for (int k = 1; k < order; ++k) {
+    for (int j = 1; j < order; ++j) {
+      for (int i = 1; i < order; ++i) nodes.push_back({i, j, k});
+    }
+  }
+  return placesOf(nodes, order);
+}
+
+void fromVtkOrder(LagrangeMesh& mesh, Stage& stage) {
+  reorderNodes(mesh, stage);
+  putCornersFirst(mesh);
+}
+
+bool holdsVtkLagrange(const VtkSource& source) {
+  return countCells(source, lagrangeCells(0)) > 0 || quadraticKind(source) != nullptr;
+}
+
+LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
   source.requireIndexable();
   LagrangeMesh mesh;
   const bool isLagrange = countCells(source, lagrangeCells(0)) > 0;
@@ -223,18 +231,9 @@ LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, 
   return mesh;
 }
 
-}  // namespace
-
-void fromVtkOrder(LagrangeMesh& mesh, Stage& stage) {
-  reorderNodes(mesh, stage);
-  putCornersFirst(mesh);
-}
-
 bool holdsLagrangeVtu(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    const auto source = openVtuFile(input, stage);
-    return countCells(*source, lagrangeCells(0)) > 0 || quadraticKind(*source) != nullptr;
-  });
+  return inStage(context, "read mesh",
+                 [&input](Stage& stage) { return holdsVtkLagrange(*openVtuFile(input, stage)); });
 }
 
 bool holdsCurvedVtkLegacy(const Input& input, Context& context) {
@@ -247,13 +246,13 @@ LagrangeMesh readCurvedVtkLegacy(const Input& input, Context& context) {
   return inStage(context, "read mesh", [&input](Stage& stage) {
     const auto source = openVtkLegacyFile(input, true, stage);
     if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
-    return readLagrange(*source, input.name(), stage);
+    return readVtkLagrange(*source, input.name(), stage);
   });
 }
 
 LagrangeMesh readLagrangeVtu(const Input& input, Context& context) {
   return inStage(context, "read mesh", [&input](Stage& stage) {
-    return readLagrange(*openVtuFile(input, stage), input.name(), stage);
+    return readVtkLagrange(*openVtuFile(input, stage), input.name(), stage);
   });
 }
 
