@@ -197,17 +197,18 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
-/// Whether a file has cells that readLagrangeMesh() reads: VTK_LAGRANGE_HEXAHEDRON in `.vtu`, and
-/// hexahedra with 20 or 27 nodes in `.vtu`, `.vtk`, `.inp`, `.exo` and `.e`, of VTK's formats only
-/// where no hexahedra are straight.
+/// Whether a file has cells that readLagrangeMesh() reads: VTK_LAGRANGE_HEXAHEDRON in `.vtu` and
+/// `.vtkhdf`, and hexahedra with 20 or 27 nodes in these, `.vtk`, `.inp`, `.unv`, `.cgns`, `.exo`
+/// and `.e`, of VTK's formats only where no hexahedra are straight; and in `.msh`, where also those
+/// of order 3 to 9 are read, if the first hexahedra are such ones.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported
 [[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
 
 /// Reads cells of order 2 from these formats, where nodes that hexahedra with 20 lack are where
-/// their shape functions place them; or the Lagrange hexahedra of a `.vtu` file, all of one order,
-/// with their nodes in the order of VTK 9. What writeLagrangeMesh() wrote comes back node by node,
-/// with its generators, tags and regions; of other files, nodes at corners get the first numbers,
-/// and what is tagged at other nodes is left out.
+/// their shape functions place them; or hexahedra of a `.vtu`, `.vtkhdf` or `.msh` file of any
+/// order, with their nodes in the order of VTK 9. What writeLagrangeMesh() wrote comes back node by
+/// node, with its generators, tags and regions; of other files, nodes at corners get the first
+/// numbers, and what is tagged at other nodes is left out.
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported without such
 ///         cells, for other volume cells beside them, for orders that differ or exceed kMaxOrder,
 ///         and for other extensions; TooLarge

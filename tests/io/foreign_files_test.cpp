@@ -292,6 +292,9 @@ void writePieces(const TemporaryFolder& folder, const std::vector<HexMesh>& piec
 TEST(ForeignFiles, PiecesWithoutGlobalNumbersAreJoinedByPositions) {
   const TemporaryFolder folder;
   HexMesh left = gridMesh(1, 1, 1);
+  for (Vec3& point : left.points) {
+    for (double& x : point) x = x > 0 ? 1 : 0;
+  }
   HexMesh right = left;
   for (Vec3& point : right.points) point[0] += 1;
   left.regions = {4};

@@ -452,10 +452,11 @@ class GmshReader {
   }
 
   [[nodiscard]] bool hasCells() const {
-    if constexpr (corners == kCurved)
+    if constexpr (corners == kCurved) {
       return !mesh_.nodes.empty();
-    else
+    } else {
       return !mesh_.cells.empty();
+    }
   }
 
   void requireCells() const {

@@ -383,7 +383,8 @@ namespace {
 
 // Reads files of versions 1 and 2: a partition is a part of each dataset.
 
-constexpr std::string_view kGrid = "VTKHDF/";
+/// Of a dataset or group of the grid.
+std::string pathOf(const std::string& name) { return "VTKHDF/" + name; }
 
 /// Numbers [begin, end) as a column.
 template <class T>
@@ -420,7 +421,7 @@ class VtkHdfReader {
       fail(ErrorCode::FileUnsupported, "the file's type is " + quoted(std::string_view(type)) +
                                            ", only UnstructuredGrid is supported.");
     }
-    const std::string steps = std::string(kGrid) + "Steps/Values";
+    const std::string steps = pathOf("Steps/Values");
     if (file_->has(steps) && rowsOf(steps) > 1) {
       fail(ErrorCode::FileUnsupported,
            "the file holds several steps of time. Save the mesh of one step.");
@@ -489,17 +490,17 @@ class VtkHdfReader {
   [[nodiscard]] Begins begins(const std::string& counts, std::uint64_t more,
                               const std::string& set) const {
     Begins begins = {0};
-    const std::string path = std::string(kGrid) + set;
+    const std::string path = pathOf(set);
     const std::uint64_t rows = rowsOf(path);
-    for (const std::int64_t count : file_->integers(std::string(kGrid) + counts)) {
+    for (const std::int64_t count : file_->integers(pathOf(counts))) {
       const std::uint64_t each = static_cast<std::uint64_t>(count) + more;
       if (count < 0 || each > rows - begins.back()) break;
       begins.push_back(begins.back() + each);
     }
-    const bool all = begins.size() == rowsOf(std::string(kGrid) + counts) + 1;
+    const bool all = begins.size() == rowsOf(pathOf(counts)) + 1;
     if (all && begins.size() > 1 && begins.back() == rows) return begins;
     fail(ErrorCode::FileSyntax, "the dataset \"" + path + "\" does not have as many rows as \"" +
-                                    std::string(kGrid) + counts + "\" says.");
+                                    pathOf(counts) + "\" says.");
   }
 
   /// The rows of a partition. A dataset is read once.
@@ -508,7 +509,7 @@ class VtkHdfReader {
                                std::vector<T> (HdfReader::*read)(const std::string&) const,
                                const std::string& set, std::size_t components, const Begins& begins,
                                std::size_t part) const {
-    const std::string path = std::string(kGrid) + set;
+    const std::string path = pathOf(set);
     auto place = known.find(path);
     if (place == known.end()) place = known.emplace(path, ((*file_).*read)(path)).first;
     const std::vector<T>& all = place->second;
@@ -537,11 +538,12 @@ class VtkHdfReader {
   void forEachArray(const std::string& group, const Use& use) const {
     const std::vector<std::string> all = file_->members("VTKHDF");
     if (std::find(all.begin(), all.end(), group) == all.end()) return;
-    for (const std::string& name : file_->members(std::string(kGrid) + group)) {
-      const std::string path = std::string(kGrid) + group + '/' + name;
-      if (!file_->has(path)) continue;
-      const std::vector<std::uint64_t> shape = file_->shape(path);
-      use(name, group + '/' + name, shape.size() > 1 ? memorySize(shape[1]) : std::size_t{1});
+    for (const std::string& name : file_->members(pathOf(group))) {
+      std::string set = group;
+      set.append(1, '/').append(name);
+      if (!file_->has(pathOf(set))) continue;
+      const std::vector<std::uint64_t> shape = file_->shape(pathOf(set));
+      use(name, set, shape.size() > 1 ? memorySize(shape[1]) : std::size_t{1});
     }
   }
 
@@ -549,7 +551,7 @@ class VtkHdfReader {
                  const Begins& begins, std::size_t part) const {
     forEachArray(
         group, [&](const std::string& name, const std::string& set, std::size_t components) {
-          const bool isReal = file_->hasReals(std::string(kGrid) + set);
+          const bool isReal = file_->hasReals(pathOf(set));
           const auto load = [this, &begins, set, components, part, isReal](auto&&, auto&&) {
             return isReal ? reals(set, components, begins, part)
                           : integers(set, components, begins, part);
@@ -561,7 +563,7 @@ class VtkHdfReader {
   void addFields(VtkSource& source) const {
     forEachArray("FieldData",
                  [&](const std::string& name, const std::string& set, std::size_t components) {
-                   const std::string path = std::string(kGrid) + set;
+                   const std::string path = pathOf(set);
                    if (file_->hasReals(path)) return;
                    const auto load = [this, path](auto&&, auto&&) {
                      const std::vector<std::int64_t> numbers = file_->integers(path);
