@@ -201,17 +201,18 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context);
 
-/// Whether a file contains cells for readLagrangeMesh(): VTK_LAGRANGE_HEXAHEDRON in `.vtu`, and
-/// hexahedra with 20 or 27 nodes in `.vtu`, `.vtk`, `.inp`, `.exo` and `.e`; in VTK formats, only
-/// if there are no straight hexahedra.
+/// Whether a file contains cells for readLagrangeMesh(): VTK_LAGRANGE_HEXAHEDRON in `.vtu` and
+/// `.vtkhdf`, and hexahedra with 20 or 27 nodes in these, `.vtk`, `.inp`, `.unv`, `.cgns`, `.exo`
+/// and `.e`; in VTK formats, only if there are no straight hexahedra. In `.msh`, which may also
+/// have order 3 to 9, the first hexahedra decide.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported
 [[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
 
 /// Reads cells of order 2 from these formats, placing the nodes missing in 20-node hexahedra
-/// according to their shape functions; or the Lagrange hexahedra of a `.vtu` file, all of the same
-/// order, with nodes in the order of VTK 9. Files from writeLagrangeMesh() are restored node by
-/// node, with generators, tags and regions. For other files, corner nodes are numbered first, and
-/// tags on other nodes are dropped.
+/// according to their shape functions; or the Lagrange hexahedra of a `.vtu`, `.vtkhdf` or `.msh`
+/// file, all of the same order, with nodes in the order of VTK 9. Files from writeLagrangeMesh()
+/// are restored node by node, with generators, tags and regions. For other files, corner nodes are
+/// numbered first, and tags on other nodes are dropped.
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported if there are
 ///         no such cells, for other volume cells beside them, for orders that differ or exceed
 ///         kMaxOrder, and for other extensions; TooLarge

@@ -164,6 +164,7 @@ constexpr std::array kReaders = {
     Reader{"meshb-tets", read<parse<readMeshbTets>>, fuzz::changeMeshb},
     Reader{"msh", read<parse<readGmsh>>},
     Reader{"msh-tets", read<parse<readGmshTets>>},
+    Reader{"msh-curved", read<parse<readCurvedGmsh>>},
     Reader{"vtk", read<parse<readVtkLegacy>>},
     Reader{"vtu", read<parse<readVtu>>, fuzz::changeAppended},
     Reader{"vtk-map", read<parseVtkLegacyMap>},

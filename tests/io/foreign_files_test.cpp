@@ -278,6 +278,57 @@ TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
                 ErrorCode::FileUnsupported, "it holds 2 prisms");
 }
 
+/// Writes meshes as pieces of a file without global numbers.
+void writePieces(const TemporaryFolder& folder, const std::vector<HexMesh>& pieces) {
+  std::string index = "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid>\n";
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const std::string name = "piece" + std::to_string(i) + ".vtu";
+    writeHexMesh(pieces[i], folder / name);
+    index += "<Piece Source=\"" + name + "\"/>\n";
+  }
+  writeText(folder / "a.pvtu", index + "</PUnstructuredGrid></VTKFile>\n");
+}
+
+TEST(ForeignFiles, PiecesWithoutGlobalNumbersAreJoinedByPositions) {
+  const TemporaryFolder folder;
+  HexMesh left = gridMesh(1, 1, 1);
+  for (Vec3& point : left.points) {
+    for (double& x : point) x = x > 0 ? 1 : 0;
+  }
+  HexMesh right = left;
+  for (Vec3& point : right.points) point[0] += 1;
+  left.regions = {4};
+  right.regions = {5};
+  right.features.quads = {{{0, 2, 6, 4}, 8}};
+  writePieces(folder, {left, right});
+  const HexMesh mesh = readHexMesh(folder / "a.pvtu");
+  EXPECT_EQ(mesh.points.size(), 12U);
+  ASSERT_EQ(mesh.cells.size(), 2U);
+  EXPECT_EQ(mesh.cells[0], left.cells[0]);
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_EQ(mesh.points[mesh.cells[1][k]], right.points[right.cells[0][k]]) << k;
+  }
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{4, 5}));
+  ASSERT_EQ(mesh.features.quads.size(), 1U);  // by the numbers that its points have now
+  for (const Index v : mesh.features.quads[0].vertices) EXPECT_EQ(mesh.points[v][0], 1);
+
+  // A slit between cells of one piece is its own affair, but not where another piece goes on.
+  HexMesh slit = left;
+  slit.points.insert(slit.points.end(), right.points.begin(), right.points.end());
+  slit.cells.push_back({});
+  for (std::size_t k = 0; k < 8; ++k) slit.cells[1][k] = right.cells[0][k] + 8;
+  slit.regions = {4, 4};
+  HexMesh apart = left;
+  for (Vec3& point : apart.points) point[1] += 5;
+  writePieces(folder, {slit, apart});
+  EXPECT_EQ(readHexMesh(folder / "a.pvtu").points.size(), 24U);
+  for (Vec3& point : apart.points) point[1] -= 4;
+  writePieces(folder, {slit, apart});
+  const Failure failure = failureOf([&] { static_cast<void>(readHexMesh(folder / "a.pvtu")); });
+  EXPECT_EQ(failure.code, ErrorCode::FileSyntax);
+  EXPECT_NE(failure.sentence.find("at the point (1.0"), std::string::npos) << failure.sentence;
+}
+
 TEST(ForeignFiles, AbaqusIncludes) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "parts");

@@ -1,5 +1,6 @@
 // `.msh` files: exact content, what other programs write and ours does not, errors.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -11,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/patches.hpp>
 
@@ -157,6 +159,140 @@ TEST(Gmsh, BinaryOfVersion22) {
   text[20] = 0;
   text[23] = 1;
   EXPECT_EQ(failure(text).code, ErrorCode::FileUnsupported);
+}
+
+/// Where Gmsh's manual has the nodes of a cell of order 2, in halves: corners, edges, faces,
+/// inside.
+constexpr std::array<std::array<int, 3>, 27> kNodesOfOrder2 = {
+    {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+     {0, 2, 2}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 1, 0}, {2, 0, 1}, {1, 2, 0},
+     {2, 2, 1}, {0, 2, 1}, {1, 0, 2}, {0, 1, 2}, {2, 1, 2}, {1, 2, 2}, {1, 1, 0},
+     {1, 0, 1}, {0, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {1, 1, 1}}};
+
+/// A cell of order 2 with 20 or 27 nodes, the quad across z = 0, an edge of it, and a vertex.
+struct CubeOfOrder2 {
+  int nodes;
+  int type = nodes == 20 ? 17 : 12;
+  int quadType = nodes == 20 ? 16 : 10;
+  std::vector<int> quad = {1, 2, 3, 4, 9, 12, 14, 10, 21};
+
+  explicit CubeOfOrder2(int n) : nodes(n) {
+    if (n == 20) quad.pop_back();
+  }
+  [[nodiscard]] std::string nodesText(bool perLine) const {
+    std::string text;
+    for (int i = 1; !perLine && i <= nodes; ++i) text += std::to_string(i) + '\n';
+    for (int i = 1; i <= nodes; ++i) {
+      if (perLine) text += std::to_string(i) + ' ';
+      for (const int x : kNodesOfOrder2[static_cast<std::size_t>(i - 1)]) {
+        text += std::to_string(x) + ' ';
+      }
+      text += '\n';
+    }
+    return text;
+  }
+  [[nodiscard]] static std::string row(const std::vector<int>& numbers) {
+    std::string text;
+    for (const int number : numbers) text += std::to_string(number) + ' ';
+    return text + '\n';
+  }
+  [[nodiscard]] std::vector<int> cell() const {
+    std::vector<int> all;
+    for (int i = 1; i <= nodes; ++i) all.push_back(i);
+    return all;
+  }
+  [[nodiscard]] std::string version22() const {
+    const std::string count = std::to_string(nodes);
+    return kHead22 + "$Nodes\n" + count + '\n' + nodesText(true) + "$EndNodes\n$Elements\n4\n" +
+           "1 15 2 9 1 1\n2 8 2 7 1 1 2 9\n3 " + std::to_string(quadType) + " 2 5 1 " + row(quad) +
+           "4 " + std::to_string(type) + " 2 3 1 " + row(cell()) + "$EndElements\n";
+  }
+  [[nodiscard]] std::string version41() const {
+    const std::string count = std::to_string(nodes);
+    return "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 1 1 1\n1 0 0 0 1 9\n"
+           "1 0 0 0 2 0 0 1 7 0\n1 0 0 0 2 2 0 1 5 0\n1 0 0 0 2 2 2 1 3 0\n$EndEntities\n"
+           "$Nodes\n1 " +
+           count + " 1 " + count + "\n3 1 0 " + count + '\n' + nodesText(false) +
+           "$EndNodes\n$Elements\n4 4 1 4\n0 1 15 1\n1 1\n1 1 8 1\n2 1 2 9\n2 1 " +
+           std::to_string(quadType) + " 1\n3 " + row(quad) + "3 1 " + std::to_string(type) +
+           " 1\n4 " + row(cell()) + "$EndElements\n";
+  }
+  [[nodiscard]] std::string bytes22() const {
+    std::string text = "$MeshFormat\n2.2 1 8\n" + bytes(1) + "\n$EndMeshFormat\n$Nodes\n" +
+                       std::to_string(nodes) + '\n';
+    for (int i = 1; i <= nodes; ++i) {
+      text += bytes(i);
+      for (const int x : kNodesOfOrder2[static_cast<std::size_t>(i - 1)])
+        text += bytes(static_cast<double>(x));
+    }
+    text += "\n$EndNodes\n$Elements\n4\n" + bytesOf({15, 1, 2, 1, 9, 1, 1}) +
+            bytesOf({8, 1, 2, 2, 7, 1, 1, 2, 9}) + bytesOf({quadType, 1, 2, 3, 5, 1});
+    for (const int node : quad) text += bytes(node);
+    text += bytesOf({type, 1, 2, 4, 3, 1});
+    for (const int node : cell()) text += bytes(node);
+    return text + "\n$EndElements\n";
+  }
+};
+
+TEST(Gmsh, CellsOfOrder2) {
+  const TemporaryFolder folder;
+  Context context;
+  for (const int nodes : {20, 27}) {
+    const CubeOfOrder2 cube(nodes);
+    for (const std::string& text : {cube.version22(), cube.version41(), cube.bytes22()}) {
+      SCOPED_TRACE(text.substr(0, 21) + std::to_string(nodes));
+      // From memory and from a file, where it is looked at without the whole of it.
+      EXPECT_TRUE(holdsCurvedGmsh({text, "m.msh"}, context));
+      writeText(folder / "a.msh", text);
+      ASSERT_TRUE(holdsLagrangeCells(folder / "a.msh", context));
+      const LagrangeMesh mesh = readLagrangeMesh(folder / "a.msh", context);
+      ASSERT_EQ(mesh.order, 2);
+      ASSERT_EQ(mesh.nodes.size(), 27U);
+      EXPECT_EQ(mesh.vertexCount, 8U);
+      for (std::size_t i = 0; i < 27; ++i) {
+        const Vec3 expected = {static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
+                               static_cast<double>(i / 9)};
+        EXPECT_EQ(mesh.points[mesh.nodes[i]], expected) << i;
+      }
+      EXPECT_EQ(mesh.regions, (Array<std::int32_t>{3}));
+      EXPECT_EQ(mesh.features.quads, (std::vector<FeatureQuad>{{{0, 1, 2, 3}, 5}}));
+      EXPECT_EQ(mesh.features.edges, (std::vector<FeatureEdge>{{{0, 1}, 7}}));
+      EXPECT_EQ(mesh.features.vertices, (std::vector<FeatureVertex>{{0, 9}}));
+      const Failure straight = failure(text);
+      EXPECT_NE(straight.sentence.find("it holds 1 hexahedron with " + std::to_string(nodes) +
+                                       " nodes. Cells of order 2 are curved"),
+                std::string::npos)
+          << straight.sentence;
+      for (std::size_t size = 0; size + 13 < text.size(); size += 7) {
+        const std::string part = text.substr(0, size);
+        EXPECT_NO_THROW(static_cast<void>(holdsCurvedGmsh({part, "m.msh"}, context)));
+        EXPECT_THROW(static_cast<void>(readCurvedGmsh({part, "m.msh"}, context)), Error) << size;
+      }
+    }
+  }
+}
+
+TEST(Gmsh, CellsOfOrder2AloneAndOfOneType) {
+  const TemporaryFolder folder;
+  Context context;
+  const auto sentence = [&](const std::string& text) {
+    return failureOf([&] { static_cast<void>(readCurvedGmsh({text, "m.msh"}, context)); }).sentence;
+  };
+  const std::string good = CubeOfOrder2(27).version22();
+  const std::string mixed = replaced(replaced(good, "$Elements\n4\n", "$Elements\n5\n"),
+                                     "$EndElements", "5 5 2 3 1 1 2 3 4 5 6 7 8\n$EndElements");
+  EXPECT_NE(sentence(mixed).find("holds 1 hexahedron and 1 hexahedron with 27 nodes, but all"),
+            std::string::npos)
+      << sentence(mixed);
+  EXPECT_NE(sentence(replaced(good, " 26 27 \n", " 26 28 \n")).find("names node 28"),
+            std::string::npos);
+  const std::string straight = kHead22 + kNodes22 + kCube22;
+  EXPECT_NE(sentence(straight).find("no hexahedra of higher order, but other elements only"),
+            std::string::npos)
+      << sentence(straight);
+  writeText(folder / "a.msh", straight);
+  EXPECT_FALSE(holdsLagrangeCells(folder / "a.msh", context));
+  EXPECT_FALSE(holdsCurvedGmsh({straight, "m.msh"}, context));
 }
 
 /// The groups of a file: "dimension name" by number, which no two have.

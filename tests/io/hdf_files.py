@@ -8,7 +8,10 @@ and node sets, compressed as SEACAS does; exodus27: a block of HEX27; exodus-lie
 elements are not in the file. cgns: by h5py, a file as the CGNS library maps it to HDF5: two cubes with
 conditions; cgns-mixed: in one section of all; cgns20, cgns27: a cell of order 2; cgns-zones, cgns-apart:
 a zone for each cube, with and without a connection; cgns-structured, cgns-beyond: to be refused, as
-cgns-link, cgns-raw, cgns-virtual, whose coordinates are in another file, FILE.other. Exit code 77: a package is not installed.
+cgns-link, cgns-raw, cgns-virtual, whose coordinates are in another file, FILE.other. vtkhdf: by VTK,
+the two cubes; vtkhdf-parts: by h5py, each cube in a partition, with numbers of single precision and
+no global numbers; vtkhdf-image, vtkhdf-short, vtkhdf-steps: to be refused.
+Exit code 77: a package is not installed.
 """
 
 import sys
@@ -154,6 +157,51 @@ def write_cgns(file, kind):
             put_into_another_file(data, "Base/Zone/GridCoordinates/CoordinateX/ data", kind)
 
 
+def write_vtkhdf(file, kind):
+    import numpy
+
+    points = numpy.array(CORNERS + [(2, 0, 0), (2, 1, 0), (2, 0, 1), (2, 1, 1)], dtype=float)
+    cells = numpy.array([range(8), [1, 8, 9, 2, 5, 10, 11, 6]])
+    if kind == "vtkhdf":
+        from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+        from vtkmodules.vtkIOHDF import vtkHDFWriter
+
+        grid = vtkUnstructuredGrid()
+        places = vtkPoints()
+        places.SetData(numpy_to_vtk(points, deep=True))
+        grid.SetPoints(places)
+        rows = vtkCellArray()
+        offsets = numpy.array([0, 8, 16])
+        rows.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+        grid.SetCells(12, rows)
+        regions = numpy_to_vtk(numpy.array([4, 5], dtype=numpy.int32), deep=True)
+        regions.SetName("region")
+        grid.GetCellData().AddArray(regions)
+        writer = vtkHDFWriter()
+        writer.SetInputData(grid)
+        writer.SetFileName(file)
+        writer.Write()
+        return
+    import h5py
+
+    with h5py.File(file, "w") as data:
+        grid = data.create_group("VTKHDF")
+        grid.attrs["Version"] = (2, 1)
+        grid.attrs.create("Type", numpy.bytes_("ImageData" if kind == "vtkhdf-image" else "UnstructuredGrid"))
+        grid["NumberOfPoints"] = [8, 9 if kind == "vtkhdf-short" else 8]
+        grid["NumberOfCells"] = [1, 1]
+        grid["NumberOfConnectivityIds"] = [8, 8]
+        grid["Points"] = points[cells].reshape(16, 3).astype(numpy.float32)
+        grid["Connectivity"] = [*range(8), *range(8)]
+        grid["Offsets"] = [0, 8, 0, 8]
+        grid["Types"] = numpy.array([12, 12], dtype=numpy.uint8)
+        grid.create_group("CellData")["region"] = numpy.array([4, 5], dtype=numpy.int32)
+        if kind == "vtkhdf-steps":
+            grid.create_group("Steps")["Values"] = [0.0, 1.0]
+
+
 def put_into_another_file(data, path, kind):
     import h5py
 
@@ -178,6 +226,7 @@ def put_into_another_file(data, path, kind):
 
 if __name__ == "__main__":
     try:
-        (write_cgns if sys.argv[1].startswith("cgns") else write_exodus)(sys.argv[2], sys.argv[1])
+        writers = {"cgns": write_cgns, "vtkh": write_vtkhdf, "exod": write_exodus}
+        writers[sys.argv[1][:4]](sys.argv[2], sys.argv[1])
     except ImportError:
         sys.exit(77)

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <hexhex/curved.hpp>
+#include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/parts.hpp>
+#include <hexhex/samples.hpp>
 
 #include <io/core/hdf5_library.hpp>
 #include <io/formats/formats.hpp>
@@ -151,6 +155,64 @@ TEST(HdfFiles, CgnsOfOrder2AndOfSeveralZones) {
   EXPECT_NE(sentence("cgns-structured").find("not unstructured"), std::string::npos);
   EXPECT_NE(sentence("cgns-beyond").find("names vertex 13, but its zone has 12"),
             std::string::npos);
+}
+
+TEST(HdfFiles, VtkHdfOfOthersOfOneAndOfTwoPartitions) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.vtkhdf";
+  for (const std::string kind : {"vtkhdf", "vtkhdf-parts"}) {
+    SCOPED_TRACE(kind);
+    if (const std::string why = makeFile(kind, file); !why.empty()) GTEST_SKIP() << why;
+    const HexMesh mesh = readHexMesh(file);
+    EXPECT_EQ(mesh.cells, (Array<Hex>{{0, 1, 2, 3, 4, 5, 6, 7}, {1, 8, 9, 2, 5, 10, 11, 6}}));
+    ASSERT_EQ(mesh.points.size(), 12U);
+    EXPECT_EQ(mesh.points[9], (Vec3{2, 1, 0}));
+    EXPECT_EQ(mesh.regions, (Array<std::int32_t>{4, 5}));
+  }
+  const auto sentence = [&](const char* kind) {
+    EXPECT_EQ(makeFile(kind, file), "");
+    return failureOf([&] { static_cast<void>(readHexMesh(file)); }).sentence;
+  };
+  EXPECT_NE(sentence("vtkhdf-image").find("\"ImageData\", only Unstr"), std::string::npos);
+  EXPECT_NE(sentence("vtkhdf-short").find("does not have as many rows"), std::string::npos);
+  EXPECT_NE(sentence("vtkhdf-steps").find("several steps"), std::string::npos);
+  const std::string good = contentOf(file);
+  Context context;
+  for (std::size_t size = 8; size < good.size(); size += good.size() / 30) {
+    EXPECT_THROW(static_cast<void>(readVtkHdf({good.substr(0, size), "a"}, context)), Error)
+        << size;
+  }
+}
+
+TEST(HdfFiles, VtkHdfComesBackWholeAndFromParts) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.vtkhdf";
+  try {
+    requireHdf5(file);
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  Context context;
+  SampleOptions options;
+  options.cells = 2;
+  options.features = true;
+  const TetMap map = generateSample(SampleKind::Sphere, options).map;
+  const auto expectSame = [](const HexMesh& mesh, const HexMesh& expected) {
+    EXPECT_EQ(mesh.points, expected.points);
+    EXPECT_EQ(mesh.cells, expected.cells);
+    EXPECT_EQ(mesh.generatorTet, expected.generatorTet);
+    EXPECT_EQ(mesh.generatorCorners, expected.generatorCorners);
+    EXPECT_EQ(mesh.regions, expected.regions);
+    EXPECT_EQ(mesh.features, expected.features);
+  };
+  const HexMesh whole = extract(map);
+  writeHexMesh(whole, file);
+  expectSame(readHexMesh(file), whole);
+  for (const std::uint32_t ghosts : {0U, 1U}) {
+    const std::unique_ptr<PartSink> sink = openPartSink(file, {}, context);
+    extractParts(*sink, map, {}, {5, ghosts}, context);
+    expectSame(readHexMesh(file), whole);
+  }
 }
 
 }  // namespace

@@ -1,12 +1,16 @@
 // What other programs understand of our files: meshio, VTK, Gmsh and MFEM, all through Python, and
 // each only if it is installed (HEXHEX_PYTHON: another interpreter than python3). Coordinates are
 // compared bit for bit, cells corner by corner.
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
@@ -158,6 +162,44 @@ TEST_P(OtherProgramsAndMaps, GiveBackWhatTheyGot) {
 
 INSTANTIATE_TEST_SUITE_P(Programs, OtherProgramsAndMaps, testing::Values("vtk", "meshio"),
                          [](const auto& test) { return test.param; });
+
+/// Cells of higher order come back from Gmsh, in all its files.
+TEST(HigherOrder, GmshRewritesCellsOfHigherOrder) {
+  const TemporaryFolder folder;
+  Context context;
+  const std::array<std::pair<int, std::vector<std::string>>, 2> kinds = {
+      {{2, {"2.2 0", "2.2 1", "4 0", "4.1 1"}}, {3, {"4.1 0"}}}};
+  SampleOptions options;
+  options.cells = 2;
+  const TetMap map = generateSample(SampleKind::Sphere, options).map;
+  for (const auto& [order, versions] : kinds) {
+    const LagrangeMesh mesh = extractLagrange(map, order, {}, context);
+    writeLagrangeMesh(mesh, folder / "a.msh", {}, context);
+    for (const std::string& version : versions) {
+      SCOPED_TRACE(version + " of order " + std::to_string(order));
+      const std::string errors = (folder / "errors").string();
+      const int code = runScript(
+          "gmsh_files.py",
+          version + " '" + (folder / "a.msh").string() + "' '" + (folder / "b.msh").string() + "'",
+          errors);
+      if (isMissing(code)) GTEST_SKIP() << "gmsh for " << interpreter() << " is not installed";
+      ASSERT_EQ(code, 0) << contentOf(errors);
+      ASSERT_TRUE(holdsLagrangeCells(folder / "b.msh", context));
+      const LagrangeMesh read = readLagrangeMesh(folder / "b.msh", context);
+      ASSERT_EQ(read.order, order);
+      ASSERT_EQ(read.nodes.size(), mesh.nodes.size());
+      EXPECT_EQ(read.vertexCount, mesh.vertexCount);
+      double farthest = 0;  // Gmsh writes 16 digits
+      for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          farthest = std::max(
+              farthest, std::abs(read.points[read.nodes[i]][k] - mesh.points[mesh.nodes[i]][k]));
+        }
+      }
+      EXPECT_LT(farthest, 1e-14);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace hexhex::test

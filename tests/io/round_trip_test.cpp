@@ -128,7 +128,8 @@ void addByteOrderMark(const std::filesystem::path& file) {
 /// Whether files of a format are text, which the mark may precede.
 bool isText(const Way& way) {
   return way.format != "meshb" && way.format != "ovmb" && way.format != "vtk-binary" &&
-         way.format != "msh" && way.format != "cgns" && !way.format.starts_with("exodus");
+         way.format != "msh" && way.format != "cgns" && way.format != "vtkhdf" &&
+         !way.format.starts_with("exodus");
 }
 
 TEST(RoundTrips, OfTextsWithAByteOrderMark) {

@@ -49,7 +49,7 @@ void CellCounts::addGmsh(std::int64_t type, std::uint64_t count) {
 }
 
 std::uint64_t CellCounts::of(const CellKind& kind) const {
-  const auto found = counts_.find(find(&VolumeCells::vtkType, kind.vtkType)->plural);
+  const auto found = counts_.find(kind.plural);
   return found == counts_.end() ? 0 : found->second;
 }
 

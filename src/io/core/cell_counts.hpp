@@ -73,13 +73,18 @@ struct VolumeCells {
   std::size_t meditVertices = 0;       ///< of a cell
 };
 
-constexpr std::array<VolumeCells, 33> kVolumeCells = {
+constexpr std::array<VolumeCells, 38> kVolumeCells = {
     {{"hexahedra", 12, 5, 10, "Hexahedra", 8},
      {"hexahedra with 20 nodes", 25, 17},
      {"hexahedra with 24 nodes", 33},
      {"hexahedra with 27 nodes", 29, 12, 33, "HexahedraQ2", 27},
      {"hexahedra with 64 nodes", 0, 92},
      {"hexahedra with 125 nodes", 0, 93},
+     {"hexahedra with 216 nodes", 0, 94},
+     {"hexahedra with 343 nodes", 0, 95},
+     {"hexahedra with 512 nodes", 0, 96},
+     {"hexahedra with 729 nodes", 0, 97},
+     {"hexahedra with 1000 nodes", 0, 98},
      {"hexahedra of higher order", 67},
      {"Lagrange hexahedra", 72},
      {"Bezier hexahedra", 79},

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -40,25 +41,11 @@ TetCells readHexexTets(const Input& input, Context& context) {
 
 // Formats over HDF5, which not every build has.
 #if defined(HEXHEX_HAS_HDF5)
-constexpr WriteMesh* kWriteVtkHdf = writeVtkHdf;
-constexpr WriteMesh* kWriteCgns = writeCgns;
-constexpr ReadMesh* kReadCgns = CgnsFormat::readMesh;
-constexpr ReadTets* kReadCgnsTets = CgnsFormat::readTets;
-constexpr HoldsCurved* kHoldsCurvedCgns = CgnsFormat::holdsCurved;
-constexpr ReadCurved* kReadCurvedCgns = CgnsFormat::readCurved;
-constexpr WriteCurved* kWriteCurvedCgns = writeQuadraticCgns;
-constexpr OpenPartSink* kOpenVtkHdf = openVtkHdfPartSink;
-constexpr OpenPartSink* kOpenCgns = openCgnsPartSink;
+template <auto& function>
+constexpr auto* kOverHdf5 = &function;
 #else
-constexpr WriteMesh* kWriteVtkHdf = nullptr;
-constexpr WriteMesh* kWriteCgns = nullptr;
-constexpr ReadMesh* kReadCgns = nullptr;
-constexpr ReadTets* kReadCgnsTets = nullptr;
-constexpr HoldsCurved* kHoldsCurvedCgns = nullptr;
-constexpr ReadCurved* kReadCurvedCgns = nullptr;
-constexpr WriteCurved* kWriteCurvedCgns = nullptr;
-constexpr OpenPartSink* kOpenVtkHdf = nullptr;
-constexpr OpenPartSink* kOpenCgns = nullptr;
+template <auto& function>
+constexpr std::remove_reference_t<decltype(function)>* kOverHdf5 = nullptr;
 #endif
 
 void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
@@ -133,7 +120,7 @@ constexpr std::array kFormatTable = {
     Format{.label = {"msh", ".msh", "Gmsh 4.1, binary"},
            .readTets = readGmshTets,
            .meshes = {readGmsh, writeGmsh41Binary},
-           .curved = {.write = writeLagrangeGmsh},
+           .curved = {holdsCurvedGmsh, readCurvedGmsh, writeLagrangeGmsh},
            .pieces = {openGmsh41BinarySink, readGmshTo},
            .parts = {openGmshPartSink, "Gmsh 4.1, binary: one file with partitioned entities"}},
     Format{.label = {"msh-split", ""},
@@ -166,19 +153,20 @@ constexpr std::array kFormatTable = {
         .meshes = {.write = writeOpenFoam},
         .parts = {openOpenFoamPartSink, "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"}},
     Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
-           .meshes = {.write = kWriteVtkHdf},
-           .parts = {kOpenVtkHdf, "VTKHDF: one file"},
+           .readTets = kOverHdf5<readVtkHdfTets>,
+           .meshes = {kOverHdf5<readVtkHdf>, kOverHdf5<writeVtkHdf>},
+           .curved = {kOverHdf5<holdsCurvedVtkHdf>, kOverHdf5<readCurvedVtkHdf>},
+           .parts = {kOverHdf5<openVtkHdfPartSink>, "VTKHDF: one file"},
            .groups = false,
            .overHdf5 = true},
-    Format{.label = {"cgns", ".cgns", "CGNS"},
-           .readTets = kReadCgnsTets,
-           .meshes = {kReadCgns, kWriteCgns},
-           .curved = {.isIn = kHoldsCurvedCgns,
-                      .read = kReadCurvedCgns,
-                      .write = kWriteCurvedCgns,
-                      .onlyOrder = 2},
-           .parts = {kOpenCgns, "CGNS: one file with a zone for each part", false},
-           .overHdf5 = true},
+    Format{
+        .label = {"cgns", ".cgns", "CGNS"},
+        .readTets = kOverHdf5<CgnsFormat::readTets>,
+        .meshes = {kOverHdf5<CgnsFormat::readMesh>, kOverHdf5<writeCgns>},
+        .curved = {kOverHdf5<CgnsFormat::holdsCurved>, kOverHdf5<CgnsFormat::readCurved>,
+                   kOverHdf5<writeQuadraticCgns>, 2},
+        .parts = {kOverHdf5<openCgnsPartSink>, "CGNS: one file with a zone for each part", false},
+        .overHdf5 = true},
     exodusFormat("exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"),
     exodusFormat("exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K"),
     Format{.label = {"stl", ".stl", "surface of triangles, text or binary"},

@@ -148,8 +148,9 @@ WritePiecewise writePatchesVtk;
 
 // `.pvtu`: NAME.pvtu, and in the folder NAME a piece `NAME_K.vtu` for each part: as writeVtu()
 // writes it, without scaled_jacobian, with GlobalPointIds and GlobalCellIds and, if there are
-// ghosts, vtkGhostType. Read are pieces of any program that gives all vertices and cells global
-// numbers.
+// ghosts, vtkGhostType. Read are pieces of any program: where all of them give vertices and cells
+// global numbers, these are the numbers in the mesh; elsewhere points at the same position are one,
+// unless a piece has several there.
 ReadMesh readPvtu;
 OpenPartSink openPvtuSink;
 
@@ -175,6 +176,12 @@ ReadCurved readCurvedVtkLegacy;
 // quads by global numbers.
 WriteMesh writeVtkHdf;
 OpenPartSink openVtkHdfPartSink;
+/// Of versions 1 and 2, without steps of time. Several partitions are joined as pieces of `.pvtu`.
+ReadMesh readVtkHdf;
+/// Of one partition.
+ReadTets readVtkHdfTets;
+HoldsCurved holdsCurvedVtkHdf;
+ReadCurved readCurvedVtkHdf;
 
 /// Labels of triangles among the cells of a file, which may stand beside a tet mesh or apart.
 struct TriangleLabels {
@@ -235,6 +242,10 @@ OpenSink openGmsh41BinarySink;
 /// MSH 4.1 as text, with the groups of straight meshes: edges, quads and hexahedra have the order
 /// of the cells.
 WriteCurved writeLagrangeGmsh;
+/// Hexahedra of order 1 to 9 with all their nodes, or with 20: all of one type, which the first
+/// ones have; and their tags, by the corners of tagged elements.
+HoldsCurved holdsCurvedGmsh;
+ReadCurved readCurvedGmsh;
 /// Gmsh 4.1, binary: one file, whose entities are divided among parts, with ghost cells; or the
 /// same for each part, `NAME_K.msh`, K from 1 on, with what it needs of others. Nodes and cells
 /// have their global numbers, from 1 on. No tags of edges and vertices.

@@ -16,9 +16,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
@@ -36,6 +38,25 @@ inline constexpr unsigned kGmshTriangle = 2;
 inline constexpr unsigned kGmshQuad = 3;
 inline constexpr unsigned kGmshHexahedron = 5;
 inline constexpr unsigned kGmshPoint = 15;
+// Of order 2, without nodes in faces and inside.
+inline constexpr unsigned kGmshQuad8 = 16;
+inline constexpr unsigned kGmshHexahedron20 = 17;
+// With all nodes, of order 1 to 9.
+using GmshTypes = std::array<unsigned, kMaxOrder>;
+inline constexpr GmshTypes kGmshLines = {kGmshLine, 8, 26, 27, 28, 62, 63, 64, 65};
+inline constexpr GmshTypes kGmshQuads = {kGmshQuad, 10, 36, 37, 38, 47, 48, 49, 50};
+inline constexpr GmshTypes kGmshHexahedra = {kGmshHexahedron, 12, 92, 93, 94, 95, 96, 97, 98};
+
+/// The order of elements of a type that is in a table; 0 of others.
+[[nodiscard]] constexpr int orderIn(const GmshTypes& types, std::int64_t type) noexcept {
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (std::int64_t{types[i]} == type) return static_cast<int>(i) + 1;
+  }
+  return 0;
+}
+[[nodiscard]] constexpr bool isGmshHexahedron(std::int64_t type) noexcept {
+  return type == kGmshHexahedron20 || orderIn(kGmshHexahedra, type) > 0;
+}
 
 /// Dimension of elements, and the number of a physical group.
 using GmshGroup = std::pair<std::int64_t, std::int64_t>;
@@ -130,19 +151,24 @@ class GmshTags {
   constexpr std::array<std::uint8_t, 32> kNodes = {0,  2,  3,  4,  4, 8, 6,  5,  3,  6, 9,
                                                    10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10,
                                                    12, 15, 15, 21, 4, 5, 6,  20, 35, 56};
-  constexpr std::int64_t kHexahedronOf64 = 92;
-  constexpr std::int64_t kHexahedronOf125 = 93;
-  if (type == kHexahedronOf64) return 64;
-  if (type == kHexahedronOf125) return 125;
-  const bool known = type > 0 && type < static_cast<std::int64_t>(kNodes.size());
-  return known ? kNodes[static_cast<std::size_t>(type)] : 0;
+  if (type > 0 && type < static_cast<std::int64_t>(kNodes.size())) {
+    return kNodes[static_cast<std::size_t>(type)];
+  }
+  std::size_t nodes = 1;
+  for (const GmshTypes* const types : {&kGmshLines, &kGmshQuads, &kGmshHexahedra}) {
+    const auto order = static_cast<std::size_t>(orderIn(*types, type));
+    const auto dimension = types == &kGmshLines ? 1 : (types == &kGmshQuads ? 2 : 3);
+    for (int axis = 0; order > 0 && axis < dimension; ++axis) nodes *= order + 1;
+  }
+  return nodes > 1 ? nodes : 0;
 }
 
 /// The dimension of elements that may be cells or features.
 [[nodiscard]] constexpr std::int64_t dimensionOfGmshType(std::int64_t type) noexcept {
   if (type == kGmshPoint) return 0;
-  if (type == kGmshLine) return 1;
-  return type == kGmshTriangle || type == kGmshQuad ? 2 : 3;
+  if (orderIn(kGmshLines, type) > 0) return 1;
+  const bool flat = type == kGmshTriangle || type == kGmshQuad8 || orderIn(kGmshQuads, type) > 0;
+  return flat ? 2 : 3;
 }
 
 /// What differs between versions: 1 has text only; 4.0 numbers nodes and elements with 4 bytes, 4.1
@@ -187,31 +213,165 @@ struct GmshBlock {
   }
 };
 
-/// Fills the cells of a mesh, hexahedra (8 corners) or tetrahedra (4), and its features.
+template <class Source>
+[[nodiscard]] std::size_t readGmshNodeCount(const Source& source, std::int64_t type) {
+  const std::size_t nodes = nodesOfGmshType(type);
+  if (nodes > 0) return nodes;
+  source.fail(
+      ErrorCode::FileUnsupported,
+      "elements of type " + std::to_string(type) +
+          " have a number of nodes that is not known here, so that they cannot be skipped.");
+}
+
+/// How many blocks and elements the section of version 4 has.
+template <class Source>
+[[nodiscard]] std::array<std::uint64_t, 2> readGmshCounts4(Source& source, GmshVersion version) {
+  const std::uint64_t blocks = source.size("the number of blocks of elements");
+  const std::uint64_t total = source.size("the number of elements");
+  if (version == GmshVersion::V41) {
+    static_cast<void>(source.size("the smallest tag of an element"));
+    static_cast<void>(source.size("the largest tag of an element"));
+  }
+  return {blocks, total};
+}
+
+/// @param tags  of all entities; null: not asked for
+template <class Source>
+[[nodiscard]] GmshBlock readGmshHead4(Source& source, GmshVersion version, const GmshTags* tags) {
+  GmshBlock block{.version = version};
+  const GmshGroup entity = readGmshEntity(source, version);
+  block.type = source.integer("the type of elements");
+  const std::uint64_t count = source.size("the number of elements of a block");
+  if (tags != nullptr) block.tag = tags->ofEntity(entity);
+  block.nodes = readGmshNodeCount(source, block.type);
+  requireRoom(source, count, block.shape(), "elements");
+  block.count = static_cast<std::size_t>(count);
+  block.position = source.position();
+  return block;
+}
+
+/// @param left  elements that have not been read
+[[nodiscard]] inline GmshBlock readGmshHead22(BinarySource& source, std::size_t left) {
+  GmshBlock block{.type = source.integer("the type of elements")};
+  const std::int64_t follow = source.integer("the number of elements that follow");
+  const std::int64_t tags = source.integer("the number of tags");
+  if (follow <= 0 || static_cast<std::uint64_t>(follow) > left || tags < 0) {
+    source.fail(ErrorCode::FileSyntax,
+                "a block of " + std::to_string(follow) + " elements with " + std::to_string(tags) +
+                    " tags each cannot be: " + std::to_string(left) + " elements are left.");
+  }
+  block.count = static_cast<std::size_t>(follow);
+  block.tags = static_cast<std::size_t>(tags);
+  block.nodes = readGmshNodeCount(source, block.type);
+  requireRoom(source, block.count, block.shape(), "elements");
+  return block;
+}
+
+/// An element of version 1 or 2 as text, up to its nodes.
+/// @param[out] physical  its physical group, which is the first of its tags in version 2, or 0
+template <class Source>
+[[nodiscard]] GmshBlock readGmshElement(Source& source, GmshVersion version,
+                                        std::int64_t& physical) {
+  static_cast<void>(source.integer("the number of an element"));
+  GmshBlock element{
+      .version = version, .type = source.integer("the type of an element"), .count = 1};
+  element.nodes = readGmshNodeCount(source, element.type);
+  physical = 0;
+  if (version == GmshVersion::V2) {
+    const std::uint64_t tags = source.size("the number of tags");
+    for (std::uint64_t tag = 0; tag < tags; ++tag) {
+      const std::int64_t number = source.integer("a tag");
+      if (tag == 0) physical = number;
+    }
+    return element;
+  }
+  physical = source.integer("the physical region of an element");
+  static_cast<void>(source.integer("the elementary region of an element"));
+  const std::uint64_t nodes = source.size("the number of nodes of an element");
+  if (nodes == element.nodes) return element;
+  source.fail(ErrorCode::FileSyntax, "an element of type " + std::to_string(element.type) +
+                                         " has " + std::to_string(element.nodes) +
+                                         " nodes, found " + std::to_string(nodes) + ".");
+}
+
+/// The type of the first hexahedra of a section, straight or curved; 0 without any.
+/// @param source  behind the name of the section, or the number of elements of versions 1 and 2
+template <class Source>
+[[nodiscard]] std::int64_t firstGmshHexahedra(Source& source, GmshVersion version,
+                                              std::uint64_t count) {
+  if (hasEntities(version)) {
+    const std::uint64_t blocks = readGmshCounts4(source, version)[0];
+    for (std::uint64_t i = 0; i < blocks; ++i) {
+      const GmshBlock block = readGmshHead4(source, version, nullptr);
+      if (isGmshHexahedron(block.type) && block.count > 0) return block.type;
+      source.skip(block.count, block.shape());
+    }
+  } else if constexpr (std::is_same_v<Source, BinarySource>) {
+    while (count > 0) {
+      const GmshBlock block = readGmshHead22(source, static_cast<std::size_t>(count));
+      if (isGmshHexahedron(block.type)) return block.type;
+      source.skip(block.count, block.shape());
+      count -= block.count;
+    }
+  } else {
+    for (std::int64_t physical = 0; count > 0; --count) {
+      const GmshBlock element = readGmshElement(source, version, physical);
+      if (isGmshHexahedron(element.type)) return element.type;
+      source.skip(1, {.integers = element.nodes});
+    }
+  }
+  return 0;
+}
+
+/// Instead of a number of corners: cells of higher order.
+inline constexpr std::size_t kCurved = 0;
+template <std::size_t corners>
+using GmshMesh = std::conditional_t<corners == kCurved, LagrangeMesh, CellMesh<corners>>;
+
+/// Fills the cells of a mesh, hexahedra (8 corners), tetrahedra (4), or hexahedra of higher order,
+/// and its features.
 template <std::size_t corners>
 class GmshElements {
  public:
+  /// @param kind  of the cells
+  /// @param places  of curved cells: where in its row each node goes
   /// @param tags  of all groups and entities; outlive this, and so do the others
-  GmshElements(const GmshTags& tags, const NodeTags& nodes, CellMesh<corners>& mesh,
-               CellCounts& counts, Stage& stage)
-      : tags_(tags), nodes_(nodes), mesh_(mesh), counts_(counts), stage_(stage) {}
+  GmshElements(const CellKind& kind, const std::vector<std::uint32_t>& places, const GmshTags& tags,
+               const NodeTags& nodes, GmshMesh<corners>& mesh, CellCounts& counts, Stage& stage)
+      : kind_(kind),
+        places_(places),
+        tags_(tags),
+        nodes_(nodes),
+        mesh_(mesh),
+        counts_(counts),
+        stage_(stage) {}
 
-  /// Reads the section of version 4 behind its name. Cells are read last, when it is known how
-  /// many there are.
+  /// Reads the section.
+  /// @param count  in versions 1 and 2, of all elements, which was read before
   /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, TooLarge
   template <class Source>
-  void read4(Source& source, GmshVersion version) {
-    const std::uint64_t blocks = source.size("the number of blocks of elements");
-    const std::uint64_t total = source.size("the number of elements");
-    if (version == GmshVersion::V41) {
-      static_cast<void>(source.size("the smallest tag of an element"));
-      static_cast<void>(source.size("the largest tag of an element"));
+  void read(Source& source, GmshVersion version, std::size_t count) {
+    if (hasEntities(version)) return read4(source, version);
+    if constexpr (std::is_same_v<Source, TextSource>) {
+      readText(source, version, count);
+    } else {
+      read22(source, count);
     }
+  }
+
+  /// Whether there are other elements than cells.
+  [[nodiscard]] bool hasOthers() const noexcept { return hasOthers_; }
+
+ private:
+  /// Of version 4. Cells are read last, when it is known how many there are.
+  template <class Source>
+  void read4(Source& source, GmshVersion version) {
+    const auto [blocks, total] = readGmshCounts4(source, version);
     std::vector<GmshBlock> ofCells;
     std::uint64_t done = 0;
     std::uint64_t cells = 0;
     for (std::uint64_t i = 0; i < blocks; ++i) {
-      const GmshBlock block = readHead4(source, version);
+      const GmshBlock block = readGmshHead4(source, version, &tags_);
       done += block.count;
       counts_.addGmsh(block.type, block.count);
       if (isCell(block.type)) {
@@ -227,8 +387,8 @@ class GmshElements {
                                              " elements instead of the " + std::to_string(total) +
                                              " of the section.");
     }
-    requireIndexable(source, cells, kKind.plural);
-    mesh_.cells.resize(cells);
+    requireIndexable(source, cells, kind_.plural);
+    resize(static_cast<std::size_t>(cells));
     const std::size_t end = source.position();
     std::size_t first = 0;
     for (const GmshBlock& block : ofCells) {
@@ -241,10 +401,10 @@ class GmshElements {
 
   /// The same of version 2, behind the number of elements.
   void read22(BinarySource& source, std::size_t count) {
-    mesh_.cells.resize(count);
+    makeRoom(source, count);
     std::size_t cells = 0;
     for (std::size_t done = 0; done < count;) {
-      const GmshBlock block = readHead22(source, count - done);
+      const GmshBlock block = readGmshHead22(source, count - done);
       done += block.count;
       counts_.addGmsh(block.type, block.count);
       if (isCell(block.type)) {
@@ -260,18 +420,13 @@ class GmshElements {
   /// The same of versions 1 and 2 as text.
   void readText(TextSource& source, GmshVersion version, std::size_t count) {
     LoopProgress progress(stage_, count);
-    // Enough for all; lines have different lengths, so that only reading tells how many there are.
-    mesh_.cells.resize(count);
+    makeRoom(source, count);
     std::size_t cells = 0;
+    std::int64_t physical = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, count - i));
-      static_cast<void>(source.integer("the number of an element"));
-      GmshBlock element{
-          .version = version, .type = source.integer("the type of an element"), .count = 1};
-      element.nodes = readNodeCount(source, element.type);
+      const GmshBlock element = readGmshElement(source, version, physical);
       counts_.addGmsh(element.type, 1);
-      const std::int64_t physical =
-          version == GmshVersion::V1 ? readPhysical1(source, element) : readPhysical(source);
       const std::int32_t tag = tagOf(element, physical);
       if (isCell(element.type)) {
         setRegions(cells, 1, tag);
@@ -284,88 +439,39 @@ class GmshElements {
     keep(cells);
   }
 
-  /// Whether there are other elements than cells.
-  [[nodiscard]] bool hasOthers() const noexcept { return hasOthers_; }
-
- private:
-  static constexpr CellKind kKind = kCellKind<corners>;
-
-  [[nodiscard]] static constexpr bool isCell(std::int64_t type) { return type == kKind.gmshType; }
+  [[nodiscard]] bool isCell(std::int64_t type) const { return type == kind_.gmshType; }
   static constexpr unsigned kFace = corners == 4 ? kGmshTriangle : kGmshQuad;
-  /// Whether elements of a type can be features of a mesh of these cells.
-  [[nodiscard]] static constexpr bool isFeature(std::int64_t type) {
-    return type == kGmshPoint || type == kGmshLine || type == kFace;
+  /// The number of corners of elements that can be features of a mesh of these cells; else 0.
+  [[nodiscard]] static constexpr std::size_t featureCorners(std::int64_t type) {
+    if (type == kGmshPoint) return 1;
+    if (type == kGmshLine) return 2;
+    if (type == kFace) return corners == 4 ? 3 : 4;
+    if (corners != kCurved) return 0;
+    if (orderIn(kGmshLines, type) > 0) return 2;
+    return type == kGmshQuad8 || orderIn(kGmshQuads, type) > 0 ? 4 : 0;
   }
   [[nodiscard]] std::int32_t tagOf(const GmshBlock& block, std::int64_t physical) const {
     if (hasEntities(block.version)) return block.tag;
     return tags_.ofPhysical({dimensionOfGmshType(block.type), withoutSign(physical)});
   }
 
+  /// Makes room for all cells that there can be in versions 1 and 2, where only reading tells.
   template <class Source>
-  [[nodiscard]] static std::size_t readNodeCount(const Source& source, std::int64_t type) {
-    const std::size_t nodes = nodesOfGmshType(type);
-    if (nodes > 0) return nodes;
-    source.fail(
-        ErrorCode::FileUnsupported,
-        "elements of type " + std::to_string(type) +
-            " have a number of nodes that is not known here, so that they cannot be skipped.");
+  void makeRoom(const Source& source, std::size_t count) {
+    // The last one may be incomplete.
+    resize(std::min(count, source.room({.integers = 1 + kind_.corners}) + 1));
   }
-
-  template <class Source>
-  [[nodiscard]] GmshBlock readHead4(Source& source, GmshVersion version) const {
-    GmshBlock block{.version = version};
-    const GmshGroup entity = readGmshEntity(source, version);
-    block.type = source.integer("the type of elements");
-    const std::uint64_t count = source.size("the number of elements of a block");
-    block.tag = tags_.ofEntity(entity);
-    block.nodes = readNodeCount(source, block.type);
-    requireRoom(source, count, block.shape(), "elements");
-    block.count = static_cast<std::size_t>(count);
-    block.position = source.position();
-    return block;
-  }
-
-  /// @param left  elements that have not been read
-  [[nodiscard]] static GmshBlock readHead22(BinarySource& source, std::size_t left) {
-    GmshBlock block{.type = source.integer("the type of elements")};
-    const std::int64_t follow = source.integer("the number of elements that follow");
-    const std::int64_t tags = source.integer("the number of tags");
-    if (follow <= 0 || static_cast<std::uint64_t>(follow) > left || tags < 0) {
-      source.fail(ErrorCode::FileSyntax, "a block of " + std::to_string(follow) +
-                                             " elements with " + std::to_string(tags) +
-                                             " tags each cannot be: " + std::to_string(left) +
-                                             " elements are left.");
+  void resize(std::size_t cells) {
+    if constexpr (corners == kCurved) {
+      mesh_.nodes.resize(cells * mesh_.nodesPerCell());
+    } else {
+      mesh_.cells.resize(cells);
     }
-    block.count = static_cast<std::size_t>(follow);
-    block.tags = static_cast<std::size_t>(tags);
-    block.nodes = readNodeCount(source, block.type);
-    requireRoom(source, block.count, block.shape(), "elements");
-    return block;
+    room_ = cells;
   }
 
-  /// The physical group of an element of version 2, which is the first of its tags, or 0.
-  [[nodiscard]] static std::int64_t readPhysical(TextSource& source) {
-    const std::uint64_t tags = source.size("the number of tags");
-    std::int64_t physical = 0;
-    for (std::uint64_t tag = 0; tag < tags; ++tag) {
-      const std::int64_t number = source.integer("a tag");
-      if (tag == 0) physical = number;
-    }
-    return physical;
-  }
-
-  /// The same of version 1, where the number of nodes follows.
-  [[nodiscard]] static std::int64_t readPhysical1(TextSource& source, const GmshBlock& element) {
-    const std::int64_t physical = source.integer("the physical region of an element");
-    static_cast<void>(source.integer("the elementary region of an element"));
-    const std::uint64_t nodes = source.size("the number of nodes of an element");
-    if (nodes == element.nodes) return physical;
-    source.fail(ErrorCode::FileSyntax, "an element of type " + std::to_string(element.type) +
-                                           " has " + std::to_string(element.nodes) +
-                                           " nodes, found " + std::to_string(nodes) + ".");
-  }
-
-  /// The same in a block; reads all that stands in front of an element's nodes.
+  /// The physical group of an element in a block, or 0; reads all that stands in front of an
+  /// element's nodes.
   template <class Record>
   [[nodiscard]] static std::int64_t readPhysical(Record& record, const GmshBlock& block) {
     static_cast<void>(readGmshTag(record, block.version, "the tag of an element"));
@@ -396,34 +502,40 @@ class GmshElements {
 
   template <class Record>
   void readCorners(Record& record, GmshVersion version, std::size_t cell) {
-    for (Index& corner : mesh_.cells[cell]) {
+    const auto read = [&](Index& node) {
       const std::uint64_t tag = readGmshTag(record, version, "a node of a cell");
-      corner = nodes_.find(tag);
-      if (corner == kNone) failCorner(record, tag, cell);
+      node = nodes_.find(tag);
+      if (node == kNone) failCorner(record, tag, cell);
+    };
+    if constexpr (corners == kCurved) {
+      Index* const row = mesh_.nodes.data() + cell * mesh_.nodesPerCell();
+      for (const std::uint32_t place : places_) read(row[place]);
+    } else {
+      for (Index& corner : mesh_.cells[cell]) read(corner);
     }
   }
 
   // Apart, with a record by value, so that what is read stays in registers.
   template <class Record>
-  [[noreturn]] static void failCorner(Record record, std::uint64_t tag, std::size_t cell) {
+  [[noreturn]] void failCorner(Record record, std::uint64_t tag, std::size_t cell) const {
     record.fail(ErrorCode::IndexOutOfRange,
-                std::string(kKind.singular) + " " + std::to_string(cell) +
+                std::string(kind_.singular) + " " + std::to_string(cell) +
                     " (counted from 0) names node " +
                     std::to_string(static_cast<std::int64_t>(tag)) +
                     ", which is not in the section $Nodes.",
-                Place{kKind.place, cell});
+                Place{kind_.place, cell});
   }
 
   /// Regions of consecutive cells. Without any, there is no array.
   void setRegions(std::size_t first, std::size_t count, std::int32_t region) {
-    if (mesh_.regions.empty() && region != 0) mesh_.regions.assign(mesh_.cells.size(), 0);
+    if (mesh_.regions.empty() && region != 0) mesh_.regions.assign(room_, 0);
     if (mesh_.regions.empty()) return;
     std::fill_n(mesh_.regions.begin() + static_cast<std::ptrdiff_t>(first), count, region);
   }
 
   /// Keeps so many cells.
   void keep(std::size_t cells) {
-    mesh_.cells.resize(cells);
+    resize(cells);
     if (!mesh_.regions.empty()) mesh_.regions.resize(cells);
   }
 
@@ -431,7 +543,7 @@ class GmshElements {
   template <class Source>
   void readOthers(Source& source, const GmshBlock& block) {
     if (block.count > 0) hasOthers_ = true;
-    if (!isFeature(block.type) || (hasEntities(block.version) && block.tag == 0)) {
+    if (featureCorners(block.type) == 0 || (hasEntities(block.version) && block.tag == 0)) {
       return source.skip(block.count, block.shape());
     }
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -446,14 +558,15 @@ class GmshElements {
       const std::uint64_t node = readGmshTag(source, block.version, "a node of an element");
       if (k < nodes.size()) nodes[k] = node;
     }
-    if (tag != 0 && isFeature(block.type)) addFeature(source, block.type, nodes, tag);
+    if (tag != 0 && featureCorners(block.type) > 0) addFeature(source, block.type, nodes, tag);
   }
 
   template <class Source>
   void addFeature(const Source& source, std::int64_t type,
                   const std::array<std::uint64_t, 4>& nodes, std::int32_t tag) {
     Quad vertices{};
-    for (std::size_t k = 0; k < nodesOfGmshType(type); ++k) {
+    const std::size_t size = featureCorners(type);
+    for (std::size_t k = 0; k < size; ++k) {
       vertices[k] = nodes_.find(nodes[k]);
       if (vertices[k] != kNone) continue;
       source.fail(ErrorCode::IndexOutOfRange,
@@ -461,19 +574,22 @@ class GmshElements {
                       ", which is not in the section $Nodes.");
     }
     auto& features = mesh_.features;
-    if (type == kGmshPoint) features.vertices.push_back({vertices[0], tag});
-    if (type == kGmshLine) features.edges.push_back({{vertices[0], vertices[1]}, tag});
-    if (type != kFace) return;
+    if (size == 1) features.vertices.push_back({vertices[0], tag});
+    if (size == 2) features.edges.push_back({{vertices[0], vertices[1]}, tag});
+    if (size < 3) return;
     auto& face = facesIn(features).emplace_back();
     std::copy_n(vertices.begin(), face.vertices.size(), face.vertices.begin());
     face.tag = tag;
   }
 
+  CellKind kind_;
+  const std::vector<std::uint32_t>& places_;
   const GmshTags& tags_;
   const NodeTags& nodes_;
-  CellMesh<corners>& mesh_;
+  GmshMesh<corners>& mesh_;
   CellCounts& counts_;
   Stage& stage_;
+  std::size_t room_ = 0;  ///< for so many cells
   bool hasOthers_ = false;
 };
 

@@ -5,12 +5,15 @@
 #include <atomic>
 #include <charconv>
 #include <cstdint>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <hexhex/error.hpp>
 
@@ -22,10 +25,26 @@
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/gmsh_elements.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
 namespace {
+
+std::optional<GmshVersion> gmshVersionOf(std::string_view version) {
+  using Named = std::pair<std::string_view, GmshVersion>;
+  constexpr std::array<Named, 7> kVersions = {{{"4.1", GmshVersion::V41},
+                                               {"4", GmshVersion::V40},
+                                               {"4.0", GmshVersion::V40},
+                                               {"2.2", GmshVersion::V2},
+                                               {"2.1", GmshVersion::V2},
+                                               {"2", GmshVersion::V2},
+                                               {"2.0", GmshVersion::V2}}};
+  for (const auto& [name, value] : kVersions) {
+    if (name == version) return value;
+  }
+  return {};
+}
 
 /// The frame of a file: its version and encoding, and its sections one after the other.
 class GmshFile {
@@ -124,18 +143,10 @@ class GmshFile {
   }
 
   void readVersion() {
-    using Named = std::pair<std::string_view, GmshVersion>;
-    constexpr std::array<Named, 7> kVersions = {{{"4.1", GmshVersion::V41},
-                                                 {"4", GmshVersion::V40},
-                                                 {"4.0", GmshVersion::V40},
-                                                 {"2.2", GmshVersion::V2},
-                                                 {"2.1", GmshVersion::V2},
-                                                 {"2", GmshVersion::V2},
-                                                 {"2.0", GmshVersion::V2}}};
     const std::string_view version = scanner_.readToken();
-    for (const auto& [name, value] : kVersions) {
-      if (name != version) continue;
-      version_ = value;
+    const std::optional<GmshVersion> known = gmshVersionOf(version);
+    if (known) {
+      version_ = *known;
       return;
     }
     scanner_.fail(ErrorCode::FileUnsupported,
@@ -331,7 +342,15 @@ class GmshNodes {
   Array<std::uint64_t> tags_;
 };
 
+/// What is read, in sentences: of cells of higher order not yet which.
+template <std::size_t corners>
+constexpr CellKind kGmshKind = kCellKind<corners>;
+template <>
+constexpr CellKind kGmshKind<kCurved> = {
+    .singular = "hexahedron", .plural = "hexahedra of higher order", .place = PlaceKind::Cell};
+
 /// Reads the sections of one file from top to bottom.
+/// @tparam corners  of the cells; or kCurved: hexahedra of the type that the file has first
 template <std::size_t corners>
 class GmshReader {
  public:
@@ -341,16 +360,15 @@ class GmshReader {
              const std::shared_ptr<CellCounts>& counts)
       : file_(text, fileName, stage), fileName_(fileName), counts_(*counts) {}
 
-  CellMesh<corners> read() {
+  GmshMesh<corners> read() {
     while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
     requireCells();
     mesh_.features.names = std::move(tags_.names);
+    if constexpr (corners == kCurved) finishCurved();
     return std::move(mesh_);
   }
 
  private:
-  static constexpr CellKind kKind = kCellKind<corners>;
-
   void readSection(std::string_view name) {
     if (name == "PhysicalNames") return readNames(file_.skipSection(name), tags_);
     const bool version1 = file_.version() == GmshVersion::V1;
@@ -389,34 +407,70 @@ class GmshReader {
           ErrorCode::FileUnsupported,
           "the section $" + std::string(name) + " stands before the nodes; exchange them.");
     }
-    GmshElements<corners> elements(tags_, nodes_, mesh_, counts_, file_.stage());
-    if (hasEntities(file_.version())) {
-      file_.withSource([&](auto& source) { elements.read4(source, file_.version()); });
-    } else {
-      const std::size_t count = file_.scanner().readCount("elements", 8);
-      file_.withSource([&](auto& source) {
-        if constexpr (std::is_same_v<decltype(source), TextSource&>) {
-          elements.readText(source, file_.version(), count);
-        } else {
-          elements.read22(source, count);
-        }
-      });
+    const bool counted = !hasEntities(file_.version());
+    const std::size_t count = counted ? file_.scanner().readCount("elements", 8) : 0;
+    file_.withSource([&](auto& source) {
+      if constexpr (corners == kCurved) {
+        const std::size_t begin = source.position();
+        beginCurved(firstGmshHexahedra(source, file_.version(), count));
+        source.moveTo(begin);
+      }
+      GmshElements<corners> elements(kind_, places_, tags_, nodes_, mesh_, counts_, file_.stage());
+      elements.read(source, file_.version(), count);
+      hasOtherElements_ = elements.hasOthers();
+    });
+  }
+
+  // Cells of higher order. Rows of nodes are in VTK's order.
+
+  /// @param type  that is wanted, if it is one of cells of higher order
+  void beginCurved(std::int64_t type) {
+    const bool isCurved = isGmshHexahedron(type) && type != kGmshHexahedron;
+    kind_.gmshType = isCurved ? type : kGmshHexahedron20;
+    kind_.corners = nodesOfGmshType(kind_.gmshType);
+    const auto* const known =
+        std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
+                     [&](const VolumeCells& cells) { return cells.gmshType == kind_.gmshType; });
+    if (isCurved) kind_.plural = known->plural;
+    mesh_.order = std::max(2, orderIn(kGmshHexahedra, kind_.gmshType));
+    std::vector<std::uint32_t> placeInVtk(mesh_.nodesPerCell());
+    const std::vector<std::uint32_t> inVtk = vtkNodeOrder(mesh_.order);
+    for (std::uint32_t k = 0; k < inVtk.size(); ++k) placeInVtk[inVtk[k]] = k;
+    places_ = gmshNodeOrder(mesh_.order);
+    places_.resize(kind_.corners);
+    for (std::uint32_t& place : places_) place = placeInVtk[place];
+  }
+
+  void finishCurved() {
+    counts_.requireOnly(kind_, fileName_, "Give the others a file of their own.");
+    if (kind_.gmshType == kGmshHexahedron20) {
+      std::vector<std::size_t> all(mesh_.cellCount());
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      addMiddles(mesh_.points, mesh_.nodes, all, fileName_);
     }
-    hasOtherElements_ = elements.hasOthers();
+    fromVtkOrder(mesh_, file_.stage());
+  }
+
+  [[nodiscard]] bool hasCells() const {
+    if constexpr (corners == kCurved) {
+      return !mesh_.nodes.empty();
+    } else {
+      return !mesh_.cells.empty();
+    }
   }
 
   void requireCells() const {
+    const std::string holdsNone = fileName_ + ": the file holds no " + std::string(kind_.plural);
     if (!hasElements_) {
-      throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
-                                                  std::string(kKind.plural) +
-                                                  ": it has no section $Elements.");
+      throw Error(ErrorCode::FileUnsupported, holdsNone + ": it has no section $Elements.");
     }
-    if (mesh_.cells.empty() && hasOtherElements_) {
-      throw Error(ErrorCode::FileUnsupported,
-                  fileName_ + ": the file holds no " + std::string(kKind.plural) + " with " +
-                      std::to_string(corners) + " nodes (type " + std::to_string(kKind.gmshType) +
-                      "), but " + otherElements() + ".");
-    }
+    if (hasCells() || (!hasOtherElements_ && corners != kCurved)) return;
+    const std::string kind = corners == kCurved
+                                 ? std::string()
+                                 : " with " + std::to_string(corners) + " nodes (type " +
+                                       std::to_string(kind_.gmshType) + ")";
+    throw Error(ErrorCode::FileUnsupported, holdsNone + kind + ", but " + otherElements() + "." +
+                                                (corners == 8 ? counts_.adviceOnCurved() : ""));
   }
 
   [[nodiscard]] std::string otherElements() const {
@@ -433,7 +487,9 @@ class GmshReader {
   bool hasNodes_ = false;
   bool hasElements_ = false;
   bool hasOtherElements_ = false;
-  CellMesh<corners> mesh_;
+  CellKind kind_ = kGmshKind<corners>;
+  std::vector<std::uint32_t> places_;  ///< of the nodes of a curved cell in its row
+  GmshMesh<corners> mesh_;
 };
 
 }  // namespace
@@ -444,6 +500,132 @@ HexMesh readGmsh(const Input& input, Context& context) {
 
 TetCells readGmshTets(const Input& input, Context& context) {
   return readWith<GmshReader<4>>(input, "read tets", context, input.counts());
+}
+
+LagrangeMesh readCurvedGmsh(const Input& input, Context& context) {
+  return readWith<GmshReader<kCurved>>(input, "read mesh", context, input.counts());
+}
+
+namespace {
+
+// Whether cells are of higher order, without the whole of a file in memory.
+
+/// Numbers of a text that passes by.
+class WindowSource {
+ public:
+  explicit WindowSource(TextWindow& words) : words_(words) {}
+
+  [[nodiscard]] std::int64_t integer(const NumberName& name) {
+    const std::string word = words_.token();
+    std::int64_t number = 0;
+    const char* const end = word.data() + word.size();
+    const auto result = std::from_chars(word.data(), end, number);
+    if (word.empty() || result.ec != std::errc{} || result.ptr != end)
+      fail(ErrorCode::FileSyntax, name.text());
+    return number;
+  }
+  [[nodiscard]] std::uint64_t size(const NumberName& name) {
+    return static_cast<std::uint64_t>(integer(name));
+  }
+  void skip(std::uint64_t n, RecordShape shape) {
+    if (!words_.skip(n * shape.tokens())) fail(ErrorCode::FileSyntax, "the end of the file");
+  }
+  [[nodiscard]] std::uint64_t position() const { return words_.position(); }
+  /// It shows when they are skipped.
+  [[nodiscard]] static std::size_t room(RecordShape /*shape*/) {
+    return std::numeric_limits<std::size_t>::max();
+  }
+  /// The reader of whole files says what is wrong.
+  [[noreturn]] static void fail(ErrorCode code, const std::string& sentence) {
+    throw Error(code, sentence);
+  }
+
+ private:
+  TextWindow& words_;
+};
+
+/// Where a text first stands in a file, at or behind a place; nothing if it does not.
+std::optional<std::uint64_t> findInFile(const InputFile& file, std::uint64_t from,
+                                        std::string_view text, Context& context) {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 22;
+  Array<char> bytes;
+  while (from + text.size() <= file.size()) {
+    context.throwIfCancelled();
+    bytes.resize(std::min<std::uint64_t>(kAtOnce, file.size() - from));
+    file.readAt(from, bytes.data(), bytes.size());
+    const std::size_t place = asText(bytes).find(text);
+    if (place != std::string_view::npos) return from + place;
+    from += bytes.size() - text.size() + 1;
+  }
+  return {};
+}
+
+/// The type of the first hexahedra of a regular file; 0 without any.
+std::int64_t firstHexahedraIn(const InputFile& file, const std::string& name, Context& context) {
+  TextWindow words(file, name, context, TextWindow::kWords);
+  GmshVersion version = GmshVersion::V1;
+  bool isBinary = false;
+  constexpr std::string_view kFormat = "$MeshFormat";
+  std::uint64_t place = 0;
+  if (const auto format = findInFile(file, 0, kFormat, context)) {
+    words.moveTo(*format + kFormat.size());
+    version = gmshVersionOf(words.token()).value_or(version);
+    isBinary = words.token() == "1";
+    place = *format;
+  }
+  const std::string_view section = version == GmshVersion::V1 ? "$ELM" : "$Elements";
+  const auto elements = findInFile(file, place, section, context);
+  if (!elements) return 0;
+  words.moveTo(*elements + section.size());
+  const std::uint64_t count = hasEntities(version) ? 0 : words.count().value_or(0);
+  WindowSource numbers(words);
+  if (!isBinary) return firstGmshHexahedra(numbers, version, count);
+  if (!words.skipLineBreak()) return 0;
+  Context quiet(context.threads());
+  Stage stage(quiet, "read");
+  const ByteFile bytes(file, name);
+  BinarySource source(bytes, static_cast<std::size_t>(words.position()), stage);
+  return firstGmshHexahedra(source, version, count);
+}
+
+/// The same of bytes in memory.
+std::int64_t firstHexahedraIn(std::string_view text, const std::string& name, Stage& stage) {
+  GmshFile file(text, name, stage);
+  std::int64_t type = 0;
+  while (const std::optional<std::string_view> section = file.nextSection()) {
+    if (*section != "Elements" && *section != "ELM") {
+      file.skipSection(*section);
+      continue;
+    }
+    const bool counted = !hasEntities(file.version());
+    const std::size_t count = counted ? file.scanner().readCount("elements", 8) : 0;
+    file.withSource(
+        [&](auto& source) { type = firstGmshHexahedra(source, file.version(), count); });
+    break;
+  }
+  return type;
+}
+
+}  // namespace
+
+bool holdsCurvedGmsh(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&](Stage& stage) {
+    std::int64_t type = 0;
+    try {
+      std::error_code unknown;
+      if (!input.bytes() && std::filesystem::is_regular_file(input.path(), unknown)) {
+        type = firstHexahedraIn(InputFile(input.path()), input.name(), context);
+      } else {
+        Array<char> room;
+        type = firstHexahedraIn(input.text(room, stage, "$#/"), input.name(), stage);
+      }
+    } catch (const Error& error) {
+      // Who reads it tells what is wrong.
+      if (error.code() != ErrorCode::FileSyntax && error.code() != ErrorCode::FileUnsupported)
+        throw;
+    }
+    return isGmshHexahedron(type) && type != kGmshHexahedron;
+  });
 }
 
 namespace {

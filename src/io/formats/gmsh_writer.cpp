@@ -448,11 +448,6 @@ namespace {
 
 // Gmsh's files of Lagrange cells.
 
-// Gmsh's types of elements of order 1 to 9.
-constexpr std::array<unsigned, kMaxOrder> kLines = {1, 8, 26, 27, 28, 62, 63, 64, 65};
-constexpr std::array<unsigned, kMaxOrder> kQuads = {3, 10, 36, 37, 38, 47, 48, 49, 50};
-constexpr std::array<unsigned, kMaxOrder> kHexahedra = {5, 12, 92, 93, 94, 95, 96, 97, 98};
-
 /// The nodes of a cell in the order of a file.
 struct NodesInOrder {
   const Index* nodes;
@@ -487,14 +482,15 @@ void appendGmshHex(std::vector<Node>& nodes, int low, int high) {
   appendGmshHex(nodes, low + 1, high - 1);
 }
 
-/// Entry k: the place of the node that Gmsh lists at place k.
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> gmshNodeOrder(int order) {
   std::vector<Node> nodes;
   appendGmshHex(nodes, 0, order);
   return placesOf(nodes, order);
 }
-
-}  // namespace
 
 void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
@@ -514,12 +510,12 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   const std::size_t type = perEdge - 2;
   const auto forEachKind = [&](const auto& f) {
     f(GmshKind{0U, kGmshPoint, 1U, [&](std::size_t i) { return groups.vertices.elements[i]; }});
-    f(GmshKind{1U, kLines[type], perEdge,
+    f(GmshKind{1U, kGmshLines[type], perEdge,
                [&](std::size_t i) { return nodes.edges.data() + i * perEdge; }});
-    f(GmshKind{2U, kQuads[type], perQuad,
+    f(GmshKind{2U, kGmshQuads[type], perQuad,
                [&](std::size_t i) { return nodes.quads.data() + i * perQuad; }});
     f(GmshKind{
-        3U, kHexahedra[type], order.size(), [&](std::size_t i) {
+        3U, kGmshHexahedra[type], order.size(), [&](std::size_t i) {
           return NodesInOrder{mesh.nodes.data() + groups.cells.at(i) * order.size(), order.data()};
         }});
   };

@@ -63,6 +63,10 @@ enum class VtkEdges : std::uint8_t { Around, RowByRow };
 [[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order,
                                                       VtkEdges upright = VtkEdges::Around);
 
+/// Entry k: the place of the node that Gmsh lists at place k: corners, edges, faces, inside, which
+/// is a smaller cell. The first 20 of order 2 are those of cells with 20 nodes.
+[[nodiscard]] std::vector<std::uint32_t> gmshNodeOrder(int order);
+
 /// The same of cells of order 2 in another format.
 /// @param places  entry k: where the format lists the node that VTK lists at place k
 [[nodiscard]] std::vector<std::uint32_t> quadraticOrder(const std::array<std::uint8_t, 27>& places);

@@ -1,5 +1,5 @@
-// `.pvtu` files: writes one and its pieces, and glues such pieces by the global numbers of their
-// vertices and cells.
+// `.pvtu` files: writes one and its pieces; and glues pieces of data sets by the global numbers of
+// their vertices and cells, or by positions.
 #include <algorithm>
 #include <bit>
 #include <optional>
@@ -10,6 +10,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/formats/formats.hpp>
@@ -150,7 +151,7 @@ std::unique_ptr<PartSink> openPvtuSink(const std::filesystem::path& file,
 
 namespace {
 
-// Glues the pieces of a `.pvtu` file by the global numbers of their vertices and cells.
+// Glues the pieces of a data set.
 
 std::string unescaped(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNames = {
@@ -212,74 +213,80 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
   return pieces;
 }
 
-/// A piece with the global numbers of its points and hexahedra.
+/// A piece with the global numbers of its points and hexahedra, if it tells both.
 struct Piece {
   HexMesh mesh;
   Array<std::int64_t> points;
   Array<std::int64_t> cells;
+  Array<std::int64_t> marks;  ///< of cells, as of vtkGhostType; empty: all are 0
 };
 
-Array<std::int64_t> readNumbers(const VtkSource& source, VtkSection section, std::string_view name,
-                                std::uint64_t count) {
+/// The numbers of an array; none if there is no such one.
+Array<std::int64_t> readNumbers(const VtkSource& source, VtkSection section,
+                                std::string_view name) {
+  Array<std::int64_t> numbers;
   const VtkSourceArray* const array = source.find(section, name, 1, VtkNumbers::Integers);
-  if (array == nullptr) {
-    source.fail(ErrorCode::FileUnsupported,
-                "the piece has no array \"" + std::string(name) +
-                    "\": without global numbers, pieces cannot be glued.");
-  }
-  Array<std::int64_t> numbers(count);
-  source.copy(source.load(*array), 0, count, numbers.data());
+  if (array == nullptr) return numbers;
+  const VtkColumn column = source.load(*array);
+  numbers.resize(memorySize(column.count));
+  source.copy(column, 0, numbers.size(), numbers.data());
   return numbers;
 }
 
-Piece readPiece(const std::filesystem::path& file, Stage& stage) {
-  const Input input(file);
-  const std::unique_ptr<VtkSource> source = openVtuFile(input, stage);
-  source->requireIndexable();
+Piece readPiece(const VtkSource& source, Stage& stage) {
+  source.requireIndexable();
   Piece piece;
-  if (source->cells == 0) return piece;
-  piece.mesh = readVtkHexMesh(*source, stage);
-  if (piece.mesh.cells.size() != source->cells) {
-    source->fail(ErrorCode::FileUnsupported, "the piece has other cells than hexahedra.");
+  if (source.cells == 0) return piece;
+  piece.mesh = readVtkHexMesh(source, stage);
+  if (piece.mesh.cells.size() != source.cells) {
+    source.fail(ErrorCode::FileUnsupported, "the piece has other cells than hexahedra.");
   }
-  piece.points =
-      readNumbers(*source, VtkSection::PointData, kVtkGlobalPoints, piece.mesh.points.size());
-  piece.cells =
-      readNumbers(*source, VtkSection::CellData, kVtkGlobalCells, piece.mesh.cells.size());
+  piece.points = readNumbers(source, VtkSection::PointData, kVtkGlobalPoints);
+  piece.cells = readNumbers(source, VtkSection::CellData, kVtkGlobalCells);
+  piece.marks = readNumbers(source, VtkSection::CellData, kVtkGhosts);
   return piece;
 }
 
+/// Makes one mesh of pieces. Where all tell the global numbers of their points and cells, these are
+/// the numbers in the mesh; elsewhere, points at the same position are one, and cells that are
+/// marked as another piece's are left out.
 class Gluer {
  public:
   explicit Gluer(std::string name) : name_(std::move(name)) {}
 
-  void add(const Piece& piece, const std::filesystem::path& file) {
+  void add(const VtkSource& source, const Piece& piece) {
     const HexMesh& mesh = piece.mesh;
+    if (mesh.cells.empty()) return;
     const bool generators = mesh.generatorTet.size() == mesh.points.size() &&
                             mesh.generatorCorners.size() == mesh.points.size();
-    hasGenerators_ = hasGenerators_ && (generators || mesh.cells.empty());
-    hasRegions_ = hasRegions_ && (!mesh.regions.empty() || mesh.cells.empty());
+    hasNumbers_ = hasNumbers_ && !piece.points.empty() && !piece.cells.empty();
+    hasGenerators_ = hasGenerators_ && generators;
+    hasRegions_ = hasRegions_ && !mesh.regions.empty();
+    if (mesh.points.size() > kNone - points_.size()) {
+      source.fail(ErrorCode::TooLarge,
+                  "up to this piece there are more points than are supported.");
+    }
+    firstPoints_.push_back(points_.size());
     // Numbers are not trusted before all pieces are known: of so many points and cells, none can
     // have a larger one.
-    for (std::size_t v = 0; v < piece.points.size(); ++v) {
-      requireNumber(piece.points[v], file, "point");
-      points_.push_back({static_cast<std::uint64_t>(piece.points[v]), mesh.points[v],
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      points_.push_back({numberAt(source, piece.points, v, "point"), mesh.points[v],
                          generators ? mesh.generatorTet[v] : kNone,
                          generators ? mesh.generatorCorners[v] : CornerSet{0}});
     }
-    for (std::size_t c = 0; c < piece.cells.size(); ++c) {
-      requireNumber(piece.cells[c], file, "cell");
-      Cell cell{static_cast<std::uint64_t>(piece.cells[c]), {}, 0};
-      for (std::size_t k = 0; k < 8; ++k) {
-        cell.corners[k] = static_cast<Index>(piece.points[mesh.cells[c][k]]);
-      }
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      Cell cell{numberAt(source, piece.cells, c, "cell"), mesh.cells[c], 0};
+      shift(cell.corners);
       if (!mesh.regions.empty()) cell.region = mesh.regions[c];
       cells_.push_back(cell);
+      isGhost_.push_back(!piece.marks.empty() && (piece.marks[c] & kVtkDuplicate) != 0);
     }
-    addFeatures(piece);
+    addFeatures(mesh.features);
   }
 
-  [[nodiscard]] HexMesh take() {
+  [[nodiscard]] GluedMesh take() {
+    if (!hasNumbers_) numberByPositions();
+    nameAll();
     HexMesh mesh;
     keepOnce(points_, "vertex");
     keepOnce(cells_, "cell");
@@ -296,13 +303,12 @@ class Gluer {
     sortOnce(features_.vertices);
     sortOnce(features_.edges);
     sortOnce(features_.quads);
-    mesh.features.vertices = std::move(features_.vertices);
-    mesh.features.edges = std::move(features_.edges);
-    mesh.features.quads = std::move(features_.quads);
-    return mesh;
+    mesh.features = std::move(features_);
+    return {std::move(mesh), hasNumbers_};
   }
 
  private:
+  /// Until nameAll(), corners are by points of all pieces, one after the other.
   struct Point {
     std::uint64_t number;
     Vec3 position;
@@ -317,13 +323,80 @@ class Gluer {
     bool operator==(const Cell&) const = default;
   };
 
-  static void requireNumber(std::int64_t number, const std::filesystem::path& file,
-                            const char* what) {
-    if (number >= 0 && number < std::int64_t{kNone}) return;
-    throw Error(ErrorCode::FileUnsupported, file.string() + ": a " + what +
-                                                " has the global number " + std::to_string(number) +
+  static std::uint64_t numberAt(const VtkSource& source, const Array<std::int64_t>& numbers,
+                                std::size_t i, const char* what) {
+    if (numbers.empty()) return 0;
+    if (numbers[i] >= 0 && numbers[i] < std::int64_t{kNone}) {
+      return static_cast<std::uint64_t>(numbers[i]);
+    }
+    source.fail(ErrorCode::FileUnsupported, std::string("a ") + what + " has the global number " +
+                                                std::to_string(numbers[i]) +
                                                 "; numbers from 0 to 2^32 - 2 are read.");
   }
+
+  /// From points of the last piece to those of all.
+  template <class Vertices>
+  void shift(Vertices& vertices) const {
+    for (Index& v : vertices) v += static_cast<Index>(firstPoints_.back());
+  }
+  void addFeatures(const HexFeatures& features) {
+    const auto addAll = [this](const auto& from, auto& to) {
+      for (auto feature : from) {
+        shift(feature.vertices);
+        to.push_back(feature);
+      }
+    };
+    for (const auto& [vertex, tag] : features.vertices) {
+      features_.vertices.push_back({vertex + static_cast<Index>(firstPoints_.back()), tag});
+    }
+    addAll(features.edges, features_.edges);
+    addAll(features.quads, features_.quads);
+  }
+
+  void numberByPositions() {
+    hasGenerators_ = false;
+    Array<double> coordinates;
+    for (Point& point : points_) {
+      coordinates.insert(coordinates.end(), point.position.begin(), point.position.end());
+      point.tet = kNone;
+      point.corners = 0;
+    }
+    std::size_t ambiguous = points_.size();
+    const Array<std::size_t> firsts = firstsAtSamePosition(coordinates, firstPoints_, &ambiguous);
+    if (ambiguous < points_.size()) {
+      const Vec3& at = points_[ambiguous].position;
+      fail("pieces have no global numbers of points and cells, and at the point (" +
+           std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) +
+           ") a piece has several points, so that nobody knows which of them another piece's is. "
+           "Write the pieces with GlobalPointIds and GlobalCellIds.");
+    }
+    std::uint64_t next = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      points_[i].number = firsts[i] == i ? next++ : points_[firsts[i]].number;
+    }
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      if (isGhost_[c]) continue;
+      cells_[kept] = cells_[c];
+      cells_[kept].number = kept;
+      ++kept;
+    }
+    cells_.resize(kept);
+  }
+
+  /// Corners become the numbers of their points.
+  void nameAll() {
+    const auto name = [this](Index& v) { v = static_cast<Index>(points_[v].number); };
+    const auto nameIn = [&](auto& elements) {
+      for (auto& element : elements)
+        std::for_each(element.vertices.begin(), element.vertices.end(), name);
+    };
+    for (Cell& cell : cells_) std::for_each(cell.corners.begin(), cell.corners.end(), name);
+    for (FeatureVertex& feature : features_.vertices) name(feature.vertex);
+    nameIn(features_.edges);
+    nameIn(features_.quads);
+  }
+
   /// Sorts by number. Whoever has a number is the same everywhere, and none is missing.
   template <class Element>
   void keepOnce(std::vector<Element>& elements, const char* what) const {
@@ -355,41 +428,42 @@ class Gluer {
                      [&](const Feature& a, const Feature& b) { return key(a) < key(b); });
     features.erase(std::unique(features.begin(), features.end()), features.end());
   }
-  void addFeatures(const Piece& piece) {
-    const auto global = [&piece](Index v) { return static_cast<Index>(piece.points[v]); };
-    const auto addAll = [&](const auto& from, auto& to) {
-      for (auto feature : from) {
-        for (Index& v : feature.vertices) v = global(v);
-        to.push_back(feature);
-      }
-    };
-    for (const FeatureVertex& feature : piece.mesh.features.vertices) {
-      features_.vertices.push_back({global(feature.vertex), feature.tag});
-    }
-    addAll(piece.mesh.features.edges, features_.edges);
-    addAll(piece.mesh.features.quads, features_.quads);
-  }
   [[noreturn]] void fail(const std::string& sentence) const {
     throw Error(ErrorCode::FileSyntax, name_ + ": " + sentence);
   }
 
   std::string name_;
+  std::vector<std::size_t> firstPoints_;  ///< of each piece
   std::vector<Point> points_;
   std::vector<Cell> cells_;
+  std::vector<bool> isGhost_;
   HexFeatures features_;
+  bool hasNumbers_ = true;
   bool hasGenerators_ = true;
   bool hasRegions_ = true;
 };
 
 }  // namespace
 
+GluedMesh readVtkPieces(const std::string& name, std::size_t count, const OpenVtkPiece& open,
+                        Stage& stage) {
+  Gluer gluer(name);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::unique_ptr<VtkSource> source = open(i);
+    gluer.add(*source, readPiece(*source, stage));
+  }
+  return gluer.take();
+}
+
 HexMesh readPvtu(const Input& input, Context& context) {
   return inStage(context, "read mesh", [&](Stage& stage) {
-    Gluer gluer(input.name());
-    for (const std::filesystem::path& file : findPieces(input, stage)) {
-      gluer.add(readPiece(file, stage), file);
-    }
-    return gluer.take();
+    const std::vector<std::filesystem::path> files = findPieces(input, stage);
+    std::optional<Input> piece;  // outlives its source
+    const auto open = [&](std::size_t i) {
+      piece.emplace(files[i]);
+      return openVtuFile(*piece, stage);
+    };
+    return readVtkPieces(input.name(), files.size(), open, stage).mesh;
   });
 }
 

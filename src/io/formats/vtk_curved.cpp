@@ -164,7 +164,13 @@ void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string&
   addMiddles(mesh.points, mesh.nodes, cells, fileName);
 }
 
-LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
+}  // namespace
+
+bool holdsVtkLagrange(const VtkSource& source) {
+  return countCells(source, lagrangeCells(0)) > 0 || quadraticKind(source) != nullptr;
+}
+
+LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
   source.requireIndexable();
   LagrangeMesh mesh;
   const bool isLagrange = countCells(source, lagrangeCells(0)) > 0;
@@ -189,18 +195,14 @@ LagrangeMesh readLagrange(const VtkSource& source, const std::string& fileName, 
   return mesh;
 }
 
-}  // namespace
-
 void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright) {
   reorderNodes(mesh, upright, stage);
   putCornersFirst(mesh);
 }
 
 bool holdsLagrangeVtu(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    const auto source = openVtuFile(input, stage);
-    return countCells(*source, lagrangeCells(0)) > 0 || quadraticKind(*source) != nullptr;
-  });
+  return inStage(context, "read mesh",
+                 [&input](Stage& stage) { return holdsVtkLagrange(*openVtuFile(input, stage)); });
 }
 
 bool holdsCurvedVtkLegacy(const Input& input, Context& context) {
@@ -213,13 +215,13 @@ LagrangeMesh readCurvedVtkLegacy(const Input& input, Context& context) {
   return inStage(context, "read mesh", [&input](Stage& stage) {
     const auto source = openVtkLegacyFile(input, true, stage);
     if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
-    return readLagrange(*source, input.name(), stage);
+    return readVtkLagrange(*source, input.name(), stage);
   });
 }
 
 LagrangeMesh readLagrangeVtu(const Input& input, Context& context) {
   return inStage(context, "read mesh", [&input](Stage& stage) {
-    return readLagrange(*openVtuFile(input, stage), input.name(), stage);
+    return readVtkLagrange(*openVtuFile(input, stage), input.name(), stage);
   });
 }
 

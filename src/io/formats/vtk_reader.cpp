@@ -479,6 +479,37 @@ HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
   return mesh;
 }
 
+Array<std::size_t> firstsAtSamePosition(std::span<const double> coordinates,
+                                        const std::vector<std::size_t>& firstPoints,
+                                        std::size_t* ambiguous) {
+  using Key = std::array<std::uint64_t, 3>;
+  const auto pieceOf = [&firstPoints](std::size_t point) {
+    return std::upper_bound(firstPoints.begin(), firstPoints.end(), point);
+  };
+  std::vector<std::pair<Key, std::size_t>> places(coordinates.size() / 3);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      places[i].first[k] = std::bit_cast<std::uint64_t>(coordinates[3 * i + k] + 0.0);  // no -0
+    }
+    places[i].second = i;
+  }
+  std::sort(places.begin(), places.end());
+  Array<std::size_t> firsts(places.size());
+  for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+    while (end < places.size() && places[end].first == places[begin].first) ++end;
+    std::size_t pieces = 1;
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      if (pieceOf(places[i - 1].second) != pieceOf(places[i].second)) ++pieces;
+    }
+    const bool unique = pieces == end - begin;
+    if (!unique && pieces > 1 && ambiguous != nullptr) *ambiguous = places[begin].second;
+    for (std::size_t i = begin; i < end; ++i) {
+      firsts[places[i].second] = places[unique ? begin : i].second;
+    }
+  }
+  return firsts;
+}
+
 TetCells readVtkTets(VtkSource& source, Stage& stage) {
   TetCells mesh;
   Array<std::size_t> numbers;
@@ -554,7 +585,9 @@ std::optional<VtkColumn> findGenerators(const VtkSource& source, std::string_vie
       source.find(VtkSection::PointData, name, 1, VtkNumbers::Integers);
   if (array == nullptr || !array->appended || source.points == 0) return std::nullopt;
   VtkColumn column = array->load(VtkNumbers::Integers, std::nullopt);
-  if (column.scalar != scalar || column.count != source.points) return std::nullopt;
+  // From HDF5, all integers come with 64 bits.
+  const bool fits = column.scalar == scalar || isOf<std::int64_t>(column.scalar);
+  if (!fits || column.count != source.points) return std::nullopt;
   return column;
 }
 

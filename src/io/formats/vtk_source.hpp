@@ -220,6 +220,34 @@ void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<Corner
 
 /// Reads points and hexahedra, and what else writers of this library add.
 [[nodiscard]] HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage);
+/// For each point the first one at its position, in all digits.
+/// @param coordinates  three of each point
+/// @param firstPoints  of each piece: its first point. Where a piece has several at one position,
+///                     nobody knows which of them another one's is, and each stays by itself
+/// @param[out] ambiguous  one of these that other pieces have, too; as it was if there is none
+[[nodiscard]] Array<std::size_t> firstsAtSamePosition(std::span<const double> coordinates,
+                                                      const std::vector<std::size_t>& firstPoints,
+                                                      std::size_t* ambiguous = nullptr);
+
+/// A mesh of pieces.
+struct GluedMesh {
+  HexMesh mesh;
+  bool numbered = false;  ///< its points and cells have the global numbers that the pieces tell
+};
+using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)>;
+/// Reads pieces, one after the other, and joins them.
+/// @param name  of the whole, for messages
+/// @throws Error FileSyntax where global numbers contradict each other; where there are none, if
+///         positions do not tell which points are the same
+[[nodiscard]] GluedMesh readVtkPieces(const std::string& name, std::size_t count,
+                                      const OpenVtkPiece& open, Stage& stage);
+
+/// Lagrange hexahedra, or hexahedra with 20 or 27 nodes where none are straight.
+[[nodiscard]] bool holdsVtkLagrange(const VtkSource& source);
+/// @param fileName  for messages
+[[nodiscard]] LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileName,
+                                           Stage& stage);
+
 /// Reads points and tets.
 [[nodiscard]] TetCells readVtkTets(VtkSource& source, Stage& stage);
 /// Reads tets and their map from an array of floating-point numbers. One of 12 numbers per cell

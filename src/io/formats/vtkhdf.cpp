@@ -1,23 +1,31 @@
-// VTKHDF files (see formats.hpp): of a whole mesh, and of parts.
+// VTKHDF files (see formats.hpp): written of a whole mesh, and of parts; and read.
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <hdf5.h>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <hexhex/error.hpp>
 #include <hexhex/team.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/bytes.hpp>
 #include <io/core/hdf_file.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/vtk_data_set.hpp>
+#include <io/formats/vtk_source.hpp>
 
 namespace hexhex::io {
 
@@ -369,6 +377,239 @@ std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file,
                                              const WriteOptions& /*options*/, Context& context,
                                              ProcessTeam* team) {
   return std::make_unique<VtkHdfSink>(file, context, team);
+}
+
+namespace {
+
+// Reads files of versions 1 and 2: a partition is a part of each dataset.
+
+/// Of a dataset or group of the grid.
+std::string pathOf(const std::string& name) { return "VTKHDF/" + name; }
+
+/// Numbers [begin, end) as a column.
+template <class T>
+VtkColumn columnOf(std::span<const T> numbers) {
+  VtkColumn column;
+  column.scalar = T{};
+  column.count = numbers.size();
+  column.decoded.resize(numbers.size_bytes() + 1);  // none would be one of the file
+  if (!numbers.empty()) std::memcpy(column.decoded.data(), numbers.data(), numbers.size_bytes());
+  return column;
+}
+
+/// A partition, or the fields of all.
+class VtkHdfSource final : public VtkSource {
+ public:
+  explicit VtkHdfSource(const Input& input) : VtkSource({}, input.name()) {
+    counts = input.counts();
+  }
+  void requireIndexable() const override {
+    for (const std::uint64_t count : {points, cells}) {
+      if (count > kNone) fail(ErrorCode::TooLarge, exceedsLimit(count, "points or cells", kNone));
+    }
+  }
+};
+
+class VtkHdfReader {
+ public:
+  explicit VtkHdfReader(const Input& input) : input_(input), file_(HdfReader::open(input)) {
+    const std::vector<std::string> top = file_->members("/");
+    if (std::find(top.begin(), top.end(), "VTKHDF") == top.end()) {
+      fail(ErrorCode::FileSyntax, "the file has no group VTKHDF.");
+    }
+    if (const std::string type = file_->attribute("VTKHDF", "Type"); type != "UnstructuredGrid") {
+      fail(ErrorCode::FileUnsupported, "the file's type is " + quoted(std::string_view(type)) +
+                                           ", only UnstructuredGrid is supported.");
+    }
+    const std::string steps = pathOf("Steps/Values");
+    if (file_->has(steps) && rowsOf(steps) > 1) {
+      fail(ErrorCode::FileUnsupported,
+           "the file holds several steps of time. Save the mesh of one step.");
+    }
+    points_ = begins("NumberOfPoints", 0, "Points");
+    cells_ = begins("NumberOfCells", 0, "Types");
+    offsets_ = begins("NumberOfCells", 1, "Offsets");
+    corners_ = begins("NumberOfConnectivityIds", 0, "Connectivity");
+    if (cells_.size() != points_.size() || corners_.size() != points_.size()) {
+      fail(ErrorCode::FileSyntax, "the numbers of partitions differ.");
+    }
+  }
+
+  [[nodiscard]] std::size_t partitions() const noexcept { return points_.size() - 1; }
+
+  /// @param withFields  arrays of the whole, which name points of a file with one partition
+  [[nodiscard]] std::unique_ptr<VtkSource> open(std::size_t part, bool withFields) const {
+    auto source = std::make_unique<VtkHdfSource>(input_);
+    source->points = points_[part + 1] - points_[part];
+    source->cells = cells_[part + 1] - cells_[part];
+    source->coordinates = reals("Points", 3, points_, part);
+    source->types = integers("Types", 1, cells_, part);
+    source->offsets = integers("Offsets", 1, offsets_, part);
+    source->connectivity = integers("Connectivity", 1, corners_, part);
+    addArrays(*source, VtkSection::PointData, "PointData", points_, part);
+    addArrays(*source, VtkSection::CellData, "CellData", cells_, part);
+    if (withFields) addFields(*source);
+    return source;
+  }
+  /// The one partition of a file, with everything.
+  [[nodiscard]] std::unique_ptr<VtkSource> openOnly() const {
+    if (partitions() == 1) return open(0, true);
+    fail(ErrorCode::FileUnsupported,
+         "the file has " + std::to_string(partitions()) +
+             " partitions, of which straight hexahedra are read only. Save it as one.");
+  }
+
+  [[nodiscard]] HexMesh readHexes(Stage& stage) const {
+    if (partitions() == 1) return readVtkHexMesh(*open(0, true), stage);
+    const auto openPart = [this](std::size_t part) { return open(part, false); };
+    GluedMesh glued = readVtkPieces(input_.name(), partitions(), openPart, stage);
+    if (!glued.numbered) return std::move(glued.mesh);
+    // Fields name points by their global numbers.
+    VtkHdfSource fields(input_);
+    fields.points = glued.mesh.points.size();
+    addFields(fields);
+    HexFeatures features = readVtkHexFeatures(fields);
+    glued.mesh.features.edges = std::move(features.edges);
+    glued.mesh.features.quads = std::move(features.quads);
+    return std::move(glued.mesh);
+  }
+
+ private:
+  using Begins = std::vector<std::uint64_t>;  ///< rows of each partition, and the end of the last
+
+  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
+    throw Error(code, input_.name() + ": " + sentence);
+  }
+  [[nodiscard]] std::uint64_t rowsOf(const std::string& path) const {
+    const std::vector<std::uint64_t> shape = file_->shape(path);
+    return shape.empty() ? 1 : shape[0];
+  }
+
+  /// @param more  rows of each partition beyond what the dataset of counts says
+  /// @param set  that must have so many in all
+  [[nodiscard]] Begins begins(const std::string& counts, std::uint64_t more,
+                              const std::string& set) const {
+    Begins begins = {0};
+    const std::string path = pathOf(set);
+    const std::uint64_t rows = rowsOf(path);
+    for (const std::int64_t count : file_->integers(pathOf(counts))) {
+      const std::uint64_t each = static_cast<std::uint64_t>(count) + more;
+      if (count < 0 || each > rows - begins.back()) break;
+      begins.push_back(begins.back() + each);
+    }
+    const bool all = begins.size() == rowsOf(pathOf(counts)) + 1;
+    if (all && begins.size() > 1 && begins.back() == rows) return begins;
+    fail(ErrorCode::FileSyntax, "the dataset \"" + path + "\" does not have as many rows as \"" +
+                                    pathOf(counts) + "\" says.");
+  }
+
+  /// The rows of a partition. A dataset is read once.
+  template <class T>
+  [[nodiscard]] VtkColumn rows(std::map<std::string, std::vector<T>>& known,
+                               std::vector<T> (HdfReader::*read)(const std::string&) const,
+                               const std::string& set, std::size_t components, const Begins& begins,
+                               std::size_t part) const {
+    const std::string path = pathOf(set);
+    auto place = known.find(path);
+    if (place == known.end()) place = known.emplace(path, ((*file_).*read)(path)).first;
+    const std::vector<T>& all = place->second;
+    if (all.size() != components * begins.back()) {
+      fail(ErrorCode::FileSyntax, "the dataset \"" + path + "\" has " + std::to_string(all.size()) +
+                                      " numbers instead of " +
+                                      std::to_string(components * begins.back()) + ".");
+    }
+    const std::uint64_t count = begins[part + 1] - begins[part];
+    VtkColumn column = columnOf(std::span<const T>(all).subspan(
+        memorySize(components * begins[part]), memorySize(components * count)));
+    if (partitions() == 1) known.erase(place);
+    return column;
+  }
+  [[nodiscard]] VtkColumn integers(const std::string& set, std::size_t components,
+                                   const Begins& begins, std::size_t part) const {
+    return rows(integers_, &HdfReader::integers, set, components, begins, part);
+  }
+  [[nodiscard]] VtkColumn reals(const std::string& set, std::size_t components,
+                                const Begins& begins, std::size_t part) const {
+    return rows(reals_, &HdfReader::reals, set, components, begins, part);
+  }
+
+  /// Calls use(name, its path in the grid, components) for the arrays of a group.
+  template <class Use>
+  void forEachArray(const std::string& group, const Use& use) const {
+    const std::vector<std::string> all = file_->members("VTKHDF");
+    if (std::find(all.begin(), all.end(), group) == all.end()) return;
+    for (const std::string& name : file_->members(pathOf(group))) {
+      std::string set = group;
+      set.append(1, '/').append(name);
+      if (!file_->has(pathOf(set))) continue;
+      const std::vector<std::uint64_t> shape = file_->shape(pathOf(set));
+      use(name, set, shape.size() > 1 ? memorySize(shape[1]) : std::size_t{1});
+    }
+  }
+
+  void addArrays(VtkSource& source, VtkSection section, const std::string& group,
+                 const Begins& begins, std::size_t part) const {
+    forEachArray(
+        group, [&](const std::string& name, const std::string& set, std::size_t components) {
+          const bool isReal = file_->hasReals(pathOf(set));
+          const auto load = [this, &begins, set, components, part, isReal](auto&&, auto&&) {
+            return isReal ? reals(set, components, begins, part)
+                          : integers(set, components, begins, part);
+          };
+          source.arrays.push_back({section, name, isReal ? VtkNumbers::Reals : VtkNumbers::Integers,
+                                   components, true, load});
+        });
+  }
+  void addFields(VtkSource& source) const {
+    forEachArray("FieldData",
+                 [&](const std::string& name, const std::string& set, std::size_t components) {
+                   const std::string path = pathOf(set);
+                   if (file_->hasReals(path)) return;
+                   const auto load = [this, path](auto&&, auto&&) {
+                     const std::vector<std::int64_t> numbers = file_->integers(path);
+                     return columnOf(std::span<const std::int64_t>(numbers));
+                   };
+                   source.arrays.push_back(
+                       {VtkSection::FieldData, name, VtkNumbers::Integers, components, true, load});
+                 });
+  }
+
+  const Input& input_;
+  std::unique_ptr<HdfReader> file_;
+  Begins points_;
+  Begins cells_;
+  Begins offsets_;
+  Begins corners_;
+  mutable std::map<std::string, std::vector<std::int64_t>> integers_;
+  mutable std::map<std::string, std::vector<double>> reals_;
+};
+
+}  // namespace
+
+HexMesh readVtkHdf(const Input& input, Context& context) {
+  return inStage(context, "read mesh",
+                 [&](Stage& stage) { return VtkHdfReader(input).readHexes(stage); });
+}
+
+TetCells readVtkHdfTets(const Input& input, Context& context) {
+  return inStage(context, "read tets", [&](Stage& stage) {
+    const VtkHdfReader reader(input);
+    return readVtkTets(*reader.openOnly(), stage);
+  });
+}
+
+bool holdsCurvedVtkHdf(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&](Stage& /*stage*/) {
+    const VtkHdfReader reader(input);
+    return reader.partitions() == 1 && holdsVtkLagrange(*reader.openOnly());
+  });
+}
+
+LagrangeMesh readCurvedVtkHdf(const Input& input, Context& context) {
+  return inStage(context, "read mesh", [&](Stage& stage) {
+    const VtkHdfReader reader(input);
+    return readVtkLagrange(*reader.openOnly(), input.name(), stage);
+  });
 }
 
 }  // namespace hexhex::io

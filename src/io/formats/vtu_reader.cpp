@@ -534,28 +534,10 @@ class VtuFile final : public VtkSource {
   }
 
   void joinPoints() {
-    using Key = std::array<std::uint64_t, 3>;
-    const auto bits = reinterpret_cast<const double*>(coordinates.decoded.data());
-    std::vector<std::pair<Key, std::size_t>> places(memorySize(points));
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        places[i].first[k] = std::bit_cast<std::uint64_t>(bits[3 * i + k] + 0.0);  // no -0
-      }
-      places[i].second = i;
-    }
-    std::sort(places.begin(), places.end());
-    Array<std::size_t> firsts(places.size());
-    for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
-      while (end < places.size() && places[end].first == places[begin].first) ++end;
-      // Where a piece has several points, nobody knows which of them another one's is.
-      bool unique = true;
-      for (std::size_t i = begin + 1; i < end; ++i) {
-        unique = unique && pieceOf(places[i - 1].second) != pieceOf(places[i].second);
-      }
-      for (std::size_t i = begin; i < end; ++i) {
-        firsts[places[i].second] = places[unique ? begin : i].second;
-      }
-    }
+    const std::vector<std::size_t> firstPoints(pointsBefore_.begin(), pointsBefore_.end());
+    Array<std::size_t> firsts = firstsAtSamePosition(
+        {reinterpret_cast<const double*>(coordinates.decoded.data()), memorySize(3 * points)},
+        firstPoints);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
       if (firsts[i] == i) kept_.push_back(i);
       firsts[i] = firsts[i] == i ? kept_.size() - 1 : firsts[firsts[i]];
@@ -566,10 +548,6 @@ class VtuFile final : public VtkSource {
     }
     keep(coordinates, kept_, 3);
     points = kept_.size();
-  }
-  [[nodiscard]] std::size_t pieceOf(std::uint64_t point) const {
-    const auto behind = std::upper_bound(pointsBefore_.begin(), pointsBefore_.end(), point);
-    return static_cast<std::size_t>(behind - pointsBefore_.begin()) - 1;
   }
 
   /// Cells that another piece has, too, become VTK's empty ones.
