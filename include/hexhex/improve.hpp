@@ -8,6 +8,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
 #include <hexhex/export.h>
+#include <hexhex/fill.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
@@ -60,6 +61,27 @@ struct SurfaceDistance {
 /// anywhere before, is undone, unless cells would become worse.
 inline constexpr double kSurfaceTolerance = 1e-3;
 
+/// What keeps a cell from being better.
+enum class CellHolder : std::uint8_t {
+  Neighbours,  ///< nothing but the cells around
+  Surface,     ///< two of its faces are on the boundary, which hardly turns between them
+  Curve,       ///< an edge of the object, or one with a tag
+  Corner,      ///< a vertex where curves meet, end or turn, or one with a tag
+  Held,        ///< a vertex that ImproveOptions::fixBoundary holds, or a cell of the next kind
+  SharedFaces  ///< a cell with which it shares two faces that meet: one of the two is not positive
+};
+
+/// The cell with the least scaled Jacobian, and what is at its worst corner.
+struct WorstCell {
+  std::uint64_t cell = 0;
+  CellHolder holder = CellHolder::Neighbours;
+  bool isTagged = false;  ///< the curve or corner
+  Index vertex = kNone;   ///< of the corner
+  /// Of the cell there, in degrees, between two faces on the boundary: of up to three such angles
+  /// the one that differs most from 90. 0: it has no two.
+  double angle = 0;
+};
+
 struct ImproveReport {
   Certificate before;
   Certificate after;
@@ -77,6 +99,7 @@ struct ImproveReport {
   // Why vertices do not move at all: these, and the rest are corners, where curves meet or turn.
   std::uint64_t taggedVertices = 0;    ///< that have a tag
   std::uint64_t boundaryVertices = 0;  ///< that only ImproveOptions::fixBoundary holds
+  std::uint64_t pairedVertices = 0;    ///< that only `cannotBePositive` holds
   std::uint64_t movedVertices = 0;
   double largestMove = 0;        ///< in diagonals
   double meanMove = 0;           ///< of those that moved
@@ -93,6 +116,10 @@ struct ImproveReport {
   double curveLength = 0;           ///< in diagonals
   double curvesFollowed = 1;        ///< share of it near which edges of the mesh run along, 0 to 1
   std::uint64_t snappedCurves = 0;  ///< pieces between corners that paths of edges were laid onto
+  /// Cells that are not positive and share two faces that meet with another cell: one of the two
+  /// is not, wherever vertices are. Theirs are left alone. Ascending.
+  Array<std::uint64_t> cannotBePositive;
+  WorstCell worst;  ///< in the end
 };
 
 /// Moves vertices, and adds a pillow if that is wanted. The surface is that of the map: its
@@ -124,6 +151,15 @@ ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions
 /// @throws Error  as above
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context);
 
+/// The surface is one that the boundary of the mesh approximates; its edges beyond the angle are
+/// curves. Vertices of the boundary are pulled onto it as far as cells allow: those on curves and
+/// at corners of the mesh itself onto curves and corners of the surface, if these are nearer than
+/// half an edge. Tags of the mesh count as its own curves and corners do; tagged quads inside stay.
+/// @throws Error  as above; InvalidArgument for a surface that is elsewhere than the mesh, or with
+///         vertices that do not exist; EmptyMesh if it has no triangles
+ImproveReport improve(HexMesh& mesh, const TriangleMesh& surface, const ImproveOptions& options,
+                      Context& context);
+
 /// Cells of order 1 to 3: all nodes move, each where its generator lets it; certificates are those
 /// of curved cells. Vertices in the report are nodes, and its distances those of the grid of quads
 /// between them.
@@ -132,5 +168,7 @@ ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& con
 ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);
 ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context);
+ImproveReport improve(LagrangeMesh& mesh, const TriangleMesh& surface,
+                      const ImproveOptions& options, Context& context);
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -135,13 +135,6 @@ class Sweeps {
   /// @param slack  so far may vertices without tags leave the surface if nothing else helps
   void untangle(double slack);
 
-  /// The same where vertices around bad cells may leave creases. What takes the boundary too far
-  /// from the surface is put back.
-  /// @param farQuads  of the boundary, which are too far
-  /// @return vertices that left their creases, and may go on
-  std::vector<Index> untangleAcrossCreases(double slack,
-                                           const std::function<Array<Quad>()>& farQuads);
-
   /// Moves vertices of straight cells below the target, and many rings around, all at once, time
   /// after time until angles come hardly nearer to right ones. Boundary quads that come too far
   /// from the surface stay where they were from then on.
@@ -166,7 +159,11 @@ class Sweeps {
   /// are there, none below the least around.
   void smooth(int passes, double floor);
 
-  /// Rounds of moveBack() until it is given up.
+  /// Moves vertices that are off their places of the surface towards these, as far as smooth()
+  /// would let cells be.
+  void pullOntoSurface(double floor);
+
+  /// Rounds of moveBack() and pullOntoSurface() until they are given up.
   static constexpr int kReturns = 8;
   /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
   /// worse than smooth() would leave it.
@@ -186,11 +183,14 @@ class Sweeps {
   void takeBoxes();
   /// Of some cells: how far scaled Jacobians are from 1, added up.
   [[nodiscard]] double deficitOf(std::span<const Index> cells) const;
-  /// The cells whose quality is wanted, of all or of a list.
+  /// The cells whose quality is wanted.
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
+  /// The same of those, or of those of a list, that have a vertex which can move.
   template <class Wanted>
-  [[nodiscard]] std::vector<Index> cellsThat(std::vector<Index> list, const Wanted& isWanted) const;
+  [[nodiscard]] std::vector<Index> movableCells(const Wanted& isWanted) const;
+  template <class Wanted>
+  [[nodiscard]] std::vector<Index> movable(std::vector<Index> list, const Wanted& isWanted) const;
   /// Raises cells below the floor, which is the target.
   void raise(const Exchange& exchange, double slack);
   template <class Move>

@@ -192,11 +192,11 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   return moved / sizeAt(vertex);
 }
 
-void VertexMover::moveBack(Index vertex, const SurfacePlace& place, double floor) {
+void VertexMover::moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor) {
   const double least = leastQualityAt(vertex);
   if (!isCertified(least)) return;
   const auto isGood = [&] { return isGoodAround(vertex, least, {floor}); };
-  if (mover_.moveBack(vertex, place, isGood)) keepMeasured();
+  if (mover_.moveTo(vertex, place, isPulled, isGood)) keepMeasured();
 }
 
 }  // namespace hexhex::improvement

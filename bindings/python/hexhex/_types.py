@@ -1028,6 +1028,14 @@ class ImproveReport:
     curve_length: float  #: of the object's sharp and tagged edges,
     curves_followed: float  #: and the share of it that edges of the mesh follow
     snapped_curves: int  #: pieces of curves onto which edges were laid
+    #: not positive, wherever vertices are: these share two faces that meet with another cell
+    cannot_be_positive: npt.NDArray[np.uint64]
+    paired_vertices: int  #: fixed ones, that only these hold
+    worst_cell: int  #: of the least scaled Jacobian
+    worst_held_by: str  #: "neighbours", "surface", "curve", "corner", "held vertex", "shared faces"
+    worst_tagged: bool  #: whether that curve or corner has a tag
+    worst_vertex: int  #: of its worst corner
+    worst_angle: float  #: there, between two of its faces on the boundary, in degrees; 0: none
     seconds: float
 
 
