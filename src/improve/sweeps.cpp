@@ -185,10 +185,12 @@ void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
                    CurvedCells::Scratch scratch;
                    std::vector<Index> list;
                    for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
-                   forStates(mesh_, curved_, list, scratch,
-                             [&](Index cell, const CellState& state) {
-                               qualities_[cell] = certifiedQuality(state);
-                             });
+                   forStates(
+                       mesh_, curved_, list, scratch, [](Index /*cell*/) { return -1.0; },
+                       [&](Index cell, const CellState& state) {
+                         qualities_[cell] = certifiedQuality(state);
+                         return true;
+                       });
                  });
 }
 

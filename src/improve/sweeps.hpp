@@ -74,14 +74,17 @@ class LooseVertices {
 
 // Scaled Jacobians and certificates of some cells, straight or curved.
 
-/// Calls use(cell, CellState) for the cells of a list.
-/// @param curved  in place of the cells of the mesh, or null
-template <class Use>
-void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
-               CurvedCells::Scratch& scratch, const Use& use) {
+/// Calls use(cell, CellState) for the cells of a list, until it returns false.
+/// @param curved   in place of the cells of the mesh, or null
+/// @param leastOf  of (cell): a curved one with a smaller scaled Jacobian need not be certified
+/// @return whether it never did
+template <class LeastOf, class Use>
+bool forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
+               CurvedCells::Scratch& scratch, const LeastOf& leastOf, const Use& use) {
   if (curved != nullptr) {
-    for (const Index cell : list) use(cell, curved->stateOf(mesh.points, cell, scratch));
-    return;
+    return std::all_of(list.begin(), list.end(), [&](Index cell) {
+      return use(cell, curved->stateOf(mesh.points, cell, leastOf(cell), scratch));
+    });
   }
   static const mesh::MeasureCells measure = mesh::measuresOfCells().back();
   mesh::CellMeasures measures;
@@ -92,9 +95,10 @@ void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
     measure(mesh.points.data(), std::span(cells).first(n), measures);
     for (std::size_t i = 0; i < n; ++i) {
       const bool certified = measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
-      use(list[begin + i], CellState{measures.scaled[i], certified});
+      if (!use(list[begin + i], CellState{measures.scaled[i], certified})) return false;
     }
   }
+  return true;
 }
 
 /// What is kept of the state of a cell: its scaled Jacobian, or less than any if it is not

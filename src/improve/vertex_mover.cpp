@@ -139,17 +139,21 @@ double VertexMover::sizeAt(Index vertex) const {
 
 bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& exchange) {
   measured_.clear();
-  forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
-            [&](Index cell, const CellState& state) {
-              measured_.emplace_back(cell, certifiedQuality(state));
-            });
   const double floor = exchange.floor;
   const double lowest = std::min(least, floor);
+  const auto leastOf = [&](Index cell) {
+    return all_.qualities[cell] < floor || exchange.belowFloor ? lowest : floor;
+  };
+  const bool areGood = forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
+                                 leastOf, [&](Index cell, const CellState& state) {
+                                   measured_.emplace_back(cell, certifiedQuality(state));
+                                   return measured_.back().second >= leastOf(cell);
+                                 });
+  if (!areGood) return false;
   double gained = 0;
   double lost = 0;
   for (const auto& [cell, quality] : measured_) {
     const double old = all_.qualities[cell];
-    if (quality < (old < floor || exchange.belowFloor ? lowest : floor)) return false;
     gained += std::min(quality, floor) - std::min(old, floor);
     lost += std::max(old, floor) - std::max(quality, floor);
   }
