@@ -194,7 +194,7 @@ class Moving {
     sweeps.pullOntoSurface(std::max(0.0, leastKept(report_, places_, options_.target)));
   }
 
-  void oneByOne(Sweeps& sweeps) {
+  void oneByOne(Sweeps& sweeps) const {
     sweeps.untangle(slack_);
     sweeps.raiseWorst(options_.target, 0);
   }

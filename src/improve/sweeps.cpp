@@ -131,7 +131,7 @@ constexpr std::size_t kStallsAtOnce = 3;
 /// promised for all of the surface, since only centres are looked at.
 constexpr double kChord = 3e-4;
 /// A vertex this much nearer is on the surface.
-constexpr double kOn = 1e-6;
+constexpr double kNearEnough = 1e-6;
 
 IdealBox boxOf(const Array<Vec3>& points, const Hex& cell) {
   Vec3 sums{};
@@ -441,7 +441,8 @@ void Sweeps::pullOntoSurface(double floor) {
     std::vector<Index> vertices;
     for (Index v = 0; v < mesh_.points.size(); ++v) {
       const Vec3& point = mesh_.points[v];
-      if (length(minus(places_.home(v, point).point, point)) > kOn * chord_) vertices.push_back(v);
+      if (length(minus(places_.home(v, point).point, point)) > kNearEnough * chord_)
+        vertices.push_back(v);
     }
     if (vertices.empty()) return;
     sweep(vertices, 0, [&](VertexMover& mover, Index v) {

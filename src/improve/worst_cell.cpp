@@ -29,7 +29,7 @@ CellCorner cornerAt(const HexMesh& mesh, std::size_t cell, std::size_t place) {
   return corner;
 }
 
-std::array<Vec3, 3> edgesOf(const HexMesh& mesh, const CellCorner& corner) {
+std::array<Vec3, 3> edgeVectors(const HexMesh& mesh, const CellCorner& corner) {
   std::array<Vec3, 3> edges{};
   for (std::size_t k = 0; k < 3; ++k) {
     edges[k] = minus(mesh.points[corner.ends[k]], mesh.points[corner.vertex]);
@@ -53,8 +53,8 @@ double angleAround(const Vec3& edge, const Vec3& from, const Vec3& to) {
 }
 
 /// Whether the face of a cell that has these vertices is on the boundary.
-bool isOuter(const HexMesh& mesh, const Boundary& boundary, std::size_t cell,
-             const std::array<Index, 3>& vertices) {
+bool isOnBoundary(const HexMesh& mesh, const Boundary& boundary, std::size_t cell,
+                  const std::array<Index, 3>& vertices) {
   for (std::size_t face = 0; face < adjacency::kHexFaces.size(); ++face) {
     const Quad quad = adjacency::faceVertices(mesh.cells[cell], face);
     const bool hasAll = std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
@@ -80,7 +80,7 @@ WorstCell worstCell(const Subject& subject, const Boundary& boundary, const Vert
   for (std::size_t c = worst.cell * subject.parts(); c < (worst.cell + 1) * subject.parts(); ++c) {
     for (std::size_t place = 0; place < 8; ++place) {
       const CellCorner candidate = cornerAt(mesh, c, place);
-      const double scaled = scaledJacobian(edgesOf(mesh, candidate));
+      const double scaled = scaledJacobian(edgeVectors(mesh, candidate));
       if (scaled >= least) continue;
       least = scaled;
       corner = candidate;
@@ -88,15 +88,15 @@ WorstCell worstCell(const Subject& subject, const Boundary& boundary, const Vert
   }
   worst.vertex = corner.vertex;
   constexpr double kRight = 90;
-  const std::array<Vec3, 3> edges = edgesOf(mesh, corner);
+  const std::array<Vec3, 3> edges = edgeVectors(mesh, corner);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
     const std::size_t last = (k + 2) % 3;
-    const auto isOuterWith = [&](std::size_t other) {
-      return isOuter(mesh, boundary, corner.cell,
-                     {corner.vertex, corner.ends[k], corner.ends[other]});
+    const auto isOnBoundaryWith = [&](std::size_t other) {
+      return isOnBoundary(mesh, boundary, corner.cell,
+                          {corner.vertex, corner.ends[k], corner.ends[other]});
     };
-    if (!isOuterWith(next) || !isOuterWith(last)) continue;
+    if (!isOnBoundaryWith(next) || !isOnBoundaryWith(last)) continue;
     const double angle = angleAround(edges[k], edges[next], edges[last]);
     if (worst.angle == 0 || std::abs(angle - kRight) > std::abs(worst.angle - kRight)) {
       worst.angle = angle;
