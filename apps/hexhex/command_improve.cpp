@@ -25,6 +25,7 @@ struct ImproveArguments {
   std::string mesh;
   std::string output;
   std::string map;
+  std::string surface;
   std::string page;  ///< empty: none
   OutputChoice choice;
   std::string report;
@@ -56,6 +57,12 @@ void writeComparison(const ImproveArguments& arguments, const auto& mesh, const 
 /// @param mesh  straight or curved
 ImproveReport improveMesh(const ImproveArguments& arguments, auto& mesh, LongRun& longRun) {
   Context& context = longRun.context();
+  if (!arguments.surface.empty()) {
+    const TriangleMesh surface =
+        longRun.part("reading", [&] { return readSurfaceOf(arguments.surface, context); });
+    return longRun.part("improvement",
+                        [&] { return improve(mesh, surface, arguments.options, context); });
+  }
   if (arguments.map.empty()) {
     return longRun.part("improvement", [&] { return improve(mesh, arguments.options, context); });
   }
@@ -113,7 +120,7 @@ bool requireFormats(const ImproveArguments& arguments, Context& context) {
 }
 
 int run(const ImproveArguments& arguments) {
-  requireAllDifferent({arguments.mesh, arguments.map},
+  requireAllDifferent({arguments.mesh, arguments.map, arguments.surface},
                       {arguments.output, arguments.report, arguments.page});
   LongRun longRun(arguments.run, {{"readHexMesh", 1},
                                   {"readLagrangeMesh", 1},
@@ -147,11 +154,22 @@ Command addImprove(CLI::App& app) {
       ->required()
       ->option_text("FILE REQUIRED");
   addMeshOutput(*parser, arguments->output);
+  CLI::Option* const map =
+      parser
+          ->add_option("--map", arguments->map,
+                       "The map that the mesh was extracted from: its surface\n"
+                       "is the one to stay on. MESH is .vtu, .ovm or .ovmb, which\n"
+                       "tell where vertices lie. Else: the boundary of the mesh")
+          ->option_text("FILE");
   parser
-      ->add_option("--map", arguments->map,
-                   "The map that the mesh was extracted from: its surface\n"
-                   "is the one to stay on. MESH is .vtu, .ovm or .ovmb, which\n"
-                   "tell where vertices lie. Else: the boundary of the mesh")
+      ->add_option("--surface", arguments->surface,
+                   "The surface that the boundary of the mesh approximates:\n"
+                   "triangles (" +
+                       extensionsThat(&FileFormat::readsSurfaces) +
+                       ")\n"
+                       "or tets, whose boundary it is. Vertices are pulled onto it;\n"
+                       "edges beyond --feature-angle are kept")
+      ->excludes(map)
       ->option_text("FILE");
   addImproveOptions(*parser, arguments->options);
   addHexesOnly(*parser, arguments->hexesOnly);

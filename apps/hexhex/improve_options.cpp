@@ -54,7 +54,7 @@ namespace {
 /// "8 at corners, 2 with a tag", of vertices that do not move at all.
 std::string heldAsText(const ImproveReport& report) {
   const std::uint64_t corners =
-      report.vertices[3] - report.taggedVertices - report.boundaryVertices;
+      report.vertices[3] - report.taggedVertices - report.boundaryVertices - report.pairedVertices;
   std::string text;
   const auto add = [&](std::uint64_t count, const char* why) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, why);
@@ -62,6 +62,30 @@ std::string heldAsText(const ImproveReport& report) {
   add(corners, "at corners");
   add(report.taggedVertices, "with a tag");
   add(report.boundaryVertices, "on the boundary");
+  add(report.pairedVertices, "of cells that cannot be positive");
+  return text;
+}
+
+/// "cell 812 at vertex 93: a corner of the object, of 15 degrees"
+std::string worstAsText(const WorstCell& worst) {
+  const auto holder = [&]() -> std::string {
+    switch (worst.holder) {
+      case CellHolder::Surface:
+        return "two of its faces are on the surface";
+      case CellHolder::Curve:
+        return worst.isTagged ? "a tagged edge" : "an edge of the object";
+      case CellHolder::Corner:
+        return worst.isTagged ? "a tagged vertex" : "a corner of the object";
+      case CellHolder::Held:
+        return "a vertex that is held";
+      case CellHolder::SharedFaces:
+        return "another cell shares two of its faces";
+      default:
+        return "its neighbours";
+    }
+  };
+  std::string text = fmt::format("cell {} at vertex {}: {}", worst.cell, worst.vertex, holder());
+  if (worst.angle > 0) text += fmt::format(", {:.3g} degrees between them", worst.angle);
   return text;
 }
 
@@ -83,6 +107,14 @@ void warnOfImprovement(const ImproveReport& report) {
   }
   if (report.notPositive.empty()) return;
   printWarning(refutationAsText(report.after));
+  if (!report.cannotBePositive.empty()) {
+    printWarning(fmt::format(
+        "{} cannot be mended: each shares two faces that meet at an edge with another cell, such "
+        "as cell {}, and one of such two is not positive wherever vertices are. Merge them, or "
+        "mesh that place anew.",
+        counted(report.cannotBePositive.size(), "cell"), report.cannotBePositive.front()));
+    if (report.cannotBePositive.size() == report.notPositive.size()) return;
+  }
   if (report.vertices[2] + report.vertices[3] > 0) {
     printWarning(
         "Vertices stay on curves and at corners. Where these are no features of the object, "
@@ -110,6 +142,7 @@ void printImprovement(const ImproveReport& report) {
             fmt::format("at least {:.4g}, {:.4g} on average", report.before.quality.minimum,
                         report.before.quality.mean));
   printQuality(report.after);
+  printLine("worst held by", worstAsText(report.worst));
   if (report.addedCells > 0) {
     printLine("pillow",
               fmt::format("{} added under the boundary, {} in all",

@@ -174,6 +174,23 @@ Json quantizeAsJson(const QuantizeReport& report) {
           {"scaled_jacobian_after", distortionAsJson(report.distortionAfter)}};
 }
 
+const char* nameOf(CellHolder holder) noexcept {
+  switch (holder) {
+    case CellHolder::Surface:
+      return "surface";
+    case CellHolder::Curve:
+      return "curve";
+    case CellHolder::Corner:
+      return "corner";
+    case CellHolder::Held:
+      return "held vertex";
+    case CellHolder::SharedFaces:
+      return "shared faces";
+    default:
+      return "neighbours";
+  }
+}
+
 Json improvementAsJson(const ImproveReport& report) {
   const auto distance = [](const SurfaceDistance& d) {
     return Json{
@@ -195,7 +212,8 @@ Json improvementAsJson(const ImproveReport& report) {
             {"on_curves", report.vertices[2]},
             {"fixed", report.vertices[3]},
             {"fixed_by_tags", report.taggedVertices},
-            {"fixed_by_option", report.boundaryVertices}}},
+            {"fixed_by_option", report.boundaryVertices},
+            {"fixed_by_cells", report.pairedVertices}}},
           {"moved_vertices", report.movedVertices},
           {"largest_move", report.largestMove},
           {"mean_move", report.meanMove},
@@ -205,6 +223,13 @@ Json improvementAsJson(const ImproveReport& report) {
           {"curve_length", report.curveLength},
           {"curves_followed", report.curvesFollowed},
           {"snapped_curves", report.snappedCurves},
+          {"cannot_be_positive", report.cannotBePositive},
+          {"worst_cell",
+           {{"cell", report.worst.cell},
+            {"held_by", nameOf(report.worst.holder)},
+            {"tagged", report.worst.isTagged},
+            {"vertex", report.worst.vertex},
+            {"angle", report.worst.angle}}},
           {"seconds", report.seconds}};
 }
 

@@ -1,5 +1,10 @@
 // Meshes whose cells are positive, and better.
+#include <optional>
+#include <string>
 #include <utility>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 
 #include <hexhex/improve.hpp>
 
@@ -40,6 +45,13 @@ nb::tuple asTuple(ImproveReport&& report) {
   d["curve_length"] = report.curveLength;
   d["curves_followed"] = report.curvesFollowed;
   d["snapped_curves"] = report.snappedCurves;
+  d["paired_vertices"] = report.pairedVertices;
+  d["cannot_be_positive"] = listOfCells(std::move(report.cannotBePositive));
+  d["worst_cell"] = report.worst.cell;
+  d["worst_held_by"] = static_cast<int>(report.worst.holder);
+  d["worst_tagged"] = report.worst.isTagged;
+  d["worst_vertex"] = report.worst.vertex;
+  d["worst_angle"] = report.worst.angle;
   d["seconds"] = report.seconds;
   return nb::make_tuple(asTuple(std::move(report.before)), asTuple(std::move(report.after)), d);
 }
@@ -48,11 +60,13 @@ namespace {
 
 /// A mesh that is moved, straight or curved, of a copy of one that others may hold.
 template <class AnyMesh>
-nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map, const ImproveOptions& options,
+nb::tuple improveMesh(const AnyMesh& mesh, const ArrayMap* map,
+                      const std::optional<std::string>& surface, const ImproveOptions& options,
                       int threads, const Progress& progress) {
   AnyMesh moved;
   ImproveReport report = run(threads, progress, [&](Context& context) {
     moved = mesh;
+    if (surface) return improve(moved, readSurfaceOf(*surface, context), options, context);
     return map != nullptr ? improve(moved, map->view(), options, context)
                           : improve(moved, options, context);
   });
@@ -77,8 +91,8 @@ void bindImprove(nb::module_& module) {
           "target"_a, "passes"_a, "fix_boundary"_a, "feature_angle"_a, "slack"_a, "pillow"_a,
           "snap_curves"_a);
   const auto define = [&module](auto function) {
-    module.def("improve", function, "mesh"_a, "map"_a.none(), "options"_a, "threads"_a,
-               "progress"_a.none());
+    module.def("improve", function, "mesh"_a, "map"_a.none(), "surface"_a.none(), "options"_a,
+               "threads"_a, "progress"_a.none());
   };
   define(&improveMesh<HexMesh>);
   define(&improveMesh<LagrangeMesh>);

@@ -28,6 +28,15 @@ struct TriangleMesh {
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, NotFinite
 [[nodiscard]] TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& context);
 
+/// The surface of a part: what readTriangleMesh() reads, or the boundary of what readTetMesh()
+/// reads.
+/// @throws Error  as these and boundaryOf()
+[[nodiscard]] TriangleMesh readSurfaceOf(const std::filesystem::path& file, Context& context);
+
+/// The boundary of tets as a surface, its triangles facing outwards.
+/// @throws Error IndexOutOfRange for vertices that do not exist; NonManifoldFace
+[[nodiscard]] TriangleMesh boundaryOf(const TetMesh& tets, Context& context);
+
 enum class Mesher : std::uint8_t {
   Auto,     ///< the first of the others that is installed
   TetWild,  ///< fTetWild: the Python package pytetwild; surfaces only

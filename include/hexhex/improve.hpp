@@ -8,6 +8,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
 #include <hexhex/export.h>
+#include <hexhex/fill.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
@@ -60,6 +61,27 @@ struct SurfaceDistance {
 /// distance, are undone unless that would make cells worse.
 inline constexpr double kSurfaceTolerance = 1e-3;
 
+/// What limits the quality of a cell.
+enum class CellHolder : std::uint8_t {
+  Neighbours,  ///< only the cells around it
+  Surface,     ///< two of its faces are on the boundary, which is nearly flat there
+  Curve,       ///< an edge of the object, or one with a tag
+  Corner,      ///< a vertex where curves meet, end or turn, or one with a tag
+  Held,        ///< a vertex that ImproveOptions::fixBoundary holds, or a cell of the next kind
+  SharedFaces  ///< it shares two adjacent faces with a cell: one of the two is not positive
+};
+
+/// The cell with the least scaled Jacobian, and what is at its worst corner.
+struct WorstCell {
+  std::uint64_t cell = 0;
+  CellHolder holder = CellHolder::Neighbours;
+  bool isTagged = false;  ///< the curve or corner
+  Index vertex = kNone;   ///< of the corner
+  /// Angle of the cell there between two boundary faces, in degrees; of up to three such angles,
+  /// the one farthest from 90. 0 without two such faces.
+  double angle = 0;
+};
+
 struct ImproveReport {
   Certificate before;
   Certificate after;
@@ -77,6 +99,7 @@ struct ImproveReport {
   // Why vertices are fixed; those not counted here are corners, where curves meet or turn.
   std::uint64_t taggedVertices = 0;    ///< vertices with a tag
   std::uint64_t boundaryVertices = 0;  ///< vertices fixed only by ImproveOptions::fixBoundary
+  std::uint64_t pairedVertices = 0;    ///< vertices fixed only because of `cannotBePositive`
   std::uint64_t movedVertices = 0;
   double largestMove = 0;        ///< in diagonals
   double meanMove = 0;           ///< mean over the moved vertices
@@ -93,6 +116,10 @@ struct ImproveReport {
   double curveLength = 0;           ///< in diagonals
   double curvesFollowed = 1;        ///< share of that length closely followed by mesh edges, 0 to 1
   std::uint64_t snappedCurves = 0;  ///< segments between corners to which edges were snapped
+  /// Cells that are not positive and share two adjacent faces with another cell: one of the two is
+  /// not positive, wherever the vertices are. Their vertices are left alone. Ascending.
+  Array<std::uint64_t> cannotBePositive;
+  WorstCell worst;  ///< at the end
 };
 
 /// Moves vertices and, if requested, adds a pillow. The surface is that of the map: its boundary,
@@ -123,6 +150,15 @@ ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions
 /// @throws Error  as above
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context);
 
+/// The boundary of the mesh approximates the given surface, whose edges beyond the feature angle
+/// are curves. Boundary vertices are pulled onto it as far as cells allow: vertices on curves and
+/// at corners of the mesh onto curves and corners of the surface that are nearer than half an edge.
+/// Tags of the mesh count as its curves and corners; tagged quads inside stay where they are.
+/// @throws Error  as above; InvalidArgument for a surface in a different location than the mesh, or
+///         with vertices that do not exist; EmptyMesh if it has no triangles
+ImproveReport improve(HexMesh& mesh, const TriangleMesh& surface, const ImproveOptions& options,
+                      Context& context);
+
 /// The same for cells of order 1 to 3: moves all nodes, each as far as its generator permits, and
 /// certifies curved cells. In the report, vertices are nodes, and distances are those of the grid
 /// of quads between them.
@@ -131,5 +167,7 @@ ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& con
 ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,
                       Context& context);
 ImproveReport improve(LagrangeMesh& mesh, const ImproveOptions& options, Context& context);
+ImproveReport improve(LagrangeMesh& mesh, const TriangleMesh& surface,
+                      const ImproveOptions& options, Context& context);
 
 }  // namespace HEXHEX_API_NAMESPACE

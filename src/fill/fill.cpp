@@ -161,6 +161,10 @@ FilledPart fillStep(const std::filesystem::path& file, const FillOptions& option
   });
 }
 
+std::string extensionOf(const std::filesystem::path& file) {
+  return io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
+}
+
 bool isSurface(const std::string& extension) {
   const auto formats = fileFormats();
   return std::any_of(formats.begin(), formats.end(), [&](const FileFormat& format) {
@@ -169,7 +173,7 @@ bool isSurface(const std::string& extension) {
 }
 
 FilledPart read(const std::filesystem::path& file, const FillOptions& options, Context& context) {
-  const std::string extension = io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
+  const std::string extension = extensionOf(file);
   if (extension == ".step" || extension == ".stp") return fillStep(file, options, context);
   if (!isSurface(extension)) {
     if (options.mesher != Mesher::Auto || options.tetSize != 0) {
@@ -195,6 +199,11 @@ FilledPart read(const std::filesystem::path& file, const FillOptions& options, C
 
 FilledPart fillSurface(const TriangleMesh& surface, const FillOptions& options, Context& context) {
   return fill::fillNamed(surface, "The surface", options, context);
+}
+
+TriangleMesh readSurfaceOf(const std::filesystem::path& file, Context& context) {
+  if (fill::isSurface(fill::extensionOf(file))) return readTriangleMesh(file, context);
+  return boundaryOf(readTetMesh(file, {}, context), context);
 }
 
 FilledPart readPart(const std::filesystem::path& file, const FillOptions& options,

@@ -52,13 +52,31 @@ void CurvedCells::take(const Array<Vec3>& points, std::size_t cell, Scratch& scr
   for (const Index node : nodesOf(cell)) scratch.nodes.push_back(points[node]);
 }
 
-CellState CurvedCells::stateOf(const Array<Vec3>& points, std::size_t cell,
+CellState CurvedCells::stateOf(const Array<Vec3>& points, std::size_t cell, double least,
                                Scratch& scratch) const {
   take(points, cell, scratch);
   const double scaled = quality_.smallest(scratch.nodes, scratch.values);
-  const bool certified =
-      scaled > 0 && validity_.examine(scratch.nodes).validity == Validity::Positive;
-  return {scaled, certified};
+  if (scaled <= 0 || scaled < least) return {scaled, false};
+  return {scaled, hasPositiveCoefficients(scratch) ||
+                      validity_.examine(scratch.nodes).validity == Validity::Positive};
+}
+
+bool CurvedCells::hasPositiveCoefficients(Scratch& scratch) const {
+  constexpr double kSafe = 1e-9;  // far more than rounding makes of sums of some hundred terms
+  columns_.evaluate(scratch.nodes, scratch.values);
+  mesh::Bezier<double>& determinants = scratch.determinants;
+  determinants.size.fill(toBezier_.columns);
+  determinants.values.clear();
+  const auto& [u, v, w] = scratch.values.columns;
+  for (std::size_t i = 0; i < u.values.size(); ++i) {
+    determinants.values.push_back(tripleProduct(u.values[i], v.values[i], w.values[i]));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    mesh::apply(toBezier_, axis, determinants, scratch.numbers);
+  }
+  const auto [lowest, highest] =
+      std::minmax_element(determinants.values.begin(), determinants.values.end());
+  return *lowest > kSafe * *highest;
 }
 
 void CurvedCells::addTerms(const Array<Vec3>& points, std::size_t cell, Index moving,

@@ -62,7 +62,8 @@ class CurvedCells {
   [[nodiscard]] Hex cornersOf(std::size_t cell) const;
 
   /// @param points  of nodes; those of the mesh itself are not looked at
-  [[nodiscard]] CellState stateOf(const Array<Vec3>& points, std::size_t cell,
+  /// @param least   a cell with a smaller scaled Jacobian need not be certified
+  [[nodiscard]] CellState stateOf(const Array<Vec3>& points, std::size_t cell, double least,
                                   Scratch& scratch) const;
 
   /// The terms of a cell as a function of one of its nodes: at (3 p)^3 places, or with the Bezier
@@ -74,6 +75,9 @@ class CurvedCells {
   [[nodiscard]] std::span<const Index> nodesOf(std::size_t cell) const;
   void take(const Array<Vec3>& points, std::size_t cell, Scratch& scratch) const;
   void toBezier(Scratch& scratch) const;
+  /// Whether all Bezier coefficients of the determinant are, up to rounding: a proof follows in the
+  /// end, and takes five times as long.
+  [[nodiscard]] bool hasPositiveCoefficients(Scratch& scratch) const;
 
   const LagrangeMesh& mesh_;
   curved::LagrangeColumns columns_;

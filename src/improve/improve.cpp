@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <adjacency/corner_range.hpp>
@@ -17,12 +18,14 @@
 #include <base/vector3.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/followed_curves.hpp>
+#include <improve/given_surface.hpp>
 #include <improve/moving.hpp>
 #include <improve/pillowed.hpp>
 #include <improve/snapping.hpp>
 #include <improve/sound_input.hpp>
 #include <improve/surface_distance.hpp>
 #include <improve/vertex_places.hpp>
+#include <improve/worst_cell.hpp>
 #include <mesh/lagrange_check.hpp>
 
 namespace hexhex::improvement {
@@ -107,14 +110,30 @@ double distanceInside(const VertexPlaces& places, const HexMesh& mesh, const Imp
   return innerDistance(mesh.points, places.innerQuads, places.surface, report.diagonal, stage);
 }
 
+/// @return 1 if the vertex could have moved
+std::uint64_t fix(VertexPlaces& places, Index v) {
+  places.simplex[v] = kNone;
+  return std::exchange(places.freedom[v], Freedom::Fixed) != Freedom::Fixed ? 1 : 0;
+}
+
 /// @return how many vertices could have moved
 std::uint64_t fixBoundary(VertexPlaces& places) {
   std::uint64_t count = 0;
-  for (std::size_t v = 0; v < places.freedom.size(); ++v) {
-    if (places.freedom[v] == Freedom::Free) continue;
-    if (places.freedom[v] != Freedom::Fixed) ++count;
-    places.freedom[v] = Freedom::Fixed;
-    places.simplex[v] = kNone;
+  for (Index v = 0; v < places.freedom.size(); ++v) {
+    if (places.freedom[v] != Freedom::Free) count += fix(places, v);
+  }
+  return count;
+}
+
+/// Of cells that no positions make positive: to move them takes long, and others lose by it.
+/// @return how many could have moved
+std::uint64_t fixPaired(const Subject& subject, std::span<const std::uint64_t> cells,
+                        VertexPlaces& places) {
+  std::uint64_t count = 0;
+  for (const std::uint64_t cell : cells) {
+    for (std::size_t c = cell * subject.parts(); c < (cell + 1) * subject.parts(); ++c) {
+      for (const Index v : subject.mesh.cells[c]) count += fix(places, v);
+    }
   }
   return count;
 }
@@ -164,6 +183,7 @@ void reportAfter(const Subject& subject, const Boundary& boundary, const VertexP
   reportMoves(before, subject.mesh.points, report);
   reportOff(subject.mesh.points, places, report);
   listNotPositive(report);
+  report.worst = worstCell(subject, boundary, places, report);
 }
 
 void reportAfter(Improved& improved, const ReferenceSurface& object, const Array<Vec3>& before,
@@ -237,6 +257,9 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
     Stage stage(context, "moving");
     VertexPlaces places = placesOf(subject.mesh, atBadCells(subject, report.before), stage);
     if (options.fixBoundary) report.boundaryVertices = fixBoundary(places);
+    report.cannotBePositive =
+        cellsThatCannotBePositive(subject.mesh, subject.parts(), report.before, stage);
+    report.pairedVertices = fixPaired(subject, report.cannotBePositive, places);
     report.diagonal = diagonalOf(places.surface);
     if (report.diagonal < kSmallest) refuseSize("The surface is smaller than 1e-10");
     moveAll(subject, places, options, report, context, stage);
@@ -258,6 +281,13 @@ auto onMap(const TetMapView& map, const ImproveOptions& options) {
 auto onItself(const ImproveOptions& options) {
   return [&options](const HexMesh& mesh, std::span<const std::uint8_t> isAtBad, Stage& stage) {
     return placesOnMesh(mesh, isAtBad, options.featureAngle, stage);
+  };
+}
+
+auto onGiven(const TriangleMesh& surface, const ImproveOptions& options) {
+  return [&surface, &options](const HexMesh& mesh, std::span<const std::uint8_t> isAtBad,
+                              Stage& stage) {
+    return placesOnSurface(mesh, surface, isAtBad, options.featureAngle, stage);
   };
 }
 
@@ -314,6 +344,17 @@ ImproveReport improve(HexMesh& mesh, const TetMapView& map, const ImproveOptions
 
 ImproveReport improve(HexMesh& mesh, const ImproveOptions& options, Context& context) {
   return improvement::improveStraight(mesh, options, context, improvement::onItself(options));
+}
+
+ImproveReport improve(HexMesh& mesh, const TriangleMesh& surface, const ImproveOptions& options,
+                      Context& context) {
+  return improvement::improveStraight(mesh, options, context,
+                                      improvement::onGiven(surface, options));
+}
+
+ImproveReport improve(LagrangeMesh& mesh, const TriangleMesh& surface,
+                      const ImproveOptions& options, Context& context) {
+  return improvement::improveCurved(mesh, options, context, improvement::onGiven(surface, options));
 }
 
 ImproveReport improve(LagrangeMesh& mesh, const TetMapView& map, const ImproveOptions& options,

@@ -17,13 +17,20 @@ namespace {
 /// Where more cells are below the target, moving all at once takes too long: a minute and more.
 constexpr std::size_t kMostLowAtOnce = 5'000;
 
-/// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
-std::vector<Index> worsened(const ImproveReport& report) {
+/// The least scaled Jacobian that is to be kept: what was, or the target if the mesh is pulled onto
+/// a surface, where good cells become less good.
+double leastKept(const ImproveReport& report, const VertexPlaces& places, double target) {
+  const double least = report.before.quality.minimum;
+  return places.isGiven ? std::min(least, target) : least;
+}
+
+/// Cells that lost their certificate, or whose scaled Jacobian fell below the least to be kept.
+std::vector<Index> worsened(const ImproveReport& report, double least) {
   std::vector<Index> cells;
   for (Index c = 0; c < report.after.validity.size(); ++c) {
     const bool isLost = report.before.validity[c] == Validity::Positive &&
                         report.after.validity[c] != Validity::Positive;
-    if (isLost || report.after.scaledJacobians[c] < report.before.quality.minimum) {
+    if (isLost || report.after.scaledJacobians[c] < least) {
       cells.push_back(c);
     }
   }
@@ -117,12 +124,15 @@ class Moving {
     Sweeps sweeps = newSweeps();
     const double target = options_.target;
     const std::vector<Index> wereBad = verticesAtBad(sweeps);
-    const bool canAtOnce = !curved_ && canMoveAtOnce();
+    // Next to cells that nothing mends, others would lose.
+    const bool canAtOnce = !curved_ && report_.cannotBePositive.empty() && canMoveAtOnce();
     const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
     if (isFolded)
       sweeps.moveAtOnce(target, slack_, true, [&] { return quadsBeyond(distance().ofQuads); });
+    pull(sweeps);
     oneByOne(sweeps);
-    const double lowest = std::max(target, report_.before.quality.minimum);
+    pull(sweeps);  // what bad cells held
+    const double lowest = std::max(target, leastKept(report_, places_, target));
     double floor = lowest;
     const Sweeps::Standing standing = sweeps.standing(target);
     const std::size_t low = standing.bad + standing.below;
@@ -178,10 +188,14 @@ class Moving {
     }
   }
 
-  void oneByOne(Sweeps& sweeps) {
+  /// Onto a surface that was given, such that no cell falls below the least that was.
+  void pull(Sweeps& sweeps) const {
+    if (!places_.isGiven) return;
+    sweeps.pullOntoSurface(std::max(0.0, leastKept(report_, places_, options_.target)));
+  }
+
+  void oneByOne(Sweeps& sweeps) const {
     sweeps.untangle(slack_);
-    noteLoose(
-        sweeps.untangleAcrossCreases(slack_, [&] { return quadsBeyond(distance().fromQuads); }));
     sweeps.raiseWorst(options_.target, 0);
   }
 
@@ -248,7 +262,7 @@ BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, Ve
   Moving moving(subject, boundary, places, options, before, report, stage);
   BoundaryDistance after = moving.run();
   report.after = subject.certifyNow(context);
-  const std::vector<Index> worse = worsened(report);
+  const std::vector<Index> worse = worsened(report, leastKept(report, places, options.target));
   if (worse.empty()) return after;
   moving.putBackAt(worse);
   report.after = subject.certifyNow(context);

@@ -223,7 +223,7 @@ bool ReferenceSurface::isCrease(Freedom freedom, Index simplex) const {
   if (freedom == Freedom::OnCurve) return creases_[simplex];
   if (freedom != Freedom::Fixed) return false;
   const std::span<const Index> at = segmentsAt_(simplex);
-  return !std::binary_search(taggedCorners_.begin(), taggedCorners_.end(), simplex) &&
+  return !isTagged(freedom, simplex) &&
          std::all_of(at.begin(), at.end(), [this](Index s) { return creases_[s]; });
 }
 

@@ -117,8 +117,11 @@ class ReferenceSurface {
   /// @param[out] simplex  that holds the place, unless it is Free; if it is Fixed, that point
   [[nodiscard]] Freedom freedomAt(std::span<const Index> corners, Index& simplex) const;
 
-  /// Whether a triangle or curve has a tag.
+  /// Whether a triangle, curve or corner has a tag.
   [[nodiscard]] bool isTagged(Freedom freedom, Index simplex) const noexcept {
+    if (freedom == Freedom::Fixed) {
+      return std::binary_search(taggedCorners_.begin(), taggedCorners_.end(), simplex);
+    }
     return freedom == Freedom::OnCurve ? taggedSegments_[simplex] : taggedTriangles_[simplex];
   }
 

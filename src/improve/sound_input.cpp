@@ -5,11 +5,13 @@
 #include <vector>
 
 #include <adjacency/cell_faces.hpp>
+#include <adjacency/hex_topology.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/structure.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <improve/sound_input.hpp>
 
@@ -104,6 +106,25 @@ void requireUnmirrored(const HexMesh& mesh, const CellFaults& faults, std::size_
               Place{PlaceKind::Cell, first});
 }
 
+/// Whether two cells share faces that meet at an edge.
+bool shareFacesAtAnEdge(const Hex& a, const Hex& b) {
+  const auto facesOf = [](const Hex& cell) {
+    std::array<Quad, 6> faces{};
+    for (std::size_t f = 0; f < 6; ++f) faces[f] = sorted(adjacency::faceVertices(cell, f));
+    return faces;
+  };
+  const std::array<Quad, 6> ofB = facesOf(b);
+  std::vector<Quad> common;
+  for (const Quad& face : facesOf(a)) {
+    if (std::find(ofB.begin(), ofB.end(), face) != ofB.end()) common.push_back(face);
+  }
+  // Of three or more, two always meet.
+  return common.size() > 2 ||
+         (common.size() == 2 &&
+          std::find_first_of(common[0].begin(), common[0].end(), common[1].begin(),
+                             common[1].end()) != common[0].end());
+}
+
 /// Where the generator of a vertex is: a ball that holds it.
 struct Ball {
   Vec3 centre{};
@@ -172,6 +193,29 @@ void requireSoundCells(const HexMesh& mesh, std::size_t parts, Context& context)
   requireTwoCellsAtFaces(faults, parts);
   requireOppositeDirections(mesh, faults, parts);
   requireUnmirrored(mesh, faults, parts);
+}
+
+Array<std::uint64_t> cellsThatCannotBePositive(const HexMesh& mesh, std::size_t parts,
+                                               const Certificate& certificate, Stage& stage) {
+  Array<std::uint64_t> cells;
+  if (certificate.allPositive()) return cells;
+  const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
+  const auto sharesWithAnother = [&](std::size_t c) {
+    return std::any_of(mesh.cells[c].begin(), mesh.cells[c].end(), [&](Index v) {
+      return std::any_of(around(v).begin(), around(v).end(), [&](Index other) {
+        return other != c && shareFacesAtAnEdge(mesh.cells[c], mesh.cells[other]);
+      });
+    });
+  };
+  for (std::size_t cell = 0; cell < certificate.validity.size(); ++cell) {
+    if (certificate.validity[cell] == Validity::Positive) continue;
+    for (std::size_t c = cell * parts; c < (cell + 1) * parts; ++c) {
+      if (!sharesWithAnother(c)) continue;
+      cells.push_back(cell);
+      break;
+    }
+  }
+  return cells;
 }
 
 void requireSameObject(const HexMesh& mesh, const TetMapView& map, Stage& stage) {

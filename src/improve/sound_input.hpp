@@ -16,6 +16,14 @@ namespace hexhex::improvement {
 ///         direction, and for cells that list their corners the other way round
 void requireSoundCells(const HexMesh& mesh, std::size_t parts, Context& context);
 
+/// Of cells that are not certified, those which share with another cell two faces that meet at an
+/// edge: at its ends, the determinants of the two are opposite numbers, so that one of them is not
+/// positive wherever vertices are. Ascending.
+/// @param parts  as above
+[[nodiscard]] Array<std::uint64_t> cellsThatCannotBePositive(const HexMesh& mesh, std::size_t parts,
+                                                             const Certificate& certificate,
+                                                             Stage& stage);
+
 /// Compares positions with generators. Vertices may have moved since the mesh was extracted, but no
 /// farther than their cells are long.
 /// @param mesh  with generators in the map

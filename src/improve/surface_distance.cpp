@@ -179,7 +179,6 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
   BoundaryDistance distance;
   distance.ofQuads = distancesOf(points, quads, tree, diagonal, stage);
   distance.largest.fromMesh = largestOf(distance.ofQuads);
-  distance.fromQuads = distance.ofQuads;
 
   struct FromSurface {
     std::size_t quad;

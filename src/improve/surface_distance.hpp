@@ -44,7 +44,6 @@ struct BoundaryDistance {
   SurfaceDistance largest;
   /// Per quad: the largest of its own samples, and of the surface's to which it is the nearest.
   std::vector<double> ofQuads;
-  std::vector<double> fromQuads;  ///< per quad: the largest of its own samples alone
 
   /// Ascending.
   [[nodiscard]] std::vector<Index> quadsBeyond(double limit) const;

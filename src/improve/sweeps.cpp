@@ -109,9 +109,6 @@ constexpr double kPrice = 30;
 /// would end there, and all that moved with them be put back and raised again.
 constexpr std::size_t kMostFalling = 5'000;
 
-/// Vertices may leave creases at bad cells, then also within so many rings of cells around.
-constexpr std::array<int, 2> kLooseRings = {0, 2};
-
 /// A step smaller than this share of the cells' size does not wake the neighbours.
 constexpr double kStill = 1e-3;
 
@@ -133,6 +130,8 @@ constexpr std::size_t kStallsAtOnce = 3;
 /// So far may boundary quads be from the surface, in diagonals: less than the 1e-3 that are
 /// promised for all of the surface, since only centres are looked at.
 constexpr double kChord = 3e-4;
+/// A vertex this much nearer is on the surface.
+constexpr double kNearEnough = 1e-6;
 
 IdealBox boxOf(const Array<Vec3>& points, const Hex& cell) {
   Vec3 sums{};
@@ -186,10 +185,12 @@ void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
                    CurvedCells::Scratch scratch;
                    std::vector<Index> list;
                    for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
-                   forStates(mesh_, curved_, list, scratch,
-                             [&](Index cell, const CellState& state) {
-                               qualities_[cell] = certifiedQuality(state);
-                             });
+                   forStates(
+                       mesh_, curved_, list, scratch, [](Index /*cell*/) { return -1.0; },
+                       [&](Index cell, const CellState& state) {
+                         qualities_[cell] = certifiedQuality(state);
+                         return true;
+                       });
                  });
 }
 
@@ -207,9 +208,17 @@ std::vector<Index> Sweeps::cellsThat(const Wanted& isWanted) const {
 }
 
 template <class Wanted>
-std::vector<Index> Sweeps::cellsThat(std::vector<Index> list, const Wanted& isWanted) const {
-  std::erase_if(list, [&](Index cell) { return !isWanted(qualities_[cell]); });
+std::vector<Index> Sweeps::movable(std::vector<Index> list, const Wanted& isWanted) const {
+  const CellPoints all = cellPoints();
+  std::erase_if(list, [&](Index cell) {
+    return !isWanted(qualities_[cell]) || places_.areHeld(all.of(cell));
+  });
   return list;
+}
+
+template <class Wanted>
+std::vector<Index> Sweeps::movableCells(const Wanted& isWanted) const {
+  return movable(cellsThat(isWanted), isWanted);
 }
 
 template <class Move>
@@ -231,7 +240,7 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
 }
 
 void Sweeps::untangle(double slack) {
-  std::vector<Index> bad = cellsThat(kIsBad);
+  std::vector<Index> bad = movableCells(kIsBad);
   if (bad.empty()) return;
   const Array<Vec3> points = mesh_.points;
   const Array<Index> simplices = places_.simplex;
@@ -241,45 +250,13 @@ void Sweeps::untangle(double slack) {
       },
       [&](std::span<const Index> cells) {
         measure(cells.size(), [&](std::size_t c) { return cells[c]; });
-        return cellsThat(std::vector<Index>(cells.begin(), cells.end()), kIsBad);
+        return movable(std::vector<Index>(cells.begin(), cells.end()), kIsBad);
       }};
   Neighbourhoods near(cellPoints());
   bad = untangleCells(near, places_, moves, slack, std::move(bad));
   if (bad.empty()) return;
   putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
   measureAll();
-}
-
-std::vector<Index> Sweeps::untangleAcrossCreases(double slack,
-                                                 const std::function<Array<Quad>()>& farQuads) {
-  std::vector<Index> left;
-  Neighbourhoods near(cellPoints());
-  for (const int rings : kLooseRings) {
-    std::vector<Index> cells = cellsThat(kIsBad);
-    if (cells.empty()) break;
-    const Array<Vec3> points = mesh_.points;
-    LooseVertices loose(places_, near.pointsOf(rings, cells), points);
-    if (loose.empty()) continue;
-    const Array<Index> simplices = places_.simplex;
-    untangle(slack);
-    Array<Quad> far = farQuads();
-    for (int i = 0; i < kReturns && !far.empty(); ++i) {
-      moveBack(far, points, simplices, 0);
-      far = farQuads();
-    }
-    std::vector<Index> back;
-    for (const Quad& quad : far) {
-      for (const Index v : quad) {
-        const auto around = cellPoints().around(v);
-        back.insert(back.end(), around.begin(), around.end());
-      }
-    }
-    putBack(cellPoints(), back, points, simplices, mesh_.points, places_);
-    measureAll();
-    const std::vector<Index> moved = loose.holdUnmoved(mesh_.points);
-    left.insert(left.end(), moved.begin(), moved.end());
-  }
-  return left;
 }
 
 Sweeps::Standing Sweeps::standing(double target) const {
@@ -319,7 +296,8 @@ void Sweeps::putBackAll(const Array<Vec3>& before, const Array<Index>& simplices
 
 void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
                         const std::function<Array<Quad>()>& farQuads) {
-  const std::vector<Index> low = cellsThat([&](double quality) { return quality < target; });
+  const auto isAny = [](double /*quality*/) { return true; };
+  const std::vector<Index> low = movableCells([&](double quality) { return quality < target; });
   Neighbourhoods near(cellPoints());
   std::vector<Index> cells = low;
   std::vector<Index> vertices = near.pointsOf(kLeastRingsAtOnce, cells);
@@ -337,6 +315,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
       kMostRoundsAtOnce, (isFolded ? kMostWorkFolded : kMostWorkAtOnce) / cells.size());
   if (rounds <= kStallsAtOnce) return;  // too few to come to rest
   std::sort(vertices.begin(), vertices.end());
+  cells = movable(std::move(cells), isAny);
   std::sort(cells.begin(), cells.end());
   std::vector<std::uint8_t> isHeld(mesh_.points.size(), 0);
   for (const Quad& quad : places_.innerQuads) {  // nothing says when these are too far
@@ -398,7 +377,7 @@ void Sweeps::raiseWorst(double target, double slack) {
 void Sweeps::raise(const Exchange& exchange, double slack) {
   const double target = exchange.floor;
   const auto isLow = [target](double quality) { return isCertified(quality) && quality < target; };
-  std::vector<Index> low = cellsThat(isLow);
+  std::vector<Index> low = movableCells(isLow);
   if (low.empty()) return;
   const CellPoints all = cellPoints();
   Neighbourhoods near(all);
@@ -425,7 +404,7 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
       sweep(vertices, slack, [&](VertexMover& mover, Index v) {
         if (mover.smooth(v, power, now) > kStill) lastMove[v] = round;
       });
-      low = cellsThat(std::move(cells), isLow);
+      low = movable(std::move(cells), isLow);
     }
   }
 }
@@ -453,8 +432,24 @@ void Sweeps::moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   sweep(vertices, 0, [&](VertexMover& mover, Index v) {
-    mover.moveBack(v, {before[v], simplicesBefore[v]}, floor);
+    mover.moveTo(v, {before[v], simplicesBefore[v]}, false, floor);
   });
+}
+
+void Sweeps::pullOntoSurface(double floor) {
+  for (int i = 0; i < kReturns; ++i) {
+    std::vector<Index> vertices;
+    for (Index v = 0; v < mesh_.points.size(); ++v) {
+      const Vec3& point = mesh_.points[v];
+      if (length(minus(places_.home(v, point).point, point)) > kNearEnough * chord_)
+        vertices.push_back(v);
+    }
+    if (vertices.empty()) return;
+    sweep(vertices, 0, [&](VertexMover& mover, Index v) {
+      mover.moveTo(v, places_.home(v, mesh_.points[v]), true, floor);
+    });
+    smooth(1, floor);  // makes room
+  }
 }
 
 }  // namespace hexhex::improvement

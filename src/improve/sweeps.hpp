@@ -74,14 +74,17 @@ class LooseVertices {
 
 // Scaled Jacobians and certificates of some cells, straight or curved.
 
-/// Calls use(cell, CellState) for the cells of a list.
-/// @param curved  in place of the cells of the mesh, or null
-template <class Use>
-void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
-               CurvedCells::Scratch& scratch, const Use& use) {
+/// Calls use(cell, CellState) for the cells of a list, until it returns false.
+/// @param curved   in place of the cells of the mesh, or null
+/// @param leastOf  of (cell): a curved one with a smaller scaled Jacobian need not be certified
+/// @return whether it never did
+template <class LeastOf, class Use>
+bool forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
+               CurvedCells::Scratch& scratch, const LeastOf& leastOf, const Use& use) {
   if (curved != nullptr) {
-    for (const Index cell : list) use(cell, curved->stateOf(mesh.points, cell, scratch));
-    return;
+    return std::all_of(list.begin(), list.end(), [&](Index cell) {
+      return use(cell, curved->stateOf(mesh.points, cell, leastOf(cell), scratch));
+    });
   }
   static const mesh::MeasureCells measure = mesh::measuresOfCells().back();
   mesh::CellMeasures measures;
@@ -92,9 +95,10 @@ void forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
     measure(mesh.points.data(), std::span(cells).first(n), measures);
     for (std::size_t i = 0; i < n; ++i) {
       const bool certified = measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
-      use(list[begin + i], CellState{measures.scaled[i], certified});
+      if (!use(list[begin + i], CellState{measures.scaled[i], certified})) return false;
     }
   }
+  return true;
 }
 
 /// What is kept of the state of a cell: its scaled Jacobian, or less than any if it is not
@@ -135,13 +139,6 @@ class Sweeps {
   /// @param slack  so far may vertices without tags leave the surface if nothing else helps
   void untangle(double slack);
 
-  /// The same where vertices around bad cells may leave creases. What takes the boundary too far
-  /// from the surface is put back.
-  /// @param farQuads  of the boundary, which are too far
-  /// @return vertices that left their creases, and may go on
-  std::vector<Index> untangleAcrossCreases(double slack,
-                                           const std::function<Array<Quad>()>& farQuads);
-
   /// Moves vertices of straight cells below the target, and many rings around, all at once, time
   /// after time until angles come hardly nearer to right ones. Boundary quads that come too far
   /// from the surface stay where they were from then on.
@@ -166,7 +163,11 @@ class Sweeps {
   /// are there, none below the least around.
   void smooth(int passes, double floor);
 
-  /// Rounds of moveBack() until it is given up.
+  /// Moves vertices that are off their places of the surface towards these, as far as smooth()
+  /// would let cells be.
+  void pullOntoSurface(double floor);
+
+  /// Rounds of moveBack() and pullOntoSurface() until they are given up.
   static constexpr int kReturns = 8;
   /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
   /// worse than smooth() would leave it.
@@ -186,11 +187,14 @@ class Sweeps {
   void takeBoxes();
   /// Of some cells: how far scaled Jacobians are from 1, added up.
   [[nodiscard]] double deficitOf(std::span<const Index> cells) const;
-  /// The cells whose quality is wanted, of all or of a list.
+  /// The cells whose quality is wanted.
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
+  /// The same of those, or of those of a list, that have a vertex which can move.
   template <class Wanted>
-  [[nodiscard]] std::vector<Index> cellsThat(std::vector<Index> list, const Wanted& isWanted) const;
+  [[nodiscard]] std::vector<Index> movableCells(const Wanted& isWanted) const;
+  template <class Wanted>
+  [[nodiscard]] std::vector<Index> movable(std::vector<Index> list, const Wanted& isWanted) const;
   /// Raises cells below the floor, which is the target.
   void raise(const Exchange& exchange, double slack);
   template <class Move>

@@ -139,17 +139,21 @@ double VertexMover::sizeAt(Index vertex) const {
 
 bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& exchange) {
   measured_.clear();
-  forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
-            [&](Index cell, const CellState& state) {
-              measured_.emplace_back(cell, certifiedQuality(state));
-            });
   const double floor = exchange.floor;
   const double lowest = std::min(least, floor);
+  const auto leastOf = [&](Index cell) {
+    return all_.qualities[cell] < floor || exchange.belowFloor ? lowest : floor;
+  };
+  const bool areGood = forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
+                                 leastOf, [&](Index cell, const CellState& state) {
+                                   measured_.emplace_back(cell, certifiedQuality(state));
+                                   return measured_.back().second >= leastOf(cell);
+                                 });
+  if (!areGood) return false;
   double gained = 0;
   double lost = 0;
   for (const auto& [cell, quality] : measured_) {
     const double old = all_.qualities[cell];
-    if (quality < (old < floor || exchange.belowFloor ? lowest : floor)) return false;
     gained += std::min(quality, floor) - std::min(old, floor);
     lost += std::max(old, floor) - std::max(quality, floor);
   }
@@ -192,11 +196,11 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   return moved / sizeAt(vertex);
 }
 
-void VertexMover::moveBack(Index vertex, const SurfacePlace& place, double floor) {
+void VertexMover::moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor) {
   const double least = leastQualityAt(vertex);
   if (!isCertified(least)) return;
   const auto isGood = [&] { return isGoodAround(vertex, least, {floor}); };
-  if (mover_.moveBack(vertex, place, isGood)) keepMeasured();
+  if (mover_.moveTo(vertex, place, isPulled, isGood)) keepMeasured();
 }
 
 }  // namespace hexhex::improvement

@@ -74,16 +74,19 @@ class PointMover {
     return 0;
   }
 
-  /// Moves a point to a place where it was, or a part of the way.
+  /// Moves a point to a place, or a part of the way: along the surface or, if it is off it and is
+  /// to be pulled there, straight.
   /// @param isAccepted  as above
   template <class Accept>
-  bool moveBack(Index point, const SurfacePlace& target, const Accept& isAccepted) {
+  bool moveTo(Index point, const SurfacePlace& target, bool isPulled, const Accept& isAccepted) {
     const SurfacePlace old{points_[point], places_.simplex[point]};
     take(point, target);
     if (isAccepted()) return true;
+    const Vec3 way = minus(target.point, old.point);
     for (double share = 0.5; share > 0.1; share *= 0.5) {
       take(point, old);
-      take(point, stepBy(point, minus(target.point, old.point), share).place);
+      take(point, isPulled ? SurfacePlace{plus(old.point, times(share, way)), target.simplex}
+                           : stepBy(point, way, share).place);
       if (isAccepted()) return true;
     }
     take(point, old);
@@ -159,9 +162,9 @@ class VertexMover {
   /// @return as untangle()
   double smooth(Index vertex, int power, const Exchange& exchange);
 
-  /// Moves a vertex of the boundary towards a place where it was, if the cells around stay as good
-  /// as smooth() would leave them.
-  void moveBack(Index vertex, const SurfacePlace& place, double floor);
+  /// Moves a vertex of the boundary towards a place, as of PointMover, if the cells around stay as
+  /// good as smooth() would leave them.
+  void moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor);
 
  private:
   void collect(Index vertex, bool bezier);

@@ -1,6 +1,7 @@
 // How each vertex of a mesh may move: freely, on a patch of the surface, on a curve, or not at all.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,15 @@ struct VertexPlaces {
   std::vector<Quad> innerQuads;  ///< of the mesh, on triangles of the surface that are inside
   std::uint64_t tagged = 0;      ///< vertices that are Fixed because they have a tag
 
+  /// Whether a mesh was given a surface that its boundary may be off, and is to be pulled onto.
+  bool isGiven = false;
+
+  /// Whether none of some vertices can move.
+  [[nodiscard]] bool areHeld(std::span<const Index> vertices) const {
+    return std::all_of(vertices.begin(), vertices.end(),
+                       [this](Index v) { return freedom[v] == Freedom::Fixed; });
+  }
+
   /// The place nearest to a point that a vertex may move to.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point, double enough = 0) const {
     if (freedom[vertex] == Freedom::OnPatch) {
@@ -34,6 +44,13 @@ struct VertexPlaces {
     }
     if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
     return {point, simplex[vertex]};
+  }
+
+  /// The same, or the corner of the surface that a vertex belongs to, though it may not be there.
+  [[nodiscard]] SurfacePlace home(Index vertex, const Vec3& point) const {
+    const bool isCorner = freedom[vertex] == Freedom::Fixed && simplex[vertex] != kNone;
+    return isCorner ? SurfacePlace{surface.points()[simplex[vertex]], simplex[vertex]}
+                    : nearest(vertex, point);
   }
 
   /// Orthonormal directions in which a vertex may move: all axes, those of its triangle, that of

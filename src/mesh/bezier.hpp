@@ -76,8 +76,18 @@ inline void addProduct(double& sum, double a, double b) { sum += a * b; }
 inline void addProduct(BigInteger& sum, const BigInteger& a, const BigInteger& b) {
   sum = sum + a * b;
 }
-inline void addProduct(Vec3& sum, double a, const Vec3& b) {
-  for (std::size_t k = 0; k < 3; ++k) sum[k] += a * b[k];
+
+/// sums[i] += a * numbers[i].
+template <class S, class T>
+void addProducts(T* sums, const S& a, const T* numbers, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) addProduct(sums[i], a, numbers[i]);
+}
+/// By value, so that writing sums cannot change the factor, and several are computed at once.
+inline void addProducts(double* sums, double a, const double* numbers, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) sums[i] += a * numbers[i];
+}
+inline void addProducts(Vec3* sums, double a, const Vec3* numbers, std::size_t count) {
+  addProducts(sums->data(), a, numbers->data(), 3 * count);
 }
 
 /// Multiplies all lines along an axis by a matrix.
@@ -92,7 +102,7 @@ void apply(const Matrix<S>& matrix, std::size_t axis, Bezier<T>& grid, std::vect
         const S& factor = matrix.entries[row * matrix.columns + column];
         const T* const from = &grid.values[stride * (column + matrix.columns * o)];
         T* const to = &scratch[stride * (row + matrix.rows * o)];
-        for (std::size_t s = 0; s < stride; ++s) addProduct(to[s], factor, from[s]);
+        addProducts(to, factor, from, stride);
       }
     }
   }

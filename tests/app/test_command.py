@@ -1155,6 +1155,30 @@ class Repair(CommandTest):
         (self.folder / "sheared.mesh").write_text("\n".join(lines))
         return "sheared.mesh"
 
+    def test_improve_on_a_surface(self):
+        self.run_command("generate", "box", "--cells", "3", "-o", "box.hexex", "--quiet")
+        self.run_command("extract", "box.hexex", "-o", "box.vtu", "--quiet")
+        count, *lines = (self.folder / "box.hexex").read_text().splitlines()
+        points = [[float(x) for x in line.split()] for line in lines[:int(count)]]
+        ends = [(min(axis) - 0.05, max(axis) + 0.05) for axis in zip(*points)]  # around the box
+        corners = [[ends[k][i >> k & 1] for k in range(3)] for i in range(8)]
+        quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        lines = ["v {} {} {}".format(*corner) for corner in corners]
+        lines += ["f {} {} {} {}".format(*(v + 1 for v in quad)) for quad in quads]
+        (self.folder / "part.obj").write_text("\n".join(lines) + "\n")
+        run = self.run_command("improve", "box.vtu", "--surface", "part.obj", "-o", "on.vtu", "--report", "i.json")
+        self.assertRegex(run.stdout, "worst held by +cell [0-9]+ at vertex [0-9]+: ")
+        report = json.loads((self.folder / "i.json").read_text())
+        self.assertGreater(report["distance_before"]["hausdorff"], 5e-3)
+        self.assertLess(report["distance_after"]["hausdorff"], 1e-9)
+        self.assertIn(report["worst_cell"]["held_by"], ("corner", "curve", "surface", "neighbours"))
+        self.assertEqual(report["cannot_be_positive"], [])
+        # The boundary of tets is a surface, too.
+        self.run_command("improve", "on.vtu", "--surface", "box.hexex", "-o", "back.vtu", "--report", "b.json", "--quiet")
+        self.assertLess(json.loads((self.folder / "b.json").read_text())["distance_after"]["hausdorff"], 1e-9)
+        self.assert_fails("improve", "box.vtu", "--surface", "part.obj", "--map", "box.hexex", "-o", "bad.vtu",
+                          expect=BAD_USAGE)
+
     def test_improve_adds_a_pillow(self):
         self.run_command("generate", "box", "--cells", "2", "--quiet", "-o", "map.hexex")
         run = self.run_command("extract", "map.hexex", "-o", "one.vtu", "--improve", "--pillow", "always",

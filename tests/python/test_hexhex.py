@@ -368,6 +368,24 @@ def test_walls_are_features_if_they_are_kept(tmp_path):
         assert read(tmp_path / "map.hexex", keep_walls=True).features.faces.tolist() == [[1, 2, 3, 2]]
 
 
+def test_improve_pulls_onto_a_surface(tmp_path):
+    map = hexhex.generate("box", cells=2)
+    mesh = hexhex.extract(map)
+    low, high = mesh.points.min(axis=0) - 0.05, mesh.points.max(axis=0) + 0.05
+    corners = [[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)]
+    quads = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)]
+    part = tmp_path / "part.obj"
+    part.write_text("".join("v {} {} {}\n".format(*c) for c in corners)
+                    + "".join("f {} {} {} {}\n".format(*q) for q in quads))
+    better, report = hexhex.improve(mesh, surface=part)
+    np.testing.assert_allclose(better.points.max(axis=0), high)
+    assert report.from_mesh_before > 0.005 and report.from_mesh_after < 1e-9
+    assert report.worst_held_by in ("corner", "curve", "surface", "neighbours")
+    assert len(report.cannot_be_positive) == 0 and report.paired_vertices == 0
+    with pytest.raises(ValueError, match="not both"):
+        hexhex.improve(mesh, map, surface=part)
+
+
 def test_improve_moves_a_copy_until_cells_are_positive():
     map = hexhex.generate("torus", cells=3, jitter=0.9)
     mesh = hexhex.extract(map, scale=2)

@@ -230,6 +230,7 @@ export interface ImproveReport {
     fixed: number;
     fixed_by_tags: number;
     fixed_by_option: number;
+    fixed_by_cells: number;
   };
   moved_vertices: number;
   largest_move: number;
@@ -240,6 +241,14 @@ export interface ImproveReport {
   curve_length: number;
   curves_followed: number;
   snapped_curves: number;
+  cannot_be_positive: number[];
+  worst_cell: {
+    cell: number;
+    held_by: "neighbours" | "surface" | "curve" | "corner" | "held vertex" | "shared faces";
+    tagged: boolean;
+    vertex: number;
+    angle: number;
+  };
   seconds: number;
 }
 

@@ -1190,7 +1190,8 @@ def _quality_of(fields: Any) -> Quality:
     return Quality(*values)
 
 
-def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passes: int = 2,
+def improve(mesh: AnyMesh, map: Map | None = None, *,
+            surface: str | os.PathLike[str] | None = None, target: float = 0.3, passes: int = 2,
             fix_boundary: bool = False, feature_angle: float = 40.0, slack: float = 1e-3,
             pillow: str = "never", snap_curves: bool = False, threads: int | None = None,
             progress: Progress | None = None) -> tuple[AnyMesh, ImproveReport]:
@@ -1201,6 +1202,9 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
         mesh: straight, or curved of order 1 to 3 (``mesh.curved``), in which case all nodes move.
         map: the map that the mesh was extracted from, whose surface vertices stay on. Without it,
             the surface is the boundary of the mesh.
+        surface: instead of a map, a file with the surface that the boundary of the mesh
+            approximates: triangles (``.stl``, ``.obj``, ``.ply``, ``.off``), or tets, whose boundary
+            counts. Vertices are pulled onto it.
         target: improve cells with a smaller scaled Jacobian until nothing helps, 0 to 1.
         passes: final passes over all vertices, 0 to 1000.
         fix_boundary: keep vertices on the surface fixed.
@@ -1223,7 +1227,10 @@ def improve(mesh: AnyMesh, map: Map | None = None, *, target: float = 0.3, passe
     """
     options = _improve_options(target, passes, fix_boundary, feature_angle, slack, pillow,
                                snap_curves)
-    handle, report = _hexhex.improve(mesh._handle, None if map is None else map._arrays(), options,
+    if map is not None and surface is not None:
+        raise ValueError("Give a map or a surface, not both.")
+    handle, report = _hexhex.improve(mesh._handle, None if map is None else map._arrays(),
+                                     None if surface is None else os.fspath(surface), options,
                                      _threads(threads), progress)
     return type(mesh)._from_handle(handle), _improvement_of(report)
 
@@ -1237,6 +1244,8 @@ def _improve_options(target: float, passes: int, fix_boundary: bool, feature_ang
 
 def _improvement_of(fields: Any) -> ImproveReport:
     before, after, values = fields
+    values["worst_held_by"] = ("neighbours", "surface", "curve", "corner", "held vertex",
+                               "shared faces")[values["worst_held_by"]]
     return ImproveReport(_quality_of(before), _quality_of(after), **values)
 
 

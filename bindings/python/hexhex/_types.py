@@ -1056,6 +1056,14 @@ class ImproveReport:
     curve_length: float  #: total length of the object's sharp and tagged edges
     curves_followed: float  #: share of that length that mesh edges follow
     snapped_curves: int  #: curve segments to which edges were snapped
+    #: cells that share two adjacent faces with another cell: one of the two is never positive
+    cannot_be_positive: npt.NDArray[np.uint64]
+    paired_vertices: int  #: vertices fixed only because of such cells
+    worst_cell: int  #: the cell with the least scaled Jacobian
+    worst_held_by: str  #: "neighbours", "surface", "curve", "corner", "held vertex", "shared faces"
+    worst_tagged: bool  #: whether that curve or corner has a tag
+    worst_vertex: int  #: the vertex at its worst corner
+    worst_angle: float  #: there, between two of its boundary faces, in degrees; 0 if there are none
     seconds: float
 
 

@@ -482,8 +482,6 @@ void appendGmshHex(std::vector<Node>& nodes, int low, int high) {
   appendGmshHex(nodes, low + 1, high - 1);
 }
 
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> gmshNodeOrder(int order) {
