@@ -1257,7 +1257,8 @@ typedef struct hexhex_shape_report {
   uint64_t bad_corners;       /**< of more than three charts, or without room for their faces, */
   uint64_t opposite_edges;    /**< edges of the mesh between opposite labels, */
   uint64_t turning_points;    /**< places where edges of the polycube would run back, */
-  uint64_t wrong_turns;   /**< charts whose right angles do not add up: labels are valid without */
+  uint64_t wrong_turns;   /**< charts whose right angles do not add up: labels are valid without,
+                             and without flat_charts */
   double deviation;       /**< mean of 1 minus the cosine between normals and labels */
   uint64_t label_moves;   /**< random changes that were tried */
   uint64_t added_tets;    /**< by splits */
@@ -1267,11 +1268,12 @@ typedef struct hexhex_shape_report {
   double median;
   uint64_t inner_faces;   /**< triangles inside, with a tag or between regions, */
   uint64_t aligned_faces; /**< and those of them that are planes of the map */
+  uint64_t flat_charts;   /**< charts two of whose edges would lie on each other */
 } hexhex_shape_report;
 #define HEXHEX_SHAPE_REPORT_INIT                                                                 \
   {                                                                                              \
     sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0                                                                                  \
+        0, 0, 0, 0                                                                               \
   }
 
 /** A seamless map of tets that have none, for hexhex_quantize(). Where there is none, the status is

@@ -353,13 +353,14 @@ class ShapeReport:
 
     method: str  #: "frames" or "polycube"
     rotation: Floats  #: rows: the axes in space that became those of the map, float64 (3, 3)
-    charts: int  #: of a polycube, as the next eight: its faces
+    charts: int  #: of a polycube, as the next nine: its faces
     corners: int  #: where three charts or more meet
     bad_loops: int  #: borders of charts with fewer than four corners
     bad_corners: int  #: of more than three charts, or without room for their faces
     opposite_edges: int  #: edges of the mesh between opposite labels
     turning_points: int  #: where edges of the polycube would run back
     wrong_turns: int  #: charts whose right angles do not add up
+    flat_charts: int  #: charts two of whose edges would lie on each other
     deviation: float  #: mean of 1 minus the cosine between a triangle's normal and its label
     label_moves: int  #: random changes that were tried
     added_tets: int  #: by splits
