@@ -246,6 +246,7 @@ Json shapeAsJson(const ShapeReport& report) {
             {"opposite_edges", labels.oppositeEdges},
             {"turning_points", labels.turningPoints},
             {"wrong_turns", labels.wrongTurns},
+            {"flat_charts", labels.flatCharts},
             {"deviation", labels.deviation}}},
           {"label_moves", report.labelMoves},
           {"added_tets", report.addedTets},

@@ -27,6 +27,7 @@ Dict asDict(const ShapeReport& r) {
   d["opposite_edges"] = r.labels.oppositeEdges;
   d["turning_points"] = r.labels.turningPoints;
   d["wrong_turns"] = r.labels.wrongTurns;
+  d["flat_charts"] = r.labels.flatCharts;
   d["deviation"] = r.labels.deviation;
   d["label_moves"] = r.labelMoves;
   d["added_tets"] = r.addedTets;

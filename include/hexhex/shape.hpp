@@ -39,11 +39,12 @@ struct LabelReport {
   std::uint64_t oppositeEdges = 0;  ///< mesh edges between opposite labels
   std::uint64_t turningPoints = 0;  ///< where edges of the polycube would reverse direction
   std::uint64_t wrongTurns = 0;     ///< charts whose right angles do not add up
+  std::uint64_t flatCharts = 0;     ///< charts two of whose edges would lie on each other
   double deviation = 0;  ///< mean of 1 minus the cosine between a triangle's normal and its label
 
   /// Whether no problem is known.
   [[nodiscard]] bool isValid() const noexcept {
-    return badLoops + badCorners + oppositeEdges + turningPoints + wrongTurns == 0;
+    return badLoops + badCorners + oppositeEdges + turningPoints + wrongTurns + flatCharts == 0;
   }
 };
 

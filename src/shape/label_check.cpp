@@ -19,7 +19,7 @@ double energyOf(const LabelReport& report, double shape) {
   const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
   double energy = report.deviation + shape;
   energy += count(report.badLoops + report.badCorners) + 0.3 * count(report.turningPoints) +
-            0.7 * count(report.wrongTurns);
+            0.7 * count(report.wrongTurns + report.flatCharts);
   if (report.oppositeEdges > 0) {
     energy += std::floor(1 + count(report.oppositeEdges) / 20) + 0.02 * count(report.oppositeEdges);
   }
@@ -302,6 +302,61 @@ void LabelCheck::visitRoom(const Labels& labels, Verdict& verdict) {
   }
 }
 
+/// Whether one plane is known to be below another one: some edges lead up from it to that.
+bool LabelCheck::isBelow(Index low, Index high) {
+  std::vector<bool> isSeen(charts_.size());
+  stack_ = {low};
+  while (!stack_.empty()) {
+    const Index at = stack_.back();
+    stack_.pop_back();
+    for (const Index above : charts_[at].above) {
+      if (above == high) {
+        stack_.clear();
+        return true;
+      }
+      if (!isSeen[above]) stack_.push_back(above);
+      isSeen[above] = true;
+    }
+  }
+  return false;
+}
+
+/// From an edge straight across its face, there is another edge that faces it, in a plane beyond.
+/// Where a hole and the border around it lie on one chart, say, nothing is between them.
+void LabelCheck::visitWidths(const Labels& labels, Verdict& verdict) {
+  for (const Piece& piece : pieces_) {
+    if (!piece.hasDirection) continue;
+    const auto& [tail, head] = piece.planes;
+    const bool isUpwards = lattice::signOf(piece.direction) > 0;
+    charts_[isUpwards ? tail : head].above.push_back(isUpwards ? head : tail);
+  }
+  std::vector<std::vector<const Piece*>> around(charts_.size());
+  for (const Piece& piece : pieces_) {
+    around[chartOf_[Surface::triangleOf(piece.first)]].push_back(&piece);
+  }
+  for (const auto& pieces : around) {
+    const auto inwards = [&](const Piece& piece) {
+      return lattice::cross(labels[Surface::triangleOf(piece.first)], piece.direction);
+    };
+    const auto mayFace = [&](const Piece& one, const Piece& other) {
+      if (inwards(one) != lattice::opposite(inwards(other))) return false;
+      const Index here = chartOf_[surface_.beyond(one.first)];
+      const Index there = chartOf_[surface_.beyond(other.first)];
+      if (here == there) return false;
+      return lattice::signOf(inwards(one)) > 0 ? !isBelow(there, here) : !isBelow(here, there);
+    };
+    const auto hasWidth = [&](const Piece* one) {
+      return std::any_of(pieces.begin(), pieces.end(),
+                         [&](const Piece* other) { return mayFace(*one, *other); });
+    };
+    if (std::all_of(pieces.begin(), pieces.end(), hasWidth)) continue;
+    ++verdict.report.flatCharts;
+    for (const Piece* piece : pieces) {
+      verdict.places.push_back(Surface::triangleOf(piece->first));
+    }
+  }
+}
+
 /// Twice vertices - edges + triangles. Vertices and edges of borders are as many.
 void LabelCheck::setCharacteristics() {
   for (const Index chart : chartOf_) --charts_[chart].twiceCharacteristic;
@@ -352,6 +407,7 @@ Verdict LabelCheck::operator()(const Labels& labels) {
   visitRoom(labels, verdict);
   setCharacteristics();
   visitCharts(verdict);
+  if (verdict.report.isValid()) visitWidths(labels, verdict);
   verdict.energy = energyOf(verdict.report, verdict.energy);
   return verdict;
 }

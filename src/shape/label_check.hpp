@@ -21,8 +21,8 @@ struct Verdict {
 /// Each face of a polycube is bounded by loops of at least four edges, which turn by four right
 /// angles; three faces meet in a corner, never opposite ones at an edge; edges run along an axis
 /// without turning back, and two that connect the same planes in the same order; and no faces
-/// overlap around a corner. A face is a disk with holes. (Sufficient conditions are not known:
-/// Sokolov, Ray 2015.)
+/// overlap around a corner. A face is a disk with holes, of some width everywhere. (Sufficient
+/// conditions are not known: Sokolov, Ray 2015.)
 class LabelCheck {
  public:
   LabelCheck(const Surface& surface, const LabelCosts& costs);
@@ -60,6 +60,8 @@ class LabelCheck {
   void visitRoom(const Labels& labels, Verdict& verdict);
   void setCharacteristics();
   void visitCharts(Verdict& verdict) const;
+  [[nodiscard]] bool isBelow(Index low, Index high);
+  void visitWidths(const Labels& labels, Verdict& verdict);
 
   const Surface& surface_;
   const LabelCosts& costs_;
@@ -70,6 +72,7 @@ class LabelCheck {
     int turns = 0;  ///< right angles to the left, of all loops
     bool isBad = false;
     std::int64_t twiceCharacteristic = 0;
+    std::vector<Index> above = {};  ///< charts that edges lead up to
   };
   std::vector<Chart> charts_;
   std::vector<Index> chartOf_;      ///< per triangle

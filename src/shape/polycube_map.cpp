@@ -20,7 +20,7 @@ namespace hexhex::shape {
 namespace {
 
 /// Labels of which a map is tried, one after the other, until so much is spent on all together,
-/// about twenty seconds: see quantization::mapFromLabels().
+/// about twenty seconds.
 constexpr std::uint64_t kMostAttempts = 6;
 constexpr double kMostWork = 4e7;
 /// At least so many steps of the solver, however many tets there are.
@@ -48,15 +48,19 @@ std::string faultsOf(const LabelReport& report) {
   add(report.oppositeEdges, "edges between opposite labels");
   add(report.turningPoints, "points where borders turn back");
   add(report.wrongTurns, "charts whose right angles do not add up");
+  add(report.flatCharts, "charts without room between two of their edges");
   return text;
 }
 
-[[noreturn]] void fail(const Error& problem, const PositiveTets& tets, const LabelReport& report) {
+/// @param isSpent  whether no more labels were tried because of what all of it may cost
+[[noreturn]] void fail(const Error& problem, const PositiveTets& tets, const LabelReport& report,
+                       bool isSpent) {
   const std::string labels = report.isValid()
                                  ? "labels were found, but no map of them"
                                  : "the best labels that were found have " + faultsOf(report);
   throw Error(ErrorCode::NotMeshable,
               "No polycube of the shape was found: " + labels + ". " + problem.what() +
+                  (isSpent ? " The search ended at the bound of its work." : "") +
                   " Another seed may find other labels; a finer tet mesh leaves more room.",
               tets.givenPlace(problem.place()));
 }
@@ -81,15 +85,18 @@ Vec3 pointAt(const TetMesh& mesh, const Place& place) {
 
 }  // namespace
 
-TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, ShapeReport& report,
-                   Context& context) {
+double workFor(std::size_t tets) {
+  return std::max(kMostWork, kStepsOfAll * static_cast<double>(tets));
+}
+
+TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, double workLeft,
+                   ShapeReport& report, Context& context) {
   report.rotation = bestRotation(surface, seed);
   surface.turn(report.rotation);
   tets.turn(report.rotation);
   LabelCosts costs(surface);
   std::optional<Error> problem;
   LabelReport best;
-  double workLeft = std::max(kMostWork, kStepsOfAll * static_cast<double>(tets.mesh().tets.size()));
   // Most labels without a map lack it at a corner or two, near to where tets stay flipped.
   for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
     const CheckedLabels found = label(surface, costs, seed + attempt, workLeft, context);
@@ -112,7 +119,7 @@ TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, Shape
       best = found.verdict.report;
     }
   }
-  fail(*problem, tets, best);
+  fail(*problem, tets, best, workLeft <= 0);
 }
 
 }  // namespace hexhex::shape

@@ -1,6 +1,8 @@
 // A polycube of an object, and its map.
 #pragma once
 
+#include <cstddef>
+
 #include <shape/positive_tets.hpp>
 #include <shape/surface.hpp>
 
@@ -8,11 +10,15 @@
 
 namespace hexhex::shape {
 
+/// What may be spent on a part of so many tets: see quantization::mapFromLabels().
+[[nodiscard]] double workFor(std::size_t tets);
+
 /// Labels for the boundary, and a map from these.
+/// @param workLeft  at which no more labels are tried
 /// @param[out] report  rotation, labels and their moves
 /// @return with the points that are not given in the object's own position
 /// @throws Error NotMeshable, as mapFromTets() does
 [[nodiscard]] TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed,
-                                 ShapeReport& report, Context& context);
+                                 double workLeft, ShapeReport& report, Context& context);
 
 }  // namespace hexhex::shape

@@ -105,7 +105,8 @@ ShapedMap mapBy(ShapeMethod method, const TetMesh& given, const PositiveTets& te
   report.method = method;
   TetMap map = method == ShapeMethod::Frames
                    ? framesMap(tets, options, context)
-                   : polycubeMap(tets, surface, options.seed, report, context);
+                   : polycubeMap(tets, surface, options.seed, workFor(tets.mesh().tets.size()),
+                                 report, context);
   return finish(given, std::move(map), options, report, context);
 }
 

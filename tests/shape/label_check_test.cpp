@@ -85,6 +85,26 @@ TEST(LabelCheck, NamesAllBordersOfFacesThatTurnWrong) {
   EXPECT_EQ(verdict.places.size(), 4 * 4 + verdict.report.badCorners);
 }
 
+TEST(LabelCheck, RefusesFacesWithoutWidth) {
+  // A handle hangs from the middle of a block. Where what is below the block, in front of one leg,
+  // is taken for a part of its front, all of the handle's front is; in front of the other leg, what
+  // is below the block lies between two edges of one plane.
+  const CubeBody block = {{6, 3, 4}, [](const Cell& c) {
+                            const bool isHandle = c[1] == 1 && c[0] > 0 && c[0] < 5;
+                            return c[2] == 3 || (isHandle && (c[2] == 0 || c[0] == 1 || c[0] == 4));
+                          }};
+  EXPECT_TRUE(verdictOf(block, asItIs).report.isValid());
+  const Verdict verdict = verdictOf(block, [](int label, const Vec3& middle) {
+    const bool isInFront = middle[0] > 1 && middle[0] < 2 && middle[1] < 1;
+    return label == 5 && middle[2] > 2.9 && isInFront ? 3 : label;
+  });
+  LabelReport rest = verdict.report;
+  EXPECT_EQ(rest.flatCharts, 1U);
+  EXPECT_FALSE(verdict.places.empty());
+  rest.flatCharts = 0;
+  EXPECT_TRUE(rest.isValid());
+}
+
 TEST(LabelCheck, TakesCornersAwayFromWhereNoMapWasFound) {
   const test::Labelled input = step().labelled(3, [](const Vec3& p) { return p; });
   Context context;

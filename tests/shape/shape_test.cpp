@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <shape/polycube_map.hpp>
+#include <shape/positive_tets.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -177,6 +179,27 @@ TEST(Shapes, RefuseWhatIsOutOfRange) {
         codeOf([&] { static_cast<void>(mapFromTets(tets, {.featureAngle = angle}, context)); }),
         ErrorCode::InvalidArgument);
   }
+}
+
+TEST(Shapes, EndTheSearchForLabelsAtItsBound) {
+  // No labels of four triangles are those of a polycube.
+  const TetMesh tet = {.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                       .tets = {{0, 1, 2, 3}}};
+  Context context(1);
+  const shape::PositiveTets positive(tet);
+  const shape::Surface surface = shape::readSurface(positive, context);
+  const auto isAtBound = [&](double work) {
+    const Error error = errorOf([&] {
+      ShapeReport report;
+      static_cast<void>(shape::polycubeMap(positive, surface, 1, work, report, context));
+    });
+    EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
+    EXPECT_NE(std::string(error.what()).find("the best labels that were found have"),
+              std::string::npos);
+    return std::string(error.what()).find("ended at the bound of its work") != std::string::npos;
+  };
+  EXPECT_TRUE(isAtBound(1));
+  EXPECT_FALSE(isAtBound(shape::workFor(1)));  // enough for all tries
 }
 
 TEST(Shapes, CanBeCancelled) {

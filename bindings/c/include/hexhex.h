@@ -1274,11 +1274,12 @@ typedef struct hexhex_shape_report {
   double median;
   uint64_t inner_faces;   /**< interior triangles with a tag or between regions */
   uint64_t aligned_faces; /**< those of them that lie in planes of the map */
+  uint64_t flat_charts;   /**< invalid: charts with two edges that would coincide */
 } hexhex_shape_report;
 #define HEXHEX_SHAPE_REPORT_INIT                                                                 \
   {                                                                                              \
     sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0                                                                                  \
+        0, 0, 0, 0                                                                               \
   }
 
 /** Computes a seamless map for tets without one, as input for hexhex_quantize(). If none is found,

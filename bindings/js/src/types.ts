@@ -201,6 +201,7 @@ export interface ShapeReport {
     opposite_edges: number;
     turning_points: number;
     wrong_turns: number;
+    flat_charts: number;
     deviation: number;
   };
   label_moves: number;

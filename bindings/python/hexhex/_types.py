@@ -357,13 +357,14 @@ class ShapeReport:
 
     method: str  #: "frames" or "polycube"
     rotation: Floats  #: rows: the axes in space that became the axes of the map, float64 (3, 3)
-    charts: int  #: faces of the polycube; this and the next eight are for polycubes only
+    charts: int  #: faces of the polycube; this and the next nine are for polycubes only
     corners: int  #: where at least three charts meet
     bad_loops: int  #: chart borders with fewer than four corners
     bad_corners: int  #: corners of more than three charts, or without room for their faces
     opposite_edges: int  #: mesh edges between opposite labels
     turning_points: int  #: where edges of the polycube would reverse direction
     wrong_turns: int  #: charts whose right angles do not add up
+    flat_charts: int  #: charts with two edges that would coincide
     deviation: float  #: mean of 1 minus the cosine between a triangle's normal and its label
     label_moves: int  #: random changes tried
     added_tets: int  #: by splits
