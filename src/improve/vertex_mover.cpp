@@ -181,8 +181,7 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   if (!isCertified(before)) return 0;
   collect(vertex, false);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
-  const double chord = all_.chordError.chord;
-  const double farthest = bounded ? std::max(chord, all_.chordError.at(vertex, chord)) : 0;
+  const double farthest = bounded ? farthestAt(vertex) : 0;
   const double moved = mover_.descend(vertex, terms_, EnergyKind{power, 0, 0}, [&] {
     return isGoodAround(vertex, before, exchange) &&
            (!bounded || all_.chordError.at(vertex, farthest) <= farthest);
@@ -192,11 +191,19 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   return moved / sizeAt(vertex);
 }
 
-void VertexMover::moveBack(Index vertex, const SurfacePlace& place, double floor) {
+double VertexMover::farthestAt(Index vertex) const {
+  const double chord = all_.chordError.chord;
+  return std::max(chord, all_.chordError.at(vertex, chord));
+}
+
+void VertexMover::moveTo(Index vertex, const SurfacePlace& place, double floor, double farthest) {
   const double least = leastQualityAt(vertex);
   if (!isCertified(least)) return;
-  const auto isGood = [&] { return isGoodAround(vertex, least, {floor}); };
-  if (mover_.moveBack(vertex, place, isGood)) keepMeasured();
+  const auto isGood = [&] {
+    return isGoodAround(vertex, least, {floor}) &&
+           (std::isinf(farthest) || all_.chordError.at(vertex, farthest) <= farthest);
+  };
+  if (mover_.moveTo(vertex, place, isGood)) keepMeasured();
 }
 
 }  // namespace hexhex::improvement

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -74,10 +75,10 @@ class PointMover {
     return 0;
   }
 
-  /// Moves a point to a place where it was, or a part of the way.
+  /// Moves a point to another place that it may take, or a part of the way.
   /// @param isAccepted  as above
   template <class Accept>
-  bool moveBack(Index point, const SurfacePlace& target, const Accept& isAccepted) {
+  bool moveTo(Index point, const SurfacePlace& target, const Accept& isAccepted) {
     const SurfacePlace old{points_[point], places_.simplex[point]};
     take(point, target);
     if (isAccepted()) return true;
@@ -159,9 +160,14 @@ class VertexMover {
   /// @return as untangle()
   double smooth(Index vertex, int power, const Exchange& exchange);
 
-  /// Moves a vertex of the boundary towards a place where it was, if the cells around stay as good
+  /// Moves a vertex of the boundary towards another place on it, if the cells around stay as good
   /// as smooth() would leave them.
-  void moveBack(Index vertex, const SurfacePlace& place, double floor);
+  /// @param farthest  so far may quads there be from the surface
+  void moveTo(Index vertex, const SurfacePlace& place, double floor,
+              double farthest = std::numeric_limits<double>::infinity());
+
+  /// How far quads at a vertex may come from the surface: no farther than they are.
+  [[nodiscard]] double farthestAt(Index vertex) const;
 
  private:
   void collect(Index vertex, bool bezier);
