@@ -58,6 +58,7 @@ struct ShapeReport {
   std::uint64_t taggedEdges = 0;   ///< of these: edges of the map
   std::uint64_t innerFaces = 0;    ///< triangles inside, with a tag or between regions
   std::uint64_t alignedFaces = 0;  ///< of these: in planes of the map, so that quads will be there
+  double alignedArea = 1;          ///< share of the area of inner faces that these have
   MapDistortion distortion;
 };
 

@@ -23,6 +23,8 @@ constexpr double kFarChord = 2.5e-3;
 /// Rounds of that, at most, and in a row without a nearer mesh.
 constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
+/// By less than that, a mesh is no nearer: right angles are given for it.
+constexpr double kNearer = 0.99;
 
 /// Cells that lost their certificate, or whose scaled Jacobian fell below the least there was.
 std::vector<Index> worsened(const ImproveReport& report) {
@@ -205,7 +207,7 @@ class Moving {
       sweeps.spread(boundary_.quads, now.ofQuads, kFarChord / 2, floor);
       now = distance();
       ++stalls;
-      if (now.largest.hausdorff() >= best.largest.hausdorff()) continue;
+      if (now.largest.hausdorff() > kNearer * best.largest.hausdorff()) continue;
       stalls = 0;
       best = now;
       points = subject_.mesh.points;

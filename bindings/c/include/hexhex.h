@@ -189,6 +189,12 @@ typedef struct hexhex_feature_quad {
   uint32_t vertices[4];
   int32_t tag;
 } hexhex_feature_quad;
+/** What files call the elements with a tag. */
+typedef struct hexhex_tag_name {
+  int32_t dimension; /**< of the elements: 0 vertices, 1 edges, 2 faces, 3 cells (their region) */
+  int32_t tag;
+  const char* name;
+} hexhex_tag_name;
 
 /** The arrays of a tetrahedral mesh with an integer-grid map. */
 typedef struct hexhex_map_arrays {
@@ -209,12 +215,14 @@ typedef struct hexhex_map_arrays {
   size_t feature_edge_count;
   const hexhex_feature_face* feature_faces;
   size_t feature_face_count;
-  const int32_t* regions; /**< or NULL: none. One per tet, which cells inherit */
+  const int32_t* regions;           /**< or NULL: none. One per tet, which cells inherit */
+  const hexhex_tag_name* tag_names; /**< of groups that have one */
+  size_t tag_name_count;
 } hexhex_map_arrays;
 #define HEXHEX_MAP_ARRAYS_INIT                                                                   \
   {                                                                                              \
     sizeof(hexhex_map_arrays), NULL, 0, NULL, 0, NULL, NULL, 0, NULL, NULL, 0, NULL, 0, NULL, 0, \
-        NULL                                                                                     \
+        NULL, NULL, 0                                                                            \
   }
 
 /** A tetrahedral mesh with an integer-grid map. */
@@ -406,10 +414,15 @@ typedef struct hexhex_mesh_arrays {
   size_t feature_edge_count;
   const hexhex_feature_quad* feature_quads;
   size_t feature_quad_count;
-  const int32_t* regions; /**< per cell, or NULL */
+  const int32_t* regions;           /**< per cell, or NULL */
+  const hexhex_tag_name* tag_names; /**< of groups that have one */
+  size_t tag_name_count;
 } hexhex_mesh_arrays;
-#define HEXHEX_MESH_ARRAYS_INIT \
-  { sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL }
+#define HEXHEX_MESH_ARRAYS_INIT                                                                \
+  {                                                                                            \
+    sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, \
+        NULL, 0                                                                                \
+  }
 
 /** A hexahedral mesh. */
 typedef struct hexhex_mesh hexhex_mesh;
@@ -1266,12 +1279,13 @@ typedef struct hexhex_shape_report {
   double worst;           /**< distortion of the map as scaled Jacobian, at most 1 */
   double median;
   uint64_t inner_faces;   /**< triangles inside, with a tag or between regions, */
-  uint64_t aligned_faces; /**< and those of them that are planes of the map */
+  uint64_t aligned_faces; /**< and those of them that are planes of the map, */
+  double aligned_area;    /**< with that share of their area, 0 to 1 */
 } hexhex_shape_report;
 #define HEXHEX_SHAPE_REPORT_INIT                                                                 \
   {                                                                                              \
     sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0                                                                                  \
+        0, 0, 0, 0                                                                               \
   }
 
 /** A seamless map of tets that have none, for hexhex_quantize(). Where there is none, the status is

@@ -367,6 +367,7 @@ class ShapeReport:
     tagged_edges: int  #: of these: edges of the map
     inner_faces: int  #: triangles inside, with a tag or between regions
     aligned_faces: int  #: of these: planes of the map, which the mesh follows
+    aligned_area: float  #: share of the area of inner faces that these have, 0 to 1
     worst: float  #: distortion of the map as scaled Jacobian, at most 1
     median: float
 
