@@ -459,8 +459,8 @@ void Sweeps::moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
 
 void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors, double even,
                     double floor) {
-  Array<Vec3> sums(mesh_.points.size());
-  Array<double> weights(mesh_.points.size());
+  std::vector<Vec3> sums(mesh_.points.size());
+  std::vector<double> weights(mesh_.points.size(), 0);
   for (std::size_t q = 0; q < quads.size(); ++q) {
     const double weight = std::max(errors[q], even);
     for (const Index v : quads[q]) {
