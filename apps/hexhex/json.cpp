@@ -254,6 +254,7 @@ Json shapeAsJson(const ShapeReport& report) {
           {"tagged_edges", report.taggedEdges},
           {"inner_faces", report.innerFaces},
           {"aligned_faces", report.alignedFaces},
+          {"aligned_area", report.alignedArea},
           {"scaled_jacobian", distortionAsJson(report.distortion)}};
 }
 

@@ -93,9 +93,9 @@ void printShape(const ShapeReport& report) {
               others == 0
                   ? fmt::format("all {} with a tag or between regions are planes of the map",
                                 report.innerFaces)
-                  : fmt::format("{} of {} with a tag or between regions are not followed: "
-                                "each cell is in the region of its centre",
-                                others, report.innerFaces));
+                  : fmt::format("{} of {} with a tag or between regions are not followed ({:.3g} % "
+                                "of their area): each cell is in the region of its centre",
+                                others, report.innerFaces, 100 * (1 - report.alignedArea)));
   }
 }
 

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -35,6 +37,26 @@ struct Repaired {
   std::shared_ptr<const TetMap> map = nullptr;  ///< null if nothing was repaired
 };
 
+/// Names as C sees them: of a handle, made once they are asked for.
+class Names {
+ public:
+  /// @param names  the same each time
+  std::span<const hexhex_tag_name> of(std::span<const TagName> names) const {
+    std::call_once(once_, [&] {
+      names_.assign(names.begin(), names.end());  // a mesh that is improved moves its own
+      for (const TagName& known : names_) {
+        list_.push_back({known.dimension, known.tag, known.name.c_str()});
+      }
+    });
+    return list_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::vector<TagName> names_;
+  mutable std::vector<hexhex_tag_name> list_;
+};
+
 }  // namespace hexhex::c
 
 struct hexhex_context : hexhex::c::RestingMemory {
@@ -47,6 +69,8 @@ struct hexhex_map : hexhex::c::RestingMemory {
   std::shared_ptr<const hexhex::TetMap> owned;  ///< null if the arrays are the caller's
   hexhex::TetMapView view;
   std::shared_ptr<const hexhex::SampleAnswer> answer;  ///< null if it was not generated
+  std::vector<hexhex::TagName> given;                  ///< with the caller's arrays
+  hexhex::c::Names names;
 };
 
 struct hexhex_map_structure : hexhex::c::RestingMemory {
@@ -61,6 +85,7 @@ struct hexhex_mesh : hexhex::c::RestingMemory {
   std::shared_ptr<const hexhex::HexMesh> lent = nullptr;
   [[nodiscard]] const hexhex::HexMesh& mesh() const noexcept { return lent ? *lent : own; }
   hexhex::c::Repaired repaired = {};  ///< of the extraction that made it
+  hexhex::c::Names names;
 };
 
 struct hexhex_buffer : hexhex::c::RestingMemory {
@@ -175,6 +200,9 @@ std::span<const T> borrowed(const Scalar* data, std::size_t count, const char* a
   requireCount<T>(count, argument);
   return {reinterpret_cast<const T*>(data), count};
 }
+
+/// The caller's names of tags.
+[[nodiscard]] std::vector<TagName> namesOf(const hexhex_tag_name* names, std::size_t count);
 
 /// Generators, tags and regions of the caller's arrays, which both kinds of meshes have.
 /// @param count  of points or nodes

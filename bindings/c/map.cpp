@@ -35,6 +35,13 @@ hexhex::FeaturesView featuresOf(const hexhex_map_arrays& given) {
                                     "feature_faces")};
 }
 
+/// With names, which a view does not own.
+hexhex::Features namedFeatures(const hexhex_map_arrays& given) {
+  hexhex::Features copy = featuresOf(given).copy();
+  copy.names = hexhex::c::namesOf(given.tag_names, given.tag_name_count);
+  return copy;
+}
+
 hexhex::TetMapView viewOf(const hexhex_map_arrays& given) {
   using hexhex::c::borrowed;
   hexhex::TetMapView view(
@@ -75,7 +82,7 @@ TetMesh tetMeshOf(const hexhex_map_arrays* arrays, const char* argument) {
   const std::size_t regions = given.regions == nullptr ? 0 : given.tet_count;
   return {.points = {points.begin(), points.end()},
           .tets = {tets.begin(), tets.end()},
-          .features = featuresOf(given).copy(),
+          .features = namedFeatures(given),
           .regions = {given.regions, given.regions + regions}};
 }
 
@@ -92,6 +99,8 @@ hexhex_status hexhex_map_borrow(const hexhex_map_arrays* arrays, hexhex_map** ma
     require(map, "map");
     auto handle = std::make_unique<hexhex_map>();
     handle->view = viewOf(given);
+    handle->given = namesOf(given.tag_names, given.tag_name_count);
+    handle->view.features.names = handle->given;
     *map = enter(std::move(handle));
   });
 }
@@ -103,7 +112,9 @@ hexhex_status hexhex_map_copy(const hexhex_map_arrays* arrays, hexhex_map** map,
     const hexhex_map_arrays given =
         readStruct(&require(arrays, "arrays"), HEXHEX_MAP_ARRAYS_INIT, "arrays");
     require(map, "map");
-    give(owned(viewOf(given)), map);
+    hexhex::TetMap copy = owned(viewOf(given));
+    copy.features.names = namesOf(given.tag_names, given.tag_name_count);
+    give(std::move(copy), map);
   });
 }
 
@@ -153,6 +164,9 @@ hexhex_status hexhex_map_get_arrays(const hexhex_map* map, hexhex_map_arrays* ar
     result.feature_faces = flat<hexhex_feature_face>(view.features.faces);
     result.feature_face_count = view.features.faces.size();
     result.regions = flat<std::int32_t>(view.regions);
+    const std::span names = used->names.of(view.features.names);
+    result.tag_names = flat<hexhex_tag_name>(names);
+    result.tag_name_count = names.size();
     writeStruct(result, require(arrays, "arrays"), "arrays");
   });
 }

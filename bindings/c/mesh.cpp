@@ -36,6 +36,14 @@ void give(HexMesh&& mesh, hexhex_mesh** out) {
   *out = enter(std::move(handle));
 }
 
+std::vector<TagName> namesOf(const hexhex_tag_name* names, std::size_t count) {
+  std::vector<TagName> list;
+  for (const hexhex_tag_name& known : borrowed<hexhex_tag_name>(names, count, "tag_names")) {
+    list.push_back({known.dimension, known.tag, &require(known.name, "a name of tag_names")});
+  }
+  return list;
+}
+
 void writeSurvey(const MeshSurvey& survey, hexhex_survey* out) {
   hexhex_survey result = {sizeof(hexhex_survey), survey.points,      survey.cells, {}, {},
                           survey.pointChecksum,  survey.cellChecksum};
@@ -89,6 +97,7 @@ hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** m
     result.points = copied<decltype(result.points)>(given.points, given.point_count, "points");
     result.cells = copied<decltype(result.cells)>(given.cells, given.cell_count, "cells");
     copyBesides(given, given.point_count, result);
+    result.features.names = namesOf(given.tag_names, given.tag_name_count);
     give(std::move(result), mesh);
   });
 }
@@ -113,6 +122,9 @@ hexhex_status hexhex_mesh_get_arrays(const hexhex_mesh* mesh, hexhex_mesh_arrays
     result.feature_quads = flat<hexhex_feature_quad>(m.features.quads);
     result.feature_quad_count = m.features.quads.size();
     result.regions = flat<std::int32_t>(m.regions);
+    const std::span names = used->names.of(m.features.names);
+    result.tag_names = flat<hexhex_tag_name>(names);
+    result.tag_name_count = names.size();
     writeStruct(result, require(arrays, "arrays"), "arrays");
   });
 }

@@ -47,7 +47,8 @@ void writeReport(const hexhex::ShapeReport& r, hexhex_shape_report* out) {
                                 .median = r.distortion.median,
                                 .inner_faces = r.innerFaces,
                                 .aligned_faces = r.alignedFaces,
-                                .flat_charts = labels.flatCharts};
+                                .flat_charts = labels.flatCharts,
+                                .aligned_area = r.alignedArea};
   for (std::size_t i = 0; i < 9; ++i) result.rotation[i] = r.rotation[i / 3][i % 3];
   writeStruct(result, *out, "report");
 }

@@ -35,6 +35,7 @@ Dict asDict(const ShapeReport& r) {
   d["tagged_edges"] = r.taggedEdges;
   d["inner_faces"] = r.innerFaces;
   d["aligned_faces"] = r.alignedFaces;
+  d["aligned_area"] = r.alignedArea;
   d["worst"] = r.distortion.worst;
   d["median"] = r.distortion.median;
   return d;

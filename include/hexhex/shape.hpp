@@ -59,6 +59,7 @@ struct ShapeReport {
   std::uint64_t taggedEdges = 0;   ///< those of them that are edges of the map
   std::uint64_t innerFaces = 0;    ///< interior triangles with a tag or on a region interface
   std::uint64_t alignedFaces = 0;  ///< those of them in planes of the map, to be covered by quads
+  double alignedArea = 1;          ///< share of the area of inner faces that these have
   MapDistortion distortion;
 };
 

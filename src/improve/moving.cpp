@@ -17,6 +17,15 @@ namespace {
 /// Where more cells are below the target, moving all at once takes too long: a minute and more.
 constexpr std::size_t kMostLowAtOnce = 5'000;
 
+/// Boundary quads that are farther from the surface, in diagonals, become smaller: twice as far is
+/// what people call another shape.
+constexpr double kFarChord = 2.5e-3;
+/// Rounds of that, at most, and in a row without a nearer mesh.
+constexpr int kMostSpreads = 40;
+constexpr int kSpreadStalls = 4;
+/// By less than that, a mesh is no nearer: right angles are given for it.
+constexpr double kNearer = 0.99;
+
 /// The least scaled Jacobian that is to be kept: what was, or the target if the mesh is pulled onto
 /// a surface, where good cells become less good.
 double leastKept(const ImproveReport& report, const VertexPlaces& places, double target) {
@@ -83,12 +92,14 @@ double farthestAllowed(const SurfaceDistance& before) {
 
 double meritOf(const ImproveReport& report) {
   constexpr double kGood = 0.3;        // a minimum above needs no better
-  constexpr double kElsewhere = 0.01;  // of the diagonal: that is another object
+  constexpr double kNear = 5e-3;       // of the diagonal: half as good
   constexpr double kUnfollowed = 0.5;  // of a mesh that follows no curve
   constexpr double kGrown = 2;         // times the cells that were asked for, before layers
   if (!report.after.allPositive()) return -1;
   const double quality = std::min(1.0, report.after.quality.minimum / kGood);
-  const double nearness = std::max(0.0, 1 - report.distanceAfter.hausdorff() / kElsewhere);
+  // Of two meshes that are far away, one is still nearer.
+  const double distance = report.distanceAfter.hausdorff() / kNear;
+  const double nearness = 1 / (1 + distance * distance);
   const auto cells = static_cast<double>(report.after.positive);
   const double size = std::min(1.0, kGrown * (1 - static_cast<double>(report.addedCells) / cells));
   return quality * nearness * size * (kUnfollowed + (1 - kUnfollowed) * report.curvesFollowed);
@@ -149,7 +160,7 @@ class Moving {
         after = distance();
       }
     }
-    return after;
+    return curved_ ? after : spread(sweeps, floor, after);
   }
 
   /// Puts back what moved together with some cells.
@@ -197,6 +208,27 @@ class Moving {
   void oneByOne(Sweeps& sweeps) const {
     sweeps.untangle(slack_);
     sweeps.raiseWorst(options_.target, 0);
+  }
+
+  /// Makes quads smaller where the surface bends most, as long as that brings the mesh nearer.
+  BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
+    Array<Vec3> points = subject_.mesh.points;
+    Array<Index> simplices = places_.simplex;
+    BoundaryDistance now = best;
+    int stalls = 0;
+    for (int i = 0; i < kMostSpreads && stalls < kSpreadStalls; ++i) {
+      if (now.largest.hausdorff() <= kFarChord) break;
+      sweeps.spread(boundary_.quads, now.ofQuads, kFarChord / 2, floor);
+      now = distance();
+      ++stalls;
+      if (now.largest.hausdorff() > kNearer * best.largest.hausdorff()) continue;
+      stalls = 0;
+      best = now;
+      points = subject_.mesh.points;
+      simplices = places_.simplex;
+    }
+    sweeps.putBackAll(points, simplices);
+    return best;
   }
 
   /// All vertices at once, where cells stay below the target. Around cells that were bad at first,

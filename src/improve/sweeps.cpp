@@ -452,4 +452,31 @@ void Sweeps::pullOntoSurface(double floor) {
   }
 }
 
+void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors, double even,
+                    double floor) {
+  std::vector<Vec3> sums(mesh_.points.size());
+  std::vector<double> weights(mesh_.points.size(), 0);
+  for (std::size_t q = 0; q < quads.size(); ++q) {
+    const double weight = std::max(errors[q], even);
+    for (const Index v : quads[q]) {
+      for (const Index corner : quads[q]) {
+        sums[v] = plus(sums[v], times(weight / 4, mesh_.points[corner]));
+      }
+      weights[v] += weight;
+    }
+  }
+  std::vector<Index> outer;
+  std::vector<Index> inner;
+  for (Index v = 0; v < mesh_.points.size(); ++v) {
+    if (weights[v] > 0 && places_.freedom[v] != Freedom::Fixed) outer.push_back(v);
+    if (places_.freedom[v] == Freedom::Free && !meshAround_(v).empty()) inner.push_back(v);
+  }
+  sweep(outer, 0, [&](VertexMover& mover, Index v) {
+    mover.moveTo(v, places_.nearest(v, times(1 / weights[v], sums[v])), false, floor,
+                 mover.farthestAt(v));
+  });
+  takeBoxes();
+  sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+}
+
 }  // namespace hexhex::improvement

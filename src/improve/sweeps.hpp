@@ -175,6 +175,14 @@ class Sweeps {
   void moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
                 const Array<Index>& simplicesBefore, double floor);
 
+  /// Moves vertices of the boundary along it to where its quads are far from the surface, so that
+  /// these become smaller and others larger, and then those inside after them. Scaled Jacobians
+  /// stay as smooth() would leave them.
+  /// @param errors  per quad of the boundary: how far it is, in any unit
+  /// @param even    quads that are no farther weigh as if they were so far
+  void spread(std::span<const Quad> quads, std::span<const double> errors, double even,
+              double floor);
+
   /// The cells, with their points.
   [[nodiscard]] CellPoints cellPoints() const;
 

@@ -185,8 +185,7 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   if (!isCertified(before)) return 0;
   collect(vertex, false);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
-  const double chord = all_.chordError.chord;
-  const double farthest = bounded ? std::max(chord, all_.chordError.at(vertex, chord)) : 0;
+  const double farthest = bounded ? farthestAt(vertex) : 0;
   const double moved = mover_.descend(vertex, terms_, EnergyKind{power, 0, 0}, [&] {
     return isGoodAround(vertex, before, exchange) &&
            (!bounded || all_.chordError.at(vertex, farthest) <= farthest);
@@ -196,10 +195,19 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
   return moved / sizeAt(vertex);
 }
 
-void VertexMover::moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor) {
+double VertexMover::farthestAt(Index vertex) const {
+  const double chord = all_.chordError.chord;
+  return std::max(chord, all_.chordError.at(vertex, chord));
+}
+
+void VertexMover::moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor,
+                         double farthest) {
   const double least = leastQualityAt(vertex);
   if (!isCertified(least)) return;
-  const auto isGood = [&] { return isGoodAround(vertex, least, {floor}); };
+  const auto isGood = [&] {
+    return isGoodAround(vertex, least, {floor}) &&
+           (std::isinf(farthest) || all_.chordError.at(vertex, farthest) <= farthest);
+  };
   if (mover_.moveTo(vertex, place, isPulled, isGood)) keepMeasured();
 }
 

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -162,9 +163,14 @@ class VertexMover {
   /// @return as untangle()
   double smooth(Index vertex, int power, const Exchange& exchange);
 
-  /// Moves a vertex of the boundary towards a place, as of PointMover, if the cells around stay as
-  /// good as smooth() would leave them.
-  void moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor);
+  /// Moves a vertex of the boundary towards a place, as PointMover does, if the cells around stay
+  /// as good as smooth() would leave them.
+  /// @param farthest  how far quads there may be from the surface
+  void moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor,
+              double farthest = std::numeric_limits<double>::infinity());
+
+  /// How far quads at a vertex may come from the surface: no farther than they are.
+  [[nodiscard]] double farthestAt(Index vertex) const;
 
  private:
   void collect(Index vertex, bool bezier);

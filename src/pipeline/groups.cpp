@@ -72,7 +72,8 @@ class BoundaryTagger {
       : map_(map),
         mesh_(mesh),
         stage_(stage),
-        triangles_(boundaryOf(map, topologyOf(map, stage))),
+        topology_(topologyOf(map, stage)),
+        triangles_(boundaryOf(map, topology_)),
         quads_(adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage))) {}
 
   void tagQuads() {
@@ -96,6 +97,35 @@ class BoundaryTagger {
       tagged[q] = {quad, isThis ? triangles_[nearest].tag : before.of(quad)};
     });
     replaceBoundary(std::move(tagged));
+  }
+
+  /// Quads between regions where no plane of the map is: they get the tag of the nearest triangle
+  /// between the same two.
+  void tagInterfaces() {
+    const std::map<Regions, std::vector<FeatureFace>> interfaces = taggedInterfaces();
+    if (interfaces.empty() || mesh_.regions.empty()) return;
+    std::map<Regions, improvement::TriangleTree> trees;
+    for (const auto& [regions, triangles] : interfaces) {
+      std::vector<std::array<Vec3, 3>> corners;
+      for (const FeatureFace& triangle : triangles) corners.push_back(cornersOf(triangle));
+      trees.emplace(regions, corners);
+    }
+    const Tags<FeatureQuad> before(mesh_.features.quads);
+    const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh_, stage_);
+    adjacency::forEachFace(
+        std::span<const Hex>(mesh_.cells), 0, mesh_.points.size(), around, [&](const auto& sides) {
+          if (sides.size() != 2) return;
+          const Regions regions =
+              between(mesh_.regions[sides[0].cell], mesh_.regions[sides[1].cell]);
+          const auto tree = trees.find(regions);
+          if (tree == trees.end()) return;
+          const Quad quad = adjacency::faceVertices(mesh_.cells[sides[0].cell], sides[0].face);
+          if (before.of(quad) != 0) return;
+          const std::array<Vec3, 4> at = {mesh_.points[quad[0]], mesh_.points[quad[1]],
+                                          mesh_.points[quad[2]], mesh_.points[quad[3]]};
+          const std::size_t nearest = tree->second.nearest(centreOf(at)).triangle;
+          mesh_.features.quads.push_back({quad, interfaces.at(regions)[nearest].tag});
+        });
   }
 
   std::uint64_t tagEdges(const Features& held) {
@@ -158,6 +188,28 @@ class BoundaryTagger {
   }
 
  private:
+  using Regions = std::array<std::int32_t, 2>;
+  static Regions between(std::int32_t a, std::int32_t b) {
+    return {std::min(a, b), std::max(a, b)};
+  }
+
+  [[nodiscard]] std::map<Regions, std::vector<FeatureFace>> taggedInterfaces() const {
+    std::map<Regions, std::vector<FeatureFace>> list;
+    const Tags<FeatureFace> tags(map_.features.faces);
+    if (map_.regions.empty() || tags.empty()) return list;
+    for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
+      const adjacency::HalfFace mate = topology_.mate[h];
+      if (mate == kNone || mate < h) continue;
+      const Index tet = adjacency::tetOf(h);
+      const Regions regions = between(map_.regions[tet], map_.regions[adjacency::tetOf(mate)]);
+      if (regions[0] == regions[1]) continue;
+      const auto vertices = adjacency::faceVertices(map_.tets[tet], h % 4);
+      const std::int32_t tag = tags.of(vertices);
+      if (tag != 0) list[regions].push_back({vertices, tag});
+    }
+    return list;
+  }
+
   [[nodiscard]] std::array<Vec3, 3> cornersOf(const FeatureFace& triangle) const {
     const auto& [a, b, c] = triangle.vertices;
     return {map_.points[a], map_.points[b], map_.points[c]};
@@ -209,6 +261,7 @@ class BoundaryTagger {
   const TetMap& map_;
   HexMesh& mesh_;
   Stage& stage_;
+  adjacency::TetTopology topology_;
   std::vector<FeatureFace> triangles_;
   Array<Quad> quads_;
 };
@@ -246,6 +299,7 @@ std::uint64_t tagBoundary(const TetMap& map, const Features& held, HexMesh& mesh
   if (map.features.empty()) return 0;
   BoundaryTagger tagger(map, mesh, stage);
   tagger.tagQuads();
+  tagger.tagInterfaces();
   const std::uint64_t missing = tagger.tagEdges(held);
   tagger.tagVertices();
   return missing;

@@ -13,7 +13,8 @@ namespace hexhex::pipeline {
 /// Others have no edges or quads, and borders on a smooth surface would only be in the way.
 [[nodiscard]] Features heldTags(const TetMap& map, Stage& stage);
 
-/// Gives boundary quads the tags of the triangles that are nearest to their centres; edges of the
+/// Gives boundary quads the tags of the triangles that are nearest to their centres, and so quads
+/// between two regions that have none those of triangles between these; edges of the
 /// mesh beside tagged curves that are not lines of the map the tags of these; and vertices nearest
 /// to tagged ones theirs.
 /// @param held  as of heldTags()

@@ -51,21 +51,29 @@ void countInnerFaces(const TetMap& map, const adjacency::TetTopology& topology,
       for (const double x : u) size = std::max(size, std::abs(x));
     }
   }
+  double area = 0;
+  double aligned = 0;
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
     const adjacency::HalfFace mate = topology.mate[h];
     if (mate == kNone || mate < h) continue;
     const Index tet = adjacency::tetOf(h);
+    const std::array<Index, 3> v = adjacency::faceVertices(map.tets[tet], h % 4);
     const bool isBetween =
         !map.regions.empty() && map.regions[tet] != map.regions[adjacency::tetOf(mate)];
-    if (!isBetween && !std::binary_search(tagged.begin(), tagged.end(),
-                                          sorted(adjacency::faceVertices(map.tets[tet], h % 4)))) {
+    if (!isBetween && !std::binary_search(tagged.begin(), tagged.end(), sorted(v))) {
       continue;
     }
+    const Vec3& corner = map.points[v[0]];
+    const double twice =
+        length(cross(minus(map.points[v[1]], corner), minus(map.points[v[2]], corner)));
     ++features.innerFaces;
+    area += twice;
     if (isLevel(map.parameters[tet], h, QuantizeOptions{}.tolerance * size)) {
       ++features.alignedFaces;
+      aligned += twice;
     }
   }
+  if (area > 0) features.alignedArea = aligned / area;
 }
 
 }  // namespace

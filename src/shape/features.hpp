@@ -16,6 +16,7 @@ struct FoundFeatures {
       aligned;                 ///< those between triangles of the map on different axes, ascending
   std::size_t innerFaces = 0;  ///< with a tag, or between regions
   std::size_t alignedFaces = 0;  ///< of these: those that quantize() takes for planes
+  double alignedArea = 1;        ///< their share of the area
 };
 
 /// @param map    whose boundary triangles are perpendicular to axes

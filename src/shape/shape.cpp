@@ -94,6 +94,7 @@ ShapedMap finish(const TetMesh& given, TetMap map, const ShapeOptions& options, 
   report.taggedEdges = features.aligned.size();
   report.innerFaces = features.innerFaces;
   report.alignedFaces = features.alignedFaces;
+  report.alignedArea = features.alignedArea;
   addSharpEdges(features.aligned, map.features);
   report.distortion = quantization::distortionOf(map.points, map.tets, map.parameters);
   return {std::move(map), report};

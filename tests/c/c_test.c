@@ -87,6 +87,9 @@ static void test_corner_order(void) {
   arrays.tets = tets;
   arrays.tet_count = 6;
   arrays.parameters = parameters;
+  const hexhex_tag_name names[] = {{3, 1, "steel"}, {2, -4, "contact"}};
+  arrays.tag_names = names;
+  arrays.tag_name_count = 2;
   hexhex_map* map = NULL;
   hexhex_mesh* mesh = NULL;
   hexhex_error error;
@@ -94,6 +97,7 @@ static void test_corner_order(void) {
   hexhex_map_arrays seen = HEXHEX_MAP_ARRAYS_INIT;
   CHECK_OK(hexhex_map_get_arrays(map, &seen, NULL));
   CHECK(seen.points == points && seen.tets == tets && seen.parameters == parameters);
+  CHECK(seen.tag_name_count == 2 && strcmp(seen.tag_names[0].name, "steel") == 0);
   hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
   options.scale = 2;
   CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, NULL, &error));
@@ -101,6 +105,16 @@ static void test_corner_order(void) {
   CHECK_OK(hexhex_mesh_get_arrays(mesh, &m, &error));
   CHECK(m.cell_count == 8 && m.point_count == 27);
   CHECK(m.generator_tet != NULL && m.generator_corners != NULL);
+  /* Names go into a mesh and come back. */
+  m.tag_names = names;
+  m.tag_name_count = 2;
+  hexhex_mesh* copy = NULL;
+  hexhex_mesh_arrays copied = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_copy(&m, &copy, &error));
+  CHECK_OK(hexhex_mesh_get_arrays(copy, &copied, &error));
+  CHECK(copied.tag_name_count == 2 && copied.tag_names[1].dimension == 2);
+  CHECK(copied.tag_names[1].tag == -4 && strcmp(copied.tag_names[1].name, "contact") == 0);
+  hexhex_mesh_destroy(copy);
   for (size_t c = 0; c < m.cell_count; ++c) {
     const uint32_t* cell = m.cells + 8 * c;
     CHECK(corner_determinant(m.points, cell) > 0);

@@ -20,6 +20,7 @@
 
 #include <base/vector3.hpp>
 #include <improve/all_at_once.hpp>
+#include <improve/moving.hpp>
 
 #include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
@@ -741,6 +742,29 @@ TEST(Improve, LeavesTheMeshAloneIfItIsCancelled) {
     }
   }
   EXPECT_GT(interrupted, 2);
+}
+
+// Quads of a ball are largest in the middles of its blocks, where it bends as much as elsewhere.
+TEST(Improve, MakesFarQuadsSmallerUntilTheyAreNearer) {
+  const TetMap map = generateSample(SampleKind::Sphere, {.cells = 5, .refine = 4}).map;
+  HexMesh mesh = extracted(map, 1);
+  const ImproveReport report = improvedOn(mesh, map);
+  EXPECT_TRUE(report.after.allPositive());
+  EXPECT_GE(report.after.quality.minimum, report.before.quality.minimum);
+  EXPECT_LT(report.distanceAfter.hausdorff(), 0.75 * report.distanceBefore.hausdorff());
+}
+
+// Neither is near, and still one is better: what was nothing each made them alike.
+TEST(Improve, MeritTellsMeshesApartThatAreFar) {
+  ImproveReport near;
+  near.after.validity.resize(1);
+  near.after.positive = 1;
+  near.after.quality.minimum = 0.2;
+  near.distanceAfter.fromMesh = 0.02;
+  ImproveReport far = near;
+  far.distanceAfter.fromMesh = 0.03;
+  EXPECT_GT(improvement::meritOf(near), improvement::meritOf(far));
+  EXPECT_GT(improvement::meritOf(far), 0);
 }
 
 }  // namespace hexhex::test

@@ -278,6 +278,7 @@ TEST(PartTags, OfABoxReachTheFilesOfEveryFormat) {
   EXPECT_NE(text.find("ELSET=E_WATER"), std::string::npos);
   const HexMesh again = readHexMesh(folder / "out.inp");
   EXPECT_EQ(again.features.names.front().name, "water");
+  EXPECT_EQ(readHexMesh(folder / "out.vtu").features.names, part.mesh.features.names);
 }
 
 TEST(PartTags, OfMeditAndAbaqusAreThoseOfGmsh) {
@@ -340,6 +341,7 @@ TEST(PartTags, OfRegionsAreThoseOfCellsCentres) {
     // The slanted face between them is no plane of any map, which the report says.
     EXPECT_GT(part.shape.innerFaces, 0U);
     EXPECT_LT(part.shape.alignedFaces, part.shape.innerFaces);
+    EXPECT_LT(part.shape.alignedArea, 1);
     // All of the skin, and nothing else.
     for (const FeatureQuad& quad : part.mesh.features.quads) EXPECT_EQ(quad.tag, 5);
     Context context;
@@ -355,11 +357,84 @@ TEST(PartTags, OfAlignedRegionsAreFollowed) {
   const MeshedPart part = meshed(box, 500);
   EXPECT_GT(part.shape.innerFaces, 0U);
   EXPECT_EQ(part.shape.alignedFaces, part.shape.innerFaces);
+  EXPECT_EQ(part.shape.alignedArea, 1);
   for (std::size_t c = 0; c < part.mesh.cells.size(); ++c) {
     for (const Index v : part.mesh.cells[c]) {
       const double x = part.mesh.points[v][0];
       EXPECT_TRUE(part.mesh.regions[c] == 1 ? x < 1 + 1e-9 : x > 1 - 1e-9);
     }
+  }
+}
+
+/// Triangles between tets of two regions.
+void tagInterface(TetMesh& mesh, std::int32_t tag) {
+  std::map<std::array<Index, 3>, std::set<std::int32_t>> around;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (std::size_t skipped = 0; skipped < 4; ++skipped) {
+      std::vector<Index> face;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (i != skipped) face.push_back(mesh.tets[t][i]);
+      }
+      std::sort(face.begin(), face.end());
+      around[{face[0], face[1], face[2]}].insert(mesh.regions[t]);
+    }
+  }
+  for (const auto& [face, regions] : around) {
+    if (regions.size() > 1) mesh.features.faces.push_back({face, tag});
+  }
+}
+
+/// How many faces of cells lie between regions, and how many of these have a tag.
+std::array<std::size_t, 2> interfaceOf(const HexMesh& mesh, std::int32_t tag) {
+  constexpr std::array<Quad, 6> kFaces = {
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 4, 7, 3}, {1, 2, 6, 5}}};
+  std::map<Quad, std::set<std::int32_t>> around;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    for (Quad face : kFaces) {
+      for (Index& v : face) v = mesh.cells[c][v];
+      std::sort(face.begin(), face.end());
+      around[face].insert(mesh.regions[c]);
+    }
+  }
+  std::array<std::size_t, 2> counts{};
+  for (const auto& [face, regions] : around) counts[0] += regions.size() > 1 ? 1 : 0;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    Quad face = quad.vertices;
+    std::sort(face.begin(), face.end());
+    if (quad.tag == tag && around.at(face).size() > 1) ++counts[1];
+  }
+  return counts;
+}
+
+TEST(PartTags, OfInterfacesArriveWhereTheyAreNoPlanes) {
+  // Two halves of a box, along a plane of the map and across; a ball in a ball.
+  const std::array<TagAt, 2> halves = {[](const Vec3& p) { return p[0] < 1 ? 1 : 2; },
+                                       [](const Vec3& p) { return p[0] + p[1] < 2 ? 1 : 2; }};
+  std::vector<TetMesh> parts;
+  for (const TagAt& half : halves) {
+    parts.push_back(plainBox());
+    tag(
+        parts.back(), [](const Vec3&) { return 0; }, half);
+  }
+  parts.push_back(ballInTwo());
+  const std::vector<Vec3>& points = parts.back().points;
+  double radius = 0;
+  for (const Vec3& p : points) radius = std::max(radius, std::hypot(p[0], p[1], p[2]));
+  for (std::size_t t = 0; t < parts.back().tets.size(); ++t) {
+    const Vec3 centre = centreOf(points, parts.back().tets[t]);
+    const bool isInner = std::hypot(centre[0], centre[1], centre[2]) < radius / 2;
+    parts.back().regions[t] = isInner ? 1 : 2;
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    tagInterface(parts[i], 11);
+    parts[i].features.names.push_back({2, 11, "contact"});
+    const MeshedPart part = meshed(parts[i], 500);
+    const auto [faces, tagged] = interfaceOf(part.mesh, 11);
+    EXPECT_GT(faces, 0U);
+    EXPECT_EQ(tagged, faces);
+    EXPECT_EQ(part.shape.alignedArea == 1, i == 0);
+    EXPECT_GT(1 - part.shape.alignedArea, i == 0 ? -1 : 0.2);
+    EXPECT_EQ(part.mesh.features.names.front().name, "contact");
   }
 }
 

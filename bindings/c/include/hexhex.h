@@ -192,6 +192,12 @@ typedef struct hexhex_feature_quad {
   uint32_t vertices[4];
   int32_t tag;
 } hexhex_feature_quad;
+/** What files call the elements with a tag. */
+typedef struct hexhex_tag_name {
+  int32_t dimension; /**< of the elements: 0 vertices, 1 edges, 2 faces, 3 cells (their region) */
+  int32_t tag;
+  const char* name;
+} hexhex_tag_name;
 
 /** Arrays of a tetrahedral mesh with an integer-grid map. */
 typedef struct hexhex_map_arrays {
@@ -211,12 +217,14 @@ typedef struct hexhex_map_arrays {
   size_t feature_edge_count;
   const hexhex_feature_face* feature_faces;
   size_t feature_face_count;
-  const int32_t* regions; /**< or NULL: none. One per tet, inherited by cells */
+  const int32_t* regions;           /**< or NULL: none. One per tet, inherited by cells */
+  const hexhex_tag_name* tag_names; /**< names of groups that have one */
+  size_t tag_name_count;
 } hexhex_map_arrays;
 #define HEXHEX_MAP_ARRAYS_INIT                                                                   \
   {                                                                                              \
     sizeof(hexhex_map_arrays), NULL, 0, NULL, 0, NULL, NULL, 0, NULL, NULL, 0, NULL, 0, NULL, 0, \
-        NULL                                                                                     \
+        NULL, NULL, 0                                                                            \
   }
 
 /** A tetrahedral mesh with an integer-grid map. */
@@ -410,10 +418,15 @@ typedef struct hexhex_mesh_arrays {
   size_t feature_edge_count;
   const hexhex_feature_quad* feature_quads;
   size_t feature_quad_count;
-  const int32_t* regions; /**< per cell, or NULL */
+  const int32_t* regions;           /**< per cell, or NULL */
+  const hexhex_tag_name* tag_names; /**< of groups that have one */
+  size_t tag_name_count;
 } hexhex_mesh_arrays;
-#define HEXHEX_MESH_ARRAYS_INIT \
-  { sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL }
+#define HEXHEX_MESH_ARRAYS_INIT                                                                \
+  {                                                                                            \
+    sizeof(hexhex_mesh_arrays), NULL, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, \
+        NULL, 0                                                                                \
+  }
 
 /** A hexahedral mesh. */
 typedef struct hexhex_mesh hexhex_mesh;
@@ -1275,11 +1288,12 @@ typedef struct hexhex_shape_report {
   uint64_t inner_faces;   /**< interior triangles with a tag or between regions */
   uint64_t aligned_faces; /**< those of them that lie in planes of the map */
   uint64_t flat_charts;   /**< invalid: charts with two edges that would coincide */
+  double aligned_area; /**< share of the area of inner faces that the aligned ones have, 0 to 1 */
 } hexhex_shape_report;
 #define HEXHEX_SHAPE_REPORT_INIT                                                                 \
   {                                                                                              \
     sizeof(hexhex_shape_report), HEXHEX_METHOD_AUTO, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0                                                                               \
+        0, 0, 0, 0, 0                                                                            \
   }
 
 /** Computes a seamless map for tets without one, as input for hexhex_quantize(). If none is found,

@@ -210,6 +210,7 @@ export interface ShapeReport {
   tagged_edges: number;
   inner_faces: number;
   aligned_faces: number;
+  aligned_area: number;
   scaled_jacobian: { worst: number; median: number };
 }
 

@@ -372,6 +372,7 @@ class ShapeReport:
     tagged_edges: int  #: those of them that are edges of the map
     inner_faces: int  #: interior triangles with a tag or between regions
     aligned_faces: int  #: those of them that lie in planes of the map, which the mesh follows
+    aligned_area: float  #: share of the area of inner faces that these have, 0 to 1
     worst: float  #: distortion of the map as a scaled Jacobian, at most 1
     median: float
 

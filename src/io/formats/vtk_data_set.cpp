@@ -118,9 +118,18 @@ void addRows(VtkDataSet& data, std::string_view name, const std::vector<Feature>
   data.addOwn(VtkSection::FieldData, name, rowsOf(features), features.front().vertices.size() + 1);
 }
 
+void addNames(VtkDataSet& data, std::span<const TagName> names) {
+  if (names.empty()) return;
+  std::vector<std::int32_t> tags;
+  for (const TagName& known : names) tags.insert(tags.end(), {known.dimension, known.tag});
+  data.addTexts(kVtkTagNames, names);
+  data.addOwn(VtkSection::FieldData, kVtkNamedTags, std::move(tags), 2);
+}
+
 template <class AnyFeatures, class Face>
 void addTagsOf(VtkDataSet& data, const AnyFeatures& features, std::string_view faceTags,
                const std::vector<Face>& faces, std::span<const std::int32_t> regions) {
+  addNames(data, features.names);
   addRows(data, kVtkEdgeTags, features.edges);
   addRows(data, faceTags, faces);
   if (!features.vertices.empty()) {
@@ -130,6 +139,15 @@ void addTagsOf(VtkDataSet& data, const AnyFeatures& features, std::string_view f
 }
 
 }  // namespace
+
+void VtkDataSet::addTexts(std::string_view name, std::span<const TagName> names) {
+  std::string all;
+  for (const TagName& known : names) all += known.name.c_str() + std::string(1, '\0');
+  const std::uint64_t bytes = all.size();
+  arrays_.insert(arrays_.begin(),
+                 {VtkSection::FieldData, name, kVtkString, 1, names.size(), bytes,
+                  [own = std::move(all)](const VtkBytes& out) { out(own.data(), own.size()); }});
+}
 
 VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_t cells,
                        std::size_t corners, std::uint8_t type) {

@@ -53,6 +53,10 @@ inline constexpr std::string_view kVtkEdgeTags = "feature_edges";
 inline constexpr std::string_view kVtkTriangleTags = "feature_triangles";
 inline constexpr std::string_view kVtkQuadTags = "feature_quads";
 inline constexpr std::string_view kVtkRegions = "region";
+inline constexpr std::string_view kVtkString = "String";  ///< what VTK calls texts
+/// Of tags that have one, and in the same order their dimensions and tags.
+inline constexpr std::string_view kVtkTagNames = "tag_names";
+inline constexpr std::string_view kVtkNamedTags = "named_tags";
 // Those of VTK's own.
 inline constexpr std::string_view kVtkGlobalPoints = "GlobalPointIds";
 inline constexpr std::string_view kVtkGlobalCells = "GlobalCellIds";
@@ -109,6 +113,8 @@ class VtkDataSet {
     arrays_.insert(behind, {section, name, typeName<T>(), components, rows,
                             rows * components * sizeof(T), std::move(write)});
   }
+  /// Texts without zeros; each gets one behind it.
+  void addTexts(std::string_view name, std::span<const TagName> names);
   /// Numbers as they lie in memory.
   template <class T>
   void add(VtkSection section, std::string_view name, std::span<const T> values,

@@ -661,6 +661,43 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
   return features;
 }
 
+/// Names of tags.
+std::vector<TagName> readNames(const VtkSource& source) {
+  const VtkSourceArray* const texts =
+      source.find(VtkSection::FieldData, kVtkTagNames, 1, VtkNumbers::Others);
+  const VtkSourceArray* const tags =
+      source.find(VtkSection::FieldData, kVtkNamedTags, 2, VtkNumbers::Integers);
+  std::vector<TagName> names;
+  if (texts == nullptr || tags == nullptr) return names;
+  const auto numbersOf = [&source](const VtkSourceArray& array) {
+    const VtkColumn column = source.load(array);
+    std::vector<std::int64_t> numbers(static_cast<std::size_t>(column.count));
+    source.copy(column, 0, numbers.size(), numbers.data());
+    return numbers;
+  };
+  std::string name;
+  for (const std::int64_t character : numbersOf(*texts)) {
+    if (character != 0) {
+      name += static_cast<char>(character);
+    } else {
+      names.push_back({0, 0, std::exchange(name, {})});
+    }
+  }
+  const std::vector<std::int64_t> numbers = numbersOf(*tags);
+  bool isGood = name.empty() && numbers.size() == 2 * names.size();
+  for (std::size_t i = 0; isGood && i < names.size(); ++i) {
+    isGood = numbers[2 * i] >= 0 && numbers[2 * i] <= 3 &&
+             std::in_range<std::int32_t>(numbers[2 * i + 1]);
+    names[i].dimension = static_cast<int>(numbers[2 * i]);
+    names[i].tag = static_cast<std::int32_t>(numbers[2 * i + 1]);
+  }
+  if (isGood) return names;
+  source.fail(ErrorCode::FileSyntax,
+              "the arrays \"" + texts->name + "\" and \"" + tags->name +
+                  "\" do not fit each other: for each name, which ends with a zero, a dimension "
+                  "from 0 to 3 and a tag. Write the file anew, or remove both.");
+}
+
 /// The array of regions: this library's, meshio's of files of other formats, or Gmsh's.
 const VtkSourceArray* findRegions(const VtkSource& source) {
   for (const std::string_view name :
@@ -722,14 +759,14 @@ void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<Corner
 
 HexFeatures readVtkHexFeatures(const VtkSource& source) {
   return {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
-          readRows<FeatureQuad>(source, kVtkQuadTags)};
+          readRows<FeatureQuad>(source, kVtkQuadTags), readNames(source)};
 }
 
 Features readVtkTetFeatures(const VtkSource& source) {
   constexpr CellKind kLineKind = {
       .corners = 2, .singular = "line", .plural = "lines", .vtkType = kVtkLine};
   Features features = {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
-                       readRows<FeatureFace>(source, kVtkTriangleTags)};
+                       readRows<FeatureFace>(source, kVtkTriangleTags), readNames(source)};
   addTaggedCells(source, kLineKind, features.edges);
   addTaggedCells(source, kTriangleKind, features.faces);
   return features;

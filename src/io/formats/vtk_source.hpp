@@ -44,7 +44,7 @@ template <class T>
 }
 [[nodiscard]] std::size_t bytesOf(const VtkScalar& scalar);
 
-/// What numbers are needed as. Arrays of others, like strings, are never needed.
+/// What numbers are needed as. Of others, only characters are ever needed.
 enum class VtkNumbers : std::uint8_t { Integers, Reals, Others };
 
 /// Where the numbers of an array are, and how they are stored.

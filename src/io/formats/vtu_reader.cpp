@@ -207,8 +207,9 @@ constexpr std::array<std::pair<std::string_view, VtkSection>, 5> kSections = {
      {"Points", VtkSection::Points},
      {"Cells", VtkSection::Cells}}};
 
-constexpr std::array<std::pair<std::string_view, VtkScalar>, 10> kScalars = {
-    {{"Int8", std::int8_t{}},
+constexpr std::array<std::pair<std::string_view, VtkScalar>, 11> kScalars = {
+    {{kVtkString, std::uint8_t{}},
+     {"Int8", std::int8_t{}},
      {"UInt8", std::uint8_t{}},
      {"Int16", std::int16_t{}},
      {"UInt16", std::uint16_t{}},
@@ -567,7 +568,9 @@ class VtuFile final : public VtkSource {
   VtkColumn loadArray(const XmlTag& tag, VtkNumbers numbers,
                       std::optional<std::uint64_t> count) const {
     const std::string_view format = tag.attribute("format");
-    if (format == "ascii") return parse(tag, numbers, count);
+    if (format == "ascii") {  // of texts, the numbers of characters
+      return parse(tag, numbers == VtkNumbers::Others ? VtkNumbers::Integers : numbers, count);
+    }
     if (format != "appended" && format != "binary") {
       tags_.fail(ErrorCode::FileUnsupported,
                  "the data format " + quoted(format) + " is none of appended, binary and ascii.",
