@@ -368,7 +368,7 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
       const double lengths = quotient.lengths.values[quotient.lengths.cornerAt(corner)];
       const double scaled = scaledDeterminant(value, std::sqrt(lengths));
       if (scaled >= result.scaledJacobian) continue;
-      // A refuted cell is certainly bad at that place.
+      // The place reported for a refuted cell must be certainly bad.
       if (result.validity == Validity::Refuted && value >= -error) continue;
       result.scaledJacobian = scaled;
       result.place = quotient.part.corner(corner);
