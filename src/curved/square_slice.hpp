@@ -100,8 +100,7 @@ inline constexpr std::uint8_t kUncut = 4;
 struct SectionCuts {
   std::array<SideCut, 4> sides;
   std::array<std::uint8_t, 4> corner;  ///< per existing side: the corner of the slice before it
-  bool areKnown = false;  ///< applies to all members; false wherever a corner or an intersection is
-                          ///< on two lines
+  bool areKnown = false;  ///< all of this; never where a corner or an intersection is on two lines
 };
 
 /// A side whose cut is known.

@@ -21,8 +21,7 @@ struct CellMeasures {
   std::array<double, kMost> scaled;  ///< scaled Jacobian
   std::array<double, kMost> corner;  ///< the least of the eight values at corners
   std::array<double, kMost> least;   ///< the least of the 27 coefficients
-  std::array<double, kMost> volume;  ///< of the box spanned by the longest edges along the three
-                                     ///< axes
+  std::array<double, kMost> volume;  ///< of the box of the longest edges along the three axes
   /// 0 for cells whose edges are too long or too short for squares; nothing else is known of these.
   std::array<std::int64_t, kMost> inRange;
 

@@ -295,8 +295,7 @@ CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes, const F
         {BigInteger(node[0], shift), BigInteger(node[1], shift), BigInteger(node[2], shift)});
   }
   const Columns<BigInteger> columns = columnsOf(integers, exactMatrices_);
-  for (std::size_t corner = 0; corner < 8; ++corner) {  // most cells that get here are flat at a
-                                                        // corner
+  for (std::size_t corner = 0; corner < 8; ++corner) {  // most cells that get here are flat there
     Columns<BigInteger> there;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < 3; ++k) {

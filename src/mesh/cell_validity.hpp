@@ -52,8 +52,7 @@ class CellValidity {
   NodeMatrices<double> matrices_;
   NodeMatrices<Twofold> fineMatrices_;
   NodeMatrices<BigInteger> exactMatrices_;
-  double conversionError_;  ///< of a column before rounding, relative to the largest difference of
-                            ///< nodes
+  double conversionError_;  ///< of unrounded columns, relative to the largest difference of nodes
 };
 
 }  // namespace hexhex::mesh

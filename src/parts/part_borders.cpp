@@ -25,8 +25,8 @@ struct SharedSide {
 
 struct Pairing {
   std::uint32_t part;    ///< the neighbour
-  std::uint64_t number;  ///< orders the face as the part with the smaller number sees it: the same
-                         ///< order in both parts
+  std::uint64_t number;  ///< global number of the cell in the smaller part, so that both parts sort
+                         ///< alike
   std::uint8_t side;
   PartFace face;  ///< as this part sees it
 };
@@ -124,8 +124,7 @@ std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> arou
     others.push_back({around[i].part, static_cast<Index>(i)});
   }
   std::sort(others.begin(), others.end());
-  std::vector<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the latest part that was
-                                                                     // seen with a vertex
+  std::vector<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the latest part seen
   std::vector<bool> isShared(part.ownPoints, false);
   for (const OfPart& each : others) {
     if (part.neighbours.empty() || part.neighbours.back().part != each.part) {

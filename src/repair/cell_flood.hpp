@@ -74,8 +74,8 @@ class CellFlood {
   std::span<const std::uint8_t> valid_;
   lattice::GridPoint low_{};
   std::vector<Piece> pieces_;
-  std::array<double, 6> wallArea_{};  ///< area of the tets' boundary in each wall: axis 0 low,
-                                      ///< high, ...
+  std::array<double, 6> wallArea_{};  ///< the tets' boundary area in each wall: axis 0 low, high,
+                                      ///< ...
 };
 
 /// Volume of the part of a positive tet inside [0, 1]^3.

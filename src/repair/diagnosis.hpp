@@ -14,15 +14,13 @@ namespace hexhex::repairs {
 
 struct Diagnosis {
   igm::DefectCollector hopeless;  ///< conditions violated by more than the limit
-  std::vector<Index> roundable;   ///< vertices with conditions violated by at most the limit,
-                                  ///< ascending
+  std::vector<Index> roundable;   ///< vertices that violate conditions by less, ascending
 };
 
 /// Examines vertices and triangles that touch no bad tet.
 /// @param bad  ascending
 /// @param tolerance  deviations up to this are not defects
-/// @param limit      vertices may be rounded by up to this; equal to `tolerance` if they must not
-///         be
+/// @param limit      maximum rounding of vertices; equal to `tolerance` for none
 void diagnose(const igm::PreparedMap& map, const igm::LocalParameters& parameters,
               const std::vector<Index>& bad, double tolerance, double limit, Stage& stage,
               Diagnosis& diagnosis);

@@ -26,8 +26,7 @@ struct FoundCell {
 
 struct Found {
   std::vector<FoundCell> cells;
-  std::vector<std::pair<Index, double>> covered;  ///< tets, and the volume of each that a cell
-                                                  ///< covers
+  std::vector<std::pair<Index, double>> covered;  ///< tets, and their volumes that a cell covers
 };
 
 /// Finds the cells whose centres a tet owns.

@@ -13,7 +13,7 @@ namespace hexhex::repairs {
 
 struct Patch {
   std::vector<Index> startTets;  ///< the bad tets, ascending
-  std::vector<Index> vertices;   ///< ascending; their whole stars are in the patch, so they may
+  std::vector<Index> vertices;   ///< ascending; with their whole stars in the patch, so they may
                                  ///< move
   std::vector<Index> tets;       ///< ascending: the tets at these vertices
   /// Per entry of `vertices`: its star.

@@ -52,8 +52,7 @@ struct Element {
   std::array<Vec3, 3> gradients{};  ///< of corners 1 to 3; that of corner 0 is minus their sum
   double weight = 1;                ///< positive
   int offset = -1;                  ///< C, as an index into Problem::matrices; -1: 0
-  int target = -1;                  ///< the rotation towards which it is pulled, also as an index;
-                                    ///< -1: 1
+  int target = -1;                  ///< the rotation that it is pulled to, likewise; -1: 1
 };
 
 /// For a tet whose ideal shape has these edges from corner 0: the rows of the inverse of the matrix

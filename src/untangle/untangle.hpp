@@ -45,15 +45,13 @@ struct Options {
 
 enum class End : unsigned char {
   Positive,  ///< no element is flipped
-  Stalled,   ///< over many steps the number of flipped elements fell slowly or not at all, or steps
-             ///< ran out
+  Stalled,   ///< flipped elements vanished too slowly, or steps ran out
 };
 
 struct Result {
   std::vector<std::size_t> flipped;  ///< elements whose determinant is not positive, ascending
   double leastDeterminant = std::numeric_limits<double>::infinity();
-  double energy =
-      0;  ///< infinite if an element is flipped; 5 per unit of weight if nothing is distorted
+  double energy = 0;  ///< infinite if an element is flipped; 5 per weight if undistorted
   int steps = 0;
   End end = End::Positive;
 };

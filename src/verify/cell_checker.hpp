@@ -288,8 +288,7 @@ class CellChecker {
   Faults& hints_;
   Faults& wrong_;
   CornerTable<Number> known_;
-  std::array<std::size_t, 8> steps_{};  ///< in the table: from a cell's smallest corner to each
-                                        ///< corner
+  std::array<std::size_t, 8> steps_{};  ///< in the table, from a cell's smallest corner to each
   std::vector<lattice::SweptLine> lines_;
 };
 

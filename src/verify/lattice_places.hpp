@@ -176,8 +176,7 @@ class SpaceOfTet {
   Vec3 atOrigin_{};              ///< its preimage
   std::array<Vec3, 3> steps_{};  ///< change of the preimage along each axis
   double error_ = 0;             ///< error bound of preimages
-  bool isFlat_ = false;          ///< so close to flat in the map that weights must be computed
-                                 ///< exactly
+  bool isFlat_ = false;          ///< so flat in the map that weights must be exact
 };
 
 // The lattice points of a map by canonical number: hints from the sweep over the tets, proven

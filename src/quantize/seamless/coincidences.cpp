@@ -96,8 +96,7 @@ class Planes {
 
  private:
   std::size_t sharedCount_;
-  std::vector<std::int64_t> values_;  ///< of shared unknowns, and of the planes with arbitrary
-                                      ///< coordinates
+  std::vector<std::int64_t> values_;  ///< of shared unknowns, and of arbitrary planes
   std::int64_t near_;
   std::vector<FixedCoordinate> planes_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> numbers_;  ///< by axis and value

@@ -55,8 +55,7 @@ struct CutGraph {
   std::vector<TetParameters> parameters;     ///< per tet, in the common charts
   std::vector<lattice::Rotation> rotations;  ///< per half-face, from here to the neighbour
   std::vector<bool> isCut;                   ///< per half-face
-  std::vector<Index> sectors;  ///< per corner: the same number for corners that the cut does not
-                               ///< separate
+  std::vector<Index> sectors;  ///< per corner: shared by corners not separated by the cut
   std::size_t sectorCount = 0;
 };
 

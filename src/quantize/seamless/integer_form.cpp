@@ -21,7 +21,7 @@ namespace {
 /// Of the matrix that expresses all variables by the free ones: one gigabyte.
 constexpr std::size_t kMostEntries = std::size_t{1} << 27;
 
-/// Limit of coefficients; values are sums of a few of these and stay far below theirs.
+/// Limits of coefficients and of values; values, sums of a few coefficients, stay far below theirs.
 constexpr std::int64_t kLargestCoefficient = std::int64_t{1} << 40;
 constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
 /// Limit of the divisors of a preference: planes of symmetric objects that come back after several

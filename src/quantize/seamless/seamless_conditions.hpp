@@ -50,8 +50,8 @@ class SharedUnknowns {
   const adjacency::TetTopology& topology_;
   const CutGraph& graph_;
   std::size_t size_ = 0;
-  std::vector<adjacency::HalfFace> pieces_;  ///< per half-face of the cut: the first half-face of
-                                             ///< its piece, on its side
+  std::vector<adjacency::HalfFace> pieces_;  ///< per half-face of the cut: the first of its piece,
+                                             ///< on its side
   std::vector<Index> first_;   ///< per first half-face of a piece: its first unknown, or kNone
   std::vector<Index> planes_;  ///< per sector and axis
   std::vector<IntegerForm> equations_;

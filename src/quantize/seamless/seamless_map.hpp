@@ -31,8 +31,7 @@ struct SeamlessMap {
   double size = 0;                    ///< extent from a corner, along the axis where it is longest
   double maxDisplacement = 0;         ///< of a parameter from the given one, along an axis
   Index mostDisplaced = 0;            ///< the tet where that occurs
-  std::vector<Index> flippedAsGiven;  ///< tets; none if only noise had flipped them, which has been
-                                      ///< removed
+  std::vector<Index> flippedAsGiven;  ///< tets; none if only noise, now removed, flipped them
 };
 
 struct SeamlessOptions {
