@@ -23,7 +23,7 @@ constexpr std::size_t kBlendingGrain = 256;
 /// way is not worth checking the cells around it again.
 constexpr std::uint8_t kMostHalvings = 4;
 
-/// Whether tags name given vertices, those of edges or of quads.
+/// The tagged edges (n = 2) or quads (n = 4), by their vertices.
 template <std::size_t n>
 class TaggedVertices {
  public:

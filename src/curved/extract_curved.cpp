@@ -32,7 +32,7 @@ void toCallersCorners(const igm::OrientedMap& input, Array<CornerSet>& corners, 
 /// The mesh of a map, and the parts of a piecewise-linear one.
 /// @param map      scaled
 /// @param extract  extract(SweepObserver*) returns the mesh, made by the atlas engine if there is
-///         an observer
+///                 an observer
 template <class Extract>
 PiecewiseLinearMesh withParts(const igm::PreparedMap& map, PiecewiseLinearParts parts,
                               Engine engine, Context& context, const Extract& extract) {

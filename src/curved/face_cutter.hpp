@@ -1,4 +1,4 @@
-// One hex face: all polygons in which it meets tets, and the points they share.
+// One hex face: all polygons in which it meets tets, and the points they share (Section 5.5).
 #pragma once
 
 #include <array>

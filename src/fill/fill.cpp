@@ -43,7 +43,7 @@ void requireInRange(const FillOptions& options) {
       "has to be from 0 to 180 degrees.");
 }
 
-/// The number of regular tets with the same edge length as a number of cubic cells.
+/// The number of regular tets with the volume of this many cubes of the same edge length.
 double tetsFor(double cells) {
   constexpr double kPerCell = 8.5;
   constexpr double kFewest = 3000;  // enough to have some across most parts

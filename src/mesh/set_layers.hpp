@@ -1,4 +1,5 @@
-// Layers of cells around sets of cells; the layers end at the boundary of the mesh.
+// Layers of cells around sets of cells; the layers end at the boundary of the mesh. This is
+// pillowing (Mitchell and Tautges 1995) of parts of a mesh.
 //
 // A boundary quad with two edges on one smooth curve has a corner of 180 degrees wherever its
 // vertices are. A layer around its cell puts quads with right angles between it and the curve.
@@ -22,7 +23,7 @@ struct SetLayers {
 
 /// @param mesh    without faces of more than two cells, and without tagged interior faces
 /// @param setOf   per cell: the number of its set, or kNone. Around each vertex, the cells of a set
-///         are connected by faces, and so are the others
+///                are connected by faces, and so are the others
 [[nodiscard]] SetLayers addSetLayers(const HexMesh& mesh, std::span<const Index> setOf,
                                      Stage& stage);
 

@@ -1,7 +1,7 @@
 // Recursive coordinate bisection: Berger and Bokhari, "A partitioning strategy for nonuniform
 // problems on multiprocessors", IEEE Transactions on Computers 36 (1987). Elements are cut across
-// the longest side of their bounding box at half of their cells, and so is each half, recursively.
-// Parts follow one another along the curve that visits one half before the other. Unlike cuts along
+// the longest side of their bounding box, where that balances the cells, and so is each half. Parts
+// follow one another along the curve that visits one half before the other. Unlike cuts along
 // Hilbert's curve, these follow the shape of the object.
 #include <algorithm>
 #include <cassert>

@@ -25,8 +25,7 @@ struct SharedSide {
 
 struct Pairing {
   std::uint32_t part;    ///< the neighbour
-  std::uint64_t number;  ///< global number of the cell in the smaller part, so that both parts sort
-                         ///< alike
+  std::uint64_t number;  ///< of the cell in the smaller part, so that both parts sort alike
   std::uint8_t side;
   PartFace face;  ///< as this part sees it
 };

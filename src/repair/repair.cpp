@@ -1,6 +1,6 @@
-// Solves for patches around bad tets in rounds: larger patches where smaller ones do not suffice,
-// then a finer tet mesh. The moves are those of src/untangle (Garanzha et al. 2021); an exact check
-// decides in the end.
+// Untangles patches around bad tets, in rounds: larger patches where smaller ones do not suffice,
+// then a finer tet mesh. The solver is src/untangle (Garanzha et al. 2021); an exact check decides
+// in the end.
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -55,7 +55,7 @@ struct CoarseCell {
 
   /// Number of blocks around the cell.
   [[nodiscard]] int valence() const { return static_cast<int>(occurrences.size()); }
-  /// Of an edge: whether its valence is irregular.
+  /// For an edge: whether its valence is irregular.
   [[nodiscard]] bool singular() const { return valence() != (boundary ? 2 : 4); }
 };
 

@@ -71,7 +71,7 @@ std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, int 
       .motions;
 }
 
-/// From the frames of blocks to their charts.
+/// The transitions from the frames of blocks to their charts.
 std::vector<lattice::Transition> blockCharts(const BlockComplex& complex,
                                              const SampleOptions& options, Random& random) {
   if (options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Scattered) {

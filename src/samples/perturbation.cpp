@@ -209,7 +209,7 @@ Vec3 drawShiftInSpace(double limit, Random& random) {
   return shift;
 }
 
-/// Distance to the nearest integer, in units.
+/// The difference from the nearest integer, in units.
 std::int64_t toNearestInteger(std::int64_t parameter) {
   const std::int64_t above = ((parameter % kUnitsPerCell) + kUnitsPerCell) % kUnitsPerCell;
   return 2 * above < kUnitsPerCell ? -above : kUnitsPerCell - above;

@@ -76,7 +76,7 @@ class TetGrid {
   }
   [[nodiscard]] std::array<Index, 8> cornerVertices(std::size_t subBlock) const;
 
-  /// In units, in the chart of the sub-block's block.
+  /// Parameters of a sub-block's corners, in units, in the chart of its block.
   [[nodiscard]] std::array<Int3, 8> cornerParameters(std::size_t subBlock) const;
 
   /// Corners of a sub-block relative to its centre: in the block's chart (in units), and in space.

@@ -197,7 +197,7 @@ class CellChecker {
         wrong_(wrong) {}
 
   /// @param cells  cells that include some of the tet's: cells.find(number) is called for all cells
-  ///         of the tet, in ascending order
+  ///               of the tet, in ascending order
   template <class Cells>
   void prove(Index tet, Cells cells) {
     const std::span<const lattice::SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);

@@ -31,7 +31,7 @@ class FaceSides {
   };
 
   /// @param step  all points are multiples of this, and at most this far from the tet's bounding
-  ///         box
+  ///              box
   FaceSides(const lattice::LatticeTet& tet, std::int64_t step) noexcept : tet_(tet) {
     std::int64_t bits = step;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -268,7 +268,7 @@ class LatticePlaces {
   bool indexed_;
   sweep::SweptVertices swept_;  ///< until proven
   const sweep::VertexNumbers* given_ = nullptr;
-  Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point that it owns
+  Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point it owns
   sweep::TetLists<PlaceRun> runs_;
   Array<std::uint16_t> runOf_;  ///< per lattice point: its run among those of the tet; or empty
 };

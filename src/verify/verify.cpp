@@ -50,7 +50,7 @@ void checkOptions(const VerifyOptions& options) {
 
 /// Adds "indices_in_range"; returns whether it passed.
 /// @param bad  the first cell with a corner that is no vertex, or the number of cells if there is
-///         none
+///             none
 bool addIndicesInRange(std::size_t bad, std::size_t cells, Comparisons& comparisons) {
   const bool inRange = bad == cells;
   comparisons.add("indices_in_range", "yes", inRange ? "yes" : "no (first: " + cellName(bad) + ")",

@@ -165,7 +165,7 @@ StateBefore stateBefore(std::span<const Vec3> points, std::span<const Vec3> node
   return {points, nodes, {certificate.scaledJacobians, notPositive(certificate)}};
 }
 
-/// @param before  of subject.before, if that has points
+/// @param before  certificate of subject.before, if that has points
 PageContent makeContent(const Subject& subject, const Certificate& certificate,
                         const Certificate& before, const ViewOptions& options, Context& context) {
   Array<double> quality(options.scaledJacobians.begin(), options.scaledJacobians.end());

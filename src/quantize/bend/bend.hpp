@@ -48,7 +48,7 @@ struct BendProblem {
   std::map<std::uint32_t, std::vector<BoundaryPlane>> fixedCorners = {};
   /// Feature edges, which must not be split, by their vertices in ascending order.
   std::set<std::array<Index, 2>> keptEdges = {};
-  /// Those that the bent map must have.
+  /// The irregular edges that the bent map must have.
   IrregularEdges irregularEdges = {};
 };
 

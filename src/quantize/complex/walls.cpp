@@ -77,7 +77,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
   }
 }
 
-/// Half a turn from a wall, around one of its edges.
+/// Meets the plane half a turn from a wall, around one of its edges.
 PlaneMeeting meetOpposite(const WallMesh& mesh, adjacency::HalfFace wall, Index v, Index w) {
   const Index tet = adjacency::tetOf(wall);
   const adjacency::TetEdge edge = mesh.edge(tet, v, w);

@@ -19,7 +19,7 @@ class BlockIntegers {
   /// @param integers  per arc
   BlockIntegers(const MotorcycleComplex& complex, const std::vector<std::int64_t>& integers);
 
-  /// Of a node of a block, given its position in the block's chart.
+  /// The integer position of a node of a block, given its position in the block's chart.
   [[nodiscard]] const lattice::LatticePoint& operator()(
       Index block, const lattice::LatticePoint& position) const {
     return positions_[block].at(position);

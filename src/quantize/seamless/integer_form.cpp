@@ -18,7 +18,8 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Of the matrix that expresses all variables by the free ones: one gigabyte.
+/// Maximum number of entries of the matrix that expresses all variables by the free ones: one
+/// gigabyte.
 constexpr std::size_t kMostEntries = std::size_t{1} << 27;
 
 /// Limits of coefficients and of values; values, sums of a few coefficients, stay far below theirs.

@@ -46,7 +46,7 @@ class IntegerSystem {
  public:
   /// @param equations  forms that must vanish
   /// @param preferences     further forms that should vanish, except those that would produce
-  ///         fractions smaller than eighths
+  ///                        fractions smaller than eighths
   IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
                 std::vector<IntegerForm> preferences = {});
 

@@ -1,4 +1,6 @@
-// The seamless map nearest to a nearly seamless one: the start of quantization.
+// The seamless map nearest to a nearly seamless one: the start of quantization. As in Mandad and
+// Campen 2019, "Exact Constraint Satisfaction for Truly Seamless Parametrization", constraints that
+// held up to a tolerance then hold exactly.
 //
 // A map is seamless if neighbouring charts differ by a rotation of the grid and any translation,
 // boundary triangles are perpendicular to an axis, and singular edges are parallel to one. An
@@ -52,7 +54,7 @@ struct SeamlessOptions {
 ///         the input
 void requirePositiveTets(const SeamlessMap& map);
 
-/// In unit cubes.
+/// Volume in unit cubes.
 [[nodiscard]] double volumeOf(const SeamlessMap& map);
 
 }  // namespace hexhex::quantization
