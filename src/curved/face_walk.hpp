@@ -38,7 +38,7 @@ class FaceWalk {
   /// @param sides    of `seen`
   /// @param heading  in that frame
   /// @return false if the edge does not leave through the interior of a face, or meets the line of
-  ///         another edge of the tet
+  ///         an edge of the tet elsewhere
   [[nodiscard]] bool start(const SimplexInTet& at, const lattice::LatticeTet& seen,
                            const EdgeSides& sides, Heading heading);
 

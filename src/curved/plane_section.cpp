@@ -7,7 +7,8 @@ namespace hexhex::curved {
 
 namespace {
 
-/// The edges that the plane crosses, by their ends, going around the section.
+/// For one set of corners below the plane: the edges that the plane crosses, going around the
+/// section.
 struct Outline {
   std::uint8_t size = 0;
   std::array<std::uint8_t, 4> above{};    ///< per point: its edge's end above the plane
