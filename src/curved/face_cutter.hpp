@@ -52,8 +52,7 @@ class FaceCutter {
     std::size_t entry;        ///< this piece's side there: of its section, then of its slice
   };
   struct InnerPoint {
-    std::array<Index, 2> vertices;              ///< of the edge, ascending; for a vertex, both the
-                                                ///< same
+    std::array<Index, 2> vertices;              ///< of the edge, ascending; a vertex twice
     std::array<lattice::LatticePoint, 2> seen;  ///< both in the square's frame
     PatchPoint point;
     std::size_t next;  ///< another one with the same key, or kLast

@@ -66,8 +66,7 @@ class WallMesh : public tetmap::MutableTets {
   std::set<Index> featureVertices;
   std::vector<bool> isHeld;                ///< per vertex: on an edge where walls have yet to start
   std::vector<Index> original;             ///< per tet: the tet of the map of which it is a part
-  std::vector<std::uint8_t> originalFace;  ///< per half-face: the face of that on which it lies, or
-                                           ///< kInside
+  std::vector<std::uint8_t> originalFace;  ///< per half-face: which face of that, or kInside
 
  private:
   /// A tet at a moved vertex, and the displacement in its chart.

@@ -8,8 +8,8 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Arcs must be longer than this fraction of the map's size, and than this multiple of the move
-/// that made it seamless.
+/// Lengths up to this fraction of the map's size, or this multiple of the move that made it
+/// seamless, are noise.
 constexpr double kArcNoise = 1e-9;
 constexpr double kArcNoiseShare = 16;
 constexpr double kLengthUnits = 0x1p20;

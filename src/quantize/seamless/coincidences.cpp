@@ -31,7 +31,7 @@ struct FixedCoordinate {
   [[nodiscard]] auto operator<=>(const FixedCoordinate&) const = default;
 };
 
-/// Collects all that are fixed at a vertex, in the charts of its sectors.
+/// Collects all coordinates that are fixed at a vertex, in the charts of its sectors.
 void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>& all) {
   for (const VertexConditions::Sector& sector : conditions.sectors) {
     for (int from = 0; from < 3; ++from) {
