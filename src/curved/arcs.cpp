@@ -12,11 +12,11 @@
 
 namespace hexhex::curved {
 
-/// Traces hex edges from their midpoints to both ends. One per thread. Frames have the edge along
-/// their first axis.
+/// Traces hex edges from their midpoints to both ends. One per thread. In every frame, the edge
+/// runs along the first axis.
 ///
-/// A hex edge is straight in every tet, so inside a closed tet it stays in one simplex, its
-/// carrier, from where it enters to where it leaves.
+/// A hex edge is straight in every tet. So between entering and leaving a closed tet it stays in
+/// the interior of one simplex, its carrier.
 class ArcTracer {
  public:
   /// @param pieces  receives the arcs
@@ -48,7 +48,7 @@ class ArcTracer {
   [[nodiscard]] Index walkOn(SimplexInTet& at);
   [[nodiscard]] bool startWalk(const SimplexInTet& at);
 
-  /// The simplex at whose inner point a part ends, and the carrier of the next part.
+  /// The simplex whose interior holds the end of a part, and the carrier of the next part.
   struct HandOver {
     OwnedSimplex exit;
     SimplexInTet carrier;
@@ -59,7 +59,7 @@ class ArcTracer {
   [[nodiscard]] ArcExit exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
                                const lattice::LatticeTet& seen, const SimplexPoint& point) const;
 
-  /// The hex vertex at the end of the edge, if the closed tet has it.
+  /// The hex vertex at the end of the edge, if the closed tet contains it.
   [[nodiscard]] Index vertexIn(const SimplexInTet& at) const {
     return vertices_.find(at.tet, lattice::step(at.frame.origin(), at.frame.axis(0))).vertex;
   }
@@ -82,7 +82,7 @@ class ArcTracer {
 
 namespace {
 
-/// Traces the edges that some tets own.
+/// Traces the edges owned by some tets.
 void traceEdges(const igm::PreparedMap& map, const sweep::VertexTables& vertices,
                 const ElementNumbers& edges, std::size_t begin, std::size_t end,
                 ArcPieces& pieces) {
@@ -126,8 +126,8 @@ Arcs traceArcs(const igm::PreparedMap& map, const sweep::VertexTables& vertices,
 
 namespace {
 
-/// The simplex of a tet into which the first axis leads from an inner point of another one, or
-/// kNoSimplex: holder() where only one direction matters. (Algorithm 4)
+/// The simplex of a tet into which the first axis leads from an interior point of another simplex,
+/// or kNoSimplex: holder() for a single direction (Algorithm 4).
 lattice::CornerMask holderAhead(const lattice::LatticeTet& seen, lattice::CornerMask at) {
   lattice::CornerMask simplex = lattice::kWholeTet;
   for (int face = 0; face < 4; ++face) {
@@ -159,7 +159,7 @@ void ArcTracer::trace(const SimplexInTet& middle) {
       vertices_.find(middle.tet, lattice::step(middle.frame.origin(), middle.frame.axis(0)));
   Ends ends = {from.vertex, to.vertex};
   if (from.vertex != kNone && to.vertex != kNone) {
-    // By convexity, all between lies in the smallest simplex that contains both ends.
+    // By convexity, everything in between lies in the smallest simplex that contains both ends.
     addSegment({middle.tet, static_cast<lattice::CornerMask>(from.simplex | to.simplex), {}});
   } else {
     ends = middle.simplex == lattice::kWholeTet ? traceFromInside(middle, from, to)
@@ -167,7 +167,7 @@ void ArcTracer::trace(const SimplexInTet& middle) {
   }
   assert(ends[0] != kNone && ends[1] != kNone);
   pieces_.addArc(ends, firstPoint);
-  // Exact parameters are in (0, 1) and ascend; rounding may not change that.
+  // Exact parameters are in (0, 1) and ascending; rounding must not change that.
   constexpr double kBelowOne = 1 - 0x1p-53;
   double before = std::numeric_limits<double>::min();
   pieces_.changeParameters(firstPoint, [&](double& parameter) {
@@ -175,8 +175,8 @@ void ArcTracer::trace(const SimplexInTet& middle) {
   });
 }
 
-/// From a midpoint inside a tet.
-/// @param from, to  what the tet has of the edge's ends
+/// Starts at a midpoint inside a tet.
+/// @param from, to  what the tet contains of the edge's ends
 ArcTracer::Ends ArcTracer::traceFromInside(const SimplexInTet& middle, const Found& from,
                                            const Found& to) {
   const lattice::LatticeTet seen = see(middle);
@@ -195,8 +195,9 @@ ArcTracer::Ends ArcTracer::traceFromInside(const SimplexInTet& middle, const Fou
   return ends;
 }
 
-/// From a midpoint on the boundary of tets: back to the beginning, then on from where it was.
-/// @param from  what the tet has of the beginning
+/// Starts at a midpoint on the boundary of tets: first back to the beginning, then forward from the
+/// midpoint.
+/// @param from  what the tet contains of the beginning
 ArcTracer::Ends ArcTracer::traceFromBoundary(const SimplexInTet& middle, const Found& from) {
   SimplexInTet carrier{middle.tet, static_cast<lattice::CornerMask>(middle.simplex | from.simplex),
                        middle.frame};
@@ -208,11 +209,11 @@ ArcTracer::Ends ArcTracer::traceFromBoundary(const SimplexInTet& middle, const F
   } else {
     addSegment(carrier);
   }
-  // Whether or not that part ends at the midpoint, it is there already.
+  // The midpoint has been added already, whether or not that part ends there.
   return {first, follow(carrier)};
 }
 
-/// Adds all from the beginning of the edge to a part of it.
+/// Adds everything from the beginning of the edge to one of its parts.
 /// @param carrier  of that part, in a frame with the edge reversed
 /// @param follow   follows the edge in that frame, from that part to its end
 /// @return the vertex at the beginning
@@ -227,7 +228,7 @@ Index ArcTracer::traceBack(const SimplexInTet& carrier, const Follow& follow) {
   return vertex;
 }
 
-/// Adds all behind a part of an edge: points, each with the segment behind it.
+/// Adds everything beyond a part of an edge: points, each with the segment after it.
 /// @param at  the carrier of the part
 /// @return the vertex at the end
 Index ArcTracer::follow(const SimplexInTet& at) {
@@ -235,8 +236,8 @@ Index ArcTracer::follow(const SimplexInTet& at) {
   return vertex != kNone ? vertex : followBeyond(at, startWalk(at));
 }
 
-/// The same from a part that is not the last.
-/// @param walking  whether the walk has started from there
+/// Continues from a part that is not the last.
+/// @param walking  whether a walk has started there
 Index ArcTracer::followBeyond(SimplexInTet at, bool walking) {
   for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
     if (walking) {
@@ -249,7 +250,7 @@ Index ArcTracer::followBeyond(SimplexInTet at, bool walking) {
     pieces_.addPoint(exitAt(next.exit, at, seen, exit));
     at = next.carrier;
     addSegment(at);
-    // The end is in the closed tet if and only if the edge does not leave it before.
+    // The end is in the closed tet if and only if the edge does not leave the tet before.
     const Index vertex = vertexIn(at);
     if (vertex != kNone) return vertex;
     walking = startWalk(at);
@@ -265,7 +266,7 @@ bool ArcTracer::startWalk(const SimplexInTet& at) {
 }
 
 /// Follows the walk through the interiors of faces.
-/// @return the hex vertex at the end, or kNone if the walk comes to another exit before
+/// @return the hex vertex at the end, or kNone if the walk reaches another kind of exit first
 Index ArcTracer::walkOn(SimplexInTet& at) {
   for (std::size_t steps = 0; steps <= topology_.tetCount(); ++steps) {
     SimplexInTet owner = at;
@@ -277,7 +278,7 @@ Index ArcTracer::walkOn(SimplexInTet& at) {
     }
     pieces_.addPoint(exitThrough(map_, {owner.tet, lattice::faceMask(face)}, owner.frame.edge()));
     pieces_.addSegment({at.tet, lattice::kWholeTet});
-    // To look for the end takes less than to leave the tet, so it is done first.
+    // Looking for the end is cheaper than leaving the tet, so it comes first.
     const Index vertex = vertices_.hasVertices(at.tet) ? vertexIn(at) : kNone;
     if (vertex != kNone || !walk_.leave(at)) return vertex;
   }
@@ -285,7 +286,7 @@ Index ArcTracer::walkOn(SimplexInTet& at) {
 }
 
 /// @param at    the carrier of the part that ends
-/// @param exit  where, in the same tet
+/// @param exit  the simplex where it ends, in the same tet
 ArcTracer::HandOver ArcTracer::leave(const SimplexInTet& at, lattice::CornerMask exit) {
   if (exit == lattice::kNoSimplex) fail(at.tet, "a hex edge leaves a tet nowhere");
   if (lattice::dimension(exit) == 1 && lattice::dimension(at.simplex) == 2 &&
@@ -296,9 +297,9 @@ ArcTracer::HandOver ArcTracer::leave(const SimplexInTet& at, lattice::CornerMask
   return {ownedBy(topology_, at.tet, exit), carrierBehind({at.tet, exit, at.frame})};
 }
 
-/// From a triangle on the boundary through one of its edges: usually to the next triangle on the
-/// boundary, and to go there takes one walk around the edge, which comes by its owner as well.
-/// @return a carrier without a simplex if the tet of that triangle does not have the next part
+/// From a boundary triangle through one of its edges: the next part is usually in the next boundary
+/// triangle, one walk around the edge away, which also passes the edge's owner.
+/// @return a carrier without a simplex if the tet of that triangle does not contain the next part
 ArcTracer::HandOver ArcTracer::leaveAlongBoundary(const SimplexInTet& at,
                                                   lattice::CornerMask edge) const {
   adjacency::EdgeTurn turn(topology_, at.tet, edge,
@@ -314,7 +315,7 @@ ArcTracer::HandOver ArcTracer::leaveAlongBoundary(const SimplexInTet& at,
   return next;
 }
 
-/// The carrier of the part of the edge behind a point of it in the interior of a simplex.
+/// The carrier of the part of the edge beyond a point in the interior of a simplex.
 SimplexInTet ArcTracer::carrierBehind(const SimplexInTet& point) {
   SimplexInTet carrier;
   const bool leads = star_.visit(point, [&](const SimplexInTet& here) {
@@ -328,7 +329,7 @@ SimplexInTet ArcTracer::carrierBehind(const SimplexInTet& point) {
 }
 
 /// The point at which a part ends.
-/// @param generator  what holds it, by its owner
+/// @param generator  the simplex that holds it, by its owner
 /// @param seen       the carrier's tet
 ArcExit ArcTracer::exitAt(const OwnedSimplex& generator, const SimplexInTet& carrier,
                           const lattice::LatticeTet& seen, const SimplexPoint& point) const {

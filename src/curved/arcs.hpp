@@ -16,11 +16,11 @@
 
 namespace hexhex::curved {
 
-/// Traces every hex edge once. Generators are in terms of the tets in the map, not of the caller's.
+/// Traces every hex edge once. Generators refer to the map's tets, not to the caller's.
 [[nodiscard]] Arcs traceArcs(const igm::PreparedMap& map, const sweep::VertexTables& vertices,
                              const ElementNumbers& edges, Stage& stage);
 
-/// Inner points and segments of consecutive arcs while they are being traced. Keeps its memory.
+/// Interior points and segments of consecutive arcs while these are traced. Reuses its memory.
 class ArcPieces {
  public:
   void clear() noexcept {
@@ -32,29 +32,29 @@ class ArcPieces {
   [[nodiscard]] std::size_t segments() const noexcept { return segments_.size(); }
 
   /// Adds an arc whose points and segments have been added.
-  /// @param firstPoint  how many points there were before it
+  /// @param firstPoint  number of points before it
   void addArc(const std::array<Index, 2>& ends, std::size_t firstPoint) {
     arcs_.push_back({ends, firstPoint});
   }
   void addPoint(const ArcExit& point) { points_.push_back(point); }
   void addSegment(const OwnedSimplex& carrier) { segments_.push_back(carrier); }
 
-  /// Calls change(parameter) for the points from one on.
+  /// Calls change(parameter) for all points from `firstPoint` on.
   template <class Change>
   void changeParameters(std::size_t first, const Change& change) {
     for (std::size_t i = first; i < points_.size(); ++i) change(points_[i].parameter);
   }
-  /// Turns the order of the last ones round.
+  /// Reverses the order of the latest points and segments.
   void reverseFrom(std::size_t firstPoint, std::size_t firstSegment) {
     std::reverse(points_.begin() + static_cast<std::ptrdiff_t>(firstPoint), points_.end());
     std::reverse(segments_.begin() + static_cast<std::ptrdiff_t>(firstSegment), segments_.end());
   }
 
-  /// Copies all to where it belongs.
+  /// Copies everything to its place in the result.
   /// @param to  has room
-  /// @param firstArc, firstPoint  the numbers that the first ones have there
+  /// @param firstArc, firstPoint  the numbers of the first arc and point there
   void copyTo(Arcs& to, std::uint64_t firstArc, std::uint64_t firstPoint) const {
-    // Each arc has a segment more than inner points.
+    // Each arc has one segment more than interior points.
     assert(segments_.size() == points_.size() + arcs_.size());
     for (std::size_t i = 0; i < arcs_.size(); ++i) {
       to.ends[firstArc + i] = arcs_[i].ends;
@@ -84,7 +84,7 @@ class ArcPieces {
 
 /// Makes room for the pieces of more arcs.
 /// @param arcs  receives them; has room for all arcs
-/// @param done  how many arcs there are then
+/// @param done  number of arcs, including these
 inline void lengthenForPieces(Arcs& arcs, std::uint64_t points, std::uint64_t done) {
   const double share = static_cast<double>(done) / static_cast<double>(arcs.count());
   lengthen(arcs.points, points, share);

@@ -1,4 +1,4 @@
-// Output whose size only the work itself tells: blocks of elements, some of them at a time.
+// Loops whose output size is known only once the work is done: a few blocks of elements at a time.
 #pragma once
 
 #include <algorithm>
@@ -15,18 +15,18 @@
 
 namespace hexhex::curved {
 
-/// How many blocks of a loop are to be in memory at the same time: enough for all threads to be
-/// busy, few enough to stay in their caches until they are copied. A thread alone waits for nobody.
+/// Number of blocks of a loop that are in memory at the same time: enough to keep all threads busy,
+/// few enough to stay in their caches until they are copied. A single thread waits for no other.
 [[nodiscard]] inline std::size_t blocksPerBatch(std::size_t blocks) {
   constexpr std::size_t kPerThread = 8;
   const auto threads = static_cast<std::size_t>(currentThreads());
   return std::min(blocks, threads == 1 ? 1 : kPerThread * threads);
 }
 
-/// parallelBlocks() in batches of some blocks: f(begin, end, pieces) fills pieces, whose memory is
-/// used again by the next batch. After a batch, measure(pieces, end) is called for its blocks, in
-/// order; it makes room and returns a position. Then place(pieces, position, begin) is called for
-/// each of them, in parallel: so what blocks collect comes where it belongs as the loop goes.
+/// parallelBlocks() in batches: f(begin, end, pieces) fills pieces, whose memory the next batch
+/// reuses. After each batch, measure(pieces, end) is called for its blocks in order, makes room and
+/// returns a position. Then place(pieces, position, begin) is called for each block in parallel. So
+/// the output is in its final place as the loop advances.
 template <class Pieces, class F, class Measure, class Place>
 void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
                      const Measure& measure, const Place& place) {
@@ -57,7 +57,7 @@ void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
   }
 }
 
-/// The number of tets in a block, so that it has a few hundred of the elements that they own.
+/// Number of tets per block such that a block owns a few hundred elements.
 [[nodiscard]] inline std::size_t tetsPerBlock(std::uint64_t elements, std::size_t tets) {
   constexpr std::uint64_t kElements = 256;
   constexpr std::uint64_t kLargestBlock = 4096;
@@ -65,15 +65,15 @@ void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
       kElements * tets / std::max<std::uint64_t>(elements, 1), std::uint64_t{1}, kLargestBlock));
 }
 
-/// Lengthens an array of which a share is complete then. What is reserved beyond is memory that is
-/// never written to, if the rest turns out to be smaller.
+/// Lengthens an array of which a share will then be complete. It reserves extra memory; if the rest
+/// turns out smaller, that memory is never written to.
 template <class T>
 void lengthen(Array<T>& array, std::size_t size, double share) {
   constexpr double kReserve = 1.1;
-  constexpr double kLeastShare = 1.0 / 64;  // the beginning may be far from what is typical
+  constexpr double kLeastShare = 1.0 / 64;  // the beginning may be far from typical
   constexpr double kFirst = 16;
   if (size > array.capacity()) {
-    // Nothing is a share of nothing, too.
+    // Also covers a share of nothing.
     const double factor = share >= kLeastShare ? std::max(kReserve / share, kReserve) : kFirst;
     array.reserve(static_cast<std::size_t>(factor * static_cast<double>(size)));
   }

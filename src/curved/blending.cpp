@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::size_t kBlendingGrain = 256;
 
-/// After so many halves a node goes all the way to the straight cell: less than a sixteenth of the
-/// way is not worth another look at the cells around it.
+/// After this many halvings a node goes all the way to the straight cell: the last sixteenth of the
+/// way is not worth checking the cells around it again.
 constexpr std::uint8_t kMostHalvings = 4;
 
-/// Whether tags name vertices: of edges, or of quads.
+/// The tagged edges (n = 2) or quads (n = 4), by their vertices.
 template <std::size_t n>
 class TaggedVertices {
  public:
@@ -60,7 +60,7 @@ class Blender {
     std::iota(cells.begin(), cells.end(), Index{0});
     stage_.setTotal(4 * cells.size());
     placeNodes(cells);
-    // At first, all others are straight.
+    // At first, all other nodes are straight.
     std::vector<Index> changed = thoseWith(cells, isOnSurface_);
     while (!changed.empty()) {
       std::fill(isMoving_.begin(), isMoving_.end(), std::uint8_t{0});
@@ -82,7 +82,7 @@ class Blender {
     return mesh_.nodes[cell * mesh_.nodesPerCell() + place];
   }
 
-  /// Whether a node of a cell that is no corner has a property: is(node, whether inside a face).
+  /// Whether any non-corner node of a cell has a property: is(node, whether inside a face).
   template <class Is>
   [[nodiscard]] bool any(Index cell, const Is& is) const {
     for (const auto* const nodes : blended_.all()) {
@@ -103,9 +103,9 @@ class Blender {
     return result;
   }
 
-  /// Finds the nodes that stay on the image of the map. A node inside an edge or a face is of no
-  /// other, so that it stands for it. In one thread: what it took to find the nodes is a hundred
-  /// times as long.
+  /// Finds the nodes that stay on the image of the map. A node inside an edge or face belongs to no
+  /// other edge or face, so it stands for that one. Single-threaded: finding the nodes took a
+  /// hundred times as long.
   void findSurface() {
     std::vector<std::uint8_t> isInner(mesh_.points.size(), 0);
     for (Index cell = 0; cell < mesh_.cellCount(); ++cell) {
@@ -126,7 +126,7 @@ class Blender {
   void markSurface(Index cell, const std::vector<std::uint8_t>& isInner,
                    const TaggedVertices<2>& edges, const TaggedVertices<4>& quads) {
     const auto p = static_cast<std::size_t>(mesh_.order);
-    // So many steps from one corner towards two others.
+    // The node that many steps from one corner towards two others.
     const auto at = [&](std::size_t a, std::size_t b, std::size_t s, std::size_t c, std::size_t t) {
       const auto corner = [&](std::size_t i) {
         return static_cast<std::ptrdiff_t>(nodeOfCorner(i, mesh_.order));
@@ -150,8 +150,8 @@ class Blender {
     }
   }
 
-  /// Puts nodes where they belong now: inside edges, then faces, then cells. What cells share is
-  /// placed by the first of them, as its orientation decides on rounding.
+  /// Puts nodes at their current places: inside edges, then faces, then cells. Nodes shared by
+  /// cells are placed by the first of these cells, since its orientation affects rounding.
   void placeNodes(const std::vector<Index>& cells) {
     for (const auto* const nodes : blended_.all()) {
       parallelFor(stage_, cells.size(), kBlendingGrain, [&](std::size_t i) {
@@ -172,7 +172,7 @@ class Blender {
     return plus(blended, times(share, minus(exact_[node], before)));
   }
 
-  /// How far a node is on its way from where it is blended to the image of the map.
+  /// Position of a node between its blended place (0) and the image of the map (1).
   [[nodiscard]] double shareOf(Index node) const {
     if (isOnSurface_[node] == 0) return steps_[node] == 1 ? 1 : 0;
     return steps_[node] > kMostHalvings ? 0 : 1.0 / static_cast<double>(1U << steps_[node]);
@@ -186,7 +186,7 @@ class Blender {
     return sum;
   }
 
-  /// Those that are not positive although they are when straight.
+  /// The cells that are not positive although their straight versions are.
   [[nodiscard]] std::vector<Index> findFolded(const std::vector<Index>& cells) const {
     std::vector<std::uint8_t> isFolded(cells.size());
     parallelBlocks(
@@ -214,7 +214,7 @@ class Blender {
     return cells.examine(nodes).validity == Validity::Positive;
   }
 
-  /// As the nodes of a cell of order 1.
+  /// The cell's corners, as nodes of a cell of order 1.
   [[nodiscard]] std::vector<Vec3> cornersOf(Index cell) const {
     std::vector<Vec3> corners(8);
     for (std::size_t i = 0; i < 8; ++i) {
@@ -223,10 +223,10 @@ class Blender {
     return corners;
   }
 
-  /// Marks the nodes of a folded cell that move next. Those inside go to the image of the map:
-  /// thin layers of cells have to be curved together. If that does not help, they come back for
-  /// good, and those of the surface leave it by halves: at first those inside faces alone, as those
-  /// of an edge belong to more cells.
+  /// Marks the nodes of a folded cell that move next. Interior nodes go to the image of the map:
+  /// thin layers of cells must be curved together. If that does not help, they return for good, and
+  /// surface nodes leave the surface by halves: first only those inside faces, since nodes of an
+  /// edge belong to more cells.
   void takeNextStep(Index cell) {
     const auto move = [&](const auto& isNext) {
       bool isAny = false;
@@ -261,9 +261,9 @@ class Blender {
   mesh::CellValidity straightValidity_;
   Array<Vec3> exact_;                      ///< per node: on the image of the map
   std::vector<Index> owner_;               ///< per node: its first cell
-  std::vector<std::uint8_t> isOnSurface_;  ///< per node: until it has to leave it
+  std::vector<std::uint8_t> isOnSurface_;  ///< per node: until it has to leave the surface
   std::vector<std::uint8_t> steps_;        ///< per node
-  std::vector<std::uint8_t> isMoving_;     ///< per node: in this round
+  std::vector<std::uint8_t> isMoving_;     ///< per node: moves in this round
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ ElementNumbers::ElementNumbers(const igm::PreparedMap& map, ElementKind kind, St
   finish(stage);
 }
 
-/// Appends the lines with elements that a tet owns, and counts both.
+/// Appends the lines with elements owned by a tet, and counts both.
 void ElementNumbers::add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer) {
   assert(block == tet / sweep::kSweepBlock);
   begin_[tet] = 0;
@@ -52,7 +52,7 @@ void ElementNumbers::add(std::size_t block, Index tet, lattice::TetRasterizer& r
     });
     lineBegin_[gridOf(tet, axis)] = static_cast<Index>(lines.size() - before);
   }
-  // Lines stay where they are, so what was reserved too much would stay as well.
+  // Lines are not copied later, so memory reserved in excess would stay allocated.
   const bool isLast = (tet + 1) % sweep::kSweepBlock == 0;
   if (isLast) lines.shrink_to_fit();
 }

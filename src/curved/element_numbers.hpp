@@ -1,7 +1,7 @@
-// The canonical numbers of hex edges and hex faces: by the tet that owns the midpoint (the smallest
-// of those that contain it), there by axis (along an edge, across a face), then in the order of the
-// tet's sweep over midpoints. No mesh topology is needed, and two edges of the same two vertices
-// are told apart.
+// The canonical numbers of hex edges and hex faces: ordered by the tet that owns the midpoint (the
+// smallest tet that contains it), then by axis (along an edge, across a face), then in the order of
+// the tet's sweep over midpoints. They need no mesh topology, and they distinguish two edges
+// between the same two vertices.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Element {
   std::uint64_t number;
   int axis;                     ///< of the owner's chart: along an edge, across a face
   lattice::GridPoint z;         ///< smallest corner
-  lattice::CornerMask simplex;  ///< of the owner, that holds the midpoint
+  lattice::CornerMask simplex;  ///< of the owner; holds the midpoint
 };
 
 class ElementNumbers {
@@ -34,31 +34,31 @@ class ElementNumbers {
     lattice::SweptLine swept;
     std::uint32_t ownedFirst;
     std::uint32_t ownedCount;
-    Index number;  ///< of the first that is owned
+    Index number;  ///< of the first owned one
   };
 
  public:
   /// @throws Error TooLarge for more elements than an Index can number
   ElementNumbers(const igm::PreparedMap& map, ElementKind kind, Stage& stage);
-  /// Without elements: for add() and finish().
+  /// Contains no elements yet: call add() and finish().
   ElementNumbers(const igm::PreparedMap& map, ElementKind kind);
 
-  /// The grid of midpoints of edges along an axis, or of faces across it.
+  /// The grid of the midpoints of edges along an axis, or of faces across it.
   [[nodiscard]] static constexpr lattice::HalfGrid midpointsOf(ElementKind kind,
                                                                int axis) noexcept {
     const int along = 1 << axis;
     return static_cast<lattice::HalfGrid>(kind == ElementKind::Edges ? along : 7 ^ along);
   }
 
-  // While others sweep the same tets:
-  /// Tets of a block of kSweepBlock in order, blocks in any order and in parallel.
+  // To number elements while something else sweeps the same tets:
+  /// Call for the tets of each block of kSweepBlock in order; blocks in any order and in parallel.
   void add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer);
-  /// When all have been added.
+  /// Call when all tets have been added.
   /// @throws Error TooLarge for more elements than an Index can number
   void finish(Stage& stage);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
-  /// The first element that a tet owns; also of the tet behind the last.
+  /// The first element that a tet owns; also defined for the tet past the last.
   [[nodiscard]] std::uint64_t begin(std::size_t tet) const noexcept { return begin_[tet]; }
 
   /// Visits all elements that a tet owns, in order.
@@ -75,8 +75,8 @@ class ElementNumbers {
     }
   }
 
-  /// The number of an element, by its owner.
-  /// @param hint  moves along: one for each of several searches that go side by side
+  /// The number of an element, given its owner.
+  /// @param hint  moves along; use one for each of several simultaneous searches
   /// @throws Error Internal if the tet does not own it
   [[nodiscard]] Index find(Index owner, int axis, const lattice::GridPoint& z,
                            std::size_t& hint) const;
@@ -96,13 +96,13 @@ class ElementNumbers {
   ElementKind kind_;
   Array<std::uint64_t> begin_;  ///< per tet (+1)
   Array<Index> lineBegin_;      ///< per tet and axis (+1); there are no more lines than elements
-  std::vector<Array<Line>> blocks_;  ///< by block of tets: lines with owned elements
+  std::vector<Array<Line>> blocks_;  ///< per block of tets: lines with owned elements
 };
 
 /// @throws Error TooLarge for more elements than an Index can number
 void requireNumbers(std::uint64_t elements);
 
-/// Vertices and edges, numbered in one sweep of the tets.
+/// Vertices and edges, numbered in a single sweep over the tets.
 struct GridNumbers {
   sweep::VertexTables vertices;
   ElementNumbers edges;
@@ -118,7 +118,7 @@ class EdgeObserver final : public sweep::SweepObserver {
   }
   void take(sweep::SweptVertices vertices) override { vertices_ = std::move(vertices); }
 
-  /// Once, when the engine is done.
+  /// Call once, after the engine has finished.
   /// @throws Error TooLarge for more than an Index can number
   [[nodiscard]] GridNumbers finish(Stage& stage);
 
@@ -128,7 +128,7 @@ class EdgeObserver final : public sweep::SweepObserver {
   std::optional<sweep::SweptVertices> vertices_;
 };
 
-/// The same without an engine.
+/// Numbers both without an engine.
 /// @throws Error TooLarge for more than an Index can number
 [[nodiscard]] GridNumbers numberVerticesAndEdges(const igm::PreparedMap& map, Stage& stage);
 

@@ -1,4 +1,4 @@
-// The public entries of curved meshes.
+// The public entry points for curved meshes.
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kExtractCurvedGrain = 1 << 16;
 
-/// From the tets as the library orders their corners to the caller's.
+/// Converts corners from the library's order of each tet's corners to the caller's.
 void toCallersCorners(const igm::OrientedMap& input, Array<CornerSet>& corners, Stage& stage) {
   if (!input.cornersReversed) return;
   parallelFor(stage, corners.size(), kExtractCurvedGrain,
@@ -31,7 +31,8 @@ void toCallersCorners(const igm::OrientedMap& input, Array<CornerSet>& corners, 
 
 /// The mesh of a map, and the parts of a piecewise-linear one.
 /// @param map      scaled
-/// @param extract  extract(SweepObserver*) gives the mesh, of the atlas engine if it is observed
+/// @param extract  extract(SweepObserver*) returns the mesh, made by the atlas engine if there is
+///                 an observer
 template <class Extract>
 PiecewiseLinearMesh withParts(const igm::PreparedMap& map, PiecewiseLinearParts parts,
                               Engine engine, Context& context, const Extract& extract) {
@@ -63,7 +64,7 @@ void requireOrder(int order) {
                                               std::to_string(kMaxOrder) + ".");
 }
 
-/// @param map  scaled for the mesh; receives the scale of the nodes
+/// @param map  scaled for the mesh; is rescaled for the nodes
 LagrangeMesh withNodes(HexMesh mesh, igm::PreparedMap& map, int order, CurvedNodes nodes,
                        Context& context, ExtractStatistics& statistics) {
   LagrangeMesh result = groupNodes(mesh, map, order, context);

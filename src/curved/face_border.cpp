@@ -17,17 +17,18 @@ void failToCut(Index tet, const char* what) {
 
 namespace {
 
-/// The ends of an edge, the smaller first; a vertex twice.
+/// The ends of an edge, the smaller first; for a vertex, twice that vertex.
 std::pair<Index, Index> endsOf(const Tet& tet, lattice::CornerMask simplex) noexcept {
   return std::minmax({tet[lattice::firstCorner(simplex)], tet[lattice::lastCorner(simplex)]});
 }
 
-/// Tells a simplex of less than four corners from others that are given by their owners.
+/// Compares a simplex of fewer than four corners with others that are given by their owners.
 class SimplexMatcher {
  public:
   SimplexMatcher(const adjacency::TetTopology& topology, Index tet, lattice::CornerMask simplex)
       : topology_(topology), dimension_(lattice::dimension(simplex)) {
-    // The owner of an edge is found by a walk around it only, so edges are known by their ends.
+    // The owner of an edge is found only by walking around it, so edges are identified by their
+    // ends.
     if (dimension_ == 2) {
       face_ = ownedFace(topology, tet, lattice::oppositeCorner(simplex));
     } else {
@@ -52,7 +53,7 @@ class SimplexMatcher {
 constexpr std::array<lattice::GridPoint, 4> kSquareCorners = {
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
 
-/// Rounded coordinate along a side of the square of a corner of a slice on it.
+/// Rounded coordinate, along a side of the square, of a slice's corner on that side.
 double placeOnSide(const lattice::LatticeTet& seen, const SliceCorner& corner, std::size_t side,
                    std::int64_t unit) {
   const std::size_t across = axisAcross(side);
@@ -83,8 +84,8 @@ lattice::CornerMask simplexOfOrigin(const lattice::LatticeTet& corners) {
       reach[k] = std::max(reach[k], std::abs(c[i][k]));
     }
   }
-  // Each volume is a sum of six products with at most eight roundings each: an error below
-  // 6 * 8.1 * 2^-53 < 2^-47 times the largest product. 2^-46 leaves a factor of two.
+  // Each volume is a sum of six products with at most eight roundings each: an error below 6 * 8.1
+  // * 2^-53 < 2^-47 times the largest product. 2^-46 leaves a factor of two.
   const double error = 0x1p-46 * reach[0] * reach[1] * reach[2];
   lattice::CornerMask simplex = lattice::kNoSimplex;
   for (int face = 0; face < 4; ++face) {
@@ -157,7 +158,7 @@ lattice::CornerMask FaceBorder::simplexOfMidpoint(const lattice::LatticeTet& cor
       {{unit / 2, 0, 0}, {unit, unit / 2, 0}, {unit / 2, unit, 0}, {0, unit / 2, 0}}};
   lattice::LatticeTet around = corners;
   for (lattice::LatticePoint& corner : around) corner = corner - midpoints[side];
-  // Most tets at a side are elsewhere along it.
+  // Most tets along a side do not reach its midpoint.
   const std::size_t along = side % 2;
   bool before = true;
   bool behind = true;
@@ -169,7 +170,7 @@ lattice::CornerMask FaceBorder::simplexOfMidpoint(const lattice::LatticeTet& cor
   return simplexOfOrigin(around);
 }
 
-/// Looks an arc up in the tet that owns its midpoint.
+/// Looks up an arc in the tet that owns its midpoint.
 /// @param midpoint  with the face's frame
 void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
   Index owner = midpoint.tet;
@@ -195,7 +196,7 @@ void FaceBorder::setArc(std::size_t side, const SimplexInTet& midpoint) {
   found_ |= 1U << side;
 }
 
-/// Arcs know their ends; those of neighbouring sides must agree.
+/// Arcs know their ends; those of adjacent sides must agree.
 void FaceBorder::finish(Index tet) {
   if (found_ != 15U) failToCut(tet, "a side was not found");
   for (std::size_t i = 0; i < 4; ++i) {
@@ -208,8 +209,8 @@ void FaceBorder::finish(Index tet) {
 }
 
 PatchPoint FaceBorder::arcPoint(std::size_t side, std::uint64_t point) const noexcept {
-  // The parameter is turned round if the arc or the side runs backward. Without branches, which
-  // cannot be predicted.
+  // The parameter is reversed if exactly one of arc and side runs backward. Branch-free, since the
+  // branch would be unpredictable.
   const bool isTurned = isReversed(side) != (side >= 2);
   PatchPoint result{static_cast<Index>(vertexCount_ + point), {}};
   result.parameter[side % 2] = std::abs((isTurned ? 1.0 : 0.0) - input_.arcs.parameters[point]);
@@ -237,8 +238,8 @@ bool FaceBorder::findEnds(const SimplexInTet& carrier, std::size_t side, const S
   const std::uint64_t backward = isReversed(side) ? 1 : 0;
   const std::uint64_t begin = input_.arcs.pointBegin[arcs_[side]];
   const std::uint64_t end = input_.arcs.pointBegin[arcs_[side] + 1];
-  // Points of the arc are numbered along it; the ones at both ends of a part, from its number less
-  // one on.
+  // Points of an arc are numbered along it; the ends of a part are consecutive, starting from its
+  // number minus one.
   std::uint64_t part = 0;
   if (first.isSquareCorner) {
     part = backward != 0 ? end : begin;
@@ -257,8 +258,8 @@ bool FaceBorder::findEnds(const SimplexInTet& carrier, std::size_t side, const S
   return true;
 }
 
-/// A point of an arc is known by the simplex that the arc crosses there. (An arc that crosses one
-/// simplex twice comes back through a periodic domain; then the place along the arc decides.)
+/// A point of an arc is identified by the simplex in which the arc crosses there. (An arc crosses a
+/// simplex twice only through a periodic domain; then the position along the arc decides.)
 PatchPoint FaceBorder::pointAt(Index tet, const SeenTet& seen, const SliceCorner& corner) const {
   const std::size_t side = corner.squareSide();
   const std::size_t arc = arcs_[side];

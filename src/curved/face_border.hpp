@@ -10,13 +10,13 @@
 
 namespace hexhex::curved {
 
-/// A corner of a polygon: its number, and (u, v).
+/// A corner of a polygon: its number and its (u, v).
 struct PatchPoint {
   Index number;
   std::array<double, 2> parameter;
 };
 
-/// The border of one face after the other. One per thread. Sides of the square are numbered as in
+/// The border of one face after another. One per thread. Sides of the square are numbered as in
 /// slices.
 class FaceBorder {
  public:
@@ -27,22 +27,22 @@ class FaceBorder {
         star_(input.map.topology, input.map.exact),
         vertexCount_(input.vertices.count()) {}
 
-  /// Begins with another face.
+  /// Starts another face.
   void begin() noexcept {
     found_ = 0;
     reversed_ = 0;
   }
   /// Whether a tet may contain all vertices of the face.
   [[nodiscard]] static bool mayContainAll(const SeenTet& seen, std::int64_t unit) noexcept;
-  /// Takes the four vertices if they are all in one closed tet, and the arcs between them.
+  /// If all four vertices are in one closed tet, sets them and the arcs between them.
   /// @return the smallest simplex of the tet that contains them, or kNoSimplex
   [[nodiscard]] lattice::CornerMask setInsideOneTet(Index tet, const Frame& frame);
 
-  /// Looks for the midpoints of sides along a slice, and takes the arcs of those that it finds.
-  /// @param carrier  the simplex that was sliced, with the face's frame
+  /// Looks for midpoints of sides along a slice and sets the arcs of those it finds.
+  /// @param carrier  the sliced simplex, with the face's frame
   void findArcs(const SimplexInTet& carrier, const SeenTet& seen, const Slice& slice);
-  /// To be called when all slices have been looked at.
-  /// @param tet  to be named in an error
+  /// Call when all slices have been visited.
+  /// @param tet  for error messages
   void finish(Index tet);
 
   [[nodiscard]] const Quad& vertices() const noexcept { return vertices_; }
@@ -53,26 +53,26 @@ class FaceBorder {
     constexpr std::array<std::array<double, 2>, 4> kPlaces = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
     return {vertices_[corner], kPlaces[corner]};
   }
-  /// What is known about the end of a slice's side along the border.
+  /// What is known about one end of a slice's side on the border.
   struct SideEnd {
     bool isKnown;
     bool isSquareCorner;
   };
-  /// Finds those points of an arc at the ends of a slice's side that are not known. The side runs
-  /// inside the carrier, so that they are next to each other on the arc.
+  /// Finds the unknown arc points at the ends of a slice's side. The side runs inside the carrier,
+  /// so the two points are consecutive on the arc.
   /// @param side  of the square
-  /// @return false if an arc that comes by several times leaves it open which points they are
+  /// @return false if the arc passes several times, so that the points are ambiguous
   [[nodiscard]] bool findEnds(const SimplexInTet& carrier, std::size_t side, const SideEnd& first,
                               const SideEnd& second, PatchPoint& firstPoint,
                               PatchPoint& secondPoint) const noexcept;
-  /// The point of an arc at a corner of a slice.
+  /// The arc point at a corner of a slice.
   [[nodiscard]] PatchPoint pointAt(Index tet, const SeenTet& seen, const SliceCorner& corner) const;
 
  private:
   [[nodiscard]] bool isReversed(std::size_t side) const noexcept {
     return ((reversed_ >> side) & 1U) != 0;
   }
-  /// The part of an arc inside a carrier, as the number that the point at its end has among those
+  /// The part of an arc inside a carrier, given as the number of the point at its end among those
   /// of all arcs; kNoPart if there are several.
   [[nodiscard]] std::uint64_t partIn(const SimplexInTet& carrier, std::size_t side) const noexcept;
   [[nodiscard]] PatchPoint arcPoint(std::size_t side, std::uint64_t point) const noexcept;
@@ -87,9 +87,9 @@ class FaceBorder {
   const igm::ExactMap& exact_;
   SimplexStar star_;
   std::uint64_t vertexCount_;
-  std::array<std::size_t, 4> lineHints_{};  ///< by side: where its arc was found the last time
+  std::array<std::size_t, 4> lineHints_{};  ///< per side: where its arc was found last time
 
-  // Of the face at hand:
+  // The current face:
   Quad vertices_{};
   std::array<Index, 4> arcs_{};
   std::uint8_t reversed_ = 0;  ///< bit per side

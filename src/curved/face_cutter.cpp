@@ -27,7 +27,7 @@ std::size_t FaceCutter::cut(Index tet, const Element& face) {
   return pieceCount_;
 }
 
-/// A face with all corners in one closed tet is one polygon.
+/// A face with all corners in one closed tet is a single polygon.
 void FaceCutter::cutInsideOneTet(Index tet, lattice::CornerMask carrier) {
   Index* const corners = out_.corners.extend(4);
   std::array<double, 2>* const parameters = out_.parameters.extend(4);
@@ -40,7 +40,7 @@ void FaceCutter::cutInsideOneTet(Index tet, lattice::CornerMask carrier) {
   out_.carriers.add(ownedBy(topology_, tet, carrier));
 }
 
-/// A tet or triangle of the plane whose closure contains the centre meets the open square.
+/// Any tet, or any triangle in the plane, whose closure contains the centre meets the open square.
 /// @param seen  the centre's tet
 void FaceCutter::addFirstPiece(const SimplexInTet& center, const SeenTet& seen) {
   if (center.simplex == lattice::kWholeTet) return addPiece(center, seen);
@@ -55,7 +55,7 @@ void FaceCutter::addFirstPiece(const SimplexInTet& center, const SeenTet& seen) 
   if (!found) failToCut(center.tet, "no tet around the centre meets the face");
 }
 
-/// A triangle has two tets: the smaller one stands for both.
+/// A triangle has two tets: the smaller represents it.
 SimplexInTet FaceCutter::ownedCarrier(const SimplexInTet& carrier) const {
   if (carrier.simplex == lattice::kWholeTet) return carrier;
   const int face = lattice::oppositeCorner(carrier.simplex);
@@ -72,7 +72,7 @@ bool FaceCutter::isKnown(const SimplexInTet& carrier, std::size_t first) const {
   return false;
 }
 
-/// Appends a piece to a list. What it was found from and its geometry are to be filled in.
+/// Appends a piece to a list. The caller fills in its origin and geometry.
 FaceCutter::Piece& FaceCutter::newPiece(const SimplexInTet& carrier, std::size_t& first) {
   if (pieceCount_ == pieces_.size()) pieces_.resize(std::max<std::size_t>(16, 2 * pieceCount_));
   Piece& piece = pieces_[pieceCount_];
@@ -90,7 +90,7 @@ void FaceCutter::addPiece(const SimplexInTet& carrier, const SeenTet& seen) {
   slice(piece, {});
 }
 
-/// Adds the piece on the other side of a face of a tet if it is new.
+/// Adds the piece on the other side of a tet's face if it is new.
 /// @param from  the piece on this side
 /// @param side  its side in the face
 void FaceCutter::addPieceBehind(std::size_t from, std::size_t side, int face) {
@@ -103,7 +103,7 @@ void FaceCutter::addPieceBehind(std::size_t from, std::size_t side, int face) {
   if (isKnown(carrier, first)) return;
   Piece& piece = newPiece(carrier, first);
   const Piece& here = pieces_[from];
-  // Three corners are known; they have the same coordinates.
+  // Three corners are known and have the same coordinates.
   const Tet& tet = topology_.tets[here.carrier.tet];
   const auto apex = static_cast<std::size_t>(adjacency::localOf(mate));
   unsigned below = 0;
@@ -141,7 +141,7 @@ void FaceCutter::slice(Piece& piece, const KnownCut& known) {
   if (piece.slice.size() < 3) failToCut(piece.carrier.tet, "a polygon has no area");
   if (piece.slice.borders != 0) border_.findArcs(piece.carrier, piece.seen, piece.slice);
   if (piece.from == kLast) return;
-  // From the side of the section to that of the slice.
+  // From the section's side to the slice's.
   const std::size_t sectionSide = piece.entry;
   if (piece.cuts.areKnown) {
     piece.entry = piece.cuts.corner[sectionSide];
@@ -154,7 +154,7 @@ void FaceCutter::slice(Piece& piece, const KnownCut& known) {
   if (piece.entry == piece.slice.size()) failToCut(piece.carrier.tet, "a side is missing");
 }
 
-/// Goes on across the sides that do not lie on the square's border.
+/// Continues across the sides that are not on the square's border.
 void FaceCutter::addNeighbours(std::size_t piece) {
   unsigned open = 0;
   {
@@ -164,7 +164,7 @@ void FaceCutter::addNeighbours(std::size_t piece) {
   }
   for (; open != 0; open &= open - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(open));
-    // Pieces move when one is added.
+    // Adding a piece may move the others.
     const lattice::CornerMask simplex =
         pieces_[piece].section.sideSimplex(pieces_[piece].slice[i].side);
     if (lattice::dimension(simplex) == 2) {
@@ -175,12 +175,12 @@ void FaceCutter::addNeighbours(std::size_t piece) {
   }
 }
 
-/// Two pieces meet in an edge of the plane, somewhere around it.
+/// Two pieces meet in an edge that lies in the plane; the second is somewhere around that edge.
 void FaceCutter::addPieceAround(std::size_t from, std::size_t side, lattice::CornerMask edge) {
   const Piece& here = pieces_[from];
   const SimplexInTet at{here.carrier.tet, edge, here.carrier.frame};
-  // Away from the plane, on either side of the edge; from a triangle in the plane there is one side
-  // in this tet, and one in the tet behind the triangle.
+  // Walks away from the plane, on either side of the edge; from a triangle in the plane, one side
+  // is in this tet and one in the tet behind the triangle.
   for (int face = 0; face < 4; ++face) {
     if (lattice::contains(edge, face) || here.carrier.simplex == lattice::faceMask(face)) continue;
     const auto other = static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge, face));
@@ -239,8 +239,8 @@ void FaceCutter::addPieceAtEdge(std::size_t from, std::size_t side, SimplexInTet
   slice(piece, {});
 }
 
-/// Appends a piece to the output. Corners that it shares with the piece that it was found from are
-/// known, and those along the border are next to each other on their arcs.
+/// Appends a piece to the output. Corners shared with the piece from which it was found are known,
+/// and those on the border are consecutive on their arcs.
 void FaceCutter::emit(Piece& piece) {
   const Slice& slice = piece.slice;
   const std::size_t size = slice.size();
@@ -254,7 +254,7 @@ void FaceCutter::emit(Piece& piece) {
     open &= ~(1U << corner);
   };
   if (piece.from != kLast) {
-    // There the side runs in the other direction.
+    // There the side runs in the opposite direction.
     const Piece& from = pieces_[piece.from];
     const std::size_t first = from.firstCorner + from.slice.next(piece.fromSide);
     const std::size_t second = from.firstCorner + piece.fromSide;
@@ -269,7 +269,7 @@ void FaceCutter::emit(Piece& piece) {
     const std::size_t next = slice.next(i);
     const unsigned ends = (1U << i) | (1U << next);
     const auto side = static_cast<std::size_t>(slice[i].side - kSquareSide);
-    // Where a section goes beyond the side, its interior is on the border.
+    // Where a section extends beyond the side, its interior is on the border.
     if ((ends & open & ~unsigned{slice.squareCorners}) == 0 ||
         ((slice.borders >> side) & 1U) == 0) {
       continue;
@@ -293,7 +293,7 @@ void FaceCutter::emit(Piece& piece) {
     parameters[i] = point.parameter;
   }
   out_.cornerCounts.add(static_cast<std::uint8_t>(size));
-  // Pieces are named by the owners of their carriers already.
+  // Pieces are already identified by the owners of their carriers.
   out_.carriers.add({piece.carrier.tet, piece.carrier.simplex});
 }
 
@@ -302,9 +302,9 @@ PatchPoint FaceCutter::pointAt(const Piece& piece, const SliceCorner& corner) {
   return border_.pointAt(piece.carrier.tet, piece.seen, corner);
 }
 
-/// A point inside the square is known by the vertex or edge of the tets that crosses the square
-/// there, and by where the square's frame shows that, which is the same from all tets around. (An
-/// edge that crosses a face twice comes back through a periodic domain.)
+/// A point inside the square is identified by the tet vertex or edge that crosses the square there,
+/// and by that simplex's coordinates in the square's frame, which are the same in all tets around
+/// it. (An edge crosses a face twice only through a periodic domain.)
 PatchPoint FaceCutter::innerPoint(const Piece& piece, const SliceCorner& corner) {
   const Tet& tet = topology_.tets[piece.carrier.tet];
   std::size_t i = lattice::firstCorner(corner.simplex);
@@ -326,8 +326,8 @@ PatchPoint FaceCutter::innerPoint(const Piece& piece, const SliceCorner& corner)
   return point;
 }
 
-/// All tets around an edge that crosses the open square have pieces there, so one of these has the
-/// smallest tet, which owns the edge.
+/// All tets around an edge that crosses the open square have pieces there, so one of these pieces
+/// is in the smallest tet, which owns the edge.
 void FaceCutter::ownInnerPoint(const Piece& piece, const SliceCorner& corner, Index number) {
   if (number < firstInnerPoint_) return;
   OwnedSimplex& generator = out_.generators[number - firstInnerPoint_];

@@ -1,4 +1,4 @@
-// One hex face: all polygons in which it meets tets, and the points that they share.
+// One hex face: all polygons in which it meets tets, and the points they share (Section 5.5).
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace hexhex::curved {
 
-/// Cuts one face after the other. One per thread.
+/// Cuts one face after another. One per thread.
 ///
-/// A piece is what a tet's interior has of the open square, or what a triangle in the square's
-/// plane has. Pieces are convex and meet along whole sides: a face of a tet separates two of them,
-/// and so does an edge in the plane. From the piece at the centre, all others are reached across
-/// sides inside the open square. What two pieces share is computed once: the corners of their tets,
-/// the points of their sections, and the points of their side.
+/// A piece is the intersection of the open square with the interior of a tet, or with a triangle
+/// that lies in the square's plane. Pieces are convex and meet along whole sides: two pieces are
+/// separated by a face of a tet, or by an edge in the plane. All pieces are reached from the one at
+/// the centre, across sides inside the open square. What two pieces share is computed once: the
+/// corners of their tets, the points of their sections, and the points of their common side.
 class FaceCutter {
  public:
   FaceCutter(const PatchInput& input, PatchPieces& pieces)
@@ -33,9 +33,9 @@ class FaceCutter {
 
   /// Appends a face's polygons.
   /// @param tet  owner of the face's centre
-  /// @return how many
+  /// @return their number
   [[nodiscard]] std::size_t cut(Index tet, const Element& face);
-  /// The border of the face that was cut last.
+  /// The border of the face cut last.
   [[nodiscard]] const FaceBorder& border() const noexcept { return border_; }
 
  private:
@@ -45,19 +45,19 @@ class FaceCutter {
     Section section;
     Slice slice;
     SectionCuts cuts;         ///< of the section
-    std::size_t next;         ///< piece of the same tet, or kLast
-    std::size_t firstCorner;  ///< among the corners that are emitted
+    std::size_t next;         ///< another piece of the same tet, or kLast
+    std::size_t firstCorner;  ///< among the emitted corners
     std::size_t from;         ///< the piece across whose side it was found, or kLast
-    std::size_t fromSide;     ///< then: that side
-    std::size_t entry;        ///< and the piece's own side there, of its section, then of its slice
+    std::size_t fromSide;     ///< and that side
+    std::size_t entry;        ///< this piece's side there: of its section, then of its slice
   };
   struct InnerPoint {
     std::array<Index, 2> vertices;              ///< of the edge, ascending; a vertex twice
     std::array<lattice::LatticePoint, 2> seen;  ///< both in the square's frame
     PatchPoint point;
-    std::size_t next;  ///< of those with the same key, or kLast
+    std::size_t next;  ///< another one with the same key, or kLast
   };
-  /// A list per key, by the number of a KeyTable.
+  /// A list per key, indexed by the numbers of a KeyTable.
   struct Lists {
     adjacency::KeyTable keys;
     std::vector<std::size_t> first;
@@ -66,7 +66,7 @@ class FaceCutter {
       keys.clear();
       first.clear();
     }
-    /// Where the list of a key begins.
+    /// Head of the list of a key.
     std::size_t& operator[](Index key) {
       const Index number = keys.insert(key);
       if (number == first.size()) first.push_back(kLast);
@@ -108,9 +108,9 @@ class FaceCutter {
   std::uint64_t firstInnerPoint_;
   PatchPieces& out_;
 
-  // Of the face at hand:
+  // The current face:
   std::vector<Piece> pieces_;
-  std::size_t pieceCount_ = 0;  ///< of `pieces_`, which keeps its size
+  std::size_t pieceCount_ = 0;  ///< used part of `pieces_`, which never shrinks
   Lists piecesOfTet_;
   std::vector<InnerPoint> inner_;
   Lists innerAtEdge_;

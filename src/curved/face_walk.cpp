@@ -16,7 +16,7 @@ constexpr std::size_t edgeOf(int a, int b) noexcept {
   return 6;
 }
 
-/// A face as a line sees it that leaves through it.
+/// A face as seen by a line that leaves through it.
 struct SeenFace {
   std::array<std::uint8_t, 3> corners{};  ///< counter-clockwise
   std::array<std::uint8_t, 3> sides{};    ///< edge opposite each corner
@@ -36,8 +36,9 @@ constexpr std::array<SeenFace, 4> makeFaces() noexcept {
 }
 constexpr std::array<SeenFace, 4> kFaces = makeFaces();
 
-/// By the edges (a bit each) whose second corner is to the left of the first: the face that a line
-/// leaves through which none of them meets; 4 for sides that no line has.
+/// Indexed by the set of edges (a bit each) whose second corner is to the left of the first: the
+/// face through which a line leaves that meets none of the edges; 4 for combinations that no line
+/// has.
 constexpr std::array<std::uint8_t, 64> makeExits() noexcept {
   std::array<std::uint8_t, 64> exits{};
   for (unsigned bits = 0; bits < 64; ++bits) {
@@ -69,7 +70,7 @@ EdgeSides::EdgeSides(const lattice::LatticeTet& seen) noexcept {
 
 bool FaceWalk::start(const SimplexInTet& at, const lattice::LatticeTet& seen,
                      const EdgeSides& sides, Heading heading) {
-  // Looking back, left is right.
+  // Looking backward, left becomes right.
   const bool back = heading == Heading::Backward;
   const int face = kExits[back ? ~sides.left & 63U : sides.left];
   if (sides.touches || face == 4) return false;
@@ -83,8 +84,8 @@ bool FaceWalk::start(const SimplexInTet& at, const lattice::LatticeTet& seen,
   return true;
 }
 
-/// Asks memory early for the tet behind the face: without, arcs take 7 to 9 % longer where tets are
-/// smaller than cells, and a whole extraction with them 3 %.
+/// Prefetches the tet behind the face: without this, arcs take 7 to 9 % longer where tets are
+/// smaller than cells, and a whole extraction with arcs takes 3 % longer.
 void FaceWalk::leaveThrough(Index tet, int face) noexcept {
   face_ = face;
   mate_ = topology_.mate[adjacency::halfFaceOf(tet, face)];
@@ -108,8 +109,8 @@ bool FaceWalk::cross(SimplexInTet& at) {
 bool FaceWalk::leave(const SimplexInTet& at) {
   const auto apex = static_cast<std::size_t>(face_);
   const lattice::LatticePoint seen = at.frame.see(exact_.corners[at.tet][apex], exact_.unit);
-  // The edge leaves between two corners, and the apex, that it has inside: those where the apex is
-  // to the right of the first and to the left of the second.
+  // The edge leaves between two corners and the apex, on the sides that enclose it: those where the
+  // apex is to the right of the first corner and to the left of the second.
   std::array<int, 3> side{};
   for (std::size_t i = 0; i < 3; ++i)
     side[i] = lattice::sign(lattice::crossComponent(seen_[i], seen, 0));

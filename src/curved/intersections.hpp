@@ -1,9 +1,9 @@
-// Where hex edges cross faces and edges of the tets, or go through vertices.
+// Where hex edges cross faces and edges of tets, or pass through vertices.
 //
-// All traces of a hex edge find the same point, bit for bit: on a face it is computed from the
-// face as its owner has it, and the chart and the direction in which the edge is followed only
-// permute and negate the integers that all begins with; on an edge nothing depends on the chart, on
-// the order of corners, or on which end the hex edge is followed from.
+// All traces of a hex edge find the same point, bit for bit. On a face it is computed from the face
+// as its owner sees it: chart and direction of travel only permute and negate the integers that the
+// computation starts from. On an edge nothing depends on the chart, the order of corners, or the
+// direction of travel.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +23,10 @@ namespace hexhex::curved {
 struct ArcExit {
   OwnedSimplex generator;  ///< the simplex that holds it
   Vec3 point;
-  double parameter;  ///< along the edge
+  double parameter;  ///< along the hex edge
 };
 
-/// A face in the chart of its owner.
+/// A face in its owner's chart.
 class OwnersFace {
  public:
   OwnersFace(const lattice::LatticeTet& ofOwner, int face) noexcept
@@ -35,11 +35,11 @@ class OwnersFace {
   [[nodiscard]] const lattice::LatticePoint& corner(std::size_t i) const noexcept {
     return corners_[static_cast<std::size_t>(indices_[i])];
   }
-  /// Coordinate k of its second corner, relative to the first,
+  /// Coordinate k of the second corner, relative to the first.
   [[nodiscard]] double second(std::size_t k) const noexcept {
     return static_cast<double>(corner(1)[k] - corner(0)[k]);
   }
-  /// and that of the third.
+  /// Coordinate k of the third corner, relative to the first.
   [[nodiscard]] double third(std::size_t k) const noexcept {
     return static_cast<double>(corner(2)[k] - corner(0)[k]);
   }
@@ -49,13 +49,14 @@ class OwnersFace {
   const std::array<int, 3>& indices_;
 };
 
-/// The shares of a face's corners at a point, with sum 1, and whether all are known to be positive.
+/// The barycentric weights of a point in a face, with sum 1, and whether all are known to be
+/// positive.
 struct FaceShares {
   std::array<double, 3> of{};
   bool inside = false;
 };
 
-/// Where the line of an edge meets the plane of a face, by exact arithmetic up to the last
+/// Where the line of an edge meets the plane of a face, in exact arithmetic up to the final
 /// roundings.
 /// @return outside if it does not cross the interior of the face
 [[nodiscard]] inline FaceShares shareExactly(const OwnersFace& face, const ChartEdge& edge,
@@ -85,13 +86,13 @@ struct FaceShares {
 
 /// The same in floating point.
 ///
-/// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge relative to
-/// the first one; none of the line is larger, as it meets the closed face. Coordinates carry one
-/// rounding, so products are known to 3 M^2 and their differences to 8 M^2. M^2 is less than the
-/// sum of squares. Where the sum of all weights is above 2^-10 of that, the shares of the second
-/// and the third corner are known to 2^14 and their own roundings, the share that is left to twice
-/// that: less than 2^-37.
-/// @return outside if it is not certain, or not known so well
+/// In units of u = 2^-53 and of M, the largest coordinate of a corner across the edge, relative to
+/// the first corner; no such coordinate of the line is larger, as the line meets the closed face.
+/// Coordinates carry one rounding, so products are known to within 3 M^2 and their differences to
+/// within 8 M^2. M^2 is less than the sum of squares. If the sum of all weights exceeds 2^-10 of
+/// that, the weights of the second and third corner are known to within 2^14 plus their own
+/// roundings, and the remaining weight to within twice that: less than 2^-37.
+/// @return outside if it is not certain, or not known that precisely
 [[nodiscard]] inline FaceShares shareRoughly(const OwnersFace& face, const ChartEdge& edge,
                                              std::int64_t unit) noexcept {
   const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
@@ -114,10 +115,10 @@ struct FaceShares {
   return {{first, second, third}, inside};
 }
 
-/// The point inside a face at which an edge crosses it.
+/// The interior point of a face at which an edge crosses it.
 struct FaceIntersection {
   std::array<double, 3> shares{};  ///< of the face's corners
-  double parameter = 0;            ///< along the edge; 1 minus it, exactly, from the other end
+  double parameter = 0;            ///< along the edge; exactly 1 minus this from the other end
 };
 
 /// @param edge  in the owner's chart; its line crosses the interior of the face
@@ -126,20 +127,20 @@ struct FaceIntersection {
                                                 std::int64_t unit) noexcept {
   FaceShares shares = shareRoughly(face, edge, unit);
   if (!shares.inside) shares = shareExactly(face, edge, unit);
-  // Along the axis, in whichever direction the edge runs.
+  // Along the axis, whichever way the edge runs.
   const auto axis = static_cast<std::size_t>(lattice::axisOf(edge.along));
   const bool backward = lattice::signOf(edge.along) < 0;
   const std::int64_t begin = std::int64_t{edge.z[axis]} - (backward ? 1 : 0);
   const auto first = static_cast<double>(face.corner(0)[axis] - begin * unit);
   const double beyond = shares.of[1] * face.second(axis) + shares.of[2] * face.third(axis);
-  // A multiple of 2^-53, so that it is as exact from the other end.
+  // A multiple of 2^-53, so that its complement from the other end is exact.
   const double rest = 1 - (first + beyond) * (1 / static_cast<double>(unit));
   return {shares.of, backward ? rest : 1 - rest};
 }
 
-/// The point inside a face at which an edge crosses it.
+/// The interior point of a face at which an edge crosses it.
 /// @param face  by its owner
-/// @param edge  in the chart of the owner
+/// @param edge  in the owner's chart
 [[nodiscard]] inline ArcExit exitThrough(const igm::PreparedMap& map, const OwnedSimplex& face,
                                          const ChartEdge& edge) noexcept {
   const int local = lattice::oppositeCorner(face.corners);
@@ -157,8 +158,8 @@ struct FaceIntersection {
   return {face, point, intersection.parameter};
 }
 
-/// The same from any tet of the face.
-/// @param edge  in the chart of that tet
+/// The same from either tet of the face.
+/// @param edge  in that tet's chart
 [[nodiscard]] inline ArcExit exitThrough(const igm::PreparedMap& map, Index tet, int face,
                                          const ChartEdge& edge) noexcept {
   const OwnedSimplex owned = ownedFace(map.topology, tet, face);
@@ -167,20 +168,20 @@ struct FaceIntersection {
                      edge.across(map.exact.transitions, adjacency::halfFaceOf(tet, face)));
 }
 
-/// The point inside an edge of the tets at which a hex edge crosses it.
+/// The interior point of a tet edge at which a hex edge crosses it.
 struct EdgeIntersection {
   std::array<double, 2> shares;  ///< of the corners, with sum 1
-  double parameter;              ///< along the hex edge; 1 minus it, exactly, from the other end
+  double parameter;              ///< along the hex edge; exactly 1 minus this from the other end
 };
 
-/// @param a, b   the corners, seen from where the hex edge begins
+/// @param a, b   the corners, as seen from the start of the hex edge
 /// @param axis   along which the hex edge ascends; its line passes between the corners
 /// @param unit   its length
 [[nodiscard]] inline EdgeIntersection crossTetEdge(const lattice::LatticePoint& a,
                                                    const lattice::LatticePoint& b, std::size_t axis,
                                                    std::int64_t unit) noexcept {
   // Both corners and the line are in one plane, so any distance across the axis will do; this one
-  // is exact, and the same in all charts.
+  // is exact and the same in all charts.
   const std::size_t p = (axis + 1) % 3;
   const std::size_t q = (axis + 2) % 3;
   const auto fromA = static_cast<double>(std::abs(a[p]) + std::abs(a[q]));
@@ -192,15 +193,16 @@ struct EdgeIntersection {
   };
   const double begun = between(a[axis], b[axis]);
   const double left = between(unit - a[axis], unit - b[axis]);
-  // From the nearer end: a multiple of 2^-53, so that it is as exact from the other end.
+  // From the nearer end: a multiple of 2^-53, so that its complement from the other end is exact.
   const double rest = 1 - std::min(begun, left) / (begun + left);
   return {{ofA, ofB}, begun <= left ? 1 - rest : rest};
 }
 
-/// The point inside an edge of the tets, or at a vertex, at which a hex edge leaves a simplex.
+/// The point at which a hex edge leaves a simplex through a vertex or the interior of an edge of
+/// the tets.
 /// @param generator  the edge or vertex
-/// @param tet, at    the same in a tet
-/// @param seen       that tet, seen from where the hex edge begins, which ascends along axis 0
+/// @param tet, at    the same, in a tet
+/// @param seen       that tet as seen from the start of the hex edge, which ascends along axis 0
 [[nodiscard]] inline ArcExit exitAtCorners(const igm::PreparedMap& map,
                                            const OwnedSimplex& generator, Index tet,
                                            lattice::CornerMask at,

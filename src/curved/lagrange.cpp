@@ -23,7 +23,7 @@ bool separatedByCube(const Triangle& t, std::int64_t unit) noexcept {
   return false;
 }
 
-/// Along the cross product of cube edge k and a triangle edge d.
+/// Separation along the cross product of cube edge k and a triangle edge d.
 bool separatedByEdges(const Triangle& t, const lattice::LatticePoint& d, std::size_t k,
                       std::int64_t unit) noexcept {
   const std::size_t i = (k + 1) % 3;
@@ -45,8 +45,8 @@ bool separatedByEdges(const Triangle& t, const lattice::LatticePoint& d, std::si
 bool separatedByTriangle(const Triangle& t, std::int64_t unit) noexcept {
   const lattice::LatticePoint u = t[1] - t[0];
   const lattice::LatticePoint v = t[2] - t[0];
-  // The normal's product with (corner of the cube) - (corner of the triangle): the cube is on one
-  // side if its two extreme corners are.
+  // The dot product of the normal and (corner of the cube) - (corner of the triangle): the cube is
+  // on one side if its two extreme corners are.
   lattice::Int192 lowest;
   lattice::Int192 highest;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -57,13 +57,13 @@ bool separatedByTriangle(const Triangle& t, std::int64_t unit) noexcept {
   return lowest.sign() >= 0 || highest.sign() <= 0;
 }
 
-/// A cell at the tet that owns its centre.
+/// A cell, and the tet that owns its centre.
 struct CellSeed {
   Index tet;
   lattice::GridPoint z;  ///< smallest corner
 };
 
-/// All cells in their canonical order.
+/// All cells in canonical order.
 Array<CellSeed> listCells(const igm::PreparedMap& map, Stage& stage) {
   const sweep::CellCenters centers = sweep::findCells(map, stage);
   Array<CellSeed> cells(centers.count());
@@ -83,14 +83,14 @@ Array<CellSeed> listCells(const igm::PreparedMap& map, Stage& stage) {
   return cells;
 }
 
-/// Collects the nodes of one cell after the other. One per thread.
+/// Collects the nodes of one cell after another. One per thread.
 class NodeCollector {
  public:
   /// @param map  scaled for the nodes
   NodeCollector(const igm::PreparedMap& map, const sweep::VertexTables& numbers, int order)
       : map_(map), numbers_(numbers), order_(order) {}
 
-  /// Numbers of the nodes in the refined grid.
+  /// Finds the numbers of the nodes in the refined grid.
   void collect(const CellSeed& cell, std::span<Index> nodes) {
     std::fill(nodes.begin(), nodes.end(), kNone);
     missing_ = nodes.size();
@@ -138,8 +138,8 @@ class NodeCollector {
     }
   }
 
-  /// Goes on through the faces that meet the open cube: there, the map is one to one, and it does
-  /// not matter through which of them a tet is reached.
+  /// Continues through the faces that meet the open cube. The map is injective there, so it does
+  /// not matter through which face a tet is reached.
   void addNeighbours(const SimplexInTet& here) {
     const lattice::LatticeTet seen = here.frame.see(map_.exact.corners[here.tet], map_.exact.unit);
     for (int face = 0; face < 4; ++face) {
@@ -160,7 +160,7 @@ class NodeCollector {
   std::vector<SimplexInTet> queue_;
 };
 
-/// Numbers of the refined grid, renumbered: hex vertices first, the others in the same order.
+/// Renumbers nodes of the refined grid: hex vertices first, the others in the same order.
 Array<Index> renumber(const HexMesh& mesh, const LagrangeMesh& result, std::uint64_t count,
                       Stage& stage) {
   Array<Index> number(count);
@@ -199,7 +199,7 @@ void describeNodes(const sweep::VertexTables& numbers, const HexMesh& mesh,
   result.generatorCorners.resize(number.size());
   parallelFor(stage, number.size(), kLagrangeGrain, [&](std::size_t i) {
     const Index n = number[i];
-    // Vertices keep every bit: at another scale, rounding differs.
+    // Vertices are kept bit for bit: at another scale they would round differently.
     result.points[n] = n < mesh.points.size() ? mesh.points[n] : points[i];
     result.generatorTet[n] = tets[i];
     result.generatorCorners[n] = corners[i];

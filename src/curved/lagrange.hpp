@@ -1,4 +1,4 @@
-// Cells of higher order: groups of the vertices of a refined grid.
+// Higher-order cells: groups of vertices of a refined grid.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace hexhex::curved {
 
-/// @param mesh  of the map as it is scaled now; its vertices become the first nodes
-/// @param map   receives the scale of the nodes, `order` times what it had
+/// @param mesh  of the map at its current scale; its vertices become the first nodes
+/// @param map   is rescaled for the nodes, by `order`
 [[nodiscard]] LagrangeMesh groupNodes(const HexMesh& mesh, igm::PreparedMap& map, int order,
                                       Context& context);
 
-/// Place of a cell's corner among its nodes.
+/// Index of a cell's corner among its nodes.
 [[nodiscard]] inline std::size_t nodeOfCorner(std::size_t corner, int order) {
   const auto last = static_cast<std::size_t>(order);
   const std::size_t stride = last + 1;
@@ -27,9 +27,9 @@ namespace hexhex::curved {
   return x + stride * (y + stride * z);
 }
 
-/// Whether a closed triangle that is not degenerate has a point in the open cube from 0 to `unit`
-/// along all axes. By separating axes: the open cube and the triangle are disjoint exactly if a
-/// plane parallel to a side of the cube, to the triangle, or to an edge of each is between them.
+/// Whether a closed, nondegenerate triangle meets the open cube from 0 to `unit` along all axes. By
+/// separating axes: the open cube and the triangle are disjoint if and only if they are separated
+/// by a plane parallel to a side of the cube, to the triangle, or to an edge of each.
 [[nodiscard]] bool cubeMeetsFace(const lattice::LatticeTet& corners, int face,
                                  std::int64_t unit) noexcept;
 

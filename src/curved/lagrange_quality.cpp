@@ -1,4 +1,4 @@
-// How much Lagrange cells are distorted.
+// Distortion of Lagrange cells.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -183,7 +183,7 @@ HexMesh straightMesh(const LagrangeMesh& mesh) {
   straight.regions = mesh.regions;
   const auto vertices = static_cast<std::ptrdiff_t>(mesh.vertexCount);
   straight.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
-  if (!mesh.generatorCorners.empty()) {  // files of others have none
+  if (!mesh.generatorCorners.empty()) {  // files from other programs have none
     straight.generatorTet.assign(mesh.generatorTet.begin(), mesh.generatorTet.begin() + vertices);
     straight.generatorCorners.assign(mesh.generatorCorners.begin(),
                                      mesh.generatorCorners.begin() + vertices);

@@ -1,4 +1,4 @@
-// Jacobian matrices of Lagrange cells, and how much these are distorted.
+// Jacobian matrices of Lagrange cells, and the distortion of these cells.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace hexhex::curved {
 
-/// The columns of the Jacobian matrices of cells of one order, at one grid of places.
+/// The columns of the Jacobian matrices of cells of one order, evaluated on one grid of points.
 struct LagrangeColumns {
   /// One per thread.
   struct Values {
@@ -18,21 +18,21 @@ struct LagrangeColumns {
     std::vector<Vec3> scratch;
   };
 
-  // Of the Lagrange polynomials: a row per place, a column per polynomial.
+  // Of the Lagrange polynomials: a row per point, a column per polynomial.
   mesh::Matrix<double> value;
   mesh::Matrix<double> derivative;
 
-  /// @param places  in [0, 1], along each axis
+  /// @param places  in [0, 1], the same along each axis
   LagrangeColumns(int order, const std::vector<double>& places);
 
   /// @param nodes  of a cell, the first axis fastest
   void evaluate(const std::vector<Vec3>& nodes, Values& result) const;
 };
 
-/// From 0 to 1 in so many steps.
+/// The points from 0 to 1 in `order` equal steps.
 [[nodiscard]] std::vector<double> equidistant(int order);
 
-/// Scaled Jacobians as scaledJacobians() defines them.
+/// Scaled Jacobians as defined by scaledJacobians().
 class LagrangeQuality {
  public:
   explicit LagrangeQuality(int order);

@@ -11,14 +11,14 @@ namespace hexhex::curved {
 
 namespace {
 
-/// Where the pieces of a block go.
+/// Where a block's pieces go.
 struct PiecePlaces {
   std::uint64_t polygon = 0;
   std::uint64_t corner = 0;
   std::uint64_t point = 0;
 };
 
-/// Copies the pieces of a block to their places.
+/// Copies a block's pieces to their places.
 void join(const PatchPieces& pieces, const PiecePlaces& to, std::uint64_t firstInnerPoint,
           Patches& patches) {
   std::uint64_t corner = to.corner;
@@ -54,7 +54,7 @@ void requireIndexable(std::uint64_t points) {
 }
 
 /// Makes room.
-/// @param share  of all faces whose pieces have room then
+/// @param share  of all faces whose pieces then have room
 void lengthenAll(Patches& patches, const PiecePlaces& totals, double share) {
   lengthen(patches.cornerBegin, totals.polygon + 1, share);
   lengthen(patches.polygonTet, totals.polygon, share);
@@ -77,7 +77,7 @@ Patches ofFaces(std::uint64_t faces) {
   return patches;
 }
 
-/// Cuts the faces that some tets own.
+/// Cuts the faces owned by some tets.
 void cutFaces(const PatchInput& input, std::size_t begin, std::size_t end, Patches& patches,
               PatchPieces& pieces) {
   pieces.clear();

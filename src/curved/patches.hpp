@@ -14,7 +14,7 @@
 
 namespace hexhex::curved {
 
-/// What patches are made from.
+/// Input of the construction of patches.
 struct PatchInput {
   const igm::PreparedMap& map;
   const sweep::VertexTables& vertices;
@@ -22,13 +22,14 @@ struct PatchInput {
   const ElementNumbers& faces;
   const Arcs& arcs;  ///< of the edges
 
-  /// In the numbering that polygons use, behind hex vertices and points of arcs.
+  /// Number of the first interior point of a face; hex vertices and arc points have smaller
+  /// numbers.
   [[nodiscard]] std::uint64_t firstInnerPoint() const noexcept {
     return vertices.count() + arcs.points.size();
   }
 };
 
-/// Cuts every hex face once. Generators are in terms of the tets in the map, not of the caller's.
+/// Cuts every hex face once. Generators refer to the map's tets, not to the caller's.
 /// @throws Error TooLarge for more points than an Index can number
 [[nodiscard]] Patches cutPatches(const PatchInput& input, Stage& stage);
 
@@ -42,7 +43,7 @@ class Column {
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return values_[i]; }
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return values_[i]; }
 
-  /// Makes room behind the last element.
+  /// Makes room after the last element.
   /// @return where to write; valid until the next call
   [[nodiscard]] T* extend(std::size_t count) {
     const std::size_t begin = size_;
@@ -57,8 +58,8 @@ class Column {
   std::size_t size_ = 0;
 };
 
-/// Polygons of consecutive hex faces, before it is known where in the result they belong. Inner
-/// points are numbered from the first number on that inner points have.
+/// Polygons of consecutive hex faces, before their position in the result is known. Interior points
+/// are numbered from firstInnerPoint() on.
 struct PatchPieces {
   Column<std::uint8_t> cornerCounts;  ///< per polygon
   Column<OwnedSimplex> carriers;      ///< per polygon

@@ -7,13 +7,14 @@ namespace hexhex::curved {
 
 namespace {
 
-/// The edges that the plane crosses, by the corners below it, as the section is walked around.
+/// For one set of corners below the plane: the edges that the plane crosses, going around the
+/// section.
 struct Outline {
   std::uint8_t size = 0;
-  std::array<std::uint8_t, 4> above{};    ///< per point: the end of its edge above the plane
-  std::array<std::uint8_t, 4> below{};    ///< and below it
-  std::array<std::uint8_t, 4> simplex{};  ///< both
-  std::array<std::uint8_t, 4> sideIn{};   ///< per face of the tet: the side in it
+  std::array<std::uint8_t, 4> above{};    ///< per point: its edge's end above the plane
+  std::array<std::uint8_t, 4> below{};    ///< and below the plane
+  std::array<std::uint8_t, 4> simplex{};  ///< both ends
+  std::array<std::uint8_t, 4> sideIn{};   ///< per face of the tet: the section's side in it
 
   constexpr void add(std::size_t i, std::size_t j) noexcept {
     above[size] = static_cast<std::uint8_t>(i);
@@ -52,8 +53,8 @@ constexpr Outline makeOutline(unsigned belowMask) noexcept {
     outline.add(above[1], l);
     outline.add(above[0], l);
   } else {
-    // One corner alone on its side: the edges to the others, as the opposite face is walked around,
-    // whose normal points to that corner.
+    // One corner is alone on its side: take its edges to the others in the order that goes around
+    // the opposite face, whose normal points to that corner.
     const std::size_t alone = aboveCount == 1 ? above[0] : below[0];
     for (std::size_t n = 0; n < 3; ++n) {
       const auto other =
@@ -78,12 +79,12 @@ constexpr std::array<Outline, 16> kOutlines = makeOutlines();
 
 int signOfDifference(std::int64_t a, std::int64_t b) noexcept { return int{a > b} - int{a < b}; }
 
-/// Flags of one coordinate of the point between two corners.
+/// Flags of one coordinate of a point between two corners.
 BorderFlags exactBorders(const lattice::LatticePoint& i, const lattice::LatticePoint& j,
                          std::size_t axis, std::int64_t unit) noexcept {
   const std::int64_t weightI = j[2] < 0 ? -j[2] : j[2];
   const std::int64_t weightJ = i[2] < 0 ? -i[2] : i[2];
-  // All products fit 124 bits.
+  // All products fit in 124 bits.
   const lattice::Int128 sum = static_cast<lattice::Int128>(weightI) * i[axis] +
                               static_cast<lattice::Int128>(weightJ) * j[axis];
   const lattice::Int128 one = static_cast<lattice::Int128>(weightI + weightJ) * unit;
@@ -99,7 +100,8 @@ SectionPoint intersection(const SeenTet& tet, std::size_t i, std::size_t j,
   const double u = shareA * static_cast<double>(a[0]) + shareB * static_cast<double>(b[0]);
   const double v = shareA * static_cast<double>(a[1]) + shareB * static_cast<double>(b[1]);
   SectionPoint point{{u, v}, simplex, 0};
-  // A difference from 1 has one more rounding, of at most 2 R: a factor of two leaves enough.
+  // A difference from 1 has one more rounding, of at most 2 R: the factor of two leaves enough
+  // room.
   const double error = 2 * kPointError * tet.reach;
   const auto one = static_cast<double>(unit);
   const double closest =
@@ -158,7 +160,7 @@ lattice::CornerMask SeenTet::carrier() const noexcept {
 
 Section sectionOf(const SeenTet& tet, lattice::CornerMask carrier, std::int64_t unit) noexcept {
   if (carrier != lattice::kWholeTet) return sectionOfFace(tet, carrier, unit);
-  // Corners in the plane count as above it; intersections of their edges are the corners
+  // Corners in the plane count as above it; the points on their edges are then the corners
   // themselves.
   const Outline& outline = kOutlines[tet.below];
   Section section;
@@ -169,7 +171,7 @@ Section sectionOf(const SeenTet& tet, lattice::CornerMask carrier, std::int64_t 
       section.points[section.size++] =
           intersection(tet, above, outline.below[k], outline.simplex[k], unit);
     } else if (!lattice::contains(known, outline.above[k])) {
-      // A corner of the tet ends several edges that the plane crosses.
+      // A corner of the tet may end several edges that the plane crosses.
       known = static_cast<lattice::CornerMask>(known | lattice::cornerBit(outline.above[k]));
       section.points[section.size++] = corner(tet, above, unit);
     }
@@ -183,7 +185,7 @@ Section sectionBehind(const SeenTet& tet, int entered, const Section& from, std:
   Section section;
   section.size = outline.size;
   side = outline.sideIn[static_cast<std::size_t>(entered)];
-  // There the side runs in the other direction.
+  // There the side runs in the opposite direction.
   std::size_t k = side;
   section.points[k] = from.points[from.next(fromSide)];
   section.points[k].simplex = outline.simplex[k];

@@ -4,9 +4,9 @@ namespace hexhex::curved {
 
 namespace {
 
-/// The last point of a face in whose plane the line runs. Seen in the plane of the line and a
-/// coordinate r across it, the face is a triangle; the line leaves it through a side that rises in
-/// r when the triangle is walked around counter-clockwise.
+/// The last point of a face whose plane contains the line. In that plane, with a coordinate r
+/// across the line, the face is a triangle; the line leaves it through a side along which r
+/// increases as the triangle is traversed counter-clockwise.
 SimplexPoint exitOfFace(const lattice::LatticeTet& corners, int face, std::size_t along) noexcept {
   const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
   const std::size_t p = (along + 1) % 3;
@@ -59,7 +59,7 @@ SimplexPoint exitPoint(const lattice::LatticeTet& corners, lattice::CornerMask s
     return SimplexPoint::corner(corners[a][along] > corners[b][along] ? a : b);
   }
   for (int face = 0; face < 4; ++face) {
-    // Through an exit face, whose inward normal looks back, all sides are negative or zero.
+    // For an exit face, whose inward normal points backward, all sides are negative or zero.
     const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
     SimplexPoint point;
     bool exit = true;

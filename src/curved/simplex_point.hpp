@@ -1,4 +1,4 @@
-// Points by weights of the corners of a tet: exact comparison of their coordinates.
+// Points as weighted sums of a tet's corners, with exact comparison of their coordinates.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace hexhex::curved {
 
-/// A point of a tet: weights of the corners, not negative, up to a common factor. At most 124 bits
-/// each (minors of coordinates), so that products with coordinates fit 192 bits.
+/// A point of a tet: nonnegative weights of the corners, up to a common factor. At most 124 bits
+/// each (minors of coordinates), so that products with coordinates fit in 192 bits.
 struct SimplexPoint {
   std::array<lattice::Int128, 4> weights{};
 
-  /// The simplex whose interior holds the point.
+  /// The simplex whose interior contains the point.
   [[nodiscard]] constexpr lattice::CornerMask simplex() const noexcept {
     lattice::CornerMask mask = lattice::kNoSimplex;
     for (int i = 0; i < 4; ++i) {
@@ -33,8 +33,8 @@ struct SimplexPoint {
     point.weights[i] = 1;
     return point;
   }
-  /// The point of the edge between corners i and j where a linear function vanishes that has the
-  /// given values of opposite signs there.
+  /// The point between corners i and j where a linear function vanishes that has the given values,
+  /// of opposite signs, at the two.
   [[nodiscard]] static constexpr SimplexPoint between(std::size_t i, std::size_t j,
                                                       std::int64_t atI, std::int64_t atJ) noexcept {
     assert(std::min(atI, atJ) <= 0 && std::max(atI, atJ) >= 0 && atI != atJ);
@@ -50,8 +50,8 @@ struct SimplexPoint {
   [[nodiscard]] int compare(const lattice::LatticeTet& corners, std::size_t axis,
                             std::int64_t target) const noexcept {
     // Weights carry two roundings and differences one; products and three sums of up to four terms
-    // add at most five more: 8 * 2^-53 = 2^-50 of the sum of magnitudes, which itself is as good.
-    // 2^-49 leaves a factor of two.
+    // add at most five more: 8 * 2^-53 = 2^-50 of the sum of magnitudes, which is itself as
+    // precise. 2^-49 leaves a factor of two.
     constexpr double kRelativeError = 0x1p-49;
     double sum = 0;
     double magnitude = 0;
@@ -67,7 +67,7 @@ struct SimplexPoint {
     return exact.sign();
   }
 
-  /// Weights with sum 1, rounded.
+  /// Rounded weights with sum 1.
   [[nodiscard]] std::array<double, 4> normalized() const noexcept {
     std::array<double, 4> shares{};
     double sum = 0;
@@ -89,13 +89,13 @@ struct SimplexPoint {
   return sum;
 }
 
-/// Where a line that is parallel to axis `along` leaves the interior of a simplex of a tet, in
-/// positive direction. The line passes through coordinates 0 of the other axes, and through the
-/// interior of the simplex. All corners of the simplex are seen from there.
+/// Where a line parallel to axis `along` leaves the interior of a simplex of a tet in the positive
+/// direction. The line passes through coordinates 0 of the other axes and through the interior of
+/// the simplex. Corners are in coordinates relative to the line.
 [[nodiscard]] SimplexPoint exitPoint(const lattice::LatticeTet& corners,
                                      lattice::CornerMask simplex, std::size_t along) noexcept;
 
-/// Where such a line crosses a face that it is not parallel to.
+/// Where such a line crosses a face that is not parallel to it.
 /// @return no weights at all if it does not meet the closed face
 [[nodiscard]] SimplexPoint intersectionWithFace(const lattice::LatticeTet& corners, int face,
                                                 std::size_t along) noexcept;

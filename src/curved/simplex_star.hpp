@@ -1,4 +1,4 @@
-// Coordinates of one hex edge, face or cell, wherever it goes.
+// Coordinates of one hex edge, face or cell, carried from chart to chart.
 #pragma once
 
 #include <array>
@@ -29,13 +29,13 @@ struct ChartEdge {
   }
 };
 
-/// A right-handed coordinate system of the grid, in the chart of some tet: edges run from the
-/// origin along axis 0, squares between axes 0 and 1, cubes along all three. Carried from tet to
-/// tet, it shows every corner of a tet at the same place, whatever the charts.
+/// A right-handed coordinate system of the grid, expressed in the chart of some tet: edges run from
+/// the origin along axis 0, squares between axes 0 and 1, cubes along all three. As it is carried
+/// from tet to tet, every tet corner keeps its coordinates in it, whatever the charts.
 struct Frame {
   lattice::Transition toChart;
 
-  /// The frame of a grid point whose first axis is the given one, the others following cyclically.
+  /// The frame at a grid point with the given axis first and the others following cyclically.
   [[nodiscard]] static constexpr Frame along(const lattice::GridPoint& z, int axis) noexcept {
     return {{lattice::Rotation::fromAxes(lattice::direction(axis, 1),
                                          lattice::direction((axis + 1) % 3, 1)),
@@ -45,12 +45,12 @@ struct Frame {
   [[nodiscard]] constexpr const lattice::GridPoint& origin() const noexcept {
     return toChart.translation;
   }
-  /// Where an axis goes in the chart.
+  /// The direction of an axis in the chart.
   [[nodiscard]] constexpr lattice::Direction axis(std::size_t k) const noexcept {
     return toChart(lattice::direction(static_cast<int>(k), 1));
   }
 
-  /// Carries it across a face, if charts differ there.
+  /// Carries the frame across a face if the charts differ there.
   /// @return whether they do
   bool cross(const igm::Transitions& transitions, adjacency::HalfFace halfFace) noexcept {
     if (!transitions.isNonTrivial(halfFace)) return false;
@@ -69,7 +69,7 @@ struct Frame {
   /// The edge along the first axis.
   [[nodiscard]] constexpr ChartEdge edge() const noexcept { return {origin(), axis(0)}; }
 
-  /// A lattice point, or the corners of a tet, in the frame's coordinates, exact.
+  /// A lattice point, or the corners of a tet, in exact frame coordinates.
   template <class Points>
   [[nodiscard]] constexpr Points see(const Points& points, std::int64_t unit) const noexcept {
     return toChart.inverse()(points, unit);
@@ -78,15 +78,15 @@ struct Frame {
   [[nodiscard]] constexpr bool operator==(const Frame&) const = default;
 };
 
-// Simplices of tets: who owns them, and all tets around one, each with a frame carried to it.
+// Simplices of tets: their owners, and all tets around one, each with a frame carried to it.
 
-/// A simplex by the smallest tet that contains it.
+/// A simplex, identified by the smallest tet that contains it.
 struct OwnedSimplex {
   Index tet;
   lattice::CornerMask corners;
 };
 
-/// A face of a tet, by its owner.
+/// A face of a tet, identified by its owner.
 [[nodiscard]] inline OwnedSimplex ownedFace(const adjacency::TetTopology& topology, Index tet,
                                             int face) {
   const adjacency::HalfFace mate = topology.mate[adjacency::halfFaceOf(tet, face)];
@@ -94,7 +94,7 @@ struct OwnedSimplex {
   return {adjacency::tetOf(mate), lattice::faceMask(adjacency::localOf(mate))};
 }
 
-/// A simplex of a tet, by its owner.
+/// A simplex of a tet, identified by its owner.
 [[nodiscard]] inline OwnedSimplex ownedBy(const adjacency::TetTopology& topology, Index tet,
                                           lattice::CornerMask simplex) {
   if (simplex == lattice::kWholeTet) return {tet, simplex};
@@ -104,7 +104,7 @@ struct OwnedSimplex {
   return {owner, owner == tet ? simplex : topology.translated(simplex, tet, owner)};
 }
 
-/// A simplex as one of the tets around it sees it.
+/// A simplex as seen from one of the tets around it.
 struct SimplexInTet {
   Index tet = kNone;
   lattice::CornerMask simplex = lattice::kNoSimplex;
@@ -125,16 +125,17 @@ struct SimplexInTet {
   return to;
 }
 
-/// Walks around simplices; one per thread.
+/// Walks around simplices. One per thread.
 class SimplexStar {
  public:
   SimplexStar(const adjacency::TetTopology& topology, const igm::ExactMap& map)
       : topology_(topology), map_(map) {}
 
-  /// Visits all tets around a simplex, breadth first through faces, from a tet at it. What the
-  /// frame shows must be the same after a walk around the simplex: the line that a hex edge lies
-  /// on if it contains a point of the simplex, the plane of a hex face if its interior does.
-  /// @param visit  of a SimplexInTet; returns true to stop there
+  /// Visits all tets around a simplex, breadth first across faces, starting from one of them. Frame
+  /// coordinates must be invariant under a walk around the simplex: those of the line of a hex edge
+  /// if the edge contains a point of the simplex, those of the plane of a hex face if the face's
+  /// interior does.
+  /// @param visit  called with a SimplexInTet; returns true to stop
   /// @return whether it was stopped
   template <class Visit>
   bool visit(const SimplexInTet& start, const Visit& visit) {

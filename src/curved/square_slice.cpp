@@ -8,9 +8,9 @@ namespace hexhex::curved {
 
 namespace {
 
-/// Where a line along a side of the square crosses a side of a section.
+/// Where the line of a side of the square crosses a side of a section.
 struct BorderIntersection {
-  BorderFlags borders;  ///< exact; on the line's border
+  BorderFlags borders;  ///< exact; on the border that belongs to the line
   Half half;            ///< of the border
 };
 
@@ -50,7 +50,7 @@ class Intersections {
   }
 
  private:
-  /// Of the point where a face, or an edge in the plane, crosses the line.
+  /// Flags of the point where a face, or an edge in the plane, crosses the line.
   [[nodiscard]] BorderFlags exactBorders(lattice::CornerMask simplex,
                                          std::size_t border) const noexcept {
     const std::size_t across = axisAcross(border);
@@ -85,13 +85,14 @@ class Intersections {
   double error_;
 };
 
-/// Clips a section by one side of the square after the other.
+/// Clips a section by one side of the square after another (Sutherland and Hodgman, "Reentrant
+/// polygon clipping", 1974).
 class Clipper {
  public:
   Clipper(const SeenTet& tet, const Section& section, std::int64_t unit) noexcept
       : section_(section), intersections_(tet, section, unit) {}
 
-  /// Clips a slice by the half plane on the inner side of a side of the square.
+  /// Clips a slice by the half plane on the inner side of one side of the square.
   void clip(Slice& slice, std::size_t border) const noexcept {
     unsigned out = 0;
     unsigned on = 0;
@@ -111,7 +112,7 @@ class Clipper {
       const int next = at(slice.next(i));
       if (here >= 0) {
         result.add(slice[i]);
-        // What is cut off behind a corner on the border leaves a side along the border.
+        // The part cut off after a corner on the border is replaced by a side along the border.
         if (here == 0 && next <= 0) result[result.size() - 1].side = label;
       }
       if (here * next < 0) {
@@ -137,13 +138,13 @@ class Clipper {
   Intersections intersections_;
 };
 
-/// Cuts the sides of a section that has no corner on a line, one by one.
+/// Cuts the sides of a section one by one; the section must have no corner on a line.
 class SideCutter {
  public:
   SideCutter(const SeenTet& tet, const Section& section, std::int64_t unit) noexcept
       : section_(section), intersections_(tet, section, unit) {}
 
-  /// @return false if an intersection is on another line, too
+  /// @return false if an intersection is also on another line
   [[nodiscard]] bool cut(std::size_t side, SideCut& cut) const noexcept {
     const unsigned from = section_.points[side].borders;
     const unsigned to = section_.points[section_.next(side)].borders;
@@ -155,7 +156,7 @@ class SideCutter {
 
  private:
   /// Finds the border that cuts off an end.
-  /// @param beyond  the lines (a bit each) that the end is beyond
+  /// @param beyond  the lines (a bit each) beyond which the end lies
   [[nodiscard]] bool cutEnd(std::size_t side, unsigned beyond, bool& exists, std::uint8_t& border,
                             Half& half) const noexcept {
     if (beyond == 0 || !exists) return true;
@@ -168,7 +169,7 @@ class SideCutter {
         return true;
       }
       if ((at.borders & ~unsigned{onBorder(line)}) >= 16) return false;
-      // Beyond another line than the end is, the side goes past the square.
+      // If the point is beyond another line than the end is, the side misses the square.
       if ((at.borders & beyond) == 0) break;
     }
     exists = false;
@@ -211,12 +212,12 @@ void noteMidpoints(Slice& slice, const SideCut& exit, const SideCut& entry) noex
   slice.possibleMidpoints = static_cast<std::uint8_t>(slice.possibleMidpoints | possible);
 }
 
-/// Joins what the square has of the sides of a section; no corners if it has nothing of any.
+/// Joins what is inside the square of a section's sides; makes no corners if nothing is inside.
 void join(const Section& section, SectionCuts& cuts, Slice& slice) noexcept {
   slice.clear();
   const SideCut* first = nullptr;
   const SideCut* last = nullptr;
-  unsigned pointsBelow = 0;  // of the section, up to the first side
+  unsigned pointsBelow = 0;  // of the section, before the first side
   for (std::size_t k = 0; k < section.size; ++k) {
     const SideCut& cut = cuts.sides[k];
     if (first == nullptr && k > 0) pointsBelow |= section.points[k].borders & 1U;
@@ -241,14 +242,14 @@ void join(const Section& section, SectionCuts& cuts, Slice& slice) noexcept {
     last = &cut;
   }
   if (first == nullptr || first->begin == kUncut) return;
-  // Behind the last side, the slice follows the border to the first.
+  // After the last side, the slice follows the border to the first side.
   const std::uint8_t exit = last->end;
   const std::uint8_t entry = first->begin;
   noteMidpoints(slice, *last, *first);
-  // Clipping by one side of the square after the other begins with corner 0 of the square, instead
-  // of the first side, if it comes by there, and if the section, on its part from point 0,
-  // crosses the line along side 0 from above: the point where clipping begins, beyond side 3 in the
-  // end, is before that line then.
+  // Clipping by one side of the square after another starts at corner 0 of the square instead of
+  // the first side, if it passes that corner and if the section, on its part from point 0, crosses
+  // the line of side 0 from above: the point where clipping starts, which ends up beyond side 3,
+  // then comes before that line.
   if (entry >= exit || pointsBelow == 0 || (section.points[0].borders & 1U) != 0) {
     addCorners(slice, exit, entry);
     return;
@@ -291,7 +292,7 @@ Slice clipSquare(const SeenTet& tet, const Section& section, std::int64_t unit) 
     slice.add({index, point.simplex, point.borders, index});
     borders |= point.borders;
   }
-  // Corners that clipping makes lie between others, so that no other half planes have to follow.
+  // Corners made by clipping lie between others, so no further half planes are needed for them.
   const Clipper clipper(tet, section, unit);
   for (std::size_t i = 0; i < 4 && slice.size() > 2; ++i) {
     if ((((borders | (borders >> 4)) >> i) & 1U) != 0) clipper.clip(slice, i);
@@ -332,7 +333,8 @@ void sliceSquare(const SeenTet& tet, const Section& section, std::int64_t unit,
     slice.borders = static_cast<BorderFlags>(borders);
     cuts.areKnown = slice.size() != 0;
   }
-  // No side may come by also if the square is inside the section, or beside it.
+  // It also happens that no side meets the square: when the square is inside the section, or beside
+  // it.
   if (!cuts.areKnown) slice = clipSquare(tet, section, unit);
 }
 

@@ -9,13 +9,14 @@
 
 namespace hexhex::curved {
 
-/// A node inside an edge, a face or the cell, and the nodes at their ends that it is blended of.
+/// A node inside an edge, a face or the cell, and the weights of the nodes from which it is
+/// blended.
 struct BlendedNode {
   std::size_t node = 0;
   std::vector<std::pair<std::size_t, double>> weights = {};
 };
 
-/// The nodes of one cell, by what they are inside of.
+/// The nodes of one cell, by the element they are inside of.
 struct BlendedNodes {
   std::vector<BlendedNode> ofEdges = {};
   std::vector<BlendedNode> ofFaces = {};
@@ -36,14 +37,14 @@ struct BlendedNodes {
     }
   }
 
-  /// In the order in which they are blended.
+  /// In the order of blending.
   [[nodiscard]] std::array<const std::vector<BlendedNode>*, 3> all() const {
     return {&ofEdges, &ofFaces, &ofCell};
   }
 
  private:
-  /// The Boolean sum of linear interpolations along the axes: that along each, less that along each
-  /// two, and so on. Per axis a choice is to stay, or to go to its first or second end.
+  /// The Boolean sum of linear interpolations along the axes: that along each axis, minus that
+  /// along each two, and so on. Per axis, a choice is to stay or to go to the first or second end.
   static BlendedNode blended(std::size_t node, const std::array<std::size_t, 3>& place,
                              const std::vector<std::size_t>& axes, std::size_t last) {
     const std::array<std::size_t, 3> strides = {1, last + 1, (last + 1) * (last + 1)};

@@ -52,7 +52,7 @@ struct Side {
   auto operator<=>(const Side&) const = default;
 };
 
-/// A surface on the way to being closed, manifold and oriented.
+/// A surface that is being checked to be closed and manifold, and oriented.
 class Checked {
  public:
   Checked(TriangleMesh surface, Stage& stage) : surface_(std::move(surface)) {
@@ -71,7 +71,7 @@ class Checked {
     }
   }
 
-  /// The closed surfaces that it is made of, each around a positive volume.
+  /// The closed surfaces of which it consists, each around a positive volume.
   [[nodiscard]] std::vector<TriangleMesh> shells() const {
     std::vector<TriangleMesh> all(shellCount_);
     std::vector<Index> vertices(surface_.points.size(), kNone);  // each is in one shell
@@ -94,7 +94,7 @@ class Checked {
     if (surface_.triangles.empty()) {
       throw Error(ErrorCode::EmptyMesh, "The surface has no triangles.");
     }
-    // Sides have numbers, too.
+    // Sides are numbered, too.
     if (surface_.triangles.size() > kNone / 3) {
       throw Error(ErrorCode::TooLarge, "The surface has more triangles than can be numbered.");
     }
@@ -116,7 +116,7 @@ class Checked {
     }
   }
 
-  /// No two triangles have the same corners.
+  /// No two triangles may have the same corners.
   void requireThickness() const {
     std::vector<std::pair<Corners, Index>> sorted;
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
@@ -190,7 +190,7 @@ class Checked {
   [[nodiscard]] Index tail(Index side) const { return surface_.triangles[side / 3][side % 3]; }
   [[nodiscard]] static Index next(Index side) noexcept { return side / 3 * 3 + (side + 1) % 3; }
 
-  /// Turns triangles to agree with the first of their shell, and numbers shells.
+  /// Turns triangles to agree with the first of their shell, and numbers the shells.
   void orient() {
     const std::size_t count = surface_.triangles.size();
     shell_.assign(count, kNone);
@@ -224,7 +224,7 @@ class Checked {
     turn(turned);
   }
 
-  /// Corners 0, 1, 2 become 1, 0, 2: side 0 stays, the others change places.
+  /// Corners 0, 1, 2 become 1, 0, 2: side 0 stays, the other two swap places.
   void turn(const std::vector<bool>& turned) {
     const auto renamed = [&turned](Index side) {
       const bool moves = turned[side / 3] && side % 3 != 0;
@@ -238,7 +238,7 @@ class Checked {
     }
   }
 
-  /// Around each vertex, all triangles are one fan.
+  /// Around each vertex, all triangles must form a single fan.
   void requireFans() const {
     std::vector<bool> seen(twins_.size(), false);
     std::vector<bool> hasFan(surface_.points.size(), false);
@@ -267,7 +267,7 @@ class Checked {
   Index shellCount_ = 0;
 };
 
-/// With the sign of its orientation.
+/// Negative if the orientation is inward.
 double signedVolume(const TriangleMesh& shell) {
   double sum = 0;
   const Vec3& origin = shell.points[0];
@@ -290,7 +290,7 @@ void appendShell(TriangleMesh& all, const TriangleMesh& shell) {
   }
 }
 
-/// A closed surface, and those that it is in.
+/// A closed surface, and the surfaces that contain it.
 struct Shell {
   TriangleMesh surface;  ///< around a positive volume
   double volume = 0;
@@ -309,7 +309,7 @@ std::vector<Shell> nested(std::vector<TriangleMesh> surfaces) {
     shell.surface = std::move(surface);
   }
   for (Shell& shell : shells) {
-    // They do not meet, so that any point of one is as good as another.
+    // The surfaces do not meet, so any point of one will do.
     const Vec3& point = shell.surface.points[0];
     for (std::size_t other = 0; other < shells.size(); ++other) {
       const Box& box = shells[other].box;
@@ -351,7 +351,7 @@ std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage) {
   }
   for (const Shell& shell : shells) {
     if (shell.around.size() % 2 == 0) continue;
-    // The innermost one around it is in all others.
+    // The innermost surface around it is contained in all others.
     const std::size_t inner = *std::max_element(
         shell.around.begin(), shell.around.end(),
         [&](auto a, auto b) { return shells[a].around.size() < shells[b].around.size(); });

@@ -1,4 +1,4 @@
-// Is a surface the boundary of bodies, and of which?
+// Does a surface bound bodies, and which ones?
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,21 @@
 
 namespace hexhex::fill {
 
-/// A body without cavities, or with the closed surfaces around these.
+/// A body without cavities, or together with the closed surfaces around its cavities.
 struct Body {
-  TriangleMesh surface;  ///< counterclockwise as seen from where there is no body
+  TriangleMesh surface;  ///< counter-clockwise as seen from outside the body
   TriangleMesh voids;    ///< the part of it that bounds cavities
   std::uint64_t voidCount = 0;
   double volume = 0;
 };
 
-/// The bodies that a surface bounds, whatever the orientation of its triangles. One closed surface
-/// inside of another bounds a cavity, and one inside of that another body.
-/// @throws Error  as fillSurface(), for what is no such surface
+/// The bodies that a surface bounds, whatever the orientation of its triangles. A closed surface
+/// inside another bounds a cavity, and one inside that bounds another body.
+/// @throws Error  as fillSurface(), for other surfaces
 [[nodiscard]] std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage);
 
-/// How often a closed surface goes around a point: 0 outside. Points must not be on it.
+/// Winding number of a closed surface around a point: 0 outside. The point must not be on the
+/// surface.
 [[nodiscard]] int windings(const TriangleMesh& surface, const Vec3& point);
 
 }  // namespace hexhex::fill

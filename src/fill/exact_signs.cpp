@@ -1,5 +1,5 @@
-// Determinants in doubles with a bound on their error (Shewchuk 1997), and where that does not
-// tell, in integers.
+// Determinants in doubles with an error bound (Shewchuk 1997), and in integers where the bound does
+// not decide.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using mesh::BigInteger;
 
-/// The differences of doubles to the first of them, as integers with one factor.
+/// The differences from the first of several points, as integers with a common factor.
 template <std::size_t n>
 std::array<std::array<BigInteger, 3>, n> exactDifferences(const Vec3& from,
                                                           const std::array<Vec3, n>& points) {
@@ -39,13 +39,13 @@ std::array<std::array<BigInteger, 3>, n> exactDifferences(const Vec3& from,
   return result;
 }
 
-/// A sum of products with one bound on the relative error of each.
+/// A sum of products with a common bound on their relative errors.
 struct Filter {
   double sum = 0;
   double magnitude = 0;
 
-  /// The sign, if it is certain. Where all products are 0 and no difference is so small that they
-  /// may have vanished, so is the sum.
+  /// Whether the sign is certain. If all products are 0 and no difference is small enough for them
+  /// to have vanished, the sum is 0, too.
   [[nodiscard]] bool tells(double relativeError, bool hasTiny) const noexcept {
     if (hasTiny) return false;
     return std::abs(sum) > relativeError * magnitude || magnitude == 0;
@@ -53,7 +53,7 @@ struct Filter {
   [[nodiscard]] int sign() const noexcept { return sum > 0 ? 1 : (sum < 0 ? -1 : 0); }
 };
 
-/// Whether products of three such numbers may be less than the smallest double, or not finite.
+/// Whether products of three such numbers may underflow, or may not be finite.
 bool isTiny(const Vec3& v) noexcept {
   constexpr double kSmall = 1e-90;
   constexpr double kLarge = 1e90;
@@ -63,7 +63,7 @@ bool isTiny(const Vec3& v) noexcept {
 }
 
 constexpr double kHalfEpsilon = std::numeric_limits<double>::epsilon() / 2;
-// Each difference, product and sum is rounded; these exceed what that comes to.
+// Each difference, product and sum is rounded; these bounds exceed the total.
 constexpr double kSpaceError = 16 * kHalfEpsilon;
 constexpr double kPlaneError = 8 * kHalfEpsilon;
 

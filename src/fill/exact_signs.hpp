@@ -1,4 +1,4 @@
-// On which side of a plane, or of a line in a plane of the axes, points lie: exactly.
+// On which side of a plane, or of a line in an axis-parallel plane, points lie: exactly.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace hexhex::fill {
 /// The sign of the volume of a tet: of det(b - a, c - a, d - a).
 [[nodiscard]] int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The sign of the area of a triangle, seen along an axis: of the component `axis` of the cross
-/// product of b - a and c - a.
+/// The sign of the area of a triangle seen along an axis: of component `axis` of the cross product
+/// of b - a and c - a.
 [[nodiscard]] int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis);
 
 }  // namespace hexhex::fill

@@ -1,4 +1,4 @@
-// Surfaces and STEP files, body by body, into tets.
+// Fills surfaces and STEP files with tets, body by body.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,11 +43,11 @@ void requireInRange(const FillOptions& options) {
       "has to be from 0 to 180 degrees.");
 }
 
-/// As many as cells of cubes with edges of that length have, in regular tets.
+/// The number of regular tets with the volume of this many cubes of the same edge length.
 double tetsFor(double cells) {
   constexpr double kPerCell = 8.5;
-  constexpr double kFewest = 3000;  // to have some across most parts
-  constexpr double kMost = 20000;   // of which maps take half a minute
+  constexpr double kFewest = 3000;  // enough to have some across most parts
+  constexpr double kMost = 20000;   // maps of these take half a minute
   return cells == 0 ? kMost : std::clamp(kPerCell * cells, kFewest, kMost);
 }
 
@@ -63,7 +63,7 @@ double totalVolume(const TetMesh& mesh) {
   return sum;
 }
 
-/// Some meshers fill cavities, too.
+/// Removes tets from cavities, which some meshers fill, too.
 void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   if (body.voidCount == 0) return;
   constexpr std::size_t kGrain = 16;
@@ -78,7 +78,7 @@ void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   std::erase_if(mesh.tets, [&](const Tet& /*tet*/) { return isInVoid[t++] != 0; });
 }
 
-/// What is far from filled is no mesh of the body.
+/// A mesh far from filling the body is not a mesh of it.
 void requireFilled(double volume, double filled, const std::string& mesher) {
   constexpr double kMostMissing = 0.1;
   if (std::abs(filled - volume) <= kMostMissing * volume) return;

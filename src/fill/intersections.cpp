@@ -1,6 +1,6 @@
-// Two triangles that meet beside common vertices and edges have an edge that meets the other one
-// there: of all pairs whose boxes meet, each edge is compared with the other triangle. The boxes
-// are the nodes of a tree.
+// If two triangles meet outside common vertices and edges, an edge of one meets the other there:
+// for all pairs whose boxes meet, each edge is compared with the other triangle. The boxes are the
+// nodes of a tree.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -27,7 +27,7 @@ bool meet(const Box& a, const Box& b) noexcept {
   return true;
 }
 
-/// Triangles in halves of halves, each with its box.
+/// Triangles, recursively halved, each half with its box.
 class BoxTree {
  public:
   explicit BoxTree(const TriangleMesh& surface) : order_(surface.triangles.size()) {
@@ -94,10 +94,10 @@ class BoxTree {
   std::vector<Box> nodes_;
 };
 
-/// The axis along which a triangle with an area has one.
+/// An axis along which the projection of a nondegenerate triangle has an area.
 std::size_t openAxis(const std::array<Vec3, 3>& t) {
   const std::size_t first =
-      dominantAxis(cross(minus(t[1], t[0]), minus(t[2], t[0])));  // a guess, and mostly right
+      dominantAxis(cross(minus(t[1], t[0]), minus(t[2], t[0])));  // a guess, mostly right
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t axis = (first + k) % 3;
     if (orientation(t[0], t[1], t[2], axis) != 0) return axis;
@@ -112,7 +112,7 @@ class EdgeAndTriangle {
     for (std::size_t i = 0; i < 3; ++i) t_[i] = points_[triangle[i]];
   }
 
-  /// Whether they have a point in common that is no common vertex, and not on a common edge.
+  /// Whether they have a common point that is neither a common vertex nor on a common edge.
   [[nodiscard]] bool meet(Index from, Index to) const {
     const std::size_t begin = cornerOf(from);
     const std::size_t end = cornerOf(to);
@@ -141,7 +141,7 @@ class EdgeAndTriangle {
                                     triangle_.begin());
   }
 
-  /// Whether the way from a corner to a point of the plane begins in the triangle.
+  /// Whether the path from a corner to a point of the plane starts inside the triangle.
   [[nodiscard]] bool leavesInto(std::size_t corner, const Vec3& point) const {
     const std::size_t axis = openAxis(t_);
     const Vec3& a = t_[corner];
@@ -151,7 +151,7 @@ class EdgeAndTriangle {
     return turn * orientation(a, b, point, axis) >= 0 && turn * orientation(c, a, point, axis) >= 0;
   }
 
-  /// Two convex sets in a plane are apart if a side of one of them separates them.
+  /// Two convex sets in a plane are disjoint if a side of one separates them.
   [[nodiscard]] bool meetInPlane(const Vec3& p, const Vec3& q) const {
     const std::size_t axis = openAxis(t_);
     const int turn = orientation(t_[0], t_[1], t_[2], axis);
@@ -181,7 +181,7 @@ bool edgesMeet(const TriangleMesh& surface, const Corners& edges, const Corners&
   return false;
 }
 
-/// The first triangle behind t that it meets, or kNone.
+/// The first triangle after t that it meets, or kNone.
 Index firstMetBy(Index t, const TriangleMesh& surface, const BoxTree& tree) {
   Index first = kNone;
   tree.forEachAt(tree.box(t), [&](Index other) {
@@ -198,7 +198,7 @@ Index firstMetBy(Index t, const TriangleMesh& surface, const BoxTree& tree) {
 bool isFlat(const std::array<Vec3, 3>& triangle) { return openAxis(triangle) == 3; }
 
 std::optional<std::array<Index, 2>> firstIntersection(const TriangleMesh& surface, Stage& stage) {
-  constexpr std::size_t kGrain = 256;  // some hundred microseconds
+  constexpr std::size_t kGrain = 256;  // takes some hundred microseconds
   const BoxTree tree(surface);
   const std::size_t first = firstFault(
       stage, surface.triangles.size(),

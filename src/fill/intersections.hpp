@@ -1,4 +1,4 @@
-// Where a surface meets itself.
+// Self-intersections of a surface.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace hexhex::fill {
 
-/// Two triangles that have a point in common which is not on a vertex or an edge of both: the first
-/// such pair, for any number of threads. Exact.
-/// @param surface  whose triangles have an area, and no two the same corners
+/// The first pair of triangles with a common point that is not on a vertex or an edge of both, for
+/// any number of threads. Exact.
+/// @param surface  its triangles have nonzero area and no two have the same corners
 [[nodiscard]] std::optional<std::array<Index, 2>> firstIntersection(const TriangleMesh& surface,
                                                                     Stage& stage);
 

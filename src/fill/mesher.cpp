@@ -23,10 +23,10 @@
 namespace hexhex::fill {
 namespace {
 
-/// Of a regular tet: edge^3 divided by the volume.
+/// edge^3 / volume of a regular tet.
 const double kRegularTet = 6 * std::sqrt(2.0);
 
-/// Numbers as C++ and meshers spell them, whatever the language of the user.
+/// Numbers as C++ and meshers spell them, whatever the user's locale.
 class Text {
  public:
   explicit Text(const std::filesystem::path& file) : out_(file) {
@@ -48,7 +48,7 @@ class Text {
   std::ofstream out_;
 };
 
-/// As text, which keeps all digits of coordinates.
+/// As text, with all digits of coordinates.
 void writeStl(const TriangleMesh& surface, const std::filesystem::path& file) {
   Text out(file);
   out << "solid part\n";
@@ -64,7 +64,7 @@ void writeStl(const TriangleMesh& surface, const std::filesystem::path& file) {
   out.close(file);
 }
 
-/// What Gmsh is to do.
+/// The Gmsh script for the task.
 void writeGeo(const Task& task, const std::filesystem::path& file) {
   Text out(file);
   if (task.surface != nullptr) {
@@ -81,13 +81,13 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
   out.close(file);
 }
 
-/// What the script writes; programs write no names.
+/// Output of the script; programs write no names.
 constexpr const char* kNamed = "part.msh";
 
-/// A way to run one or more meshers; the first that is there does it.
+/// A way to run one or more meshers; the first one available does the work.
 struct Runner {
   std::vector<std::string> words;
-  std::string name;  ///< empty: it tells
+  std::string name;  ///< empty: the program reports it
   int codeIfMissing = ProgramEnd::kNotFound;
   std::string result = "part.mesh";
 };
@@ -105,7 +105,7 @@ std::string asWord(double number) {
   return {room.data(), end.ptr};
 }
 
-/// In the order of preference.
+/// In order of preference.
 std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const bool isStep = task.surface == nullptr;
   const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
@@ -118,7 +118,7 @@ std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   add(wanted(Mesher::Gmsh), "gmsh");
   std::vector<Runner> runners;
   if (!packages.empty()) {
-    constexpr int kNotThere = 3;  // as the script says
+    constexpr int kNotThere = 3;  // exit code of the script
     runners.push_back({{python(), "-c", kScript, packages, isStep ? "part.step" : "part.stl",
                         asWord(task.tetSize), asWord(task.tets), std::to_string(threads)},
                        "",
@@ -135,7 +135,7 @@ std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   return runners;
 }
 
-/// The last lines of what a program said, in one.
+/// The last lines of a program's output, joined into one.
 std::string lastLines(std::string_view said) {
   constexpr std::size_t kLines = 12;
   std::string text;
@@ -150,7 +150,7 @@ std::string lastLines(std::string_view said) {
   return text.empty() ? "It said nothing." : "It said: " + text;
 }
 
-/// @param said  of programs that could not be started
+/// @param said  by programs that could not be started
 [[noreturn]] void failWithoutMesher(const Task& task, Mesher mesher, const std::string& said) {
   const bool isStep = task.surface == nullptr;
   const std::array<std::string, 5> advice = {
@@ -176,7 +176,7 @@ std::string lastLines(std::string_view said) {
                                           lastLines(said));
 }
 
-/// Each tet positive, and no point without a tet.
+/// Makes each tet positive, and removes points without tets.
 TetMesh tidied(TetMesh read) {
   TetMesh mesh;
   mesh.regions = std::move(read.regions);
@@ -214,7 +214,7 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
   if (!std::filesystem::exists(result)) failBy(mesher, task, "wrote no mesh", end.said);
   try {
     TetMesh read = readTetMesh(result, {}, context);
-    // Names are those of faces and solids of a STEP file; what else is tagged is the mesher's.
+    // Names are those of faces and solids of a STEP file; other tags are the mesher's own.
     if (task.surface != nullptr || read.features.names.empty()) {
       read.regions.clear();
       read.features = {};

@@ -1,4 +1,4 @@
-// The meshers that may be installed, and one run of one of them.
+// The meshers that may be installed, and a run of one of them.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,25 @@
 
 namespace hexhex::fill {
 
-/// What a mesher is to make.
+/// The task of a mesher.
 struct Task {
   std::string name;                       ///< of the part, for messages
   const TriangleMesh* surface = nullptr;  ///< of one body; or
   std::filesystem::path step;             ///< a STEP file
-  double tetSize = 0;                     ///< 0, for STEP alone: as large as the number says
-  double tets = 0;                        ///< about
+  double tetSize = 0;                     ///< 0, for STEP only: derived from the number
+  double tets = 0;                        ///< approximate number
   double featureAngle = 0;                ///< in degrees
 };
 
 struct Meshed {
   TetMesh tets;
-  std::string mesher;  ///< with its version, where it tells
+  std::string mesher;  ///< with its version, if it reports one
 };
 
-/// Negative of a tet whose corners are in the other order.
+/// Negative for a tet with its corners in the opposite order.
 [[nodiscard]] double volumeOf(const TetMesh& mesh, const Tet& tet);
 
-/// @throws Error  as fillSurface(), of meshers that fail or are not there; Cancelled
+/// @throws Error  as fillSurface(), for meshers that fail or are not installed; Cancelled
 [[nodiscard]] Meshed runMesher(const Task& task, Mesher mesher, Context& context);
 
 }  // namespace hexhex::fill

@@ -37,7 +37,7 @@ namespace {
               "A mesher cannot be started: " + what + ": " + std::strerror(errno) + ".");
 }
 
-/// Closed at the end, and in other programs.
+/// Closed at the end of its scope, and in other programs.
 class Descriptor {
  public:
   Descriptor(int value, const char* what) : value_(value) {
@@ -53,11 +53,11 @@ class Descriptor {
   int value_;
 };
 
-/// In the new process: nothing that takes memory or locks.
+/// Runs in the new process: must neither allocate memory nor take locks.
 [[noreturn]] void become(char* const* words, const char* folder, int input, int output,
                          [[maybe_unused]] pid_t parent) {
 #if defined(__linux__)
-  // Not to be left over, whatever ends the parent.
+  // Ensures that it does not outlive the parent, however that ends.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
 #endif
@@ -67,7 +67,7 @@ class Descriptor {
   _exit(ProgramEnd::kNotFound);
 }
 
-/// A running program, which ends with this.
+/// A running program, which is ended together with this object.
 class Child {
  public:
   explicit Child(pid_t id) : id_(id) {

@@ -1,4 +1,4 @@
-// Other programs, which run until they end, or until this one ends or is cancelled.
+// Runs other programs until they end, or until this one ends or is cancelled.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +10,21 @@
 namespace hexhex::fill {
 
 struct ProgramEnd {
-  static constexpr int kNotFound = 127;  ///< as shells say it
-  /// The exit code; of a program that a signal ended 128 more than its number.
+  static constexpr int kNotFound = 127;  ///< as reported by shells
+  /// The exit code; for a program ended by a signal, 128 plus the signal's number.
   int code = 0;
-  std::string said;  ///< on both outputs
+  std::string said;  ///< on standard output and standard error
 };
 
 /// Runs a program, and waits for it.
-/// @param words   its name, or where it is, and its arguments
-/// @param folder  in which it runs, and which receives a file with what it says
-/// @throws Error Cancelled, when the program has been ended; FileUnsupported where no programs can
-///               be run
+/// @param words   its name or path, and its arguments
+/// @param folder  the working folder, which also receives a file with the output
+/// @throws Error Cancelled, after the program has been ended; FileUnsupported where programs cannot
+///         be run
 [[nodiscard]] ProgramEnd runProgram(const std::vector<std::string>& words,
                                     const std::filesystem::path& folder, Context& context);
 
-/// A folder for files of a moment.
+/// A folder for temporary files.
 class TemporaryFolder {
  public:
   /// @throws Error FileWrite

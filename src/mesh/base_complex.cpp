@@ -1,4 +1,4 @@
-// Sheets, chords and blocks from faces, singular curves from singular edges.
+// Sheets, chords and blocks from faces, and singular curves from singular edges.
 #include <algorithm>
 #include <bit>
 #include <optional>
@@ -24,8 +24,8 @@ namespace {
 using adjacency::kHexEdges;
 using adjacency::kHexFaces;
 
-/// Of a corner of a cell, its places in a cube: bit i is that along axis i. The table is its own
-/// inverse.
+/// Position of a cell's corner in the unit cube: bit i is its coordinate along axis i. The table is
+/// its own inverse.
 constexpr std::size_t placesOf(std::size_t corner) { return kVtkCorner[corner]; }
 
 /// The axis along which a cell has the edge between two of its vertices.
@@ -37,16 +37,16 @@ std::size_t axisBetween(const Hex& cell, Index a, Index b) {
   return static_cast<std::size_t>(std::countr_zero(between));
 }
 
-/// The face of a cell, other than `face`, that has the edge between two vertices of that.
+/// The face of a cell, other than `face`, that contains the edge of `face` between two vertices.
 std::size_t faceAcross(const Hex& cell, std::size_t face, Index a, Index b) {
   const std::size_t edgeAxis = axisBetween(cell, a, b);
-  const std::size_t axis = 3 - edgeAxis - face / 2;  // the third one
+  const std::size_t axis = 3 - edgeAxis - face / 2;  // the third axis
   const auto corner =
       static_cast<std::size_t>(std::find(cell.begin(), cell.end(), a) - cell.begin());
   return 2 * axis + (placesOf(corner) >> axis & 1U);
 }
 
-/// What is known of the faces of a mesh by half-faces: 6 * cell + face.
+/// What is known about a mesh's faces, by half-face: 6 * cell + face.
 class Walls {
  public:
   Walls(const HexMesh& mesh, std::span<const Index> mates,
@@ -104,7 +104,7 @@ class Walls {
     }
   }
 
-  /// At a regular edge inside, the face across is two cells further.
+  /// At a regular interior edge, the opposite face is two cells further on.
   void goOn(Index halfFace) {
     const std::size_t face = halfFace % 6;
     const Hex& cell = mesh_.cells[halfFace / 6];
@@ -125,10 +125,11 @@ class Walls {
   std::span<const SingularHexEdge> singular_;
   std::vector<std::uint8_t> onSingular_;  ///< per vertex
   std::vector<std::uint8_t> isWall_;      ///< per half-face
-  std::vector<Index> front_;              ///< half-faces whose edges are still to be looked at
+  std::vector<Index> front_;              ///< half-faces whose edges have not been visited
 };
 
-/// Sets of the three axes of all cells, by 3 * cell + axis; `unite` says which are the same.
+/// Classes of the three axes of all cells, indexed 3 * cell + axis; `unite` says which belong
+/// together.
 std::pair<Array<std::array<Index, 3>>, Index> axisSets(std::size_t cells, const auto& unite) {
   DisjointSets sets(3 * cells);
   unite(sets);
@@ -139,7 +140,7 @@ std::pair<Array<std::array<Index, 3>>, Index> axisSets(std::size_t cells, const 
   return result;
 }
 
-/// Calls visit(cell, face, its other half-face) for each face inside, once.
+/// Calls visit(cell, face, the other half-face) once for each interior face.
 void forEachInnerFace(std::span<const Index> mates, const auto& visit) {
   for (std::size_t h = 0; h < mates.size(); ++h) {
     if (mates[h] != kNone && h < mates[h]) visit(h / 6, h % 6, mates[h]);
@@ -166,7 +167,7 @@ void findSheetsAndChords(const HexMesh& mesh, std::span<const Index> mates, Base
   });
 }
 
-/// Cells in a row from a cell on, along an axis, as far as its block goes.
+/// Number of cells in a row along an axis, from a cell to the end of its block.
 std::uint64_t lengthAlong(std::size_t cell, std::size_t axis, std::span<const Index> mates,
                           const Walls& walls) {
   std::uint64_t length = 1;
@@ -202,9 +203,9 @@ void findBlocks(std::size_t cells, std::span<const Index> mates, const Walls& wa
   result.cellBlocks = std::move(numbered.setOf);
 }
 
-/// Who belongs to whom, by half-faces.
+/// The mates of all half-faces.
 adjacency::HexMates matesOf(const HexMesh& mesh, Stage& stage) {
-  constexpr std::size_t kMost = kNone / 6;  // of matchHexFaces()
+  constexpr std::size_t kMost = kNone / 6;  // limit of matchHexFaces()
   if (mesh.cells.size() >= kMost) {
     throw Error(ErrorCode::TooLarge, "The mesh has " + std::to_string(mesh.cells.size()) +
                                          " cells; a base complex is found for fewer than " +

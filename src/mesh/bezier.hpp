@@ -1,8 +1,8 @@
-// Polynomials in u, v, w over the unit cube by their Bezier coefficients, between the least and the
-// largest of which all values lie; those at corners are the values there.
+// Polynomials in u, v, w over the unit cube, given by their Bezier coefficients: all values lie
+// between the smallest and the largest coefficient, and those at corners are the values there.
 //
-// T is double or BigInteger, and while nodes are converted also Twofold. Integers are multiples of
-// the coefficients by one positive factor for all, which leaves signs as they are.
+// T is double or BigInteger, and Twofold while nodes are converted. Integers are the coefficients
+// times one positive factor common to all, which preserves signs.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct Bezier {
   [[nodiscard]] std::size_t stride(std::size_t axis) const noexcept {
     return axis == 0 ? 1 : (axis == 1 ? size[0] : size[0] * size[1]);
   }
-  /// Where the value at a corner is; bit i of the corner for axis i.
+  /// Index of the value at a corner; bit i of the corner is for axis i.
   [[nodiscard]] std::size_t cornerAt(std::size_t corner) const noexcept {
     std::size_t at = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -38,7 +38,7 @@ struct Bezier {
   }
 };
 
-/// Calls visit(the first place of a line) for all lines along an axis.
+/// Calls visit(index of the first entry of a line) for all lines along an axis.
 template <class T, class Visit>
 void forLines(const Bezier<T>& grid, std::size_t axis, const Visit& visit) {
   const std::size_t stride = grid.stride(axis);
@@ -48,7 +48,7 @@ void forLines(const Bezier<T>& grid, std::size_t axis, const Visit& visit) {
   }
 }
 
-/// A fraction whose denominator is one for all, which integers do without.
+/// A fraction; integers leave out the denominator, which is common to all.
 template <class T>
 [[nodiscard]] T fraction(std::int64_t numerator, std::int64_t denominator) {
   const auto quotient = static_cast<double>(numerator) / static_cast<double>(denominator);
@@ -124,14 +124,14 @@ void apply(const Matrix<S>& matrix, std::size_t axis, Bezier<T>& grid, std::vect
   return multiple;
 }
 
-/// Times the product of the binomials of the three places, or divided by it: coefficients of powers
-/// (1 - u)^(n - i) u^i, of which products are convolutions.
+/// Multiplies each coefficient by the product of the binomials of its three indices, or divides by
+/// it. This gives coefficients of the powers (1 - u)^(n - i) u^i, whose products are convolutions.
 template <class T>
 void weigh(Bezier<T>& grid, bool divide) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (grid.size[axis] <= 2) continue;  // the binomials are 1
     const std::vector<std::int64_t> row = binomials(grid.size[axis] - 1);
-    // Only integers need one denominator for all; that of degree 52 takes more than 64 bits.
+    // Only integers need a common denominator; that of degree 52 exceeds 64 bits.
     const std::int64_t multiple = std::is_same_v<T, BigInteger> ? leastMultiple(row) : 1;
     std::vector<T> factors;
     factors.reserve(row.size());
@@ -150,7 +150,7 @@ void weigh(Bezier<T>& grid, bool divide) {
   }
 }
 
-/// sum += factor * a * b, all three as weigh() leaves them.
+/// sum += factor * a * b, all three in the form that weigh() produces.
 template <class T>
 void addConvolution(const Bezier<T>& a, const Bezier<T>& b, const T& factor, Bezier<T>& sum) {
   for (std::size_t axis = 0; axis < 3; ++axis) sum.size[axis] = a.size[axis] + b.size[axis] - 1;
@@ -219,15 +219,15 @@ template <class T>
   return result;
 }
 
-/// From equidistant nodes to Bezier coefficients.
+/// Conversion from equidistant nodes to Bezier coefficients.
 template <class T>
 struct NodeMatrices {
   Matrix<T> values;       ///< of the values at the nodes
-  Matrix<T> differences;  ///< of the derivative, from the differences of neighbouring nodes
+  Matrix<T> differences;  ///< of the derivative, from the differences of adjacent nodes
 };
 
-/// The Lagrange polynomial of node i, the product of (p u - j) / (i - j), is in powers of (1 - u)
-/// and u that of ((p - j) u - j (1 - u)) / (i - j): integers over one denominator.
+/// The Lagrange polynomial of node i is the product of (p u - j) / (i - j); in powers of (1 - u)
+/// and u, a factor is ((p - j) u - j (1 - u)) / (i - j): integers over one denominator.
 template <class T>
 [[nodiscard]] NodeMatrices<T> nodeMatrices(std::size_t order) {
   const std::vector<std::int64_t> row = binomials(order);

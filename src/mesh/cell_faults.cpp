@@ -1,9 +1,10 @@
-// Cells that name a vertex twice, and cells that list their corners the other way round.
+// Cells that name a vertex twice, and cells that list their corners in mirrored order.
 //
-// Each cell has two elements of a union-find structure: as it is, and turned. A face that its cells
-// pass in opposite directions joins what is alike, one that they pass in the same direction joins
-// what is not. The set of a component's first cell then says how each other cell is turned
-// relative to it; if both elements of a cell meet, there is no answer.
+// Each cell has two elements in a union-find structure: the cell as it is, and the cell turned. A
+// face that its two cells traverse in opposite directions joins like elements; one that they
+// traverse in the same direction joins unlike ones. The set of a component's first cell then says
+// how every other cell is turned relative to it; if both elements of a cell end up in one set,
+// there is no consistent answer.
 #include <algorithm>
 #include <atomic>
 #include <optional>
@@ -27,8 +28,8 @@ namespace {
 
 constexpr std::size_t kFaultGrain = 2048;
 
-/// 12 times the volume that the bilinear faces enclose: of each, the mean over both ways to divide
-/// it into triangles.
+/// 12 times the volume enclosed by the bilinear faces: each contributes the mean over both ways to
+/// split it into triangles.
 double volumeOf(const HexMesh& mesh, const Hex& cell) {
   std::array<Vec3, 8> p{};
   for (std::size_t i = 0; i < 8; ++i) p[i] = minus(mesh.points[cell[i]], mesh.points[cell[0]]);
@@ -40,7 +41,7 @@ double volumeOf(const HexMesh& mesh, const Hex& cell) {
   return volume;
 }
 
-/// Conflicts of a block of faces.
+/// Conflicts found in a block of faces.
 struct Conflicts {
   std::uint64_t count = 0;
   FaceConflict first;
@@ -62,8 +63,8 @@ struct FaceBlock {
   Conflicts overfull;
 };
 
-/// Joins cells through their common faces.
-/// @param turns  element 2 * cell is a cell as it is, 2 * cell + 1 the cell turned
+/// Joins cells across their common faces.
+/// @param turns  element 2 * cell is the cell as it is, 2 * cell + 1 the cell turned
 FaceBlock joinCells(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepeated,
                     DisjointSets& turns, Stage& stage) {
   const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
@@ -94,11 +95,11 @@ FaceBlock joinCells(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepe
   return sum;
 }
 
-/// The same if all faces are sound: 0.03 in place of 0.14 s for 96,768 cells, of which an
-/// improvement takes about a second.
-/// @return whether they are; if not, nothing was joined
+/// Fast path if all faces are sound: 0.03 s instead of 0.14 s for 96,768 cells, whose improvement
+/// takes about a second.
+/// @return whether they are sound; if not, nothing was joined
 bool joinSoundCells(const HexMesh& mesh, DisjointSets& turns, Stage& stage) {
-  constexpr std::size_t kMost = kNone / 6;  // of matchHexFaces()
+  constexpr std::size_t kMost = kNone / 6;  // limit of matchHexFaces()
   if (mesh.cells.size() >= kMost) return false;
   const std::optional<adjacency::HexMates> found =
       adjacency::matchHexFaces(mesh.points.size(), mesh.cells, stage);
@@ -112,7 +113,7 @@ bool joinSoundCells(const HexMesh& mesh, DisjointSets& turns, Stage& stage) {
   return true;
 }
 
-/// Lists the cells that are turned as the smaller part of their component's volume is.
+/// Lists the cells that are turned like the part with the smaller volume of their component.
 void listMirrored(const HexMesh& mesh, const std::vector<std::uint8_t>& isRepeated,
                   DisjointSets& turns, CellFaults& faults, Stage& stage) {
   const std::size_t n = mesh.cells.size();

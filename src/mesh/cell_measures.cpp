@@ -1,5 +1,5 @@
-// Compiled for several widths of registers: a vector type of the compiler goes through all of it,
-// and what is called for one width takes everything inline.
+// Compiled for several register widths: everything takes the compiler's vector type as a parameter,
+// and all functions called for one width are inlined.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,15 +16,15 @@
 namespace hexhex::mesh {
 namespace {
 
-/// Numbers that are worked with at once. Each behaves as it would alone.
+/// Numbers processed at once. Each gives the same result as it would alone.
 using Two = Lanes<double, 2>;
 using Four = Lanes<double, 4>;
 
-/// One mask for each: 0 or -1.
+/// One mask per number: 0 or -1.
 template <class V>
 using Mask = decltype(V{} < V{});
 
-/// x -> x |x|, which keeps order and sign, so that one root is taken instead of nine.
+/// x -> x |x| preserves order and sign, so that one square root suffices instead of nine.
 template <class V>
 [[gnu::always_inline]] inline V signedSquare(const V& x) noexcept {
   return x * bitsAs<V>(bitsAs<Mask<V>>(x) & std::int64_t{0x7fffffffffffffff});
@@ -42,7 +42,7 @@ template <class V>
   return larger(larger(s[0], s[1]), larger(s[2], s[3]));
 }
 
-/// Of all 27 coefficients.
+/// The least of all 27 coefficients.
 template <class V>
 [[gnu::always_inline]] inline V leastOf(const JacobianCoefficients<V>& all) noexcept {
   const std::array<V, 4> upright = all.upright();
@@ -57,8 +57,8 @@ void store(const V& values, double* to) noexcept {
   std::memcpy(to, &values, sizeof values);
 }
 
-/// Measures some cells, all but the roots.
-/// @param at  points of the cells by place, bits as above
+/// Measures some cells, everything but the square roots.
+/// @param at  points of the cells by place, with bits as above
 template <class V>
 void measure(const std::array<LaneVector<V>, 8>& at, std::size_t first, CellMeasures& measures) {
   const CellEdges<V> edges(at);
@@ -88,7 +88,7 @@ void measure(const std::array<LaneVector<V>, 8>& at, std::size_t first, CellMeas
   const V uLongest = largestOf(uu);
   const V vLongest = largestOf(vv);
   const V wLongest = largestOf(ww);
-  // Of numbers in this range, no square, product or ratio above leaves that of double.
+  // For numbers in this range, no square, product or ratio above leaves the range of double.
   const Mask<V> inRange = (uLongest < 0x1p300) & (vLongest < 0x1p300) & (wLongest < 0x1p300) &
                           (smallestLengths > 0x1p-300);
   store(ratio, &measures.scaled[first]);
@@ -123,12 +123,12 @@ void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& me
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double root = std::copysign(std::sqrt(std::abs(measures.scaled[i])), measures.scaled[i]);
-    measures.scaled[i] = std::clamp(root, -1.0, 1.0);  // rounding may lead beyond
+    measures.scaled[i] = std::clamp(root, -1.0, 1.0);  // rounding may exceed the bounds
     measures.volume[i] = std::sqrt(std::abs(measures.volume[i]));
   }
 }
 
-// Windows aligns stacks too little for wide registers.
+// Windows does not align stacks enough for wide registers.
 #if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
 #define HEXHEX_FOUR_LANES 1
 [[gnu::target("avx2"), gnu::flatten]] void measureFour(const Vec3* points,

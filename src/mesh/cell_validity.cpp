@@ -1,8 +1,8 @@
-// Bezier coefficients of the Jacobian determinant decide: the cell is positive where all of them
-// are, and not where one at a corner is not; elsewhere it is divided. This is the scheme of
-// Johnen, Remacle and Geuzaine (Geometrical validity of curvilinear finite elements, 2013), of
+// Decided by the Bezier coefficients of the Jacobian determinant: a cell is positive if all of them
+// are, and not positive if one at a corner is not; otherwise it is subdivided. This is the scheme
+// of Johnen, Remacle and Geuzaine (Geometrical validity of curvilinear finite elements, 2013), for
 // straight cells that of Johnen, Weill and Remacle (Robust and efficient validation of the linear
-// hexahedral element, 2017). Signs are those of doubles beyond a bound of their error, and else of
+// hexahedral element, 2017). Signs are taken from doubles beyond an error bound, otherwise from
 // integers.
 #include <algorithm>
 #include <bit>
@@ -20,17 +20,17 @@ namespace {
 
 constexpr double kCellValidityRounding = std::numeric_limits<double>::epsilon() / 2;
 
-/// Parts that a cell is divided into at most. Of random cells, one of a million takes more than
-/// 300; one that takes all, where it is zero along a surface, costs milliseconds.
+/// Maximum number of parts of a cell. One random cell in a million takes more than 300; one that
+/// takes them all, because the determinant vanishes along a surface, costs milliseconds.
 constexpr std::size_t kMostParts = 4096;
 
-/// The same while a least scaled Jacobian is looked for.
+/// The same for the search for a least scaled Jacobian.
 constexpr std::size_t kMostPartsOfLeast = 256;
 
-/// Whole determinants of a higher order are not computed in integers, which would take seconds.
+/// Beyond this order, whole determinants are not computed in integers, which would take seconds.
 constexpr std::size_t kMostExactOrder = 3;
 
-/// Lengths of columns beyond this, after scaling, would lead products out of the range of doubles.
+/// If columns are shorter than this after scaling, products leave the range of doubles.
 constexpr double kShortest = 0x1p-200;
 
 bool isAbove(double value, double error) { return value > error; }
@@ -43,7 +43,7 @@ std::size_t longestAxis(const CellPart& part) {
                                   part.size.begin());
 }
 
-/// The axis along which coefficients are bent most: bounds differ from values by about as much.
+/// The axis along which the coefficients bend most: bounds differ from values by about as much.
 std::size_t axisToHalve(const CellPart& /*part*/, const Bezier<double>& polynomial) {
   std::array<double, 3> bend{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -63,7 +63,7 @@ std::size_t axisToHalve(const CellPart& part, const Bezier<BigInteger>& /*polyno
 }
 
 /// @param error   of coefficients
-/// @param growth  of the error, each time that they are halved
+/// @param growth  of the error, with each halving
 template <class T>
 CellCertificate divide(Bezier<T> whole, double error, double growth) {
   struct Piece {
@@ -111,8 +111,8 @@ Bezier<double> restricted(Bezier<double> polynomial, const Vec3& place) {
   return polynomial;
 }
 
-/// Where, nearly, a determinant of degree 2 that is positive at corners is not on an edge: b0 b2 is
-/// at most b1^2 there, and b1 negative. No division would end at a double root that is at 1/3.
+/// Approximate zero on an edge of a determinant of degree 2 that is positive at corners: there b0
+/// b2 is at most b1^2, and b1 is negative. Subdivision would never end at a double root at 1/3.
 std::optional<Vec3> zeroOnEdge(const Bezier<BigInteger>& exact, const Bezier<double>& rounded) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t stride = exact.stride(axis);
@@ -133,7 +133,7 @@ std::optional<Vec3> zeroOnEdge(const Bezier<BigInteger>& exact, const Bezier<dou
   return std::nullopt;
 }
 
-/// Nodes times a power of two, which brings the largest coordinate near 1.
+/// Nodes multiplied by a power of two that brings the largest coordinate near 1.
 std::vector<Vec3> scaledNodes(std::span<const Vec3> nodes) {
   double largest = 0;
   for (const Vec3& node : nodes) {
@@ -148,7 +148,7 @@ std::vector<Vec3> scaledNodes(std::span<const Vec3> nodes) {
   return result;
 }
 
-/// The largest sum of magnitudes of a row.
+/// The largest row sum of magnitudes.
 double normOf(const Matrix<double>& matrix) {
   double norm = 0;
   for (std::size_t row = 0; row < matrix.rows; ++row) {
@@ -169,7 +169,7 @@ CellValidity::CellValidity(int order)
       fineMatrices_(nodeMatrices<Twofold>(order_)),
       exactMatrices_(nodeMatrices<BigInteger>(order_)) {
   const double norm = normOf(matrices_.differences) * std::pow(normOf(matrices_.values), 2);
-  // Three sums of at most ten products, of which each is right to within 2^-98.
+  // Three sums of at most ten products, each of which is accurate to within 2^-98.
   conversionError_ = order_ == 1 ? 0 : 0x1p-92 * norm;
 }
 
@@ -247,7 +247,7 @@ CellValidity::Form CellValidity::formOf(std::span<const Vec3> nodes) const {
     if (largest[axis] < kShortest) form.error = std::numeric_limits<double>::infinity();
   }
   // A coefficient is a mean of determinants of six products of components each. Sums have at most
-  // (p + 1)^3 terms twice, and 40 is more than all other roundings; twice that.
+  // (p + 1)^3 terms twice, and 40 exceeds all other roundings; doubled for safety.
   const double terms = 2 * std::pow(static_cast<double>(n), 3) + 40;
   const double product = largest[0] * largest[1] * largest[2];
   form.error += 2 * 6 *
@@ -295,7 +295,7 @@ CellCertificate CellValidity::decideExactly(std::span<const Vec3> nodes, const F
         {BigInteger(node[0], shift), BigInteger(node[1], shift), BigInteger(node[2], shift)});
   }
   const Columns<BigInteger> columns = columnsOf(integers, exactMatrices_);
-  for (std::size_t corner = 0; corner < 8; ++corner) {  // most of what comes here is flat there
+  for (std::size_t corner = 0; corner < 8; ++corner) {  // most cells that get here are flat there
     Columns<BigInteger> there;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -349,8 +349,8 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
   if (!std::isfinite(form.error)) return result;
   if (result.validity != Validity::Refuted) result.scaledJacobian = 1;
 
-  // Sums of so many products as a convolution has, in the squares and their products, of columns
-  // whose lengths are wrong by a few roundings, too.
+  // Sums of as many products as a convolution has, in the squares and in their products, of columns
+  // whose lengths are also off by a few roundings.
   const double rounding =
       64 * static_cast<double>(form.determinant.values.size()) * kCellValidityRounding;
   const double growth = static_cast<double>(3 * order_ + 2) * kCellValidityRounding * form.size;
@@ -367,7 +367,7 @@ CellCertificate CellValidity::findLeast(std::span<const Vec3> nodes, double targ
       const double lengths = quotient.lengths.values[quotient.lengths.cornerAt(corner)];
       const double scaled = scaledDeterminant(value, std::sqrt(lengths));
       if (scaled >= result.scaledJacobian) continue;
-      // Where a cell was refuted, it is bad for sure.
+      // The place reported for a refuted cell must be certainly bad.
       if (result.validity == Validity::Refuted && value >= -error) continue;
       result.scaledJacobian = scaled;
       result.place = quotient.part.corner(corner);

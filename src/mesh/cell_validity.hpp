@@ -1,4 +1,4 @@
-// Whether one cell is positive everywhere, and its least scaled Jacobian.
+// Whether a single cell is positive everywhere, and its least scaled Jacobian.
 #pragma once
 
 #include <span>
@@ -10,21 +10,21 @@
 
 namespace hexhex::mesh {
 
-/// Looks at cells of one order, one after the other; several threads may share it.
+/// Examines cells of one order, one after another; threads may share it.
 class CellValidity {
  public:
   explicit CellValidity(int order);
 
-  /// What is known of a cell: `minimum` as the first, undivided Bezier coefficients bound it, and
-  /// `scaledJacobian` at `place` if the cell is refuted.
+  /// Examines a cell: `minimum` is the bound given by the undivided Bezier coefficients, and
+  /// `scaledJacobian` the value at `place` if the cell is refuted.
   /// @param nodes  (order + 1)^3, the first axis fastest
   [[nodiscard]] CellCertificate examine(std::span<const Vec3> nodes) const;
 
-  /// As examine(), with the place of the least scaled Jacobian, and `minimum` at most
-  /// kMinimumTolerance below it or below `target`, whatever is less.
+  /// As examine(), but with the place of the least scaled Jacobian, and with `minimum` at most
+  /// kMinimumTolerance below it or below `target`, whichever is less.
   [[nodiscard]] CellCertificate findLeast(std::span<const Vec3> nodes, double target) const;
 
-  /// How often findLeast() may be called for one mesh: for about a second.
+  /// Maximum number of calls of findLeast() per mesh: takes about a second.
   [[nodiscard]] std::size_t looks() const noexcept { return 1000 / (order_ * order_ * order_); }
 
   /// The point of a cell at a place.
@@ -35,9 +35,9 @@ class CellValidity {
   struct Form {
     Columns<double> columns = {};
     Bezier<double> determinant = {};
-    double error = 0;  ///< of coefficients of the determinant; infinite if doubles are no help
+    double error = 0;  ///< of the determinant's coefficients; infinite if doubles are no help
     double size = 0;   ///< the largest of them
-    double largestLengths = 1;  ///< the product of the lengths of columns is nowhere larger
+    double largestLengths = 1;  ///< bound of the product of the lengths of columns
   };
   template <class T>
   [[nodiscard]] Columns<T> columnsOf(const std::vector<std::array<T, 3>>& nodes,
@@ -52,8 +52,7 @@ class CellValidity {
   NodeMatrices<double> matrices_;
   NodeMatrices<Twofold> fineMatrices_;
   NodeMatrices<BigInteger> exactMatrices_;
-  double conversionError_;  ///< of a column, before it is rounded, relative to the largest
-                            ///< difference of nodes
+  double conversionError_;  ///< of unrounded columns, relative to the largest difference of nodes
 };
 
 }  // namespace hexhex::mesh

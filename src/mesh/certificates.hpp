@@ -1,4 +1,4 @@
-// From what is known of single cells to what is known of a mesh.
+// Combines findings about single cells into findings about a mesh.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace hexhex::mesh {
 
-/// Of one block of cells. What is left over for later are cells that may be worse than the worst
+/// Findings of one block of cells. Left open for later: cells that may be worse than the worst
 /// value so far, and refuted ones.
 class BlockFindings {
  public:
-  /// @param scaled  the scaled Jacobian that is reported of the cell
+  /// @param scaled  the scaled Jacobian reported for the cell
   void add(std::uint64_t cell, double scaled, const CellCertificate& known) {
     ++counts_[static_cast<std::size_t>(known.validity)];
     if (known.validity == Validity::Refuted) {
@@ -28,7 +28,7 @@ class BlockFindings {
     keep({known.minimum, cell});
   }
 
-  /// Unites all blocks, and looks more closely at what they left over.
+  /// Unites all blocks, and examines the cells left open more closely.
   /// @param nodesOf  (cell, list): fills a list with the nodes of a cell
   template <class NodesOf>
   static void finish(const std::vector<BlockFindings>& blocks, const CellValidity& cells,
@@ -49,7 +49,7 @@ class BlockFindings {
 
     std::sort(all.open_.begin(), all.open_.end());
     const std::size_t most = std::min(all.open_.size(), std::max(kMostWorst, cells.looks()));
-    // The others stay as they are; no look at a cell pays that is no worse.
+    // The others remain as they are; cells that are no worse are not worth examining.
     const double rest = most < all.open_.size() ? all.open_[most].value : 1;
     const auto end = std::partition_point(all.open_.begin(), all.open_.end(),
                                           [&](const Entry& e) { return e.value < rest; });

@@ -1,4 +1,4 @@
-// Exact numbers beyond doubles, for signs and conversions that these cannot decide.
+// Exact numbers beyond doubles, for signs and conversions that doubles cannot decide.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace hexhex::mesh {
 
-/// high is the double nearest to the number. Sums of products of numbers around 1 are right to
-/// within 2^-98 of the sum of magnitudes per product.
+/// An unevaluated sum of two doubles; high is the double nearest to it. Sums of products of numbers
+/// around 1 are accurate to within 2^-98 of the sum of magnitudes per product.
 struct Twofold {
   double high = 0;
   double low = 0;
@@ -25,7 +25,7 @@ struct Twofold {
   return {sum, (a - (sum - part)) + (b - part)};
 }
 
-/// a b, exactly (Dekker), unless halves leave the range of doubles.
+/// a b, exactly (Dekker), unless the halves leave the range of doubles.
 [[nodiscard]] inline Twofold exactProduct(double a, double b) noexcept {
   constexpr double kSplitter = 0x1p27 + 1;
   const double aTop = kSplitter * a - (kSplitter * a - a);
@@ -36,7 +36,7 @@ struct Twofold {
   return {product, ((aTop * bTop - product) + aTop * bRest + aRest * bTop) + aRest * bRest};
 }
 
-/// Of doubles.
+/// The difference of two doubles.
 [[nodiscard]] inline Twofold operator-(const Twofold& a, const Twofold& b) noexcept {
   return exactSum(a.high, -b.high);
 }
@@ -57,7 +57,7 @@ class BigInteger {
 
   /// value * 2^shift, an integer.
   BigInteger(double value, int shift) {
-    if (value == 0) return;  // whatever the shift, which a cell of zeros leaves open
+    if (value == 0) return;  // whatever the shift, which is undefined for a cell of zeros
     constexpr int kBits = std::numeric_limits<double>::digits;
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);  // value = fraction 2^exponent
@@ -103,7 +103,7 @@ class BigInteger {
   friend BigInteger operator-(const BigInteger& a, const BigInteger& b) { return sum(a, b, ~0U); }
 
   friend BigInteger operator*(const BigInteger& a, const BigInteger& b) {
-    BigInteger result;  // modulo a power of two that is larger than twice the product
+    BigInteger result;  // modulo a power of two greater than twice the product
     result.digits_.resize(a.digits_.size() + b.digits_.size());
     for (std::size_t i = 0; i < result.digits_.size(); ++i) {
       std::uint64_t carry = 0;
@@ -140,7 +140,7 @@ class BigInteger {
     return i < digits_.size() ? digits_[i] : extension();
   }
 
-  /// Removes digits that repeat the sign.
+  /// Removes digits that only repeat the sign.
   void trim() {
     while (!digits_.empty()) {
       const std::uint32_t last = digits_.back();

@@ -1,12 +1,12 @@
-// Edges of some cells at once, and the Bezier coefficients of their Jacobian determinants.
+// Edges of several cells at once, and the Bezier coefficients of their Jacobian determinants.
 //
 // x(u, v, w) is linear along each axis, so x_u is bilinear in (v, w) with the four u-edges as
-// coefficients, and so on. det(x_u, x_v, x_w) has degree 2 along each axis: 27 Bezier coefficients
-// b[a][b][c], between the least and the largest of which all values are. Those at corners are the
+// coefficients, and so on. det(x_u, x_v, x_w) has degree 2 along each axis: all its values lie
+// between the least and the largest of 27 Bezier coefficients b[a][b][c]. Those at corners are the
 // values there, [u, v, w] of the three edges. On edges, 2 b is the sum of two such products that
-// mix the edges of both ends. The remaining seven follow, as det has no term with two squares
-// (u^2 v^2 needs two equal columns): second differences along two axes vanish, whence on faces
-// 4 b = 2 (sum over sides) - (sum over corners), and likewise in the middle layer for the centre.
+// mix the edges of both ends. The remaining seven follow, since det has no term with two squares
+// (u^2 v^2 needs two equal columns): second differences along two axes vanish, so on faces 4 b = 2
+// (sum over sides) - (sum over corners), and likewise in the middle layer for the centre.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"  // all is inline
+#pragma GCC diagnostic ignored "-Wpsabi"  // everything is inline
 #endif
 
 namespace hexhex::mesh {
@@ -45,15 +45,15 @@ template <class V>
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Edges along the three axes, by the two other coordinates of their place, the lower axis in bit
-/// 0.
+/// Edges along the three axes, indexed by the other two coordinates of their place, the lower axis
+/// in bit 0.
 template <class V>
 struct alignas(sizeof(V)) CellEdges {
   std::array<LaneVector<V>, 4> u;
   std::array<LaneVector<V>, 4> v;
   std::array<LaneVector<V>, 4> w;
 
-  /// @param at  points of the cells by place, bits as above
+  /// @param at  points of the cells by place, with bits as above
   explicit CellEdges(const std::array<LaneVector<V>, 8>& at) noexcept
       : u{at[1] - at[0], at[3] - at[2], at[5] - at[4], at[7] - at[6]},
         v{at[2] - at[0], at[3] - at[1], at[6] - at[4], at[7] - at[5]},
@@ -81,7 +81,7 @@ struct alignas(sizeof(V)) JacobianCoefficients {
         v[e + 2 * k] = dot(normals[e], edges.w[e + 2]) + dot(normals[e + 2], edges.w[e]);
       }
     }
-    // The w-edges: products that mix both ends are those of sums without those of each end.
+    // The w-edges: products that mix both ends are those of the sums minus those of each end.
     const std::array<LaneVector<V>, 2> uSum = {edges.u[0] + edges.u[2], edges.u[1] + edges.u[3]};
     const std::array<LaneVector<V>, 2> vSum = {edges.v[0] + edges.v[2], edges.v[1] + edges.v[3]};
     for (std::size_t ij = 0; ij < 4; ++ij) {
@@ -95,14 +95,14 @@ struct alignas(sizeof(V)) JacobianCoefficients {
     return (corners[a] + corners[b]) + (corners[c] + corners[d]);
   }
 
-  /// On faces: those of v = 0, v = 1, u = 0 and u = 1.
+  /// On the faces v = 0, v = 1, u = 0 and u = 1.
   [[gnu::always_inline]] std::array<V, 4> upright() const noexcept {
     return {(u[0] + u[2]) + (w[0] + w[1]) - sumOfCorners(0, 1, 4, 5),
             (u[1] + u[3]) + (w[2] + w[3]) - sumOfCorners(2, 3, 6, 7),
             (v[0] + v[2]) + (w[0] + w[2]) - sumOfCorners(0, 2, 4, 6),
             (v[1] + v[3]) + (w[1] + w[3]) - sumOfCorners(1, 3, 5, 7)};
   }
-  /// Those of w = 0 and w = 1.
+  /// On the faces w = 0 and w = 1.
   [[gnu::always_inline]] std::array<V, 2> lying() const noexcept {
     return {(u[0] + u[1]) + (v[0] + v[1]) - sumOfCorners(0, 1, 2, 3),
             (u[2] + u[3]) + (v[2] + v[3]) - sumOfCorners(4, 5, 6, 7)};

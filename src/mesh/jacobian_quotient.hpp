@@ -1,4 +1,4 @@
-// Scaled Jacobians in parts of a cell: determinants over the lengths of columns.
+// Scaled Jacobians in parts of a cell: determinants divided by the lengths of columns.
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ struct CellPart {
   return product;
 }
 
-/// The square of the length of a column.
+/// The squared length of a column.
 [[nodiscard]] inline Bezier<double> squareOf(const std::array<Bezier<double>, 3>& column) {
   Bezier<double> sum = productOf(column[0], column[0]);
   for (std::size_t k = 1; k < 3; ++k) {
@@ -66,15 +66,15 @@ struct CellPart {
   return sum;
 }
 
-/// Determinants over lengths in a part of a cell. Bezier coefficients of a quotient of squares
-/// bound it: it is a mean of the quotients of coefficients, with weights that are positive.
+/// Determinants over lengths in a part of a cell. The quotients of the Bezier coefficients of two
+/// squares bound the quotient of the squares, which is a mean of them with positive weights.
 struct JacobianQuotient {
   CellPart part = {};
   Bezier<double> determinant = {};
   Bezier<double> square = {};   ///< of the determinant
-  Bezier<double> lengths = {};  ///< of the columns: the product of their squares
+  Bezier<double> lengths = {};  ///< of the columns: the product of their squared lengths
   double error = 0;             ///< of the determinant
-  double bound = -1;            ///< it is nowhere less
+  double bound = -1;            ///< lower bound of the quotient
 
   /// Bounds a quotient that was made or halved.
   /// @param rounding  of coefficients of the two squares, relative to the largest of each

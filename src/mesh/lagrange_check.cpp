@@ -14,7 +14,7 @@ namespace {
   throw Error(ErrorCode::InvalidArgument, what, place);
 }
 
-/// The eight corners of a cell are hex vertices.
+/// The eight corners of a cell must be hex vertices.
 void requireCorners(const LagrangeMesh& mesh, std::size_t cell) {
   const auto p = static_cast<std::size_t>(mesh.order);
   const Index* const nodes = mesh.nodes.data() + cell * mesh.nodesPerCell();

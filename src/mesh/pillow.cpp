@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPillowGrain = 2048;
 
-/// Of the way to the other end of an edge: the layer takes a quarter of the cells beneath.
+/// Fraction of the way to the other end of an edge: the layer takes a quarter of the cells beneath.
 constexpr double kDepth = 0.25;
 
 using Edge = std::array<Index, 2>;
@@ -45,11 +45,11 @@ Error obstacleAt(Index vertex, const char* what) {
           Place{PlaceKind::Vertex, vertex, 0}};
 }
 
-/// An edge from the boundary inwards, along which something is that the layer must not tear off.
+/// An edge from the boundary inward along which the layer must keep something attached.
 struct Inward {
   Index vertex;  ///< on the boundary
   Index other;
-  bool isCurve;  ///< is tagged, or has other than two walls
+  bool isCurve;  ///< is tagged, or has a number of walls other than two
   auto operator<=>(const Inward&) const = default;
 };
 
@@ -113,7 +113,7 @@ class PillowMaker {
     return obstacle;
   }
 
-  /// Edges of the boundary where a wall begins: the layer has a wall there, too.
+  /// Boundary edges where a wall begins: the layer has a wall there, too.
   std::optional<Error> findWallEdges() {
     for (const Quad& wall : walls_) {
       for (std::size_t i = 0; i < 4; ++i) {
@@ -166,7 +166,7 @@ class PillowMaker {
     return inward;
   }
 
-  /// Of vertices from which curves or walls go inwards.
+  /// Leaders of the vertices from which curves or walls go inward.
   std::optional<Error> findLeaders(Array<Index>& leaders) const {
     leaders.assign(count_, kNone);
     const std::vector<Inward> inward = inwardEdges();
@@ -193,7 +193,7 @@ class PillowMaker {
     return obstacle;
   }
 
-  /// At a corner of a wall, with both edges there on the boundary, the corner across leads.
+  /// At a corner of a wall with both edges on the boundary, the opposite corner leads.
   std::optional<Error> leadFromCorners(Array<Index>& leaders) const {
     for (const Quad& wall : walls_) {
       for (std::size_t i = 0; i < 4; ++i) {
@@ -207,8 +207,8 @@ class PillowMaker {
     return std::nullopt;
   }
 
-  /// Where a new vertex is put: half way to the middle of the cells' centres, which is inside
-  /// wherever the boundary turns; beside curves and walls, along them.
+  /// Position of a new vertex: halfway to the mean of the cells' centres, which is inside wherever
+  /// the boundary turns; beside curves and walls, along them.
   [[nodiscard]] Vec3 placeUnder(Index v, Index leader, std::span<const Index> cells) const {
     const Vec3& point = mesh_.points[v];
     Vec3 step{};
@@ -250,7 +250,7 @@ class PillowMaker {
     }
     const bool hasRegions = mesh_.regions.size() == mesh_.cells.size();
     for (std::size_t q = 0; q < quads_.size(); ++q) {
-      const Quad& quad = quads_[q];  // faces outwards: it is the upper side
+      const Quad& quad = quads_[q];  // faces outward: it is the upper side
       Hex cell{};
       for (std::size_t i = 0; i < 4; ++i) {
         cell[i] = innerOf_[quad[i]];
@@ -261,7 +261,7 @@ class PillowMaker {
     }
   }
 
-  /// A wall where it is now, and what goes on from it through the layer.
+  /// A wall in its new place, and its continuation through the layer.
   void addWall(const Quad& wall, std::vector<Quad>& walls) const {
     walls.push_back({innerOf(wall[0]), innerOf(wall[1]), innerOf(wall[2]), innerOf(wall[3])});
     for (std::size_t i = 0; i < 4; ++i) {
@@ -306,9 +306,9 @@ class PillowMaker {
   Stage& stage_;
   std::vector<std::uint64_t> places_;  ///< as of boundaryPlaces()
   Array<Quad> quads_;
-  Array<Index> innerOf_;      ///< per vertex on the boundary: the new one beneath
+  Array<Index> innerOf_;      ///< per boundary vertex: the new one beneath
   std::vector<Index> outer_;  ///< per new vertex: the one on the boundary
-  std::size_t count_ = 0;     ///< new vertices
+  std::size_t count_ = 0;     ///< number of new vertices
   std::vector<Edge> edges_;   ///< of the boundary, ascending
   std::vector<Edge> wallEdges_;
 };

@@ -12,17 +12,17 @@ namespace hexhex::mesh {
 
 namespace {
 
-/// Of the way to the middle of the set's cells around, which a copy is moved.
+/// Fraction of the way to the mean of the set's cells around it by which a copy is moved.
 constexpr double kLayerDepth = 0.25;
 
-/// A vertex as a set has it.
+/// A vertex as the cells of a set use it.
 struct Copy {
   Index set;
   Index vertex;
   auto operator<=>(const Copy&) const = default;
 };
 
-/// A face between a cell of a set and one that is not.
+/// A face between a cell of a set and a cell outside.
 struct Border {
   Index cell;
   Quad quad;  ///< facing away from the set
@@ -58,7 +58,7 @@ struct OfSet {
 using EdgeOfSet = OfSet<std::array<Index, 2>>;
 using QuadOfSet = OfSet<Quad>;
 
-/// The first with these vertices; null: there is none.
+/// The first with these vertices, or null.
 template <class T>
 const OfSet<T>* found(const std::vector<OfSet<T>>& sorted, const T& vertices) {
   const auto at = std::lower_bound(sorted.begin(), sorted.end(), OfSet<T>{vertices, 0});
@@ -91,7 +91,7 @@ class LayerMaker {
   }
 
  private:
-  /// The vertex of a cell of a set.
+  /// The vertex as a cell of the set uses it.
   [[nodiscard]] Index in(Index set, Index v) const {
     const Copy copy{set, v};
     const auto found = std::lower_bound(copies_.begin(), copies_.end(), copy);
@@ -143,7 +143,7 @@ class LayerMaker {
     }
   }
 
-  /// Quads of sets go with their cells; where a layer ends beside one, so does its tag.
+  /// Quads of sets move with their cells; where a layer ends beside one, so does its tag.
   void moveQuadTags(std::vector<FeatureQuad>& tags) const {
     if (tags.empty()) return;
     std::vector<QuadOfSet> quads;
@@ -172,7 +172,7 @@ class LayerMaker {
     }
   }
 
-  /// Edges that borders of a set have once: the layer ends there.
+  /// Edges that occur once among a set's borders: the layer ends there.
   [[nodiscard]] std::vector<EdgeOfSet> endsOfLayers() const {
     std::vector<EdgeOfSet> edges;
     for (const Border& border : borders_) {
@@ -190,7 +190,7 @@ class LayerMaker {
     return ends;
   }
 
-  /// Edges stay where other cells have them, and go with the cells of their set if none has.
+  /// Edges stay if other cells have them, and move with the cells of their set otherwise.
   void moveEdgeTags(std::vector<FeatureEdge>& tags) const {
     if (tags.empty()) return;
     std::vector<EdgeOfSet> edges;  // kNone: of no set, or of a layer

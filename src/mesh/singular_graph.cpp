@@ -28,7 +28,7 @@ class SingularGraph {
 
   [[nodiscard]] std::vector<SingularCurve> curves() {
     std::vector<SingularCurve> all;
-    for (const bool fromEnds : {true, false}) {  // what is left then is closed
+    for (const bool fromEnds : {true, false}) {  // the remaining curves are closed
       for (std::size_t e = 0; e < edges_.size(); ++e) {
         for (const Index start : {edges_[e].vertex0, edges_[e].vertex1}) {
           if (used_[e] || (fromEnds && !isEnd(start))) continue;

@@ -1,4 +1,4 @@
-// Chains of singular edges, and the vertices on them by type.
+// Chains of singular edges, and the vertices on them, by type.
 #pragma once
 
 #include <span>

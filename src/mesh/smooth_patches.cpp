@@ -23,14 +23,14 @@ namespace hexhex::mesh {
 
 namespace {
 
-/// Quads, or vertices, per block: some tenths of a millisecond.
+/// Quads or vertices per block: some tenths of a millisecond.
 constexpr std::size_t kSmoothPatchesGrain = 4096;
 
-/// Normals of flat neighbours differ by rounding; 1e-12 of a cosine is a turn of a millionth, far
-/// above rounding and far below any turn that is meant.
+/// Normals of flat neighbours differ by rounding; 1e-12 of a cosine is an angle of about a
+/// microradian, far above rounding and far below any intended angle.
 constexpr double kCosineError = 1e-12;
 
-/// An edge seen from a quad, or a seam. Its smaller vertex is known from the context.
+/// An edge as seen from a quad, or a seam. Its smaller vertex is known from the context.
 struct EdgeSide {
   Index other;  ///< the larger vertex
   Index quad;   ///< kNone: a seam

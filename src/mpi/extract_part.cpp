@@ -5,7 +5,7 @@ namespace hexhex {
 
 namespace {
 
-/// Inside of MpiTeam::run().
+/// To be called inside MpiTeam::run().
 MeshPart extractShared(MpiTeam& team, const TetMapView& map, const ExtractOptions& options,
                        const PartOptions& parts, Context& context, ExtractStatistics* statistics) {
   const TetMap shared = shareMap(team, map);

@@ -10,13 +10,13 @@ namespace hexhex {
 
 namespace {
 
-/// MPI counts by int: longer messages go in pieces.
+/// MPI counts by int: longer messages are sent in pieces.
 constexpr std::size_t kPiece = std::size_t{1} << 30;
 static_assert(kPiece <= INT_MAX);
 
 }  // namespace
 
-// Errors of MPI end all processes, which is what MPI does by default.
+// MPI errors end all processes, which is MPI's default.
 MpiTeam::MpiTeam(MPI_Comm communicator) {
   MPI_Comm_dup(communicator, &communicator_);
   MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_ARE_FATAL);
@@ -29,8 +29,7 @@ MpiTeam::MpiTeam(MPI_Comm communicator) {
 
 MpiTeam::~MpiTeam() { MPI_Comm_free(&communicator_); }
 
-/// Here processes wait for slower ones, which may want the cores that MPI's own waiting would keep
-/// busy.
+/// Waits for slower processes, which may need the cores that MPI's own waiting would keep busy.
 bool MpiTeam::doAllSay(bool yes) {
   const int mine = yes ? 1 : 0;
   int all = 0;
@@ -57,7 +56,7 @@ void MpiTeam::doShare(std::uint32_t from, std::span<std::byte> bytes) {
 void MpiTeam::doGather(std::span<const std::uint64_t> mine, std::span<const std::uint64_t> counts,
                        std::span<std::uint64_t> all) {
   if (all.size() > kPiece) {
-    // Beyond what MPI counts, one process after the other.
+    // Beyond MPI's counts: one process after another.
     for (std::uint32_t r = 0; r < size_; ++r) {
       const std::span<std::uint64_t> part = all.first(counts[r]);
       if (r == rank_) std::copy(mine.begin(), mine.end(), part.begin());

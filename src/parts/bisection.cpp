@@ -1,8 +1,8 @@
 // Recursive coordinate bisection: Berger and Bokhari, "A partitioning strategy for nonuniform
-// problems on multiprocessors", IEEE Transactions on Computers 36 (1987). Places are cut across the
-// longest side of their box, where cells are even, and so is each half. Parts follow one another
-// along the curve that visits one half before the other. Unlike along Hilbert's curve, cuts follow
-// the shape of the object.
+// problems on multiprocessors", IEEE Transactions on Computers 36 (1987). Elements are cut across
+// the longest side of their bounding box, where that balances the cells, and so is each half. Parts
+// follow one another along the curve that visits one half before the other. Unlike cuts along
+// Hilbert's curve, these follow the shape of the object.
 #include <algorithm>
 #include <cassert>
 #include <limits>
@@ -37,9 +37,10 @@ std::uint64_t sumOfCells(std::span<const PartitionElement> elements) {
   return sum;
 }
 
-/// Brings elements with about `cells` cells to the front, the first along an axis. Halves are
-/// searched for the element that the cut goes through, which is in front if its middle is.
-/// @return  how many elements these are
+/// Moves the elements that come first along an axis to the front, with about `cells` cells in all.
+/// Repeatedly halves the range that contains the element at the cut, which goes to the front if its
+/// middle does.
+/// @return  number of elements in front
 std::size_t bringToFront(std::span<PartitionElement> elements, std::size_t axis,
                          std::uint64_t cells) {
   const auto before = [axis](const PartitionElement& a, const PartitionElement& b) {
@@ -64,7 +65,7 @@ std::size_t bringToFront(std::span<PartitionElement> elements, std::size_t axis,
   return front + (first ? 1 : 0);
 }
 
-/// @param partOf  of these elements, which are put in another order
+/// @param partOf  of these elements, which get reordered
 void cut(std::span<PartitionElement> elements, std::span<std::uint32_t> partOf,
          std::uint32_t firstPart, std::uint32_t parts) {
   if (parts == 1 || elements.empty()) {

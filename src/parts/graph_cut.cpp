@@ -1,3 +1,5 @@
+// Cuts the graph of elements with METIS (multilevel k-way partitioning, Karypis and Kumar 1998) or
+// Scotch (Pellegrini and Roman 1996).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +16,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// The graph as both libraries take it.
+/// The graph in the form that both libraries take.
 struct Graph {
   std::vector<std::int32_t> begin;  ///< per element (+1)
   std::vector<std::int32_t> neighbours;
@@ -22,8 +24,8 @@ struct Graph {
   std::vector<std::int32_t> cells;  ///< per element, scaled
 };
 
-/// METIS_PartGraphKway() of METIS 5 with integers of 32 bits. Scotch has a function of the same
-/// form.
+/// METIS_PartGraphKway() of METIS 5 with 32-bit integers. Scotch has a function with the same
+/// signature.
 using PartGraph = int (*)(std::int32_t* vertices, std::int32_t* constraints, std::int32_t* begin,
                           std::int32_t* neighbours, std::int32_t* vertexWeights,
                           std::int32_t* vertexSizes, std::int32_t* edgeWeights, std::int32_t* parts,
@@ -66,7 +68,7 @@ PartGraph load(const Library& library) {
 PartGraph load(const Library& library) { failToLoad(library, "this build loads no libraries"); }
 #endif
 
-/// Collects which elements touch, and how much.
+/// Collects which elements touch, and in how large an area.
 class GraphMaker {
  public:
   GraphMaker(const igm::PreparedMap& map, const Partition& partition,
@@ -111,7 +113,7 @@ class GraphMaker {
     edges_.push_back({b, a, weight});
   }
 
-  /// Corners of a half-face's triangle in grid units, then the corner opposite.
+  /// Corners of a half-face's triangle in grid units, then the opposite corner.
   [[nodiscard]] std::array<Vec3, 4> cornersOf(adjacency::HalfFace halfFace) const {
     const lattice::LatticeTet& tet = map_.exact.corners[adjacency::tetOf(halfFace)];
     std::array<Vec3, 4> corners{};
@@ -136,7 +138,7 @@ class GraphMaker {
     return std::sqrt(square) / 2;
   }
 
-  /// The element of a tet that has a place in its chart, or the nearest of its blocks in the grid.
+  /// The element of a tet at a place in its chart, or at the nearest of its blocks in the grid.
   [[nodiscard]] Index elementAt(Index tet, const Vec3& place) const {
     const TetBlocks* const blocks = partition_.blocksOf(tet);
     if (blocks == nullptr) return ofTet_[tet];
@@ -149,7 +151,7 @@ class GraphMaker {
     return ofBlock_[blocks->first + blocks->blockOf(z)];
   }
 
-  /// Looks on both sides of some points of the face, about one for each block at it.
+  /// Looks up both sides at some points of the face, about one per block along it.
   void addFace(adjacency::HalfFace here, adjacency::HalfFace there) {
     const std::array<Vec3, 4> corners = cornersOf(here);
     const double area = areaOf(corners);
@@ -186,7 +188,7 @@ class GraphMaker {
     }
   }
 
-  /// Blocks of one tet that are neighbours in its chart.
+  /// Adds the edges between blocks of one tet that are neighbours in its chart.
   void addBlocks(const TetBlocks& blocks) {
     const double area = static_cast<double>(blocks.side) * blocks.side;
     const std::array<std::size_t, 3> steps = {std::size_t{blocks.size[1]} * blocks.size[2],
@@ -234,7 +236,7 @@ class GraphMaker {
     addCells(graph);
     return graph;
   }
-  /// Sums of weights fit the libraries' integers.
+  /// Scales weights so that their sums fit the libraries' integers.
   void addCells(Graph& graph) const {
     double all = 1;
     for (const PartitionElement& element : elements_) all += static_cast<double>(element.cells);
@@ -249,8 +251,8 @@ class GraphMaker {
   const igm::PreparedMap& map_;
   const Partition& partition_;
   const std::vector<PartitionElement>& elements_;
-  std::vector<Index> ofTet_;    ///< the element of a whole tet
-  std::vector<Index> ofBlock_;  ///< and of a block
+  std::vector<Index> ofTet_;    ///< per whole tet: its element
+  std::vector<Index> ofBlock_;  ///< per block: its element
   std::vector<Edge> edges_;     ///< in both directions
 };
 
@@ -267,9 +269,9 @@ std::vector<std::uint32_t> cutGraph(const igm::PreparedMap& map, const Partition
   auto vertices = static_cast<std::int32_t>(elements.size());
   std::int32_t constraints = 1;
   auto parts = static_cast<std::int32_t>(partition.parts);
-  // Elements are a thirty-second of a part: with these, 5 % are kept.
+  // Elements are a thirty-second of a part: with these values, parts stay within 5 %.
   float forMetis = 1.02F;
-  double forScotch = 0.02;  // what is above the mean
+  double forScotch = 0.02;  // excess over the mean
   void* const imbalance = method == PartitionMethod::Metis ? static_cast<void*>(&forMetis)
                                                            : static_cast<void*>(&forScotch);
   std::int32_t cut = 0;

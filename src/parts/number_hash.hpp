@@ -1,11 +1,11 @@
-// A hash of numbers in their order.
+// An order-dependent hash of numbers.
 #pragma once
 
 #include <cstdint>
 
 namespace hexhex::parts {
 
-/// The finalizer of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
+/// Applies the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
 /// generators", 2014) after each number.
 class NumberHash {
  public:

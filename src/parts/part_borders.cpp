@@ -14,20 +14,20 @@ namespace hexhex::parts {
 
 namespace {
 
-/// A face of a cell, own or not, all of whose vertices are shared.
+/// A face of an own cell or another part's cell, all of whose vertices are shared.
 struct SharedSide {
   lattice::UInt128 vertices;  ///< ascending
   std::uint64_t number;       ///< global, of its cell
   std::uint8_t side;
   Index cell;   ///< own, or kNone
-  Index other;  ///< place in the list of other cells, or kNone
+  Index other;  ///< index in the list of other cells, or kNone
 };
 
 struct Pairing {
   std::uint32_t part;    ///< the neighbour
-  std::uint64_t number;  ///< the face, as the smaller part has it: the same order in both
+  std::uint64_t number;  ///< of the cell in the smaller part, so that both parts sort alike
   std::uint8_t side;
-  PartFace face;  ///< as this part has it
+  PartFace face;  ///< as this part sees it
 };
 
 lattice::UInt128 nameOf(Quad quad) {
@@ -64,8 +64,9 @@ class FacePairs {
   FacePairs(const MeshPart& part, std::span<const BorderCell> around)
       : part_(part), around_(around) {}
 
-  /// All faces between an own cell and another one. Usually two cells have the same four vertices;
-  /// where more do, because cells meet themselves, both parts pair them in the same order.
+  /// All faces between an own cell and a cell of another part. Usually only two cells have the same
+  /// four vertices; where more do, because cells meet themselves, both parts pair them in the same
+  /// order.
   [[nodiscard]] std::vector<Pairing> find(std::vector<SharedSide>& sides) {
     std::sort(sides.begin(), sides.end(), [](const SharedSide& a, const SharedSide& b) {
       if (a.vertices != b.vertices) return a.vertices < b.vertices;
@@ -108,12 +109,12 @@ class FacePairs {
   std::vector<Pairing> pairs_;
 };
 
-/// Lists the vertices in common with each part.
-/// @return per vertex of own cells: whether any part has it, too
+/// Lists the vertices shared with each part.
+/// @return per vertex of own cells: whether any other part has it
 std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> around) {
   struct OfPart {
     std::uint32_t part;
-    Index other;  ///< place in the list of other cells
+    Index other;  ///< index in the list of other cells
     auto operator<=>(const OfPart&) const = default;
   };
   std::vector<OfPart> others;
@@ -122,7 +123,7 @@ std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> arou
     others.push_back({around[i].part, static_cast<Index>(i)});
   }
   std::sort(others.begin(), others.end());
-  std::vector<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the last part seen
+  std::vector<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the latest part seen
   std::vector<bool> isShared(part.ownPoints, false);
   for (const OfPart& each : others) {
     if (part.neighbours.empty() || part.neighbours.back().part != each.part) {

@@ -1,4 +1,4 @@
-// What a part has in common with its neighbours.
+// What a part shares with its neighbours.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace hexhex::parts {
 
-/// A cell of another part with a vertex of this one.
+/// A cell of another part with a vertex of this part.
 struct BorderCell {
   std::uint64_t number;
   std::uint32_t part;
-  Hex corners;  ///< local vertices, kNone where not of own cells
+  Hex corners;  ///< local vertices; kNone for vertices of no own cell
 };
 
 /// Fills part.neighbours.
 /// @param part   with own cells and points
-/// @param around  all cells of other parts with a vertex of its own cells, ascending by number
+/// @param around  all cells of other parts that share a vertex with own cells, ascending by number
 void findNeighbours(MeshPart& part, std::span<const BorderCell> around);
 
 }  // namespace hexhex::parts

@@ -12,7 +12,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// Tets that one thread works on at a time: a part may have few, each with many cells.
+/// Tets per block of work: a part may have few tets with many cells each.
 constexpr std::size_t kFewTets = 8;
 
 }  // namespace
@@ -96,7 +96,7 @@ struct PartGrid<Id>::Surroundings {
   std::uint32_t part;
   atlas::CellEmitter<Id> emitter;
   std::optional<VertexSet::Cache> touched;
-  std::vector<std::array<Id, 8>> cells;  ///< working memory
+  std::vector<std::array<Id, 8>> cells;  ///< reused memory
 };
 
 template <class Id>
@@ -143,7 +143,7 @@ std::vector<NearbyCell<Id>> PartGrid<Id>::nearbyCells(std::uint32_t part, const 
       },
       [&](std::size_t begin, std::size_t end, std::size_t block, Surroundings& around) {
         for (std::size_t i = begin; i < end; ++i) {
-          // Without boxes it is a tet of the part alone.
+          // A tet without boxes belongs to the part alone.
           if (!region_.boxesOf(i).empty()) addNearby(i, around, blocks[block]);
         }
       });
@@ -155,10 +155,10 @@ template class PartGrid<std::uint64_t>;
 
 namespace {
 
-/// The wanted vertices of one tet.
+/// The requested vertices of one tet.
 struct OwnersVertices {
   Index tet;
-  std::size_t begin;  ///< in the numbers
+  std::size_t begin;  ///< in the list of numbers
   std::size_t end;
 };
 
@@ -198,7 +198,7 @@ class Describer {
   void describe(const sweep::VertexRun& run, const OwnersVertices& wanted,
                 const sweep::TetPositions& positions) {
     const auto last = numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.end);
-    // Interior vertices are numbered in the order of the sweep, so that the next is soon found.
+    // Interior vertices are numbered in the order of the sweep, so the next one is found quickly.
     auto next = std::lower_bound(numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.begin), last,
                                  run.first);
     for (; next != last && *next < run.first + run.count; ++next) {

@@ -20,21 +20,21 @@
 
 namespace hexhex::parts {
 
-/// A cell by its place: a centre on a line of its owner.
+/// The location of a cell: a centre on a line of its owner.
 struct CellPlace {
   Index tet;
-  lattice::CornerMask simplex;  ///< of the tet, in whose interior the centre lies
+  lattice::CornerMask simplex;  ///< of the tet, with the centre in its interior
   lattice::GridPoint z;         ///< smallest corner
 };
 
-/// Cells by global numbers, ascending.
+/// Cells and their global numbers, ascending.
 template <class Id>
 struct GlobalCells {
   Array<std::uint64_t> numbers;
   Array<std::array<Id, 8>> corners;
 };
 
-/// Of another part.
+/// A cell of another part.
 template <class Id>
 struct NearbyCell {
   std::uint64_t number;
@@ -44,8 +44,8 @@ struct NearbyCell {
 };
 
 /// Calls visit(line, first, count, number) for runs of cells that a tet owns and a part has:
-/// centres `first` and so on of a line, the first of which is cell `number` of those that the tet
-/// owns.
+/// `count` centres of a line, starting at index `first`; `number` is that first cell's number among
+/// those that the tet owns.
 template <class Visit>
 void forEachRun(const igm::PreparedMap& map, const Partition& partition, std::uint32_t part,
                 Index tet, std::span<const lattice::SweptLine> lines, const Visit& visit) {
@@ -62,7 +62,7 @@ void forEachRun(const igm::PreparedMap& map, const Partition& partition, std::ui
   }
 }
 
-/// The vertices in the region of one part, then of another, in charts.
+/// The vertices in the region of one part after another, in charts.
 template <class Id>
 class PartGrid {
  public:
@@ -75,15 +75,15 @@ class PartGrid {
 
   [[nodiscard]] const sweep::ElementCounts& counts() const noexcept { return counts_; }
 
-  /// Makes the grid of a region, in place of what was before.
+  /// Builds the grid of a region, replacing the previous one.
   void enter(atlas::GridRegion region, Stage& stage);
   /// Frees the grid.
   void clear() noexcept;
 
-  // Of the region:
+  // For the current region:
   [[nodiscard]] GlobalCells<Id> ownCells(std::uint32_t part, Stage& stage) const;
   /// The cells of other parts in the boxes of the region, ascending.
-  /// @param touched  if not null, only those with one of these vertices
+  /// @param touched  if not null, only cells with one of these vertices
   [[nodiscard]] std::vector<NearbyCell<Id>> nearbyCells(std::uint32_t part,
                                                         const VertexSet* touched,
                                                         Stage& stage) const;
@@ -98,9 +98,9 @@ class PartGrid {
   const igm::PreparedMap& map_;
   sweep::ElementCounts counts_;
   const Partition& partition_;
-  atlas::Charts charts_;  ///< only tets of the region are in one
+  atlas::Charts charts_;  ///< contain only tets of the region
   Index chartCount_;      ///< of the whole map
-  Array<Index> chartOf_;  ///< per tet, whether in the region or not
+  Array<Index> chartOf_;  ///< per tet, inside or outside the region
   atlas::GridRegion region_;
   std::optional<atlas::VertexGrid<Id>> vertices_;
   atlas::CutTransitions transitions_;
@@ -109,11 +109,11 @@ class PartGrid {
 extern template class PartGrid<std::uint32_t>;
 extern template class PartGrid<std::uint64_t>;
 
-// Where vertices lie in space that are known by global numbers alone.
+// The location in space of vertices of which only the global numbers are known.
 
-/// Describes vertices in some places of mesh.points, mesh.generatorTet and mesh.generatorCorners.
+/// Fills entries of mesh.points, mesh.generatorTet and mesh.generatorCorners.
 /// @param numbers  of the vertices, ascending
-/// @param first    the place of the first one
+/// @param first    index of the first entry
 void describeVertices(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
                       std::span<const std::uint64_t> numbers, std::size_t first, HexMesh& mesh,
                       Stage& stage);

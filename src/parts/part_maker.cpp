@@ -15,7 +15,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// More vertices than this need wide ids: two values are reserved.
+/// More vertices than this require wide ids: two values are reserved.
 constexpr std::uint64_t kMaxNarrowVertices = std::numeric_limits<std::uint32_t>::max() - 1;
 
 template <class Cell>
@@ -23,8 +23,8 @@ void renumber(const Cell& from, VertexSet::Cache& vertices, Hex& to) {
   for (std::size_t k = 0; k < 8; ++k) to[k] = vertices.rank(from[k]);
 }
 
-/// The same for cells whose corners are all in the set, into a place that may be theirs. Where a
-/// corner follows that of the cell before, so do their ranks.
+/// Converts cells whose corners are all in the set; may work in place. Where a corner's number
+/// follows that of the previous cell's corner, so does its rank.
 template <class Cell>
 void renumber(std::span<const Cell> from, const VertexSet& vertices, Hex* to) {
   if (from.empty()) return;
@@ -64,7 +64,8 @@ class GhostLayers {
   GhostLayers(std::vector<NearbyCell<Id>> nearby, const VertexSet& own, Stage& stage)
       : nearby_(std::move(nearby)), stage_(stage), reached_(&own) {}
 
-  /// The next layer: cells that are in none so far, with a vertex of those that are.
+  /// The next layer: cells in no layer so far that have a vertex of the part or of the previous
+  /// layers.
   [[nodiscard]] std::vector<NearbyCell<Id>> next() {
     std::vector<NearbyCell<Id>> layer;
     std::vector<std::array<Id, 8>> corners;
@@ -76,7 +77,7 @@ class GhostLayers {
       if (touches) corners.push_back(cell.corners);
     }
     nearby_ = std::move(rest);
-    // What is farther away touches the layer itself.
+    // Everything farther away touches this layer.
     ofLayer_ = VertexSet(std::span<const std::array<Id, 8>>(corners), stage_);
     reached_ = &ofLayer_;
     return layer;
@@ -85,7 +86,7 @@ class GhostLayers {
  private:
   std::vector<NearbyCell<Id>> nearby_;
   Stage& stage_;
-  VertexSet ofLayer_;  ///< the last one
+  VertexSet ofLayer_;  ///< the latest layer
   const VertexSet* reached_;
 };
 
@@ -128,7 +129,7 @@ class Maker final : public PartMaker {
     GlobalCells<Id> own;
     VertexSet vertices;
     {
-      // One more, which knows the owners of the vertices of the last.
+      // One extra layer, which knows the owners of the vertices of the last one.
       const std::uint32_t around = options_.ghostLayers + 1;
       grid_.enter(regions_.find(number, around), stage);
       own = grid_.ownCells(number, stage);
@@ -136,7 +137,7 @@ class Maker final : public PartMaker {
       GhostLayers<Id> ghosts(grid_.nearbyCells(number, around == 1 ? &vertices : nullptr, stage),
                              vertices, stage);
       for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
-      grid_.clear();  // what follows needs the memory
+      grid_.clear();  // frees memory for what follows
     }
     Assembly assembly{part, layers, vertices, stage};
     takeOwn(assembly, std::move(own));
@@ -160,9 +161,9 @@ class Maker final : public PartMaker {
                                          "parts.");
   }
 
-  /// Own cells, their vertices, and what these share with neighbours.
+  /// Adds own cells, their vertices, and what these share with neighbours.
   void takeOwn(const Assembly& assembly, GlobalCells<Id> own) const {
-    // No structured binding: clang 14 captures none in a lambda.
+    // No structured binding: clang 14 does not capture those in a lambda.
     auto& part = assembly.part;
     const auto& layers = assembly.layers;
     const VertexSet& vertices = assembly.vertices;
@@ -209,7 +210,7 @@ class Maker final : public PartMaker {
     describeVertices(map_.map, counts_, part.globalPoints, 0, part.mesh, stage);
   }
 
-  /// Adds ghosts and their vertices behind own ones.
+  /// Appends ghosts and their vertices after own ones.
   void takeGhosts(const Assembly& assembly) const {
     auto& part = assembly.part;
     const auto& layers = assembly.layers;
@@ -293,7 +294,7 @@ class Maker final : public PartMaker {
     }
   }
 
-  /// The part's own cells for carryFeatures(), a group for each tet.
+  /// The part's own cells for carryFeatures(), grouped by tet.
   [[nodiscard]] extraction::TaggedCells cellsOf(const MeshPart& part) const {
     const std::span<const Index> tets = partition_.tetsOf(part.part);
     return {tets.size(),
@@ -321,7 +322,7 @@ class Maker final : public PartMaker {
   PartOptions options_;
   Partition partition_;
   PartGrid<Id> grid_;
-  const sweep::ElementCounts& counts_;  ///< the grid's
+  const sweep::ElementCounts& counts_;  ///< of the grid
   RegionFinder regions_;
   Context& context_;
 };

@@ -1,5 +1,5 @@
-// Makes the parts of a mesh, one after the other and each by itself: from counts per tet, and a
-// sweep of its own tets and those that its cells touch.
+// Makes the parts of a mesh independently, one after another: from cell counts per tet and a sweep
+// of the part's own tets and those that its cells touch.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct PartsOfMap {
   const igm::PreparedMap& map;
   const TetMapView& source;
   std::uint64_t expectedCells;
-  ProcessTeam* team = nullptr;  ///< if there is one, all of it counts
+  ProcessTeam* team = nullptr;  ///< if not null, all its processes take part in counting
 };
 
 class PartMaker {
@@ -29,11 +29,11 @@ class PartMaker {
 
   [[nodiscard]] virtual PartsInfo info() const = 0;
   [[nodiscard]] virtual const sweep::ElementCounts& counts() const noexcept = 0;
-  /// Any part, in any order.
+  /// Makes any part, in any order.
   [[nodiscard]] virtual MeshPart make(std::uint32_t part) = 0;
 };
 
-/// Counts what all tets own, and decides on the parts.
+/// Counts what all tets own, and assigns cells to parts.
 /// @param statistics  receives the numbers of vertices and generators
 [[nodiscard]] std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map,
                                                        const PartOptions& options, Context& context,

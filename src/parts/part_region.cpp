@@ -9,7 +9,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// Boxes around large faces would be as large as tets.
+/// Larger faces are cut up: boxes around them would be as large as tets.
 constexpr std::int32_t kFacePiece = 12;
 
 using Triangle = std::array<lattice::LatticePoint, 3>;
@@ -26,11 +26,11 @@ Triangle triangleOf(const igm::PreparedMap& map, adjacency::HalfFace halfFace) {
           corners[static_cast<std::size_t>(face[2])]};
 }
 
-/// Boxes begin and end at multiples of this, so that those of small faces near each other are the
-/// same: without, as many come to each tet as there are faces around, and are compared.
+/// Boxes begin and end at multiples of this, so that those of small adjacent faces coincide:
+/// otherwise each tet would receive, and compare, as many boxes as there are faces around.
 constexpr std::int32_t kBoxRounding = 4;
 
-/// A box of grid points around a triangle, and at least `reach` more on all sides.
+/// A box of grid points around a triangle, with a margin of at least `reach` on all sides.
 lattice::GridBox boxAround(const Triangle& triangle, std::int64_t unit, std::int32_t reach) {
   const int shift = std::countr_zero(static_cast<std::uint64_t>(unit));
   lattice::GridBox box;
@@ -71,8 +71,8 @@ void cutUp(const Triangle& triangle, std::int64_t size, const Visit& visit) {
   cutUp({middle, b, c}, size, visit);
 }
 
-/// Whether a triangle may meet a closed box: no axis of the grid and not the triangle's normal
-/// separates them, with room for roundings.
+/// Whether a triangle may meet a closed box: neither an axis of the grid nor the triangle's normal
+/// separates them, with a margin for rounding.
 bool mayMeet(const Triangle& triangle, const lattice::GridBox& box, std::int64_t unit) {
   std::array<Vec3, 3> corners;
   Vec3 middle;
@@ -84,7 +84,7 @@ bool mayMeet(const Triangle& triangle, const lattice::GridBox& box, std::int64_t
       corners[i][k] = static_cast<double>(triangle[i][k] - origin) * grid;
     }
     const auto size = static_cast<double>(std::int64_t{box.range[k].last} - box.range[k].first);
-    half[k] = size / 2 + 0.01;  // far more than roundings
+    half[k] = size / 2 + 0.01;  // far above rounding
     middle[k] = size / 2;
     const auto [low, high] = std::minmax({corners[0][k], corners[1][k], corners[2][k]});
     if (low > middle[k] + half[k] || high < middle[k] - half[k]) return false;
@@ -147,7 +147,7 @@ atlas::GridRegion RegionFinder::find(std::uint32_t part, std::uint32_t layers) {
     }
   }
   std::size_t head = 0;
-  while (head < queue_.size()) {  // which grows
+  while (head < queue_.size()) {  // grows meanwhile
     if (queue_.size() > mostBoxes_) {
       enterAll();
       break;
@@ -177,7 +177,8 @@ void RegionFinder::enterWhole(std::span<const Index> tets) {
   }
 }
 
-/// Where a path may leave a tet of the part. Cells through the tet reach one unit beyond it.
+/// Starts where a path may leave a tet of the part. Cells that cross the tet reach one unit beyond
+/// it.
 void RegionFinder::startAtFaces(Index tet, std::int32_t reach) {
   const std::int64_t unit = map_.exact.unit;
   for (int face = 0; face < 4; ++face) {
@@ -206,7 +207,7 @@ void RegionFinder::startAtBlocks(const TetBlocks& blocks, std::uint32_t part, st
   }
 }
 
-/// Enters a box unless another one holds it.
+/// Adds a box to a tet unless another box contains it.
 void RegionFinder::reach(Index tet, const lattice::GridBox& box) {
   Entry& entry = entryOf(tet);
   if (entry.whole) return;
@@ -219,7 +220,7 @@ void RegionFinder::reach(Index tet, const lattice::GridBox& box) {
 }
 
 void RegionFinder::cross(Index tet, const lattice::GridBox& box) {
-  const lattice::GridBox from = box;  // its array may grow
+  const lattice::GridBox from = box;  // a copy: its array may grow
   for (int face = 0; face < 4; ++face) {
     const adjacency::HalfFace halfFace = adjacency::halfFaceOf(tet, face);
     const adjacency::HalfFace mate = map_.topology.mate[halfFace];
@@ -228,7 +229,7 @@ void RegionFinder::cross(Index tet, const lattice::GridBox& box) {
   }
 }
 
-/// Carries a box that may meet an inner face to the tet behind.
+/// Carries a box that may meet an inner face to the tet behind it.
 void RegionFinder::through(adjacency::HalfFace halfFace, const lattice::GridBox& box) {
   const adjacency::HalfFace mate = map_.topology.mate[halfFace];
   assert(mate != kNone);
@@ -237,7 +238,7 @@ void RegionFinder::through(adjacency::HalfFace halfFace, const lattice::GridBox&
   reach(adjacency::tetOf(mate), carried(map_.exact.transitions.across(halfFace), box));
 }
 
-/// All tets, with boxes around them unless they are the part's.
+/// Enters all tets, with boxes around those that are not the part's.
 void RegionFinder::enterAll() {
   for (std::size_t t = 0; t < map_.topology.tetCount(); ++t) {
     const auto tet = static_cast<Index>(t);

@@ -1,11 +1,11 @@
-// Where a part reaches: the tets that its cells and the cells around them may touch, and where in
-// these.
+// How far a part reaches: the tets that its cells and the cells around them may touch, and where in
+// these tets.
 //
-// Take a chain of cells, the first one in the part, each next one with a vertex of the one before,
-// and a path from centre to centre through their common vertices. Where it leaves the part's tets
-// for the last time, it crosses a face (or is in a block of a tet that several parts share), and
-// all that follows lies within a box around that face (that block), developed along the path. So
-// such boxes are carried from tet to tet, through all faces that they meet.
+// Consider a chain of cells that starts in the part, each cell sharing a vertex with the previous
+// one, and a path from centre to centre through their common vertices. Where it leaves the part's
+// tets for the last time, it crosses a face (or is in a block of a tet that several parts share),
+// and the rest lies within a box around that face (or block), developed along the path. So such
+// boxes are carried from tet to tet, across all faces that they meet.
 #pragma once
 
 #include <vector>
@@ -18,10 +18,10 @@
 
 namespace hexhex::parts {
 
-/// Finds regions of one part after another.
+/// Finds the regions of one part after another.
 class RegionFinder {
  public:
-  /// @param cells  of the mesh
+  /// @param cells  number of cells of the mesh
   RegionFinder(const igm::PreparedMap& map, const Partition& partition, std::uint64_t cells);
 
   /// @param layers  of cells around the part's own
@@ -30,7 +30,7 @@ class RegionFinder {
  private:
   struct Reached {
     Index tet;
-    std::size_t box;  ///< in boxes_[of the tet]
+    std::size_t box;  ///< index in boxes_ of the tet
   };
   struct Entry {
     Index tet = kNone;
@@ -50,10 +50,10 @@ class RegionFinder {
 
   const igm::PreparedMap& map_;
   const Partition& partition_;
-  /// With more boxes, all tets are the region. Around the singularities of a coarse map, boxes turn
-  /// and turn: on a ball of 7 x 27 cells in 4 parts they took 6 s instead of 0.05.
+  /// Beyond this number of boxes, the region is all tets. Around the singularities of a coarse map,
+  /// boxes keep turning: on a ball of 7 x 27 cells in 4 parts they took 6 s instead of 0.05.
   std::uint64_t mostBoxes_;
-  std::vector<Index> entryOfTet_;  ///< kNone for all tets but those of the current part
+  std::vector<Index> entryOfTet_;  ///< kNone except for tets of the current part's region
   std::vector<Entry> entries_;
   std::vector<Reached> queue_;
 };

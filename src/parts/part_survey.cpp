@@ -14,7 +14,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// Of what a part shares with a neighbour; the same from both sides.
+/// Hash of what a part shares with a neighbour; the same from both sides.
 std::uint64_t borderOf(const MeshPart& part, const PartNeighbour& neighbour) {
   NumberHash hash;
   hash.add(std::min(part.part, neighbour.part));
@@ -71,7 +71,7 @@ void PartSurvey::part(MeshPart&& part) {
   sink_.part(std::move(part));
 }
 
-/// Adds up what the processes have seen.
+/// Combines the results of all processes.
 void PartSurvey::addUp() {
   const PartsSummary& own = summary_;
   const std::array<std::uint64_t, 11> mine = {

@@ -14,8 +14,8 @@ namespace hexhex::parts {
 
 namespace {
 
-/// Parts differ from the mean by no more than one element: 32 elements for a part leave room below
-/// 5 %, of which METIS and Scotch use some.
+/// Parts differ from the mean by at most one element: 32 elements per part leave slack below 5 %,
+/// part of which METIS and Scotch use.
 constexpr std::uint64_t kElementsPerPart = 32;
 
 Vec3 middleOf(const igm::PreparedMap& map, Index tet) {
@@ -34,9 +34,9 @@ std::int32_t sideOf(std::uint64_t cells) {
   return static_cast<std::int32_t>(std::max<std::uint64_t>(side, 1));
 }
 
-/// Covers the cells of a tet.
+/// Covers the cells of a tet with blocks.
 /// @param cells  of the tet
-/// @param most   cells in a block
+/// @param most   cells per block
 TetBlocks coverWithBlocks(const igm::PreparedMap& map, Index tet, std::uint64_t cells,
                           std::uint64_t most) {
   const lattice::GridBox box =
@@ -44,7 +44,7 @@ TetBlocks coverWithBlocks(const igm::PreparedMap& map, Index tet, std::uint64_t 
   TetBlocks blocks;
   blocks.tet = tet;
   for (std::size_t k = 0; k < 3; ++k) blocks.low[k] = box.range[k].first;
-  // A tet may be a needle in its box: larger blocks hold no more cells then.
+  // A tet may be a needle in its box; then larger blocks hold no more cells.
   const double enough = 64.0 * (static_cast<double>(cells) / static_cast<double>(most) + 64);
   for (blocks.side = sideOf(most);; blocks.side *= 2) {
     double count = 1;
@@ -57,7 +57,7 @@ TetBlocks coverWithBlocks(const igm::PreparedMap& map, Index tet, std::uint64_t 
   }
 }
 
-/// How many cells of the tet each of its blocks has.
+/// Number of the tet's cells in each of its blocks.
 void countCells(const igm::PreparedMap& map, const TetBlocks& blocks,
                 std::span<std::uint64_t> counts) {
   std::vector<lattice::SweptLine> lines;
@@ -77,7 +77,7 @@ void countCells(const igm::PreparedMap& map, const TetBlocks& blocks,
   }
 }
 
-/// Cuts tets into blocks that have more cells than an element may have.
+/// Splits tets with more cells than an element may have into blocks.
 void makeBlocks(const PartitionInput& input, std::uint64_t most, Partition& partition) {
   const std::size_t tets = input.map.topology.tetCount();
   partition.ofTet.assign(tets, 0);
@@ -139,7 +139,7 @@ std::vector<PartitionElement> listElements(const PartitionInput& input,
   return elements;
 }
 
-/// Enters what was decided, and lists the tets of each part.
+/// Records the assignment, and lists the tets of each part.
 void assign(const std::vector<PartitionElement>& elements, const std::vector<std::uint32_t>& partOf,
             Partition& partition) {
   struct Entry {

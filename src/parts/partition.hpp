@@ -1,8 +1,8 @@
-// Which part each cell is in. Known before there are cells: from their numbers per tet.
+// The part of each cell. It is known before there are cells, from their number per tet.
 //
-// Tets are dealt out as a whole, unless one has so many cells that parts could not be even: its
-// cells are dealt out by blocks of its chart. So parts differ by about 3 % of their cells at most,
-// however few tets there are.
+// A tet is assigned as a whole unless it has so many cells that parts could not be balanced: then
+// its cells are assigned in blocks of its chart. So parts differ by at most about 3 % of their
+// cells, however few tets there are.
 #pragma once
 
 #include <algorithm>
@@ -23,14 +23,14 @@ namespace hexhex::parts {
 struct TetBlocks {
   Index tet = 0;
   std::int32_t side = 1;
-  lattice::GridPoint low{};             ///< smallest corner of the first one's first cell
+  lattice::GridPoint low{};             ///< smallest corner of the first block's first cell
   std::array<std::uint32_t, 3> size{};  ///< blocks along each axis
-  std::size_t first = 0;                ///< of all blocks
+  std::size_t first = 0;                ///< index among all blocks
 
   [[nodiscard]] std::size_t count() const noexcept {
     return std::size_t{size[0]} * size[1] * size[2];
   }
-  /// The block of the cell with smallest corner z, counted from the tet's first one.
+  /// The block of the cell with smallest corner z, counted from the tet's first block.
   [[nodiscard]] std::size_t blockOf(const lattice::GridPoint& z) const noexcept {
     std::size_t block = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -38,7 +38,7 @@ struct TetBlocks {
     }
     return block;
   }
-  /// How many cells from z on are in the same block, along a sweep's lines.
+  /// Number of cells from z on that are in the same block, along a sweep's lines.
   [[nodiscard]] std::uint32_t cellsAhead(const lattice::GridPoint& z,
                                          lattice::SweepAxes axes) const noexcept {
     const std::size_t along = axes()[2];
@@ -56,21 +56,21 @@ struct TetBlocks {
   }
 };
 
-/// What is dealt out in one piece: a whole tet, or a block of one.
+/// The unit of assignment: a whole tet, or a block of one.
 struct PartitionElement {
   Index tet;
   Index blocks;         ///< index in Partition::blocks, or kNone for a whole tet
-  std::size_t block;    ///< of these
-  std::uint64_t cells;  ///< may be none
-  Vec3 place;           ///< in space, about the middle
+  std::size_t block;    ///< among those
+  std::uint64_t cells;  ///< may be zero
+  Vec3 place;           ///< in space, near the middle
 };
 
 class Partition {
  public:
   std::uint32_t parts = 1;
-  std::vector<TetBlocks> blocks;  ///< of tets that are not dealt out as a whole; ascending by tet
+  std::vector<TetBlocks> blocks;  ///< of tets that are not assigned as a whole; ascending by tet
 
-  /// The part of a cell, by its owner and smallest corner.
+  /// The part of a cell, given its owner and smallest corner.
   [[nodiscard]] std::uint32_t partOf(Index tet, const lattice::GridPoint& z) const noexcept {
     assert(tet < ofTet.size());
     const std::uint32_t part = ofTet[tet];
@@ -78,8 +78,8 @@ class Partition {
     const TetBlocks& split = blocks[part - kSplit];
     return ofBlock[split.first + split.blockOf(z)];
   }
-  /// Calls visit(part, first, count) for some cells of a tet's line, in pieces that are each in one
-  /// part.
+  /// Calls visit(part, first, count) for some cells of a tet's line, in pieces that each belong to
+  /// one part.
   template <class Visit>
   void forEachPiece(Index tet, const lattice::SweptLine& line, std::uint32_t first,
                     std::uint32_t count, const Visit& visit) const {
@@ -93,11 +93,11 @@ class Partition {
       first += piece;
     }
   }
-  /// The blocks of a tet, or null if it is dealt out as a whole.
+  /// The blocks of a tet, or null if it is assigned as a whole.
   [[nodiscard]] const TetBlocks* blocksOf(Index tet) const noexcept {
     return ofTet[tet] < kSplit ? nullptr : &blocks[ofTet[tet] - kSplit];
   }
-  /// How many cells of a tet a part has.
+  /// Number of a tet's cells in a part.
   [[nodiscard]] std::uint64_t cellsOf(const TetBlocks& split, std::uint32_t part) const noexcept {
     std::uint64_t cells = 0;
     for (std::size_t b = split.first; b < split.first + split.count(); ++b) {
@@ -105,41 +105,40 @@ class Partition {
     }
     return cells;
   }
-  /// The tets that are in a part, as a whole or with a block with cells, ascending.
+  /// The tets of a part, whole or with a nonempty block, ascending.
   [[nodiscard]] std::span<const Index> tetsOf(std::uint32_t part) const noexcept {
     return std::span(tets).subspan(begin[part], begin[part + 1] - begin[part]);
   }
 
   static constexpr std::uint32_t kSplit = 1U << 31;
-  std::vector<std::uint32_t> ofTet;    ///< per tet: its part, or kSplit + its place in `blocks`
-  std::vector<std::uint32_t> ofBlock;  ///< per block of all: its part
-  std::vector<std::uint64_t> inBlock;  ///< likewise: how many cells it has
-  std::vector<std::size_t> begin;      ///< per part (+1): its tets
+  std::vector<std::uint32_t> ofTet;    ///< per tet: its part, or kSplit + its index in `blocks`
+  std::vector<std::uint32_t> ofBlock;  ///< per block, counted over all tets: its part
+  std::vector<std::uint64_t> inBlock;  ///< per block: number of its cells
+  std::vector<std::size_t> begin;      ///< per part (+1): its first tet in `tets`
   std::vector<Index> tets;
 };
 
 struct PartitionInput {
   const igm::PreparedMap& map;
   const sweep::ElementCounts& counts;
-  ProcessTeam* team;  ///< if not null, its processes, which all call this, share the work
+  ProcessTeam* team;  ///< if not null, its processes all call this and share the work
 };
 
-/// @param method  with a library that is not here it is an InvalidArgument
+/// @param method  InvalidArgument if its library is not available
 [[nodiscard]] Partition makePartition(const PartitionInput& input, std::uint32_t parts,
                                       PartitionMethod method, Context& context);
 
-/// Cuts elements by their places, with about the same number of cells in each part.
-/// @param elements  are put in another order
-/// @return  the part of each, in that order
+/// Bisects elements by position into parts with about the same number of cells.
+/// @param elements  get reordered
+/// @return  the part of each, in the new order
 [[nodiscard]] std::vector<std::uint32_t> bisect(std::vector<PartitionElement>& elements,
                                                 std::uint32_t parts);
 
-/// By METIS or Scotch, which are loaded when they are asked for: cuts the graph of elements,
-/// weighted by cells, whose edges are weighted by the faces of cells between them, about.
+/// Uses METIS or Scotch, loaded on demand: cuts the graph of elements, weighted by cells, with
+/// edges weighted by the approximate number of cell faces between them.
 /// @return  per element: its part
-/// @throws Error InvalidArgument if the library is not there, is built for other integers, or
-/// fails;
-///         TooLarge for a graph beyond its integers
+/// @throws Error InvalidArgument if the library is missing, was built for other integers, or fails;
+///         TooLarge if the graph exceeds its integers
 [[nodiscard]] std::vector<std::uint32_t> cutGraph(const igm::PreparedMap& map,
                                                   const Partition& partition,
                                                   const std::vector<PartitionElement>& elements,

@@ -1,4 +1,4 @@
-// A map of one process for all of a team.
+// Gives the map of one process to all processes of a team.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -24,7 +24,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// Process 0 gives copies of pieces: what it shares is what all may write to.
+/// Process 0 shares copies of pieces: shared memory must be writable by all.
 template <class T>
 void shareArray(ProcessTeam& team, std::span<const T> mine, std::vector<T>& theirs) {
   std::uint64_t size = mine.size();
@@ -74,7 +74,7 @@ namespace hexhex::parts {
 
 namespace {
 
-/// Weights as inSteps() has them.
+/// Weights as in inSteps().
 constexpr std::array<WorkStep, 9> kPartsSteps = {{{"prepare", 0.1},
                                                   {"repair", 0.3},
                                                   {"prepare", 0.1},
@@ -109,7 +109,7 @@ class Collector final : public PartSink {
   std::vector<MeshPart>& parts_;
 };
 
-/// Makes parts, and proves them if that is wanted.
+/// Makes parts, and proves them if requested.
 class ProvenParts {
  public:
   ProvenParts(ProcessTeam* team, extraction::ScaledMap& scaled, const PartOptions& options,
@@ -140,7 +140,7 @@ class ProvenParts {
   std::optional<verification::PartProof> proof_;
 };
 
-/// Prepares a map, and calls make(maker): which parts are made is left to it.
+/// Prepares a map and calls make(maker), which decides which parts to make.
 /// @param team  null for one process
 template <class Make>
 void runParts(ProcessTeam* team, std::uint32_t sinkLayers, const TetMapView& map,
@@ -171,7 +171,7 @@ void addBytes(NumberHash& hash, std::span<const std::byte> bytes) {
   }
 }
 
-/// Of all that a mesh in parts depends on.
+/// Covers everything that a mesh in parts depends on.
 std::uint64_t hashOf(const TetMapView& map, const ExtractOptions& options,
                      const PartOptions& parts) {
   NumberHash hash;

@@ -1,6 +1,6 @@
-// A set of global vertex numbers that knows the rank of each: from global to local numbers.
+// A set of global vertex numbers that knows the rank of each: it converts global to local numbers.
 //
-// Numbers come in runs, so they are kept as bits in pages, about a fifth of a byte for a vertex.
+// Numbers come in runs, so they are stored as bits in pages, about a fifth of a byte per vertex.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class VertexSet {
  public:
   static constexpr std::uint64_t kPageBits = 1024;
 
-  /// Looks up pages without a search while numbers stay close. One per thread.
+  /// Finds pages without a search while numbers stay close. One per thread.
   class Cache {
    public:
     explicit Cache(const VertexSet& set) noexcept : set_(set) {}
@@ -61,7 +61,7 @@ class VertexSet {
   };
 
   VertexSet() = default;
-  /// The corners of cells.
+  /// The set of the corners of cells.
   template <class Cell>
   VertexSet(std::span<const Cell> cells, Stage& stage) {
     collectPages(cells, stage);
@@ -102,8 +102,8 @@ class VertexSet {
     std::array<Index, kWords> before{};  ///< numbers in the set below each word
   };
 
-  /// Calls visit(first, last) for numbers that make up all corners of cells. Of consecutive cells
-  /// on a line, each corner mostly follows that of the cell before.
+  /// Calls visit(first, last) for ranges that make up all corners of cells. For consecutive cells
+  /// on a line, each corner mostly follows that of the previous cell.
   template <class Cell, class Visit>
   static void forEachRange(std::span<const Cell> cells, const Visit& visit) {
     if (cells.empty()) return;
@@ -121,7 +121,8 @@ class VertexSet {
       visit(first, last);
     }
   }
-  /// Enters numbers of one word. Thread-safe. @return the first number beyond
+  /// Enters the numbers that belong to one word. Thread-safe.
+  /// @return the first number beyond
   [[nodiscard]] std::uint64_t enter(std::uint64_t first, std::uint64_t last, Cache& cache) {
     const std::uint64_t next = std::min(last, first | 63U) + 1;
     const std::size_t bit = first % 64;

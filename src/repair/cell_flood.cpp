@@ -12,12 +12,12 @@ namespace hexhex::repairs {
 
 namespace {
 
-/// Parts of triangles smaller than this are touches.
+/// Triangle parts smaller than this merely touch.
 constexpr double kLeastArea = 1e-12;
-/// Nearer to a wall than this is in it.
+/// A point closer to a wall than this is in the wall.
 constexpr double kWall = 1e-9;
 
-/// The wall that a point is in (2 * axis, and 1 more for the high one), or -1.
+/// The wall that a point is in (2 * axis, plus 1 for the high one), or -1.
 int wallOf(const Vec3& point) {
   for (int axis = 0; axis < 3; ++axis) {
     const double x = point[static_cast<std::size_t>(axis)];
@@ -27,7 +27,7 @@ int wallOf(const Vec3& point) {
   return -1;
 }
 
-/// The four weights of a point in a tet, times the tet's determinant.
+/// The four barycentric weights of a point in a tet, times the tet's determinant.
 std::array<lattice::Int192, 4> weightsOf(const lattice::LatticeTet& c,
                                          const lattice::LatticePoint& at) {
   return {lattice::orientationDeterminant(at, c[1], c[2], c[3]),
@@ -47,8 +47,8 @@ lattice::Int128 squaredDistance(const lattice::LatticePoint& a, const lattice::L
 
 using Polygon = std::vector<Vec3>;
 
-/// Keeps the side of a plane across an axis on which (x - level) * sign >= 0.
-/// (Sutherland and Hodgman, "Reentrant polygon clipping", 1974)
+/// Keeps the side of a plane across an axis where (x - level) * sign >= 0. (Sutherland and Hodgman,
+/// "Reentrant polygon clipping", 1974)
 void clip(Polygon& polygon, std::size_t axis, double level, double sign) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -68,11 +68,11 @@ void clip(Polygon& polygon, std::size_t axis, double level, double sign) {
   polygon = std::move(kept);
 }
 
-/// A convex body by its faces.
+/// A convex body, given by its faces.
 using Body = std::vector<Polygon>;
 
-/// The new face that a cut at a plane leaves: corners of the other faces on the plane, sorted by
-/// their angle around it, counter-clockwise as seen from where the axis points.
+/// The new face left by a cut along a plane: the corners of the other faces on the plane, sorted by
+/// angle, counter-clockwise as seen from where the axis points.
 Polygon capOf(const Body& body, std::size_t axis, double level) {
   Polygon cap;
   Vec3 middle{};
@@ -101,7 +101,7 @@ bool liesIn(const Polygon& face, std::size_t axis, double level) {
   return true;
 }
 
-/// Of a closed body whose faces are counter-clockwise from outside.
+/// Volume of a closed body whose faces are counter-clockwise from outside.
 double volumeOf(const Body& body, const Vec3& from) {
   double volume = 0;
   for (const Polygon& face : body) {
@@ -139,7 +139,7 @@ std::array<Vec3, 4> CellFlood::relative(const lattice::LatticeTet& corners) cons
   return result;
 }
 
-/// False if the tet has been met in another place of the chart: the cell is wrapped around
+/// False if the tet has been reached at another place of the chart: the cell wraps around
 /// something.
 bool CellFlood::visit(Index tet, const lattice::Transition& fromFirst) {
   for (const Piece& piece : pieces_) {
@@ -184,7 +184,7 @@ std::optional<CellFlood::Corner> CellFlood::corner(std::size_t i) const {
   for (std::size_t k = 0; k < 3; ++k) {
     at[k] = (std::int64_t{low_[k]} + lattice::kCellCorners[i][k]) * map_.exact.unit;
   }
-  // Every piece that touches the corner has the same answer.
+  // Every piece that touches the corner gives the same answer.
   for (const Piece& piece : pieces_) {
     const std::array<lattice::Int192, 4> weights = weightsOf(piece.corners, at);
     lattice::CornerMask simplex = 0;

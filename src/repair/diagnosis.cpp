@@ -22,7 +22,8 @@ class Examiner {
     touched_.assign(map.topology.pointCount, 0);
     boundary_.assign(map.topology.pointCount, 0);
     for (const Index t : bad) touch(t);
-    // Inexact maps have flat tets that count as positive as given: no angles are known there.
+    // Inexact maps have flat tets that count as positive in the input: their angles are
+    // meaningless.
     const double noise = std::min(tolerance, map.exact.transitions.maxResidual);
     if (!(noise > 0)) return;
     for (std::size_t t = 0; t < map.topology.tetCount(); ++t) {
@@ -60,7 +61,7 @@ class Examiner {
     }
   }
 
-  /// Whether transitions carry triangles over.
+  /// Whether transitions map triangles onto each other.
   void examineFaces(Stage& stage, Diagnosis& diagnosis) {
     const adjacency::TetTopology& topology = map_.topology;
     parallelFor(stage, topology.tetCount(), kDiagnosisGrain, [&](std::size_t t) {
@@ -114,13 +115,14 @@ class Examiner {
   const igm::LocalParameters& parameters_;
   double tolerance_;
   double limit_;
-  std::vector<std::uint8_t> touched_;  ///< per vertex: a bad tet is at it
+  std::vector<std::uint8_t> touched_;  ///< per vertex: it belongs to a bad tet
   std::vector<std::uint8_t> boundary_;
 };
 
-/// More bad tets than this share of all, and than this number, are no local defect.
+/// If the share and the number of bad tets both exceed these limits, they are no local defect.
 constexpr double kMaxBadShare = 0.2;
-/// Nor are more connected ones, if some of them have no good tet around.
+/// The same number limits a connected region of bad tets some of which have no good tet around
+/// them.
 constexpr std::size_t kMaxBadTets = 200;
 
 std::string tetsAsText(std::size_t count) {
@@ -130,7 +132,7 @@ std::string tetsAsText(std::size_t count) {
 void refuseInvertedComponents(const adjacency::TetTopology& topology,
                               const igm::LocalParameters& parameters) {
   DisjointSets sets = componentsOf(topology, [](Index) { return true; });
-  std::vector<double> volume(topology.tetCount(), 0);  // by smallest tet
+  std::vector<double> volume(topology.tetCount(), 0);  // by the smallest tet of a component
   std::vector<Index> count(topology.tetCount(), 0);
   for (Index t = 0; t < topology.tetCount(); ++t) {
     const Index root = sets.find(t);

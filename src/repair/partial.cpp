@@ -1,4 +1,4 @@
-// Cells one by one, wherever a cube is filled by valid tets.
+// Extracts single cells, wherever valid tets fill a cube.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -26,7 +26,7 @@ struct FoundCell {
 
 struct Found {
   std::vector<FoundCell> cells;
-  std::vector<std::pair<Index, double>> covered;  ///< tets, and how much of them a cell covers
+  std::vector<std::pair<Index, double>> covered;  ///< tets, and their volumes that a cell covers
 };
 
 /// Finds the cells whose centres a tet owns.
@@ -41,7 +41,7 @@ class CellFinder {
         .sweep(lattice::kCenterGrid, [&](const lattice::SweptLine& line) {
           for (std::uint32_t i = 0; i < line.count; ++i) centres_.push_back(line.point(i));
         });
-    // The sweep's axes depend on the tet; cells of all tets come in the same order.
+    // The sweep's axes depend on the tet; sorting makes the order of cells the same for all tets.
     std::sort(centres_.begin(), centres_.end());
     for (const lattice::GridPoint& z : centres_) tryCell(tet, z, found);
   }
@@ -106,7 +106,8 @@ void assemble(const std::vector<Found>& blocks, PartialMesh& result,
   }
 }
 
-/// Marks cells at holes: a face has no other cell behind it, and the tets go on.
+/// Marks cells at holes: those with a face that has no other cell behind it although the tets
+/// continue.
 void matchFaces(const std::vector<std::uint8_t>& boundaryWalls, Stage& stage, PartialMesh& result) {
   const adjacency::HexFaces faces =
       adjacency::findFaces(result.mesh, adjacency::cellsAroundVertices(result.mesh, stage), stage);

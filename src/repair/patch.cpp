@@ -43,8 +43,8 @@ Patch growPatch(const adjacency::TetTopology& topology, std::span<const Index> s
 
 std::vector<std::vector<Index>> separateRegions(const adjacency::TetTopology& topology,
                                                 std::span<const Index> bad, int rings) {
-  // All patches grow together, ring by ring, and each tet and vertex gets the first patch that
-  // reaches it. Where another one comes to it within its rings, both are one region.
+  // All patches grow together, ring by ring, and each tet and vertex belongs to the first patch
+  // that reaches it. Where another patch reaches it within its rings, the two become one region.
   DisjointSets sets(bad.size());
   std::unordered_map<Index, Index> ownerOfTet;
   std::unordered_map<Index, Index> ownerOfVertex;

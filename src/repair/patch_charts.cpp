@@ -13,12 +13,12 @@ namespace hexhex::repairs {
 
 namespace {
 
-/// What an edge adds to the cost of a choice. An impossible edge outweighs any number of singular
-/// ones around one defect; singular edges with two hexahedra too few or too many are rare.
+/// Cost of an edge under a choice. An impossible edge outweighs any number of singular ones around
+/// one defect; singular edges with two hexahedra too few or too many are rare.
 constexpr double kSingular = 1;
 constexpr double kHalfTurn = 2.5;
 constexpr double kImpossible = 100;
-/// Ties are broken towards the choice that fits best.
+/// Breaks ties in favour of the choice that fits best.
 constexpr double kPerChoice = 1e-4;
 
 bool isHalfTurn(lattice::Rotation rotation) { return (rotation * rotation).isIdentity(); }
@@ -77,7 +77,7 @@ std::size_t PatchCharts::faceIndex(adjacency::HalfFace halfFace) const {
 }
 
 void PatchCharts::findCandidates() {
-  // How well rotations fit here, where nothing is wrong: as exact as the map is.
+  // How well rotations fit where nothing is wrong: this is the accuracy of the map.
   double noise = 1e-9;
   std::vector<std::vector<igm::FittedTransition>> fits(faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -103,7 +103,7 @@ void PatchCharts::findCandidates() {
   }
 }
 
-/// All rotations, or the one that the caller knows.
+/// All rotations, or only the one that the caller knows.
 std::vector<igm::FittedTransition> PatchCharts::fitsOf(adjacency::HalfFace halfFace) const {
   const igm::SharedTriangle triangle(topology_, parameters_, halfFace);
   const auto known = igm::knownRotation(map_.rotations, halfFace);
@@ -111,7 +111,7 @@ std::vector<igm::FittedTransition> PatchCharts::fitsOf(adjacency::HalfFace halfF
   return igm::fitAllTransitions(triangle);
 }
 
-/// The axes across which a boundary triangle may lie: one, unless it is flat.
+/// The axes to which a boundary triangle may be perpendicular: one, unless it is flat.
 std::vector<int> PatchCharts::planesOf(adjacency::HalfFace halfFace) const {
   const std::array<int, 3>& corners = lattice::kFaceCorners[halfFace % 4];
   std::array<Vec3, 3> u{};
@@ -122,7 +122,7 @@ std::vector<int> PatchCharts::planesOf(adjacency::HalfFace halfFace) const {
   const double size = std::max({length(a), length(b), length(minus(b, a))});
   std::vector<int> axes;
   if (length(normal) <= (1e-9 * size + 2 * fitLimit_) * size) {
-    // Any integer plane that holds all three corners.
+    // Any integer plane that contains all three corners.
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double plane = std::nearbyint(u[0][axis]);
       const bool inPlane = std::all_of(u.begin(), u.end(), [&](const Vec3& corner) {
@@ -210,7 +210,8 @@ int PatchCharts::boundaryAxis(adjacency::HalfFace halfFace) const {
   return face.axes[face.chosen];
 }
 
-/// Of the whole fan: back to the first tet's chart, or on the boundary from the first to the last.
+/// The holonomy of a whole fan: back to the first tet's chart, or on the boundary from the first to
+/// the last.
 lattice::Rotation PatchCharts::holonomy(const Fan& fan) const {
   lattice::Rotation total;
   for (const FanStep& step : fan.steps) {
@@ -280,7 +281,7 @@ bool PatchCharts::improve(std::span<const std::uint32_t> faces) {
 }
 
 /// Coordinate descent over single faces, then over pairs of faces with a common edge, until nothing
-/// gets better.
+/// improves.
 void PatchCharts::resolve() {
   bool improved = !ambiguous_.empty();
   while (improved) {
@@ -291,7 +292,7 @@ void PatchCharts::resolve() {
   }
 }
 
-/// A face, and one after the other of its ambiguous neighbours at edges.
+/// Tries a face together with each of its ambiguous neighbours across edges.
 bool PatchCharts::improvePairs(std::uint32_t f) {
   bool improved = false;
   for (const std::uint32_t e : faces_[f].edges) {
@@ -308,7 +309,7 @@ bool PatchCharts::improvePairs(std::uint32_t f) {
   return improved;
 }
 
-/// The sum of dihedral angles in right angles, flipped tets counting negative.
+/// The sum of dihedral angles in right angles, counting flipped tets as negative.
 double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
   double sum = 0;
   const auto add = [&](Index tet) {
@@ -325,7 +326,7 @@ double PatchCharts::signedAngle(const PatchEdge& edge, const Fan& fan) const {
   return sum / (std::numbers::pi / 2);
 }
 
-/// Whether both ends of an edge are on one line of the integer grid, as singular edges are.
+/// Whether both ends of an edge are on one line of the integer grid, as on singular edges.
 bool PatchCharts::isOnGridLine(Index tet, const PatchEdge& edge) const {
   const Vec3 a = parameters_(tet, topology_.localCorner(tet, edge.vertex0));
   const Vec3 b = parameters_(tet, topology_.localCorner(tet, edge.vertex1));
@@ -351,7 +352,8 @@ void PatchCharts::setValence(std::size_t e) {
   const double angle = signedAngle(edge, fans_[e]);
   const int turns = static_cast<int>(std::lround(angle));
   const bool clear = std::abs(angle - turns) < 0.25;
-  // Where tets are bad, only what the holonomy confirms, and what is not a mere fold, counts.
+  // Where tets are bad, the angle counts only if the holonomy confirms it and it is not a mere
+  // fold.
   if (edge.sound) edge.valence = turns;
   if (!edge.sound && !edge.boundary && clear && turns >= 3 && turns != 4 &&
       isOnGridLine(edge.tet, edge)) {
@@ -378,7 +380,7 @@ bool PatchCharts::classifyByPlanes(std::size_t e) {
   return true;
 }
 
-/// So is an inner edge around which charts turn. Its valence fits the turn, if known.
+/// An interior edge around which charts turn is singular, too. Its valence fits the turn, if known.
 bool PatchCharts::classifyByHolonomy(std::size_t e) {
   PatchEdge& edge = edges_[e];
   const lattice::Rotation total = holonomy(fans_[e]);
@@ -393,7 +395,8 @@ bool PatchCharts::classifyByHolonomy(std::size_t e) {
   return true;
 }
 
-/// All others are regular, unless known better: with hexahedra all around twice, say.
+/// All other edges are regular unless known otherwise, e.g. with twice the regular number of
+/// hexahedra.
 void PatchCharts::classifyByValence(std::size_t e) {
   PatchEdge& edge = edges_[e];
   const int regular = edge.boundary ? 2 : 4;

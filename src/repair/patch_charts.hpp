@@ -1,11 +1,12 @@
-// How the charts of a patch fit together, and what is singular in it: from what its triangles allow
-// and its edges make plausible, since angles tell nothing where tets are flipped or flat.
+// How the charts of a patch fit together, and what is singular in it: derived from what its
+// triangles allow and what is plausible at its edges, since angles are meaningless where tets are
+// flipped or flat.
 //
-// A triangle that is flat in the map on an axis-parallel line, say, fits four rotations equally
-// well, and a flat boundary triangle lies in two integer planes. Moving a choice from one to
-// another moves singular edges across that triangle, from one side of it to the two others. Of all
-// choices that give every edge a sensible holonomy, the one with the fewest singular edges is
-// taken: it leaves most vertices free.
+// For example, a triangle that is flat in the map, on an axis-parallel line, fits four rotations
+// equally well, and a flat boundary triangle lies in two integer planes. Changing a choice moves
+// singular edges across that triangle, from one side to the other two. Of all choices that give
+// every edge a sensible holonomy, the one with the fewest singular edges is taken: it leaves the
+// most vertices free.
 #pragma once
 
 #include <array>
@@ -27,30 +28,30 @@ namespace hexhex::repairs {
 
 /// What a repair knows about one edge of a patch.
 struct PatchEdge {
-  Index vertex0 = 0;  ///< smaller
+  Index vertex0 = 0;  ///< the smaller one
   Index vertex1 = 0;
   Index tet = 0;  ///< where its fan begins; on the boundary, one with a boundary face at the edge
   bool boundary = false;
-  bool sound = false;  ///< no bad tet at it: angles can be trusted
+  bool sound = false;  ///< no bad tet at it, so angles can be trusted
   bool singular = false;
-  int axis = 0;     ///< of a singular edge: the one along which it runs, in the chart of `tet`
-  int valence = 0;  ///< number of hexahedra around it where that is known, else 0
+  int axis = 0;     ///< of a singular edge: the axis along which it runs, in the chart of `tet`
+  int valence = 0;  ///< number of hexahedra around it if known, else 0
 };
 
 class PatchCharts {
  public:
   /// @param map  the topology's view, for known rotations and valences
-  /// @param tolerance  how far triangles may be from integer conditions
+  /// @param tolerance  maximum distance of triangles from integer conditions
   PatchCharts(const TetMapView& map, const adjacency::TetTopology& topology,
               const igm::LocalParameters& parameters, const Patch& patch, double tolerance);
 
-  /// Of an inner half-face at a vertex of the patch: from its tet's chart to its mate's.
+  /// For an inner half-face at a vertex of the patch: from its tet's chart to its mate's.
   [[nodiscard]] lattice::Transition across(adjacency::HalfFace halfFace) const;
-  /// Of a boundary half-face at a vertex of the patch: the axis across it.
+  /// For a boundary half-face at a vertex of the patch: the axis across it.
   [[nodiscard]] int boundaryAxis(adjacency::HalfFace halfFace) const;
-  /// All edges at vertices of the patch, by vertices.
+  /// All edges at vertices of the patch, sorted by vertices.
   [[nodiscard]] std::span<const PatchEdge> edges() const { return edges_; }
-  /// Whether some edge has a holonomy that no integer-grid map has: the first such edge.
+  /// The first edge with a holonomy that no integer-grid map has, or null.
   [[nodiscard]] const PatchEdge* impossibleEdge() const;
 
  private:
@@ -60,7 +61,7 @@ class PatchCharts {
     std::vector<lattice::Transition> candidates;  ///< inner: best first
     std::vector<int> axes;                        ///< boundary: best first
     std::size_t chosen = 0;
-    std::vector<std::uint32_t> edges;  ///< that it belongs to
+    std::vector<std::uint32_t> edges;  ///< the edges of the face
 
     [[nodiscard]] std::size_t choices() const { return boundary ? axes.size() : candidates.size(); }
   };
@@ -101,7 +102,7 @@ class PatchCharts {
   const adjacency::TetTopology& topology_;
   const igm::LocalParameters& parameters_;
   double tolerance_;
-  double fitLimit_ = 0;      ///< up to which residual a rotation fits a triangle
+  double fitLimit_ = 0;      ///< maximum residual of a rotation that fits a triangle
   std::vector<Face> faces_;  ///< by half-face
   std::vector<PatchEdge> edges_;
   std::vector<Fan> fans_;

@@ -42,8 +42,8 @@ tetmap::FixedAxes unfold(const std::vector<igm::VertexStar::Member>& star,
 
 constexpr std::size_t kNotInPatch = static_cast<std::size_t>(-1);
 
-/// Tets in space with less of their longest edge's cube than this, six times their volume, are no
-/// shape to aim at (0.7 for the regular tet).
+/// Tets with less than this fraction of their longest edge's cube as six times their volume in
+/// space are no shape to aim at (0.7 for the regular tet).
 constexpr double kThin = 0.02;
 
 using Edges = std::array<Vec3, 3>;
@@ -60,8 +60,8 @@ Edges edgesInSpace(const TetMapView& map, Index tet, double magnification) {
   return edges;
 }
 
-/// A power of two that makes the longest edge of a patch in space about as long as 1: so that no
-/// volume underflows, however small the object is.
+/// A power of two that scales the longest edge of a patch in space to about 1, so that no volume
+/// underflows, however small the object is.
 double magnificationOf(const TetMapView& map, const Patch& patch) {
   double longest = 0;
   for (const Index t : patch.tets) {
@@ -72,7 +72,7 @@ double magnificationOf(const TetMapView& map, const Patch& patch) {
   return longest > 0 ? std::ldexp(1.0, std::clamp(-std::ilogb(longest), -1000, 1000)) : 1;
 }
 
-/// A regular tet with six times the volume given.
+/// A regular tet with six times its volume as given.
 Edges regularTet(double sixfoldVolume) {
   const double a = std::cbrt(sixfoldVolume * std::sqrt(2.0));
   return {Vec3{a, 0, 0}, Vec3{a / 2, a * std::sqrt(3.0) / 2, 0},
@@ -135,8 +135,8 @@ PatchProblem::PatchProblem(const TetMapView& map, const adjacency::TetTopology& 
   for (const Index t : patch.tets) addTet(t, scale);
 }
 
-/// Parametric volume per volume in space, over the whole patch: what is flipped counts negative,
-/// and so the sum is that of the map as it should be.
+/// Parametric volume per volume in space, over the whole patch: flipped tets count as negative, so
+/// the sum is that of the map as it should be.
 double PatchProblem::parametricScale(const Patch& patch) const {
   double inMap = 0;
   double inSpace = 0;
@@ -144,7 +144,7 @@ double PatchProblem::parametricScale(const Patch& patch) const {
     inMap += determinantOf(parameters_(t));
     inSpace += std::abs(determinant(edgesInSpace(map_, t, magnification_)));
   }
-  // A patch that is flipped as a whole, or flat in space, is hopeless; any scale will do.
+  // A patch that is entirely flipped, or flat in space, is hopeless; any scale will do.
   return inMap > 0 && inSpace > 0 ? inMap / inSpace : 1;
 }
 
@@ -203,7 +203,7 @@ std::vector<LockedTet> PatchProblem::lockedTets(const Patch& patch) const {
   for (const Index t : patch.startTets) {
     std::array<untangle::Corner, 4> corners{};
     for (int c = 0; c < 4; ++c) corners[static_cast<std::size_t>(c)] = cornerOf(t, c);
-    // Along how many axes all corners of a simplex are bound to the same coordinate.
+    // Number of axes along which all corners of a simplex are bound to the same coordinate.
     const auto commonConstraints = [&](lattice::CornerMask simplex) {
       const untangle::Corner& first = corners[lattice::firstCorner(simplex)];
       int constraints = 0;

@@ -1,5 +1,6 @@
-// From a patch to an optimization problem and back: along which coordinates its vertices may move,
-// the constraints of Section 5.1.3 read off the patch's own charts, and the tets to untangle.
+// From a patch to an optimization problem and back: the coordinates along which its vertices may
+// move, given by the constraints of Section 5.1.3 in the patch's own charts, and the tets to
+// untangle.
 #pragma once
 
 #include <span>
@@ -13,14 +14,14 @@
 
 namespace hexhex::repairs {
 
-/// A vertex of a patch. Its parameter in the chart of its first corner stands for all.
+/// A vertex of a patch. Its parameter in the chart of its first corner determines all others.
 struct PatchVertex {
   Index vertex = 0;
-  Vec3 parameter{};            ///< in the chart of corners.front(); integers where it is fixed
+  Vec3 parameter{};            ///< in the chart of corners.front(); integers where fixed
   lattice::AxisSet fixed = 0;  ///< axes of that chart along which it must stay
   bool singular = false;
   bool boundary = false;
-  double off = 0;  ///< how far the fixed coordinates were from integers
+  double off = 0;  ///< distance of the fixed coordinates from integers
   struct Copy {
     adjacency::CornerIndex corner;
     lattice::Transition fromFirst;
@@ -32,16 +33,16 @@ struct PatchVertex {
 [[nodiscard]] std::vector<PatchVertex> findFreedom(const igm::LocalParameters& parameters,
                                                    const Patch& patch, const PatchCharts& charts);
 
-/// A tet that no parameters make positive, whatever its vertices do: all four corners in one
-/// integer plane to which they are bound, or three of them on one line.
+/// A tet that no parameters make positive: all four corners are bound to one integer plane, or
+/// three of them to one line.
 struct LockedTet {
   Index tet;
-  lattice::CornerMask corners;  ///< the ones in question
+  lattice::CornerMask corners;  ///< the corners in question
 };
 
 class PatchProblem {
  public:
-  /// @param vertices  by findFreedom()
+  /// @param vertices  from findFreedom()
   PatchProblem(const TetMapView& map, const adjacency::TetTopology& topology,
                const igm::LocalParameters& parameters, const Patch& patch,
                std::span<const PatchVertex> vertices);
@@ -51,8 +52,8 @@ class PatchProblem {
 
   [[nodiscard]] untangle::Problem& problem() { return problem_; }
 
-  /// The parameter of a vertex of the patch in the chart of its first corner, by the unknowns,
-  /// rounded to multiples of a quantum.
+  /// The parameter of a vertex of the patch in the chart of its first corner, given by the
+  /// unknowns, rounded to multiples of a quantum.
   [[nodiscard]] Vec3 parameterOf(std::size_t vertex, double quantum) const;
   /// Whether any coordinate of a vertex of the patch is unknown.
   [[nodiscard]] bool mayMove(std::size_t vertex) const;
@@ -67,7 +68,7 @@ class PatchProblem {
   const adjacency::TetTopology& topology_;
   const igm::LocalParameters& parameters_;
   std::span<const PatchVertex> vertices_;
-  double magnification_;                      ///< of edges in space
+  double magnification_;                      ///< factor on edges in space
   std::vector<std::array<int, 3>> unknowns_;  ///< per vertex and axis of its first chart, or -1
   untangle::Problem problem_;
 };

@@ -1,5 +1,6 @@
-// Rounds of patches around what is bad: larger ones where smaller ones do not suffice, then a finer
-// tet mesh. The exact check decides at the end.
+// Untangles patches around bad tets, in rounds: larger patches where smaller ones do not suffice,
+// then a finer tet mesh. The solver is src/untangle (Garanzha et al. 2021); an exact check decides
+// in the end.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -30,16 +31,16 @@ namespace hexhex::repairs {
 
 namespace {
 
-/// Rings of tets around bad ones that are tried one after the other.
+/// Numbers of rings of tets around bad ones, tried one after another.
 constexpr std::array<int, 4> kRings = {2, 3, 5, 8};
-/// How often edges are split.
+/// Maximum number of rounds of splitting edges.
 constexpr int kMaxRefinements = 5;
-/// Volumes of maps without noise differ by less than this, far below a cell, or than this share of
-/// them: far above rounding.
+/// Volumes of maps without noise differ by less than this, which is far below a cell, or than this
+/// share of them, which is far above rounding.
 constexpr double kVolumeSlack = 0.05;
 constexpr double kVolumeSlackShare = 0x1p-40;
 
-/// One look at the map as it is at the moment.
+/// The state of the map at one moment.
 struct Snapshot {
   igm::DefectCollector defects;
   igm::PreparedMap prepared;
@@ -47,11 +48,10 @@ struct Snapshot {
 
 #if defined(HEXHEX_HAS_REPAIR)
 constexpr bool kHasSolver = true;
-/// Steps that lower distortion once all tets are positive: they move away from what is barely
-/// legal.
+/// Steps that reduce distortion once all tets are positive: they move away from barely legal maps.
 constexpr int kPolishing = 300;
 
-/// Moves the unknowns so that tets become positive. What becomes of them is looked at afterwards.
+/// Moves the unknowns so that tets become positive. The result is examined afterwards.
 void movePatch(untangle::Problem& problem, Stage& stage) {
   static_cast<void>(untangle::Solver(problem, stage).run({.polishing = kPolishing}));
 }
@@ -73,7 +73,7 @@ TetMap ownedCopy(const TetMapView& map) {
   return copy;
 }
 
-/// What must be as before: singular edges around the patches.
+/// What must be preserved: singular edges around the patches.
 using EdgeKey = std::pair<Index, Index>;
 
 class Repairer {
@@ -104,7 +104,8 @@ class Repairer {
         look();
         if (now_->defects.empty() && isWhatWasMeant()) return finish();
         bad = findStartTets();
-        // All positive and yet wrong, wound around an edge twice, say: a larger patch from scratch.
+        // All positive and yet wrong, e.g. wound twice around an edge: a larger patch, from
+        // scratch.
         fresh = bad.empty();
         if (fresh) bad = startOver();
         if (!locked_.empty()) break;
@@ -140,12 +141,12 @@ class Repairer {
     return igm::LocalParameters(now_->prepared.input);
   }
 
-  /// Nothing that moving parameters could repair.
+  /// Refuses what moving parameters cannot repair.
   void refuseBrokenTopology() const {
     if (now_->prepared.exact.corners.empty()) now_->defects.throwIfAny();
   }
 
-  /// Bad tets; if none are, those that sanitization flattens.
+  /// Bad tets, or if there are none, those that sanitization flattens.
   std::vector<Index> findStartTets() {
     Stage stage(context_, "defects");
     std::vector<Index> bad = findBadTets(map_.tets.size(), parameters(), stage);
@@ -153,8 +154,8 @@ class Repairer {
     return bad;
   }
 
-  /// Moving parameters along free coordinates changes no volume, so that of the defective map,
-  /// where flipped tets count negative, is that of the repaired one.
+  /// Moving parameters along free coordinates preserves volume, so the volume of the defective map,
+  /// with flipped tets counting as negative, is that of the repaired one.
   void prepareExpectation(const std::vector<Index>& bad) {
     const igm::LocalParameters u = parameters();
     volume_ = 0;
@@ -164,8 +165,7 @@ class Repairer {
     refuseInvertedParts(now_->prepared.topology, u, bad);
   }
 
-  /// Conditions that are violated where no bad tet is near. Returns tets at vertices that are to be
-  /// rounded.
+  /// Conditions violated away from bad tets. Returns tets at vertices that are to be rounded.
   std::vector<Index> refuseOtherDefects(const std::vector<Index>& bad) {
     Diagnosis diagnosis;
     {
@@ -184,7 +184,7 @@ class Repairer {
     return tets;
   }
 
-  /// Optimizes the patches around bad tets, one after the other.
+  /// Optimizes the patches around bad tets, one after another.
   void solve(const std::vector<Index>& bad, const std::vector<Index>& toRound, int rings) {
     Stage stage(context_, "repair");
     locked_.clear();
@@ -214,7 +214,7 @@ class Repairer {
     const std::vector<LockedTet> locked = problem.lockedTets(patch);
     if (!locked.empty() && options_.refine) {
       noteLocked(locked, charts);
-      // What is locked stays so; there is no use in moving anything yet.
+      // Locked tets stay locked; there is no point in moving anything yet.
       if (!locked_.empty()) return;
     }
     movePatch(problem.problem(), stage);
@@ -222,7 +222,7 @@ class Repairer {
     write(problem, vertices, patch);
   }
 
-  /// The valences that edges of a patch must have in the end, by the latest patch.
+  /// The valences that edges of a patch must finally have, according to the latest patch.
   void noteEdges(const PatchCharts& charts) {
     for (const PatchEdge& edge : charts.edges()) {
       valences_.insert_or_assign({edge.vertex0, edge.vertex1},
@@ -241,8 +241,8 @@ class Repairer {
     return &*found;
   }
 
-  /// Of locked tets, the edges whose middle has more freedom than their ends: inner regular ones,
-  /// else regular ones on the boundary.
+  /// For locked tets, notes the edges whose midpoints are freer than their ends: interior regular
+  /// ones, else regular ones on the boundary.
   void noteLocked(const std::vector<LockedTet>& locked, const PatchCharts& charts) {
     for (const LockedTet& tet : locked) {
       for (const bool boundary : {false, true}) {
@@ -267,7 +267,7 @@ class Repairer {
     }
   }
 
-  /// Should all patches fail: the inner edges of bad tets.
+  /// In case all patches fail: the interior edges of bad tets.
   void noteSplitCandidates(const Patch& patch, const PatchCharts& charts) {
     for (const Index t : patch.startTets)
       addEdgesOf(t, lattice::kWholeTet, charts, false, candidates_);
@@ -283,16 +283,16 @@ class Repairer {
     return count > 0;
   }
 
-  /// Enters the new parameters of a patch into the caller's charts.
+  /// Writes the new parameters of a patch in the caller's charts.
   void write(const PatchProblem& problem, const std::vector<PatchVertex>& vertices,
              const Patch& patch) {
     const igm::OrientedMap& input = now_->prepared.input;
     const igm::LocalParameters u = parameters();
-    // Fine, but such that no chart, however far from the origin, rounds it.
+    // Fine, but coarse enough to be exact in every chart, however far from the origin.
     const int bits = std::clamp(50 - (std::ilogb(input.largestCoordinate + 1) + 1), 16, 40);
     const double quantum = std::ldexp(1.0, -bits);
     const std::size_t region = regionOf(patch);
-    // All of them first: the local parameters look at the arrays that are going to change.
+    // Collected first, since the local parameters refer to the arrays that are about to change.
     std::vector<std::pair<Vec3*, Vec3>> changes;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       if (!problem.mayMove(i) && vertices[i].off <= options_.tolerance) continue;
@@ -305,7 +305,7 @@ class Repairer {
     for (const auto& [target, value] : changes) *target = value;
   }
 
-  /// Which of the caller's parameters a corner has, and its new value in the caller's chart.
+  /// The caller's parameter of a corner, and its new value in the caller's chart.
   std::pair<Vec3*, Vec3> changeOf(const igm::OrientedMap& input, const igm::LocalParameters& u,
                                   adjacency::CornerIndex corner, const Vec3& local) {
     const int c = adjacency::localOf(corner);
@@ -316,8 +316,7 @@ class Repairer {
     return {&map_.parameters[t][static_cast<std::size_t>(input.callersCorner(c))], value};
   }
 
-  /// The entry of the report for a patch: one that has moved some of its vertices before, or a new
-  /// one.
+  /// The report's entry for a patch: one that has already moved some of its vertices, or a new one.
   std::size_t regionOf(const Patch& patch) {
     for (const Index v : patch.vertices) {
       const auto found = moved_.find(v);
@@ -344,11 +343,11 @@ class Repairer {
     return std::move(map_);
   }
 
-  /// The map is valid: is it also the one that was meant? If not, complaint_ says why.
+  /// Given a valid map, whether it is also the one that was meant. If not, complaint_ says why.
   [[nodiscard]] bool isWhatWasMeant() {
     complaint_.clear();
     const std::uint64_t cells = igm::parametricVolume(now_->prepared.exact);
-    // Sanitization moves the boundary, and nothing else changes the volume.
+    // Sanitization moves the boundary; nothing else changes the volume.
     const double slack =
         kVolumeSlack + kVolumeSlackShare * volume_ +
         2 * now_->prepared.exact.maxDisplacement *
@@ -380,7 +379,7 @@ class Repairer {
       // Was it split?
       if (!isEdge(key, star)) continue;
       const auto entry = found.find(key);
-      // Without an entry, the edge is regular. Zero stands for singular, but unknown how.
+      // Without an entry, the edge is regular. Zero stands for singular with unknown valence.
       const bool same = entry == found.end() ? valence == 2 || valence == 4
                                              : valence == 0 || entry->second == valence;
       if (same) continue;
@@ -442,14 +441,14 @@ class Repairer {
   const RepairOptions& options_;
   Context& context_;
   RepairReport& report_;
-  double limit_;  ///< how far coordinates may be off integers
+  double limit_;  ///< maximum distance of coordinates from integers
   std::unique_ptr<Snapshot> now_;
   double volume_ = 0;      ///< of the defective map
-  std::string complaint_;  ///< why the last valid map was not accepted
+  std::string complaint_;  ///< why the last valid map was rejected
   std::map<EdgeKey, int> valences_;
-  std::map<Index, std::size_t> moved_;         ///< vertices, and the region of the report
+  std::map<Index, std::size_t> moved_;         ///< vertices, and their region in the report
   std::vector<tetmap::EdgeInTet> locked_;      ///< edges whose splitting unlocks tets
-  std::vector<tetmap::EdgeInTet> candidates_;  ///< edges to split when all else failed
+  std::vector<tetmap::EdgeInTet> candidates_;  ///< edges to split when all else has failed
 };
 
 }  // namespace

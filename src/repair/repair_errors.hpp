@@ -1,4 +1,4 @@
-// Why a map cannot be repaired, in sentences.
+// Explains why a map cannot be repaired.
 #pragma once
 
 #include <string>
@@ -10,23 +10,24 @@
 
 namespace hexhex::repairs {
 
-/// What --round may move.
+/// Maximum move of --round.
 inline constexpr double kRoundingLimit = 0.1;
 
-/// This build has no solver. @param defects  not empty
+/// For a build without a solver.
+/// @param defects  not empty
 [[noreturn]] void throwWithoutSolver(const igm::DefectCollector& defects);
 
-/// Conditions are violated where no bad tet is near. Names transitions first, since what they are
-/// off shows elsewhere, too.
-/// @param rounds  whether rounding was asked for
+/// For conditions violated away from bad tets. Names transitions first, since their errors show up
+/// elsewhere, too.
+/// @param rounds  whether rounding was requested
 [[noreturn]] void throwHopeless(const igm::DefectCollector& hopeless, std::size_t badTets,
                                 bool rounds);
 
-/// No integer-grid map has such charts around an edge.
+/// For charts around an edge that no integer-grid map has.
 [[noreturn]] void throwImpossible(const PatchEdge& edge);
 
-/// @throws Error SingularityOffLattice, BoundaryOffLattice if a vertex is off integers by more than
-///         the limit
+/// @throws Error SingularityOffLattice, BoundaryOffLattice if a vertex is further than the limit
+///         from integers
 void refuseOffLattice(const std::vector<PatchVertex>& vertices, double limit, bool rounds);
 
 }  // namespace hexhex::repairs

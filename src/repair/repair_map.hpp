@@ -1,11 +1,11 @@
-// The repair as the extraction calls it.
+// Repair as called by the extraction.
 #pragma once
 
 #include <hexhex/repair.hpp>
 
 namespace hexhex::repairs {
 
-/// As repair(), inside of withThreads().
+/// As repair(), for calls inside withThreads().
 [[nodiscard]] TetMap repairInArena(const TetMapView& map, const RepairOptions& options,
                                    Context& context, RepairReport& report);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kValidTetsGrain = 4096;
 
-/// The elements of [0, n) for which a test holds, ascending.
+/// The elements of [0, n) that pass a test, ascending.
 template <class Test>
 std::vector<Index> select(std::size_t n, Stage& stage, const Test& test) {
   return collectFromBlocks<Index>(
@@ -30,8 +30,8 @@ double determinantOf(const TetParameters& u) noexcept {
 }
 
 bool isBad(const TetParameters& u) noexcept {
-  // Rounding of a determinant of three vectors is below a few 2^-53 times their lengths' product;
-  // and differences inherit the rounding of the coordinates themselves.
+  // A determinant of three vectors is off by less than a few 2^-53 times the product of their
+  // lengths; differences inherit the rounding of the coordinates themselves.
   constexpr double kRounding = 0x1p-48;
   double largest = 0;
   for (const Vec3& corner : u) {

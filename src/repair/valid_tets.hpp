@@ -1,4 +1,4 @@
-// Which tets of a map are positive, and which can be used although the map is not valid.
+// Which tets of a map are positive, and which can be used although the map is invalid.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace hexhex::repairs {
 /// det(u1 - u0, u2 - u0, u3 - u0): six times the signed volume.
 [[nodiscard]] double determinantOf(const TetParameters& u) noexcept;
 
-/// Whether a tet is flipped or flat, so far as floating point can tell.
+/// Whether a tet is flipped or flat, as far as floating point can tell.
 [[nodiscard]] bool isBad(const TetParameters& u) noexcept;
 
-/// Whether moving corners by up to `noise` along each axis could make a tet bad: the angles of such
-/// a tet mean nothing.
+/// Whether moving corners by up to `noise` along each axis could make a tet bad: its angles are
+/// meaningless.
 [[nodiscard]] bool isThin(const TetParameters& u, double noise) noexcept;
 
-/// The bad tets among all, ascending.
+/// All bad tets, ascending.
 [[nodiscard]] std::vector<Index> findBadTets(std::size_t tets,
                                              const igm::LocalParameters& parameters, Stage& stage);
 
 /// The tets that are not positive on the sanitized lattice, ascending.
 [[nodiscard]] std::vector<Index> findExactlyBadTets(const igm::ExactMap& map, Stage& stage);
 
-/// Unites the tets that have a triangle in common, and for both of which a test holds.
+/// Unites tets that share a triangle and both pass a test.
 template <class Test>
 [[nodiscard]] DisjointSets componentsOf(const adjacency::TetTopology& topology, const Test& test) {
   DisjointSets sets(topology.tetCount());
@@ -43,12 +43,13 @@ template <class Test>
   return sets;
 }
 
-/// Whether transitions carry the three lattice corners of an inner triangle over.
+/// Whether the transition maps the three lattice corners of an inner triangle to those in the other
+/// tet.
 [[nodiscard]] bool isCarriedOver(const igm::PreparedMap& map,
                                  adjacency::HalfFace halfFace) noexcept;
 
-/// Per tet: 1 if it is positive on the sanitized lattice and sanitization moved its corners by no
-/// more than the tolerance.
+/// Per tet: 1 if it is positive on the sanitized lattice and sanitization moved its corners by at
+/// most the tolerance.
 [[nodiscard]] std::vector<std::uint8_t> findValidTets(const igm::PreparedMap& map,
                                                       const igm::LocalParameters& parameters,
                                                       double tolerance, Stage& stage);

@@ -1,4 +1,4 @@
-// Builds the coarse complex: cells first, then what each of them knows about its surroundings.
+// Builds the coarse complex: first the cells, then what each of them knows about its surroundings.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -24,8 +24,8 @@ lattice::Direction outwards(const BlockPart& face) {
   return lattice::direction(axis, face.digits[static_cast<std::size_t>(axis)] == 1 ? 1 : -1);
 }
 
-/// The transition across a face, between the frames of two blocks that are unit cubes. The cell's
-/// own frame is common to both; what points out of one block points into the other.
+/// The transition across a face, between the frames of two blocks that are unit cubes. Both share
+/// the cell's own frame; what points out of one block points into the other.
 lattice::Transition transitionAcross(const Occurrence& from, const Occurrence& to) {
   std::array<lattice::Direction, 3> image{};
   const auto send = [&image](lattice::Direction before, lattice::Direction after) {
@@ -89,7 +89,8 @@ BlockComplex::BlockComplex(std::vector<BlockCorners> blocks) : blocks_(std::move
 }
 
 /// The occurrence with the frame of its cell: the origin is the corner with the smallest vertex,
-/// the axes are in order of the vertices that they lead to. Inside a block: the block's own frame.
+/// and the axes are sorted by the vertices to which they lead. For the inside of a block: the
+/// block's own frame.
 Occurrence BlockComplex::frameOf(std::size_t block, const BlockPart& part) const {
   const BlockCorners& vertices = blocks_[block];
   const std::size_t dimension = part.dimension();
@@ -167,7 +168,7 @@ std::optional<Neighbour> BlockComplex::neighbour(std::size_t block, std::size_t 
   return Neighbour{there.block, transitionAcross(here, there)};
 }
 
-/// Carries the frame of the first block around each cell to the others, through faces at the cell.
+/// Carries the frame of the first block around each cell to the others, across faces at the cell.
 /// (Around a singular edge the result depends on the path, but only in axes that are not free.)
 void BlockComplex::turnStars() {
   for (CoarseCell& cell : cells_) {
@@ -192,8 +193,8 @@ void BlockComplex::turnStars() {
   }
 }
 
-/// Points of the boundary stay on their integer plane; points of singular edges on their integer
-/// line; and so does every point where such planes and lines meet.
+/// Points of the boundary stay on their integer plane and points of singular edges on their integer
+/// line; the same holds for every point where such planes and lines meet.
 void BlockComplex::restrictFreeAxes() {
   for (CoarseCell& cell : cells_) {
     for (const Occurrence& occurrence : cell.occurrences) {

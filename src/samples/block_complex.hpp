@@ -1,6 +1,6 @@
-// The coarse hexahedral complex whose cells are the blocks of a sample: who shares which corner,
-// edge and face, how their frames turn into each other, and what is singular. Its size does not
-// depend on the options of a sample, so it is built with maps and nested vectors.
+// The coarse hexahedral complex whose cells are the blocks of a sample: which blocks share a
+// corner, edge or face, how their frames turn into each other, and what is singular. Its size does
+// not depend on the options of a sample, so it uses maps and nested vectors.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ struct BlockPart {
   [[nodiscard]] std::vector<std::size_t> corners() const;
 };
 
-/// A coarse cell as seen from one of the blocks around it. Every coarse cell has a frame of its own
-/// (an origin corner and as many axes as its dimension), the same from all blocks.
+/// A coarse cell as seen from one of the blocks around it. Every coarse cell has its own frame (an
+/// origin corner and as many axes as its dimension), the same for all blocks.
 struct Occurrence {
   std::size_t block = 0;
   BlockPart part;
@@ -49,24 +49,24 @@ struct CoarseCell {
   std::size_t dimension = 0;
   bool boundary = false;
   std::vector<Occurrence> occurrences;
-  /// Axes of the first occurrence's block along which the parameters of a point inside the cell may
-  /// move without violating a condition of integer-grid maps.
+  /// Axes of the first occurrence's block along which the parameters of an inner point of the cell
+  /// may move without violating a condition of integer-grid maps.
   std::array<bool, 3> free = {true, true, true};
 
   /// Number of blocks around the cell.
   [[nodiscard]] int valence() const { return static_cast<int>(occurrences.size()); }
-  /// Of an edge: whether its valence is irregular.
+  /// For an edge: whether its valence is irregular.
   [[nodiscard]] bool singular() const { return valence() != (boundary ? 2 : 4); }
 };
 
-/// Where a part of a block is found: occurrence `occurrence` of cell `cell`.
+/// Location of a part of a block: occurrence `occurrence` of cell `cell`.
 struct CellReference {
   std::size_t cell = 0;
   std::size_t occurrence = 0;
 };
 
-/// The block on the other side of a face, and the transition from the frame of this one into its
-/// frame (for blocks that are unit cubes).
+/// The block on the other side of a face, and the transition from this block's frame to its frame
+/// (for blocks that are unit cubes).
 struct Neighbour {
   std::size_t block = 0;
   lattice::Transition transition;
@@ -74,16 +74,16 @@ struct Neighbour {
 
 class BlockComplex {
  public:
-  /// @param blocks  right-handed; blocks share what has the same corners
+  /// @param blocks  right-handed; blocks with the same corners share the part between them
   explicit BlockComplex(std::vector<BlockCorners> blocks);
 
   [[nodiscard]] std::size_t blockCount() const { return blocks_.size(); }
-  /// All cells in order of dimension.
+  /// All cells, sorted by dimension.
   [[nodiscard]] const std::vector<CoarseCell>& cells() const { return cells_; }
   [[nodiscard]] CellReference find(std::size_t block, const BlockPart& part) const {
     return references_[block][part.code()];
   }
-  /// The cells on the boundary of a cell with one dimension less.
+  /// The cells on the boundary of a cell, of one dimension less.
   [[nodiscard]] std::vector<std::size_t> sides(std::size_t cell) const;
   /// Empty if the face is on the boundary.
   [[nodiscard]] std::optional<Neighbour> neighbour(std::size_t block, std::size_t axis,

@@ -35,7 +35,7 @@ lattice::GridPoint randomTranslation(std::int64_t limit, Random& random) {
 }
 
 lattice::Transition randomChart(std::int64_t limit, Random& random) {
-  // Numbered by the axis that +x is sent to, the one that +y is sent to, and the two signs.
+  // Numbered by the image of the +x axis, the image of the +y axis, and the two signs.
   const auto number = static_cast<int>(random.below(lattice::Rotation::kCount));
   const int first = number / 8;
   const int second = (first + 1 + number / 4 % 2) % 3;
@@ -47,7 +47,7 @@ lattice::Transition randomChart(std::int64_t limit, Random& random) {
   return {rotation, randomTranslation(limit, random)};
 }
 
-/// Charts of all blocks such that transitions across a spanning tree of the blocks are identities;
+/// Charts of all blocks in which transitions across a spanning tree of the blocks are identities;
 /// all are moved by the same translation.
 std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, int cells,
                                                const lattice::GridPoint& translation) {
@@ -71,7 +71,7 @@ std::vector<lattice::Transition> alignedCharts(const BlockComplex& complex, int 
       .motions;
 }
 
-/// From the frames of blocks to their charts.
+/// The transitions from the frames of blocks to their charts.
 std::vector<lattice::Transition> blockCharts(const BlockComplex& complex,
                                              const SampleOptions& options, Random& random) {
   if (options.charts == ChartStyle::Aligned || options.charts == ChartStyle::Scattered) {
@@ -84,8 +84,8 @@ std::vector<lattice::Transition> blockCharts(const BlockComplex& complex,
   return charts;
 }
 
-/// How long a hexahedron is along each axis of each block: 1, or as random as `stretch` says, the
-/// same for all edges that are opposite each other in blocks.
+/// Length of a hexahedron along each axis of each block: 1, or as random as `stretch` says, equal
+/// for all edges that are opposite each other in blocks.
 std::vector<Vec3> stretchedLengths(const BlockComplex& complex, const SampleOptions& options) {
   std::vector<Vec3> lengths(complex.blockCount(), Vec3{1, 1, 1});
   if (options.stretch == 0) return lengths;
@@ -111,7 +111,7 @@ std::vector<Vec3> stretchedLengths(const BlockComplex& complex, const SampleOpti
   return lengths;
 }
 
-/// Applies a random even permutation of the corners: positive tets stay positive.
+/// Applies a random even permutation to the corners: positive tets stay positive.
 void permuteCorners(Tet& tet, std::array<Int3, 4>& corners, Random& random) {
   const auto swap = [&](std::size_t a, std::size_t b) {
     std::swap(tet[a], tet[b]);
@@ -160,12 +160,12 @@ class MapWriter {
   }
 
  private:
-  /// Whether the next tet has a chart of its own.
+  /// Whether the next tet has its own chart.
   [[nodiscard]] bool hasOwnChart() {
     return style_ == ChartStyle::Random ||
            (style_ == ChartStyle::Scattered && chartRandom_.below(8) == 0);
   }
-  /// To double, which is exact unless blocks are stretched, and noise on top.
+  /// Converts to double, exactly unless blocks are stretched, and adds noise.
   TetParameters inChart(const std::array<Int3, 4>& corners, const Vec3& length,
                         const lattice::Transition& chart) {
     TetParameters result{};

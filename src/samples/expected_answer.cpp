@@ -1,5 +1,5 @@
-// Counts cells of the coarse complex, which scale with powers of the cells per block edge; and
-// tags its features.
+// Counts cells of the coarse complex, whose numbers scale with powers of the cells per block edge,
+// and tags its features.
 #include <array>
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace hexhex::samples {
 
 namespace {
 
-/// Of blocks that share a face.
+/// Components of blocks that share a face.
 std::uint64_t countComponents(const BlockComplex& complex) {
   DisjointSets blocks(complex.blockCount());
   for (const CoarseCell& cell : complex.cells()) {
@@ -21,7 +21,7 @@ std::uint64_t countComponents(const BlockComplex& complex) {
   return blocks.count();
 }
 
-/// Of boundary faces that share an edge.
+/// Components of boundary faces that share an edge.
 std::uint64_t countBoundaryComponents(const BlockComplex& complex) {
   const std::vector<CoarseCell>& cells = complex.cells();
   DisjointSets sets(cells.size());
@@ -36,15 +36,16 @@ std::uint64_t countBoundaryComponents(const BlockComplex& complex) {
   return count;
 }
 
-/// Corners are where nothing can move, curves where something is singular, patches the boundary.
+/// Corners are where nothing can move, curves where something is singular, and patches are the
+/// boundary.
 bool isOnFeature(const CoarseCell& cell) {
   if (cell.dimension == 0) return !cell.free[0] && !cell.free[1] && !cell.free[2];
   return cell.dimension == 1 ? cell.singular() : cell.dimension == 2 && cell.boundary;
 }
 
 /// Per coarse cell: the tag of its class, counted from 1 in each dimension, or 0 if it is on no
-/// feature. A curve goes on through vertices that are free to move along it, a patch through edges
-/// that are free to move in it.
+/// feature. A curve continues through vertices that are free to move along it, a patch through
+/// edges that are free to move in it.
 std::vector<std::int32_t> featureTags(const BlockComplex& complex) {
   const std::vector<CoarseCell>& cells = complex.cells();
   DisjointSets classes(cells.size());
@@ -114,7 +115,7 @@ class FeatureWriter {
   }
 
  private:
-  /// The grid vertex a number of steps along a coarse edge.
+  /// The grid vertex at a number of steps along a coarse edge.
   [[nodiscard]] Index vertexAlong(const Occurrence& at, std::int64_t steps) const {
     Int3 point{};
     for (std::size_t a = 0; a < 3; ++a) {

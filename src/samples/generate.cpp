@@ -1,4 +1,4 @@
-// The public functions of the samples: checks the options and chains the steps.
+// The public functions of the samples: they check the options and chain the steps.
 #include <algorithm>
 #include <array>
 #include <new>
@@ -43,10 +43,10 @@ constexpr std::array<DefectKindName, 4> kDefectKinds = {{
     {DefectKind::Sliver, "sliver"},
 }};
 
-/// Damage on purpose is to be local.
+/// Deliberate damage should be local.
 constexpr int kMaxDefects = 10000;
-/// Beyond, the number of hexahedra of a sample would hardly mean anything; the parameters inside a
-/// block stay below 2^30 units.
+/// With more, the number of hexahedra of a sample would be almost meaningless; the parameters
+/// inside a block stay below 2^30 units.
 constexpr int kMaxCells = 10000;
 /// See kUnitsPerCell.
 constexpr int kMaxRefine = 500;
@@ -55,12 +55,11 @@ constexpr int kMaxValence = 12;
 constexpr double kMaxOffset = 1e9;
 constexpr double kNoiseEnd = 0.25;
 /// With sides h of a sub-block and differences of corners that change by d, the determinant h^3 / 2
-/// of its tets changes by at most 3 d h^2 + 7 d^2 h + 4 d^3. That leaves them positive for d = h /
-/// 8, so for noise of h / 16; divided by kNoiseReserve, and something for the rounding of h to
-/// units.
+/// of its tets changes by at most 3 d h^2 + 7 d^2 h + 4 d^3. They stay positive for d = h / 8, i.e.
+/// for noise of h / 16; divided by kNoiseReserve, with some slack for rounding h to units.
 constexpr double kNoisePerSubBlock = 1 / (18 * samples::kNoiseReserve);
 
-/// @param legal  written so that it is false for NaN
+/// @param legal  formulated so that it is false for NaN
 /// @param range  "from 1 to 5"
 template <class Number>
 void requireOption(bool legal, const char* option, Number value, const std::string& range) {

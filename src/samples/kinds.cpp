@@ -1,4 +1,4 @@
-// Most kinds are sections in the plane, extruded; the round ones become round by a warp.
+// Most kinds are planar sections, extruded; a warp makes the round ones round.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 
 using Vec2 = std::array<double, 2>;
 
-/// Half the side of the inner square and cube of O-grids whose outside has half the side 1: about
-/// where the inner and outer blocks become equally large once the outside is round.
+/// Half the side of the inner square or cube of O-grids whose outer half side is 1: roughly where
+/// the inner and outer blocks become equally large once the outside is round.
 constexpr double kInnerSquare = 0.5;
 constexpr double kInnerCube = 0.45;
 /// Radius of the cavity of a shell with outer radius 1.
@@ -27,7 +27,7 @@ constexpr double kRingRadius = 2.5;
 /// Star: distance of the outer corners; beyond 1, so that the sections of all blocks are convex.
 constexpr double kStarCorner = 1.2;
 
-/// The point at a share of a full turn, in [0, 1], on the unit circle. Summed from the power
+/// The point on the unit circle at a fraction of a full turn, in [0, 1]. Computed from the power
 /// series, because the last bits of std::sin and std::cos differ between machines.
 Vec2 onUnitCircle(double turns) {
   constexpr double kFullTurn = 6.283185307179586;
@@ -49,7 +49,7 @@ struct Section {
   std::vector<std::array<Index, 4>> quads;
 };
 
-/// Unit squares, nx times ny of them, without some.
+/// nx times ny unit squares, except those in `holes`.
 Section plate(Index nx, Index ny, const std::set<std::pair<Index, Index>>& holes = {}) {
   Section section;
   for (Index y = 0; y <= ny; ++y) {
@@ -103,7 +103,7 @@ Section starSection(Index valence) {
 }
 
 /// Adds a block.
-/// @param cornerAt  returns the vertex and the place of a corner
+/// @param cornerAt  returns the vertex and the position of a corner
 template <class CornerAt>
 void addBlock(BlockModel& model, const CornerAt& cornerAt) {
   BlockCorners& block = model.blocks.emplace_back();
@@ -112,7 +112,7 @@ void addBlock(BlockModel& model, const CornerAt& cornerAt) {
 }
 
 /// Copies of a section above each other, with blocks between them. A closed column ends where it
-/// began; its shape before the warp does not know that.
+/// began, though its shape before the warp does not.
 BlockModel extrude(const Section& section, Index layers, bool closed) {
   BlockModel model;
   const auto perLevel = static_cast<Index>(section.points.size());
@@ -157,7 +157,7 @@ BlockModel cubeLayer(double innerHalf) {
   return model;
 }
 
-/// The same around a block that fills the inner cube.
+/// The same layer around a block that fills the inner cube.
 BlockModel cubeGrid() {
   BlockModel model = cubeLayer(kInnerCube);
   addBlock(model, [](std::size_t corner) {
@@ -166,11 +166,11 @@ BlockModel cubeGrid() {
   return model;
 }
 
-/// A regular tetrahedron cut at the midpoints of its edges, faces and inside. Each of these points,
-/// and each corner, belongs to a set of corners and is the mean of them.
+/// A regular tetrahedron cut at the midpoints of its edges, its faces and itself. Each of these
+/// points, and each corner, is the mean of a set of corners.
 BlockModel midpointTetrahedron() {
   constexpr std::array<Vec3, 4> kCorners = {{{-1, -1, -1}, {1, 1, -1}, {-1, 1, 1}, {1, -1, 1}}};
-  // The block's corner and the ends of its three edges: even permutations, so right-handed.
+  // The block's corner and the ends of its three edges: even permutations, hence right-handed.
   constexpr std::array<std::array<std::size_t, 4>, 4> kFrames = {
       {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
   BlockModel model;
@@ -189,8 +189,9 @@ BlockModel midpointTetrahedron() {
   return model;
 }
 
-/// Moves a point on its ray from the origin, so that the cube (or square) of half side 1 becomes
-/// the unit ball (or disc) and the one of half side `inner` and all inside stay: linear between.
+/// Moves a point along its ray from the origin, so that the cube (or square) of half side 1 becomes
+/// the unit ball (or disc) and the one of half side `inner` stays in place with all it contains:
+/// linear in between.
 template <std::size_t dimension>
 std::array<double, dimension> roundOutside(std::array<double, dimension> point, double inner) {
   double maximum = 0;
@@ -216,7 +217,7 @@ Vec3 warpBall(const Vec3& point) { return roundOutside<3>(point, kInnerCube); }
 /// Concentric cubes become concentric spheres.
 Vec3 warpShell(const Vec3& point) { return roundOutside<3>(point, 0); }
 
-/// Bends a cylinder of height kRingBlocks to a ring around the y axis.
+/// Bends a cylinder of height kRingBlocks into a ring around the y axis.
 Vec3 warpTorus(const Vec3& point) {
   const Vec2 section = roundOutside<2>({point[0], point[1]}, kInnerSquare);
   const Vec2 turned = onUnitCircle(point[2] / kRingBlocks);

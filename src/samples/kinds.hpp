@@ -1,4 +1,4 @@
-// The block structure and the shape in space of every kind of sample.
+// The block structure and the spatial shape of every kind of sample.
 #pragma once
 
 #include <array>
@@ -12,13 +12,14 @@
 namespace hexhex::samples {
 
 /// Blocks and their shapes. Points are placed by trilinear interpolation between the corners of the
-/// block, followed by a warp (which makes round things round). Block edges are about one unit long.
+/// block, followed by a warp (which makes round objects round). Block edges are about one unit
+/// long.
 struct BlockModel {
   std::vector<BlockCorners> blocks;
   std::vector<std::array<Vec3, 8>> shapes;  ///< per block, its corners before the warp
   Vec3 (*warp)(const Vec3&) = nullptr;      ///< null: none
 
-  /// The place in space of a point of a block, given by its coordinates in [0, 1]^3.
+  /// The spatial position of a point of a block with given coordinates in [0, 1]^3.
   [[nodiscard]] Vec3 place(std::size_t block, const Vec3& local) const;
 };
 

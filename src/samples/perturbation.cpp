@@ -1,5 +1,5 @@
-// Moves one vertex of a grid of tets at a time: jitter and rounding take back what comes too close
-// to flipping a tet, damage keeps what flips some.
+// Moves one vertex of a grid of tets at a time: jitter and rounding undo moves that come too close
+// to flipping a tet, damage keeps moves that flip some.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,20 +17,19 @@ namespace hexhex::samples {
 
 namespace {
 
-/// Least determinant of a moved tet, as a share of the cube of the length of a sub-block: thin tets
-/// are wanted, but their volume has to stay far above the rounding errors of this file (1e-15).
+/// Least determinant of a moved tet, relative to the cubed length of a sub-block: thin tets are
+/// welcome, but their volume must stay far above the rounding errors of this file (1e-15).
 constexpr double kLeastShare = 1e-6;
-/// How often a shift is halved before it is given up.
+/// Number of times that a shift is halved before it is given up.
 constexpr int kHalvings = 4;
-/// How many moves of a vertex to be damaged are drawn; the one that comes nearest to what is wanted
-/// is kept.
+/// Number of candidate moves drawn to damage a vertex; the best one is kept.
 constexpr int kDraws = 24;
 /// Independent streams of random numbers.
 constexpr std::uint64_t kJitterStream = 1;
 constexpr std::uint64_t kRoundingStream = 2;
 constexpr std::uint64_t kDamageStream = 5;
 
-/// A vertex that may move: where its parameters are, and which sub-blocks it shapes.
+/// A vertex that may move: the copies of its parameters, and the sub-blocks that it shapes.
 struct Site {
   struct Copy {
     Int3* parameter = nullptr;
@@ -43,7 +42,7 @@ struct Site {
   bool inside = false;         ///< may move in space
   bool singular = false;       ///< inside a singular coarse edge
 
-  /// Moves the parameters in all charts alike.
+  /// Moves the parameters in the same way in all charts.
   /// @param shift  in units, in the chart of the first copy
   void moveInMap(const Int3& shift) const {
     for (const Copy& copy : copies) *copy.parameter = *copy.parameter + copy.fromFirst(shift);
@@ -73,7 +72,7 @@ void addSubBlocksAround(const TetGrid& grid, std::size_t block, const Int3& at,
   }
 }
 
-/// Calls f(site) for every vertex with anything to move, in a fixed order.
+/// Calls f(site) for every vertex that can move in any way, in a fixed order.
 template <class F>
 void forEachSite(TetGrid& grid, const BlockComplex& complex, const F& f) {
   Site site;
@@ -130,15 +129,15 @@ double subBlockUnits(const TetGrid& grid) {
   return static_cast<double>(grid.cells() * kUnitsPerCell) / static_cast<double>(grid.refine());
 }
 
-/// A bound for the change of det(a, b, c) if every entry changes by up to `change`, from the
-/// expansion of the determinant: one, two, or three changed vectors in each product.
+/// Bounds the change of det(a, b, c) if every entry changes by up to `change`, from the expansion
+/// of the determinant: one, two, or three changed vectors in each product.
 double largestChange(const Vec3& a, const Vec3& b, const Vec3& c, double change) {
   const double one = absoluteSum(cross(a, b)) + absoluteSum(cross(b, c)) + absoluteSum(cross(c, a));
   const double two = absoluteSum(a) + absoluteSum(b) + absoluteSum(c);
   return change * (one + change * (2 * two + change * 4));
 }
 
-/// Moves sites, and takes back what flips a tet.
+/// Moves sites, and undoes moves that flip a tet.
 class Mover {
  public:
   Mover(TetGrid& grid, double noise)
@@ -173,8 +172,8 @@ class Mover {
     return false;
   }
 
-  /// The shortest distance in space from the site to a centre around it (or to a corner, if it is a
-  /// centre itself).
+  /// The shortest distance in space from the site to a surrounding centre (or to a corner, if it is
+  /// a centre itself).
   [[nodiscard]] double roomInSpace(const Site& site) const {
     double least = std::numeric_limits<double>::infinity();
     for (const std::size_t sub : site.subBlocks) {
@@ -195,7 +194,7 @@ class Mover {
   double leastInSpace_;
 };
 
-/// Calls move(shift), with half the shift each time, until it succeeds.
+/// Calls move(shift), with the shift halved each time, until it succeeds.
 template <class Shift, class Move>
 void moveAsFarAsPossible(Shift shift, const Move& move) {
   for (int attempt = 0; attempt <= kHalvings; ++attempt) {
@@ -210,14 +209,14 @@ Vec3 drawShiftInSpace(double limit, Random& random) {
   return shift;
 }
 
-/// What is missing to the nearest integer, in units.
+/// The difference from the nearest integer, in units.
 std::int64_t toNearestInteger(std::int64_t parameter) {
   const std::int64_t above = ((parameter % kUnitsPerCell) + kUnitsPerCell) % kUnitsPerCell;
   return 2 * above < kUnitsPerCell ? -above : kUnitsPerCell - above;
 }
 
-/// All three coordinates half of the time, else any nonempty choice. A choice that would flip a tet
-/// is tried coordinate by coordinate.
+/// All three coordinates half of the time, otherwise any nonempty choice. A choice that would flip
+/// a tet is retried coordinate by coordinate.
 void roundSite(Mover& mover, const Site& site, Random& random) {
   const std::uint64_t choice = random.below(2) == 0 ? 7 : 1 + random.below(7);
   Int3 shift{};
@@ -233,13 +232,13 @@ void roundSite(Mover& mover, const Site& site, Random& random) {
   }
 }
 
-/// Folds the tets around one site after the other.
+/// Folds the tets around one site after another.
 class Damager {
  public:
   Damager(TetGrid& grid, DefectKind kind, std::uint64_t seed)
       : grid_(grid), kind_(kind), random_(seed, kDamageStream) {}
 
-  /// @param sites  of the kind
+  /// @param sites  of the requested kind
   void run(std::vector<Site> sites, int tets) {
     const Vec3 centre = grid_.points[sites[random_.below(sites.size())].vertex];
     const auto squaredDistance = [&](const Site& site) {
@@ -263,9 +262,9 @@ class Damager {
   }
 
  private:
-  /// Moves one vertex such that about `wanted` more tets are bad; returns how many are.
+  /// Moves one vertex so that about `wanted` more tets are bad; returns their actual number.
   int damageSite(const Site& site, int wanted) {
-    // Anywhere up to one and a half sub-blocks away.
+    // Anywhere within one and a half sub-blocks.
     const auto limit = static_cast<std::int64_t>(1.5 * subBlockUnits(grid_));
     const int before = badTets(site);
     Int3 best{};
@@ -286,8 +285,8 @@ class Damager {
     return bestGain;
   }
 
-  /// Onto a corner of a sub-block at the site, or in the middle between two: edges collapse, tets
-  /// become flat. Of sites with one chart only.
+  /// Onto a corner of a sub-block at the site, or midway between two: edges collapse, tets become
+  /// flat. For sites with a single chart.
   Int3 drawCollapse(const Site& site) {
     const std::size_t sub = site.subBlocks[random_.below(site.subBlocks.size())];
     const std::array<Int3, 8> corners = grid_.cornerParameters(sub);

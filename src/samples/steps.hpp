@@ -1,4 +1,4 @@
-// The steps from a block complex to a map and its answer, in the order in which they are taken.
+// The steps from a block complex to a map and its answer, in order.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace hexhex::samples {
 
-/// Tets stay positive under this multiple of the noise, so that angles between their faces, whose
-/// sums tell which edges are singular, stay recognizable too.
+/// Tets stay positive under this multiple of the noise, so that the angles between their faces,
+/// whose sums reveal singular edges, stay recognizable too.
 inline constexpr double kNoiseReserve = 4;
 
 /// Moves every vertex by up to `share` of a sub-block along each axis in the map and, inside, in
-/// space, as far as all tets stay positive in both: as an optimizer might leave them. The map stays
-/// an integer-grid map: shifts are the same in all charts, boundaries stay on their planes and
-/// singular edges on their lines.
+/// space, as far as all tets stay positive in both: the way an optimizer might leave them. The map
+/// stays an integer-grid map: shifts are the same in all charts, boundaries stay on their planes
+/// and singular edges on their lines.
 /// @param share  in [0, 1]
 /// @param noise  by which corners will still be moved, in parameter units; see kNoiseReserve
 void jitter(TetGrid& grid, const BlockComplex& complex, double share, double noise,
@@ -25,21 +25,21 @@ void jitter(TetGrid& grid, const BlockComplex& complex, double share, double noi
 
 /// Rounds parameters of some vertices (a random choice of their coordinates) to the nearest
 /// integers, unless tets would flip, so that lattice points fall onto vertices, edges and faces of
-/// tets. The rest as for jitter.
+/// tets. Other parameters as for jitter.
 /// @param share  of the vertices, in [0, 1]
 void roundToLattice(TetGrid& grid, const BlockComplex& complex, double share, double noise,
                     std::uint64_t seed);
 
-/// Makes a valid grid invalid, in one place, for repairs to correct: moves vertices near a random
-/// one, all copies alike, until at least `tets` tets are flipped or flat. Boundaries stay on their
-/// planes and singular edges on their lines, so the undamaged map is one that a repair could arrive
-/// at, and transitions, singularities and volume remain as they are.
-/// @throws Error InvalidArgument if the sample has too few vertices of that kind
+/// Makes a valid grid invalid in one place, as a task for repair: moves vertices near a random one,
+/// all copies alike, until at least `tets` tets are flipped or flat. Boundaries stay on their
+/// planes and singular edges on their lines, so repair could arrive at the undamaged map;
+/// transitions, singularities and volume remain unchanged.
+/// @throws Error InvalidArgument if the sample has too few vertices of the required kind
 void damage(TetGrid& grid, const BlockComplex& complex, DefectKind kind, int tets,
             std::uint64_t seed);
 
-/// Tags corners, curves and patches, and numbers the blocks as regions, as SampleOptions::features
-/// says.
+/// Tags corners, curves and patches, and numbers the blocks as regions, as described in
+/// SampleOptions::features.
 /// @param[out] map  gets features and regions for the tets of `grid` in order
 void addFeatures(const TetGrid& grid, const BlockComplex& complex, TetMap& map);
 
@@ -50,7 +50,7 @@ void addFeatures(const TetGrid& grid, const BlockComplex& complex, TetMap& map);
 void addCharts(TetGrid&& grid, const BlockComplex& complex, const SampleOptions& options,
                TetMap& map);
 
-/// What follows from a block complex about the hexahedral mesh.
+/// What a block complex implies about the hexahedral mesh.
 /// @param cellsPerEdge  hexahedra along each block edge, at least 1
 /// @param features  whether they are tagged
 [[nodiscard]] SampleAnswer expectedAnswer(const BlockComplex& complex, std::uint64_t cellsPerEdge,

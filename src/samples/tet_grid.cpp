@@ -1,4 +1,4 @@
-// Numbers and places the vertices of the grid; all by index arithmetic, without look-ups.
+// Numbers and places the vertices of the grid, purely by index arithmetic, without look-ups.
 #include <algorithm>
 
 #include <base/vector3.hpp>
@@ -108,15 +108,15 @@ std::array<Vec3, 8> TetGrid::cornersInSpace(std::size_t subBlock) const {
   return corners;
 }
 
-/// The parameter of grid line i of a block: cells * i / refine, rounded to units so that it is
-/// symmetric (neighbouring blocks count from opposite ends) and exact wherever it is an integer.
+/// The parameter of grid line i of a block: cells * i / refine, rounded to units symmetrically
+/// (neighbouring blocks count from opposite ends) and exact wherever it is an integer.
 std::int64_t TetGrid::gridLine(std::int64_t i) const {
   const std::int64_t length = cells_ * kUnitsPerCell;
   return 2 * i <= refine_ ? i * length / refine_ : length - (refine_ - i) * length / refine_;
 }
 
-/// Vertices on a coarse cell are numbered in the frame of the cell, so that all blocks around it
-/// find the same number without looking at each other.
+/// Vertices on a coarse cell are numbered in the frame of the cell, so all blocks around it arrive
+/// at the same numbers independently.
 void TetGrid::numberGridVertices(const BlockModel& model, const BlockComplex& complex) {
   const auto row = static_cast<std::size_t>(refine_ + 1);
   vertices.resize(blockCount_ * row * row * row);
@@ -146,7 +146,7 @@ void TetGrid::numberGridVertices(const BlockModel& model, const BlockComplex& co
 }
 
 /// Centres are means of corners, not images of the centre under the block's shape: those can lie
-/// outside a sub-block whose faces are the flat ones of a coarse grid.
+/// outside a sub-block with the flat faces of a coarse grid.
 void TetGrid::placeCentres() {
   centreParameters.resize(subBlockCount());
   for (std::size_t sub = 0; sub < subBlockCount(); ++sub) {

@@ -30,7 +30,7 @@ inline Int3 operator-(const Int3& a, const Int3& b) {
   return result;
 }
 
-/// Parameters are multiples of 2^-16, held as integers. That is fine enough for 500 sub-blocks
+/// Parameters are multiples of 2^-16, stored as integers. That is fine enough for 500 sub-blocks
 /// along a single hexahedron (131 steps each), and coarse enough for translations of 1e9 and
 /// rotations to be exact in double (46 bits).
 inline constexpr std::int64_t kUnitsPerCell = 1 << 16;
@@ -38,18 +38,18 @@ inline constexpr std::int64_t kUnitsPerCell = 1 << 16;
 /// Corners of one of the 12 triangles of a sub-block's surface, counter-clockwise from outside.
 using SurfaceTriangle = std::array<std::size_t, 3>;
 
-/// The triangles of a sub-block, whose quads are cut at the smallest of their vertices, so that
-/// neighbours agree on the diagonal. Each makes a positive tet (centre, triangle).
+/// The triangles of a sub-block. Its quads are cut at their smallest vertex, so that neighbours
+/// agree on the diagonal. Each triangle makes a positive tet (centre, triangle).
 /// @param vertices  of the corners of the sub-block (in the order of BlockCorners)
 [[nodiscard]] std::array<SurfaceTriangle, 12> surfaceTriangles(
     const std::array<Index, 8>& vertices);
 
-/// Place of a grid point of a block in TetGrid's arrays.
+/// Index of a block's grid point in TetGrid's arrays.
 using Slot = std::size_t;
 
 class TetGrid {
  public:
-  /// The undisturbed grid.
+  /// The unperturbed grid.
   /// @param cells   hexahedra along each block edge
   /// @param refine  sub-blocks along each block edge; all indices must fit in 32 bits
   TetGrid(const BlockModel& model, const BlockComplex& complex, int cells, int refine);
@@ -60,11 +60,11 @@ class TetGrid {
   [[nodiscard]] std::size_t subBlocksPerBlock() const { return power(refine_, 3); }
   [[nodiscard]] std::size_t subBlockCount() const { return blockCount_ * subBlocksPerBlock(); }
 
-  /// Number of points along a coarse cell of this dimension that lie inside it.
+  /// Number of grid points inside a coarse cell of this dimension.
   [[nodiscard]] std::size_t innerPointCount(std::size_t dimension) const {
     return power(refine_ - 1, dimension);
   }
-  /// Grid coordinates, in the block of an occurrence, of inner point number `point` of its cell.
+  /// Grid coordinates, in an occurrence's block, of inner point number `point` of its cell.
   [[nodiscard]] Int3 gridPoint(const Occurrence& occurrence, std::size_t dimension,
                                std::size_t point) const;
 
@@ -76,7 +76,7 @@ class TetGrid {
   }
   [[nodiscard]] std::array<Index, 8> cornerVertices(std::size_t subBlock) const;
 
-  /// In units, in the chart of the sub-block's block.
+  /// Parameters of a sub-block's corners, in units, in the chart of its block.
   [[nodiscard]] std::array<Int3, 8> cornerParameters(std::size_t subBlock) const;
 
   /// Corners of a sub-block relative to its centre: in the block's chart (in units), and in space.

@@ -33,7 +33,8 @@ Eigen::Matrix3d cofactorOf(const Eigen::Matrix3d& j) {
   return columns;
 }
 
-/// std::hypot takes as long as all else of an element's energy; neither square is out of range.
+/// std::hypot takes as long as the rest of an element's energy; neither square leaves the range of
+/// double.
 double rootOf(double epsilon, double det) {
   return epsilon == 0 ? std::abs(det) : std::sqrt(epsilon * epsilon + det * det);
 }
@@ -42,7 +43,7 @@ double positivePart(double epsilon, double det, double root) {
   return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
 }
 
-/// |J|^2 / chi^(2/3) + (det^2 + 1) / chi, and its derivatives: angles, and volumes.
+/// |J|^2 / chi^(2/3) + (det^2 + 1) / chi and its derivatives: the terms for angles and for volumes.
 struct Density {
   double value = std::numeric_limits<double>::infinity();
   // The derivative along a change dJ is power (J : dJ) + along (cofactor : dJ).
@@ -108,7 +109,7 @@ Gradients cornerGradients(const Element& element) {
 Eigen::Matrix3d jacobian(const Problem& problem, const Element& element, const double* x) {
   Eigen::Matrix3d j = Eigen::Matrix3d::Zero();
   if (element.offset >= 0) j = toEigen(problem.matrices[static_cast<std::size_t>(element.offset)]);
-  // By differences, which keep small elements exact far from the origin.
+  // From differences, which keep small elements exact far from the origin.
   const Eigen::Vector3d origin = toEigen(element.corners[0].at(x));
   for (std::size_t i = 0; i < 3; ++i) {
     j += (toEigen(element.corners[i + 1].at(x)) - origin) *
@@ -143,7 +144,7 @@ Uses::Uses(const Problem& problem) : begins_(coordinateCount(problem) + 1) {
 Energy::Energy(const Problem& problem, Stage& stage)
     : problem_(problem), stage_(stage), uses_(problem), forces_(problem.elements.size()) {}
 
-/// Adds up visit(index, element, height) of all elements, block by block.
+/// Sums visit(index, element, height) over all elements, block by block.
 template <class Visit>
 Height Energy::collect(const Visit& visit) const {
   const std::size_t n = problem_.elements.size();
@@ -192,7 +193,8 @@ Height Energy::at(const Vector& unknowns, double epsilon, Vector& gradient) {
     if (problem_.pull > 0) byMatrix += problem_.pull * (j - targetOf(problem_, element));
     Eigen::Map<Corners>(forces_[index].data()) =
         element.weight * byMatrix * cornerGradients(element).transpose();
-    // Here, where the element is at hand: reading it once more below takes longer than all of this.
+    // Done here, while the element is in cache: reading it again below takes longer than all of
+    // this.
     for (std::size_t use = 0; use < 12; ++use) {
       forces_[index][use] *= element.corners[use / 3].sign[use % 3];
     }

@@ -1,4 +1,4 @@
-// The foldover-free energy of all elements, and its derivatives by the unknowns.
+// The foldover-free energy of all elements, and its derivatives with respect to the unknowns.
 //
 // V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, "Foldover-free maps in
 // 50 lines of code", ACM Transactions on Graphics 40 (2021).
@@ -20,18 +20,18 @@ namespace hexhex::untangle {
 
 using Vector = Eigen::VectorXd;
 
-/// A positive stand-in for a determinant: near it if it is positive, near 0 if it is negative.
+/// A positive substitute for a determinant: close to it if it is positive, close to 0 if it is
+/// negative.
 [[nodiscard]] double regularized(double epsilon, double det) noexcept;
 
-/// The energy at some place.
+/// The energy at one point, and what comes with it.
 struct Height {
   double energy = 0;
   double leastDeterminant = std::numeric_limits<double>::infinity();
   std::size_t flipped = 0;  ///< elements whose determinant is not positive
 };
 
-/// Which elements have a coordinate, and as which of theirs: entries are 12 * element + 3 * corner
-/// + axis.
+/// The elements that use each coordinate: entries are 12 * element + 3 * corner + axis.
 class Uses {
  public:
   explicit Uses(const Problem& problem);
@@ -47,24 +47,24 @@ class Uses {
 [[nodiscard]] inline std::size_t coordinateCount(const Problem& problem) noexcept {
   return problem.sums.size() == 0 ? problem.x.size() : problem.sums.size();
 }
-/// What corners take their coordinates from.
+/// The coordinates from which corners are computed.
 [[nodiscard]] Vector coordinatesOf(const Problem& problem, const Vector& unknowns);
-/// From derivatives by these to derivatives by the unknowns.
+/// Converts derivatives with respect to coordinates to derivatives with respect to unknowns.
 [[nodiscard]] Vector byUnknowns(const Problem& problem, const Vector& byCoordinates);
 
 /// Gradients of all four corners.
 [[nodiscard]] Eigen::Matrix<double, 4, 3> cornerGradients(const Element& element);
 [[nodiscard]] Eigen::Matrix3d jacobian(const Problem& problem, const Element& element,
                                        const double* x);
-/// The rotation that an element is pulled to.
+/// The rotation towards which an element is pulled.
 [[nodiscard]] Eigen::Matrix3d targetOf(const Problem& problem, const Element& element);
 
 /// Sum over all elements of their weight times
 ///
 ///     |J|^2 / chi^(2/3) + (det^2 + 1) / chi + pull / 2 |J - target|^2
 ///
-/// with chi = regularized(epsilon, det J). With epsilon 0 it is infinite where an element is not
-/// positive. The same bits with any number of threads.
+/// with chi = regularized(epsilon, det J). With epsilon 0 it is infinite if an element is not
+/// positive. Bitwise the same with any number of threads.
 class Energy {
  public:
   /// @param problem  must outlive this, and keep its elements; x and pull may change
@@ -74,7 +74,7 @@ class Energy {
   [[nodiscard]] const Uses& uses() const noexcept { return uses_; }
 
   [[nodiscard]] Height at(const Vector& unknowns, double epsilon) const;
-  /// @param[out] gradient  by unknown; of no use where the energy is infinite
+  /// @param[out] gradient  per unknown; meaningless where the energy is infinite
   [[nodiscard]] Height at(const Vector& unknowns, double epsilon, Vector& gradient);
 
  private:
@@ -85,7 +85,7 @@ class Energy {
   const Problem& problem_;
   Stage& stage_;
   Uses uses_;
-  /// Per element, corner and axis: its part of the derivative by that coordinate.
+  /// Per element, corner and axis: its contribution to the derivative by that coordinate.
   std::vector<std::array<double, 12>> forces_;
 };
 

@@ -8,7 +8,7 @@ namespace hexhex::untangle {
 
 namespace {
 
-/// Of the diagonal: far below what counts, far above rounding.
+/// Fraction of the diagonal: far below what matters, far above rounding.
 constexpr double kShift = 1e-9;
 
 }  // namespace
@@ -41,7 +41,7 @@ Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses) 
       const int row = column[i].first;
       double sum = 0;
       for (; i < column.size() && column[i].first == row; ++i) sum += column[i].second;
-      if (row == u) sum = sum > 0 ? sum * (1 + kShift) : 1;  // 1 where no element has it
+      if (row == u) sum = sum > 0 ? sum * (1 + kShift) : 1;  // 1 if no element uses it
       matrix.insertBack(row, u) = sum;
     }
   }

@@ -7,12 +7,12 @@
 
 namespace hexhex::untangle {
 
-/// Both triangles. What the elements leave free (all may move together, say) is held by a slight
-/// shift.
+/// Contains both triangles. What the elements leave undetermined (such as moving everything
+/// together) is fixed by a slight shift.
 [[nodiscard]] Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses);
 
-/// The right side with which its solution is where Jacobian matrices are as near as possible to the
-/// targets.
+/// The right-hand side for which the solution brings Jacobian matrices as close as possible to
+/// their targets.
 [[nodiscard]] Vector targetForces(const Problem& problem, const Uses& uses);
 
 }  // namespace hexhex::untangle

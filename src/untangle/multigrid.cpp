@@ -8,28 +8,28 @@ namespace hexhex::untangle {
 
 namespace {
 
-/// Unknowns are strongly connected from this share of the mean of their diagonal entries on; on
-/// each coarser level, half of that.
+/// Unknowns are strongly connected if their entry exceeds this fraction of the mean of their
+/// diagonal entries; half of that on each coarser level.
 constexpr double kStrong = 0.08;
-/// A level that has not so many times fewer unknowns than the one before is as good as none.
+/// A level that does not reduce the number of unknowns by this factor is useless.
 constexpr double kCoarser = 1.5;
 
-/// A matrix that is not factored as it is has so many rows, at most, on its coarsest level: those
-/// have many entries each.
+/// Maximum number of rows of the coarsest level of a matrix that is not itself factored: coarse
+/// rows have many entries.
 constexpr Eigen::Index kCoarsest = 500;
-/// Power iterations come near to the largest eigenvalue from below.
+/// Power iterations approach the largest eigenvalue from below.
 constexpr int kPowerIterations = 12;
 constexpr double kFromBelow = 1.1;
 
-/// Which unknown of the next level each one belongs to, and with which sign: charts may differ by
-/// that.
+/// For each unknown, the unknown of the next level to which it belongs, and the sign between them:
+/// charts may differ in sign.
 struct Aggregates {
   std::vector<int> of;
   std::vector<double> sign;
   int count = 0;
 };
 
-/// Calls visit(neighbour, entry) for all that are strongly connected with an unknown.
+/// Calls visit(neighbour, entry) for all unknowns strongly connected to one.
 template <class Visit>
 void forEachStrong(const SparseMatrix& matrix, const Vector& diagonal, double share, int i,
                    const Visit& visit) {
@@ -62,7 +62,7 @@ Aggregates aggregate(const SparseMatrix& matrix, double share) {
     result.of[static_cast<std::size_t>(i)] = result.count++;
     forEachStrong(matrix, diagonal, share, i, [&](int j, double entry) { join(j, i, entry); });
   }
-  // then what is left beside them, by the strongest connection,
+  // then what is left next to them, by the strongest connection,
   const std::vector<int> wholes = result.of;
   for (int i = 0; i < n; ++i) {
     if (!isFree(i)) continue;
@@ -73,7 +73,7 @@ Aggregates aggregate(const SparseMatrix& matrix, double share) {
       join(i, j, entry);
     });
   }
-  // and the rest.
+  // then the rest.
   for (int i = 0; i < n; ++i) {
     if (!isFree(i)) continue;
     result.of[static_cast<std::size_t>(i)] = result.count++;
@@ -84,7 +84,7 @@ Aggregates aggregate(const SparseMatrix& matrix, double share) {
   return result;
 }
 
-/// About the largest eigenvalue of the matrix over its diagonal.
+/// Approximates the largest eigenvalue of the matrix divided by its diagonal.
 double largestEigenvalue(const SparseMatrix& matrix, const Vector& diagonal) {
   Vector v(matrix.rows());
   for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::sin(static_cast<double>(i + 1));
@@ -114,7 +114,7 @@ SparseMatrix prolongationOf(const SparseMatrix& matrix, double share) {
   return tentative - SparseMatrix(damping * diagonal.cwiseInverse().asDiagonal() * moved);
 }
 
-/// One sweep of Gauss and Seidel through a symmetric matrix, whose columns are its rows.
+/// One Gauss-Seidel sweep through a symmetric matrix, whose columns are its rows.
 void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward) {
   const auto n = static_cast<int>(matrix.rows());
   for (int k = 0; k < n; ++k) {
@@ -146,7 +146,7 @@ Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Conte
     }
     const SparseMatrix moved = matrix * prolongation;
     SparseMatrix coarser = prolongation.transpose() * moved;
-    // Swapped, as Eigen's sparse matrices cannot be moved.
+    // Swapped, since Eigen's sparse matrices cannot be moved.
     levels_.emplace_back();
     levels_.back().matrix.swap(matrix);
     levels_.back().prolongation.swap(prolongation);

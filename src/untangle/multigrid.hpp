@@ -1,5 +1,5 @@
-// Multigrid by smoothed aggregation, with a factored coarsest level: in linear time near the
-// inverse of a weighted Laplacian.
+// Multigrid by smoothed aggregation with a factored coarsest level: approximates the inverse of a
+// weighted Laplacian in linear time.
 //
 // P. Vaněk, J. Mandel, M. Brezina, "Algebraic multigrid by smoothed aggregation for second and
 // fourth order elliptic problems", Computing 56 (1996).
@@ -21,11 +21,11 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 
 class Multigrid {
  public:
-  /// @param matrix  symmetric and positive definite; all of it
-  /// @param mostFactored  a matrix with so many rows, at most, is factored
+  /// @param matrix  symmetric and positive definite; both triangles
+  /// @param mostFactored  a matrix with at most this many rows is factored
   Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Context& context);
 
-  /// One cycle: a linear map, symmetric and positive definite, and the inverse if the matrix was
+  /// One cycle: a linear map, symmetric and positive definite; the inverse itself if the matrix was
   /// factored.
   [[nodiscard]] Vector cycle(const Vector& v) const { return cycle(0, v); }
   /// The matrix's inverse times a vector, by conjugate gradients.
@@ -38,7 +38,7 @@ class Multigrid {
   };
   [[nodiscard]] Vector cycle(std::size_t level, const Vector& v) const;
 
-  std::deque<Level> levels_;  ///< which Eigen could not move
+  std::deque<Level> levels_;  ///< a deque, since Eigen could not move them
   Eigen::SimplicialLDLT<SparseMatrix> factor_;
 };
 

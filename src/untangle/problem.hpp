@@ -1,20 +1,20 @@
-// What the solver takes: elements whose corners are affine functions of the unknowns.
+// The solver's input: elements whose corners are affine functions of the unknowns.
 //
 // An element maps its ideal shape by a Jacobian matrix that is linear in its corners u_0 to u_3:
 //
 //     J = C + (u_1 - u_0) g_1^T + (u_2 - u_0) g_2^T + (u_3 - u_0) g_3^T
 //
-// It is good where det J > 0. Three kinds of elements:
+// It is good if det J > 0. There are three kinds of elements:
 //
 // - Tets: C = 0 and g = tetGradients(ideal edges).
-// - Triangles of a surface that is to face the direction e, with the outward normal n: the g_i are
-//   the gradients in the triangle's plane, g_3 = 0, C = e n^T. det J is the ratio of areas,
-//   negative where the triangle is turned over. No energy over tets alone sees triangles fold over
-//   in the plane that they are bound to.
-// - Edges of a border that is to run along s e_c (a signed axis): with their direction d and length
-//   l, g_1 = d / l, g_2 = g_3 = 0, C = R - s e_c d^T for a rotation R that turns d to s e_c; only
-//   coordinate c of the corners varies. det J is the ratio of lengths, negative where the edge runs
-//   backwards.
+// - Triangles of a surface that is to face the direction e, with outward normal n: the g_i are the
+//   gradients in the triangle's plane, g_3 = 0, C = e n^T. det J is the ratio of areas, negative if
+//   the triangle is turned over. No energy of tets alone notices triangles that fold over in the
+//   plane to which they are bound.
+// - Edges of a border that is to run along s e_c (a signed axis): with direction d and length l,
+//   g_1 = d / l, g_2 = g_3 = 0, C = R - s e_c d^T for a rotation R that turns d to s e_c; only
+//   coordinate c of the corners varies. det J is the ratio of lengths, negative if the edge runs
+//   backward.
 #pragma once
 
 #include <array>
@@ -30,13 +30,13 @@ namespace hexhex::untangle {
 
 using Matrix3 = std::array<Vec3, 3>;  ///< rows
 
-/// Coordinate k is constant[k] + sign[k] * x[unknown[k]], or constant[k] alone where unknown[k] is
-/// negative. (Or a sum of unknowns in place of one: Problem::sums.) Several coordinates, also of
+/// Coordinate k is constant[k] + sign[k] * x[unknown[k]], or constant[k] alone if unknown[k] is
+/// negative. (Problem::sums allows a sum of unknowns instead of one.) Several coordinates, even of
 /// one corner, may share an unknown.
 struct Corner {
   Vec3 constant{};
   std::array<int, 3> unknown = {-1, -1, -1};
-  std::array<std::int8_t, 3> sign{};  ///< 1 or -1 where there is an unknown
+  std::array<std::int8_t, 3> sign{};  ///< 1 or -1 if there is an unknown
 
   [[nodiscard]] Vec3 at(const double* x) const noexcept {
     Vec3 u = constant;
@@ -51,12 +51,12 @@ struct Element {
   std::array<Corner, 4> corners;
   std::array<Vec3, 3> gradients{};  ///< of corners 1 to 3; that of corner 0 is minus their sum
   double weight = 1;                ///< positive
-  int offset = -1;                  ///< C, as an index of Problem::matrices; -1: 0
-  int target = -1;                  ///< the rotation it is pulled to, as such an index; -1: 1
+  int offset = -1;                  ///< C, as an index into Problem::matrices; -1: 0
+  int target = -1;                  ///< the rotation that it is pulled to, likewise; -1: 1
 };
 
-/// Of a tet whose ideal shape has these edges from corner 0: the rows of the inverse of the matrix
-/// whose columns they are.
+/// For a tet whose ideal shape has these edges from corner 0: the rows of the inverse of the matrix
+/// with these columns.
 [[nodiscard]] inline std::array<Vec3, 3> tetGradients(const std::array<Vec3, 3>& edges) {
   const double det = tripleProduct(edges[0], edges[1], edges[2]);
   std::array<Vec3, 3> rows = {cross(edges[1], edges[2]), cross(edges[2], edges[0]),
@@ -67,14 +67,14 @@ struct Element {
   return rows;
 }
 
-/// Rows of a matrix, one behind the other.
+/// Rows of a matrix, stored one after another.
 struct SparseRows {
   struct Entry {
     int column = 0;
     double factor = 0;
   };
   std::vector<Entry> entries;
-  std::vector<std::size_t> begins = {0};  ///< per row, and the end of the last one
+  std::vector<std::size_t> begins = {0};  ///< per row, plus the end of the last one
 
   [[nodiscard]] std::size_t size() const noexcept { return begins.size() - 1; }
 };
@@ -82,12 +82,12 @@ struct SparseRows {
 struct Problem {
   std::vector<Element> elements;
   std::vector<Matrix3> matrices;
-  /// Weight of 0.5 |J - target|^2 beside the foldover-free energy. Maps of which no corner is
-  /// constant need it: otherwise some collapse.
+  /// Weight of 0.5 |J - target|^2 next to the foldover-free energy. Maps without any constant
+  /// corner need it: otherwise some collapse.
   double pull = 0;
-  std::vector<double> x;  ///< the unknowns: where they are, and where they are to go
-  /// Coordinates that are sums of several unknowns: what corners call unknown i is then row i of
-  /// these. Without rows, it is x[i].
+  std::vector<double> x;  ///< the unknowns: start of the search, then its result
+  /// Coordinates that are sums of several unknowns: unknown i of a corner then means row i of these
+  /// sums. Without rows, it is x[i].
   SparseRows sums;
 };
 

@@ -14,20 +14,20 @@
 
 namespace hexhex::untangle {
 
-/// Limited-memory BFGS (Nocedal 1980) with a given first metric.
+/// Limited-memory BFGS (Nocedal 1980) with a given initial metric.
 class Lbfgs {
  public:
   /// @param energy, metric  must outlive this
-  /// @param x  where it begins
+  /// @param x  starting point
   /// @param epsilon  of the energy
   Lbfgs(Energy& energy, const Multigrid& metric, const Vector& x, double epsilon);
 
   /// One step downhill.
-  /// @param[in,out] x  where the last step ended
-  /// @return false if there is none
+  /// @param[in,out] x  the end of the last step
+  /// @return false if there is no step
   bool step(Vector& x);
 
-  /// At x as it is.
+  /// At the current x.
   [[nodiscard]] const Height& height() const noexcept { return height_; }
 
  private:
@@ -52,10 +52,10 @@ class Lbfgs {
 namespace {
 
 constexpr std::size_t kPairs = 12;
-/// Of the decrease that the slope promises.
+/// Required fraction of the decrease that the slope predicts.
 constexpr double kSufficient = 1e-4;
 constexpr double kShortest = 1e-8;
-/// Pairs along which the energy is not convex by this share say nothing.
+/// Pairs along which the energy is convex by less than this fraction are ignored.
 constexpr double kConvex = 1e-12;
 
 }  // namespace
@@ -87,7 +87,7 @@ bool Lbfgs::step(Vector& x) {
   return search(direction(), x);
 }
 
-/// Halves the step until the energy falls as it should (Armijo 1966).
+/// Halves the step until the energy decreases sufficiently (Armijo 1966).
 bool Lbfgs::search(const Vector& towards, Vector& x) {
   assert(towards.size() == x.size());
   const double slope = gradient_.dot(towards);
@@ -116,39 +116,40 @@ void Lbfgs::learn(Pair pair) {
 
 namespace {
 
-/// So many unknowns are solved for exactly: more of them take longer to factor than all else.
+/// Up to this many unknowns are solved for exactly: more take longer to factor than everything
+/// else.
 constexpr Eigen::Index kMostFactored = 4000;
 constexpr int kMostRounds = 150;
-/// Steps of a round. A larger penalty than the map can follow leaves it folded, so that a round
-/// goes on as long as each step lowers the energy by a good share.
+/// Steps per round. A penalty larger than the map can follow leaves it folded, so a round continues
+/// as long as each step lowers the energy considerably.
 constexpr int kStepsOfRound = 10;
 constexpr int kMostStepsOfRound = 100;
 constexpr double kFastDecrease = 0.03;
 struct Pace {
-  /// Rounds over which it is measured how fast flips vanish.
+  /// Number of rounds over which the rate of vanishing flips is measured.
   int patience;
-  /// The penalty grows at least as if the energy had fallen by this share.
+  /// The penalty grows at least as if the energy had decreased by this fraction.
   double leastFollowed;
 };
 constexpr Pace kQuick = {8, 0.5};
 constexpr Pace kPatient = {16, 0.2};
-/// A step that lowers the energy by a smaller share ends its round.
+/// A step that lowers the energy by a smaller fraction ends its round.
 constexpr double kLeastDecrease = 1e-6;
 /// Regularization where hardly any element is bad.
 constexpr double kLeastEpsilon = 1e-9;
-/// Polishing ends when so many steps lower the energy by less than this share.
+/// Polishing ends when this many steps lower the energy by less than this fraction.
 constexpr int kPolishingSteps = 6;
 constexpr double kLeastPolish = 1e-4;
 
-/// The penalty grows as fast as the energy could follow (their Section 3, Theorem 1).
+/// The penalty grows as fast as the energy was able to follow (their Section 3, Theorem 1).
 double nextEpsilon(double epsilon, double followed, double leastDeterminant) {
   const double aim = (1 - followed) * regularized(epsilon, leastDeterminant);
   const double square = aim * (aim - leastDeterminant);
   return std::max(kLeastEpsilon, 2 * std::sqrt(std::max(0.0, square)));
 }
 
-/// Whether flips vanish so slowly, or not at all, that there would be some left after all rounds.
-/// @param fewest  that there were up to each round
+/// Whether flips vanish so slowly, or not at all, that some would be left after all rounds.
+/// @param fewest  smallest number of flips up to each round
 bool isTooSlow(const std::vector<std::size_t>& fewest, int patience) {
   const int rounds = static_cast<int>(fewest.size());
   if (rounds <= patience) return false;
@@ -166,7 +167,7 @@ struct Solver::Parts {
         energy(theProblem, theStage),
         metric(laplacian(theProblem, energy.uses()), kMostFactored, theStage.context()) {}
 
-  /// Untangles x. Ends at the best place that was seen.
+  /// Untangles x. Ends at the best point seen.
   End untangle(const Options& options, Vector& x, int& steps) {
     const Pace& pace = options.isPatient ? kPatient : kQuick;
     double epsilon = options.epsilon;
@@ -188,7 +189,7 @@ struct Solver::Parts {
     return fewest == 0 ? End::Positive : End::Stalled;
   }
 
-  /// @return steps
+  /// @return number of steps
   int descendRound(Lbfgs& descent, Vector& x) const {
     for (int step = 1; step <= kMostStepsOfRound; ++step) {
       stage.context().throwIfCancelled();
@@ -201,7 +202,7 @@ struct Solver::Parts {
     return kMostStepsOfRound;
   }
 
-  /// @return steps
+  /// @return number of steps
   int polish(int most, Vector& x) {
     Lbfgs descent(energy, metric, x, 0);
     double before = descent.height().energy;
@@ -250,8 +251,8 @@ Result Solver::run(const Options& options) {
 }
 
 std::vector<std::size_t> flatElements(const Problem& problem) {
-  // Random unknowns that make a polynomial of degree three vanish by chance are rare; twice is
-  // rarer.
+  // Random unknowns rarely make a polynomial of degree three vanish by chance; two draws even more
+  // rarely.
   constexpr int kDraws = 2;
   // Far above rounding, far below the flattest tets of real maps.
   constexpr double kFlat = 1e-13;

@@ -12,12 +12,13 @@ lattice::LatticePoint scaled(const lattice::GridPoint& z, std::int64_t unit) {
   return {z[0] * unit, z[1] * unit, z[2] * unit};
 }
 
-/// Sum of distances along the axes, which all transitions keep.
+/// Manhattan distance, which is invariant under all transitions.
 std::int64_t distance(const lattice::LatticePoint& a, const lattice::LatticePoint& b) {
   return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
 }
 
-/// A simplex of one tet as that of another one, or kNoSimplex if that does not have it.
+/// A simplex of one tet as a simplex of another, or kNoSimplex if the other tet does not contain
+/// it.
 lattice::CornerMask simplexIn(const adjacency::TetTopology& topology, Index from,
                               lattice::CornerMask simplex, Index to) {
   const Tet& there = topology.tets[to];
@@ -30,11 +31,11 @@ lattice::CornerMask simplexIn(const adjacency::TetTopology& topology, Index from
   return topology.translated(simplex, from, to);
 }
 
-/// The edges of a tet, by corners.
+/// The edges of a tet as pairs of corners.
 constexpr std::array<std::pair<std::size_t, std::size_t>, 6> kEdges = {
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
-/// By face: the edges opposite to its corners, in the order of kFaceCorners.
+/// Per face: the edges opposite its corners, in the order of kFaceCorners.
 constexpr auto kFaceEdges = [] {
   std::array<std::array<std::size_t, 3>, 4> edges{};
   for (std::size_t face = 0; face < 4; ++face) {
@@ -49,8 +50,8 @@ constexpr auto kFaceEdges = [] {
   return edges;
 }();
 
-/// By the set of edges i < j with a negative area: the face whose three areas are negative, all
-/// around in the order of kFaceCorners.
+/// Per set of edges i < j with negative area: the face whose three areas are all negative, going
+/// around it in the order of kFaceCorners.
 constexpr auto kExits = [] {
   std::array<int, 64> exits{};
   for (unsigned negative = 0; negative < 64; ++negative) {
@@ -82,7 +83,7 @@ bool areSamePoint(const igm::PreparedMap& map, const LatticePlace& a, const Latt
     if (topology.isBoundary(face) || adjacency::tetOf(topology.mate[face]) != b.tet) return false;
     return exact.transitions.across(face)(a.z) == b.z;
   }
-  // The same vertex, or the same edge, as far from its vertices.
+  // Same vertex; or same edge, and same distances from its vertices.
   if (simplexIn(topology, a.tet, a.simplex, b.tet) != b.simplex) return false;
   const std::size_t corner = lattice::firstCorner(a.simplex);
   const Index vertex = topology.tets[a.tet][corner];
@@ -92,7 +93,7 @@ bool areSamePoint(const igm::PreparedMap& map, const LatticePlace& a, const Latt
 }
 
 bool HalfDiagonals::isAt(const LatticePlace& place, std::uint64_t point) {
-  // Points in the interior of a face belong to one of two tets.
+  // A point in the interior of a face belongs to either of two tets.
   if (lattice::dimension(place.simplex) == 2) {
     const adjacency::HalfFace mate =
         map_.topology
@@ -106,7 +107,7 @@ bool HalfDiagonals::isAt(const LatticePlace& place, std::uint64_t point) {
 }
 
 bool HalfDiagonals::endsAt(Segment segment, int exit, std::uint64_t point) {
-  // Tets may be passed more than once only if the map is not what preparation says.
+  // A tet is passed more than once only if the map is not what preparation claims.
   for (std::size_t steps = 0; steps <= map_.topology.tetCount(); ++steps) {
     if (exit == lattice::kNoExit) {
       const Step step = look(segment, exit);
@@ -116,7 +117,7 @@ bool HalfDiagonals::endsAt(Segment segment, int exit, std::uint64_t point) {
       }
     }
     if (!cross(segment, exit)) return false;
-    // A lattice point of the tet is one that the segment comes to within the tet.
+    // If the tet owns the lattice point, the segment reaches it within the tet.
     if (places_.owns(segment.tet, point) &&
         isAtEnd(segment, places_.placeIn(segment.tet, point).z)) {
       return true;
@@ -134,8 +135,8 @@ bool HalfDiagonals::isAtEnd(const Segment& segment, const lattice::GridPoint& z)
 }
 
 /// Seen along the segment, the corners of the tet are points (x, y) of a plane with the segment at
-/// its origin, at a depth. The segment leaves through the triangle that has the origin inside and
-/// turns its back.
+/// the origin, each with a depth. The segment leaves through the back-facing triangle that contains
+/// the origin.
 HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const noexcept {
   std::array<double, 4> x;
   std::array<double, 4> y;
@@ -154,7 +155,7 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
     depth[i] = r[0] + r[1] + r[2];
     size[i] = std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]);
   }
-  // Twice the areas of the triangles between the origin and two corners.
+  // Twice the areas of the triangles spanned by the origin and two corners.
   std::array<double, 6> areas;
   unsigned negative = 0;
   const double mirror = along[0] * along[1] * along[2];
@@ -165,10 +166,10 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
   }
   exit = kExits[negative];
   if (exit == lattice::kNoExit) return Step::IsUncertain;
-  // Both coordinates carry a conversion and a subtraction, so areas err by less than 12 * 2^-53 of
-  // the product of sizes. The depth of the triangle at the origin is the mean of those of its
-  // corners, weighted by the areas opposite to them; each product errs by less than 2^-48 of its
-  // magnitudes.
+  // Each coordinate carries the rounding of a conversion and of a subtraction, so areas are off by
+  // less than 12 * 2^-53 of the product of sizes. The depth of the triangle at the origin is the
+  // mean of its corners' depths, weighted by the areas opposite them; each product is off by less
+  // than 2^-48 of its magnitudes.
   const std::array<std::size_t, 3>& edges = kFaceEdges[static_cast<std::size_t>(exit)];
   const double end = 3 * static_cast<double>(half_);
   double beyond = 0;
@@ -189,7 +190,7 @@ HalfDiagonals::Step HalfDiagonals::look(const Segment& segment, int& exit) const
   return beyond > 0 ? Step::EndsInside : Step::Leaves;
 }
 
-/// Goes on into the neighbour across a face, if there is one.
+/// Moves on to the neighbour across a face, if there is one.
 bool HalfDiagonals::cross(Segment& segment, int face) const noexcept {
   const adjacency::HalfFace halfFace = adjacency::halfFaceOf(segment.tet, face);
   if (map_.topology.isBoundary(halfFace)) return false;
@@ -203,7 +204,7 @@ bool HalfDiagonals::cross(Segment& segment, int face) const noexcept {
   return true;
 }
 
-/// All tets that the segment can come into, until one holds its end.
+/// Visits all tets that the segment may enter until one contains its end.
 std::optional<LatticePlace> HalfDiagonals::followExactly(const Segment& segment) {
   segments_.assign(1, segment);
   for (std::size_t head = 0; head < segments_.size(); ++head) {
@@ -224,7 +225,7 @@ std::optional<LatticePlace> HalfDiagonals::followExactly(const Segment& segment)
   return std::nullopt;
 }
 
-/// Whether the segment goes from the inner side of a face, or from its plane, to the outer side,
+/// Whether the segment passes from the inner side of a face, or from its plane, to the outer side
 /// and meets the closed triangle in one point.
 bool HalfDiagonals::crossesFirst(const Segment& segment, const lattice::LatticeTet& tet, int face) {
   const auto f = static_cast<std::size_t>(face);

@@ -1,11 +1,11 @@
-// Follows half diagonals, from the centre of a cell straight to its corners, to tell which lattice
-// points the corners are. Verification has a way of its own (the engines follow them in
+// Follows half diagonals straight from the centre of a cell to its corners, to find out which
+// lattice points the corners are. Verification has its own implementation (the engines use
 // sweep/cell_tracer), so that it shares no decision with what it verifies.
 //
-// Inside the open unit cube of a cell the map is one to one. So whichever triangles a path crosses,
-// it comes to the same lattice point, if each of them has a point inside of the cube. Here that is
-// a point of the segment itself, which may well be on an edge of the triangle: no segment is
-// tilted, and where there are several triangles to cross, any of them will do.
+// Inside the open unit cube of a cell the map is injective. So whichever triangles a path crosses,
+// it ends at the same lattice point, provided that each of them has a point inside the cube. Here
+// that is a point of the segment itself, possibly on an edge of the triangle: the segment is not
+// perturbed, and where it could cross any of several triangles, any of them will do.
 #pragma once
 
 #include <algorithm>
@@ -33,22 +33,22 @@ class HalfDiagonals {
   HalfDiagonals(const igm::PreparedMap& map, const LatticePlaces& places) noexcept
       : map_(map), places_(places), half_(map.exact.unit / 2) {}
 
-  /// A half diagonal, or what is left of it, as a tet sees it, in lattice units.
+  /// A half diagonal, or the rest of one, as seen from a tet, in lattice units.
   struct Segment {
     Index tet;
-    lattice::LatticePoint start;  ///< in the tet, or, seen from farther tets, before it
+    lattice::LatticePoint start;  ///< in the tet; seen from later tets, before it
     lattice::LatticePoint end;
   };
 
   /// Whether a half diagonal ends at a lattice point.
-  /// @param exit   the face through which it leaves the tet, or kNoExit: unknown
-  /// @param point  its number
+  /// @param exit   the face through which it leaves the tet, or kNoExit if unknown
+  /// @param point  the lattice point's number
   [[nodiscard]] bool endsAt(Segment segment, int exit, std::uint64_t point);
   /// Whether a place is that of a lattice point.
   [[nodiscard]] bool isAt(const LatticePlace& place, std::uint64_t point);
 
  private:
-  /// What floating point proves about a tet on the way.
+  /// What floating point proves about a tet along the way.
   enum class Step : std::uint8_t { EndsInside, Leaves, IsUncertain };
   [[nodiscard]] Step look(const Segment& segment, int& exit) const noexcept;
   [[nodiscard]] bool isAtEnd(const Segment& segment, const lattice::GridPoint& z) const noexcept;
@@ -61,22 +61,22 @@ class HalfDiagonals {
 
   const igm::PreparedMap& map_;
   const LatticePlaces& places_;
-  std::int64_t half_;              ///< of a grid unit, in lattice units
-  Index owner_ = 0;                ///< of the point that was looked for last
+  std::int64_t half_;              ///< half a grid unit, in lattice units
+  Index owner_ = 0;                ///< of the latest point looked up
   std::vector<Segment> segments_;  ///< working memory
 };
 
-// Whether cells are those of a map: the centres and half diagonals of one tet after the other.
+// Whether cells are those of a map: checks centres and half diagonals, tet by tet.
 
-/// Which vertices are at the corners of the cells of one tet, by coordinates in its chart. Cells
-/// whose centres are in one tet agree about that: a point that both half diagonals can be bent to,
-/// inside of their cells, is the middle between their centres, which is in the tet as well.
+/// The vertices at the corners of one tet's cells, by coordinates in its chart. Cells with centres
+/// in the same tet agree on them: if two half diagonals can be bent to the same point without
+/// leaving their cells, that point is midway between the two centres, so it is in the tet as well.
 template <class Number>
 class CornerTable {
  public:
   static constexpr Number kUnknown = std::numeric_limits<Number>::max();
 
-  /// @param lines  of the centres of a tet
+  /// @param lines  of the tet's centres
   void begin(std::span<const lattice::SweptLine> lines) {
     std::size_t centers = 0;
     lattice::GridPoint last{};
@@ -95,9 +95,9 @@ class CornerTable {
       size_[k] = static_cast<std::size_t>(std::int64_t{last[k]} - first_[k] + 2);
       volume *= static_cast<double>(size_[k]);
     }
-    // A long thin tet has few centres for its box: its corners are followed one by one. (With a
-    // table only up to 32 numbers a centre, verification of s17c_sphere_r100 at scale 2 takes 18 %
-    // more instructions.)
+    // The box of a long thin tet holds few centres: its corners are followed one by one. (If the
+    // table is limited to 32 entries per centre, verification of s17c_sphere_r100 at scale 2 takes
+    // 18 % more instructions.)
     isUsed_ = volume <= 512 * static_cast<double>(centers);
     if (!isUsed_) return;
     const std::array<std::uint8_t, 3>& axes = lines.front().axes();
@@ -110,7 +110,7 @@ class CornerTable {
   [[nodiscard]] bool isUsed() const noexcept { return isUsed_; }
   [[nodiscard]] const std::array<std::size_t, 3>& strides() const noexcept { return strides_; }
 
-  /// Where the vertex at a corner is: kUnknown if it is not known yet.
+  /// The vertex at a corner; kUnknown if not known yet.
   [[nodiscard]] Number* at(const lattice::GridPoint& z) noexcept {
     std::size_t place = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -119,8 +119,8 @@ class CornerTable {
     return &vertices_[place];
   }
 
-  /// Enters vertices with consecutive numbers, so far as they are corners of any cells.
-  /// @param vertex  the first one
+  /// Enters consecutively numbered vertices, as far as they are corners of any cells.
+  /// @param vertex  number of the first one
   void enter(const PlaceRun& run, Number vertex) noexcept {
     std::int64_t begin = 0;
     std::int64_t end = run.count;
@@ -157,33 +157,33 @@ struct ConsecutiveCells {
   std::uint64_t first;
   std::span<const Cell> cells;
 
-  /// The cell of that number, or null.
+  /// The cell with that number, or null.
   [[nodiscard]] const Cell* find(std::uint64_t number) const noexcept {
     return number < first || number - first >= cells.size() ? nullptr : &cells[number - first];
   }
 };
 
-/// Cells with numbers of their own, ascending.
+/// Cells with explicit numbers, ascending.
 template <class Cell>
 struct NumberedCells {
   std::span<const std::uint64_t> numbers;
   std::span<const Cell> cells;
   std::size_t next = 0;
 
-  /// To find those from a number on.
+  /// The cells from a number on.
   [[nodiscard]] NumberedCells from(std::uint64_t number) const {
     assert(cells.size() == numbers.size());
     const auto first = std::lower_bound(numbers.begin(), numbers.end(), number);
     return {numbers, cells, static_cast<std::size_t>(first - numbers.begin())};
   }
-  /// The same, for ascending numbers.
+  /// As above; numbers must be passed in ascending order.
   [[nodiscard]] const Cell* find(std::uint64_t number) noexcept {
     while (next < numbers.size() && numbers[next] < number) ++next;
     return next < numbers.size() && numbers[next] == number ? &cells[next] : nullptr;
   }
 };
 
-/// Steps 2 and 3 of a proof (proof.hpp), for the cells of one tet after the other. One per thread.
+/// Steps 2 and 3 of the proof (proof.hpp), tet by tet. One per thread.
 template <class Cell>
 class CellChecker {
  public:
@@ -196,8 +196,8 @@ class CellChecker {
         hints_(hints),
         wrong_(wrong) {}
 
-  /// @param cells  some cells, among them some of the tet: cells.find(number) is called for all of
-  ///               the tet, ascending
+  /// @param cells  cells that include some of the tet's: cells.find(number) is called for all cells
+  ///               of the tet, in ascending order
   template <class Cells>
   void prove(Index tet, Cells cells) {
     const std::span<const lattice::SweptLine> lines = centers_.linesOf(map_.exact, tet, lines_);
@@ -233,7 +233,7 @@ class CellChecker {
       for (std::size_t k = 0; k < 3; ++k)
         steps_[c] += lattice::kCellCorners[c][k] != 0 ? strides[k] : 0;
     }
-    // A lattice point of the tet is one that the half diagonal comes to within the tet.
+    // If the tet owns the lattice point, the half diagonal reaches it within the tet.
     for (const PlaceRun& run : places_.runsOf(tet)) {
       known_.enter(run, static_cast<Number>(places_.firstOf(tet) + run.first));
     }

@@ -20,7 +20,7 @@ std::string toText(const std::map<int, std::uint64_t>& countsByValence) {
   return text.empty() ? "none" : text;
 }
 
-/// The same without valences that do not occur.
+/// The counts without valences that do not occur.
 std::map<int, std::uint64_t> withoutZeros(std::map<int, std::uint64_t> counts) {
   std::erase_if(counts, [](const auto& entry) { return entry.second == 0; });
   return counts;

@@ -1,4 +1,4 @@
-// What is collected for a VerifyReport.
+// Collects what goes into a VerifyReport.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ class Comparisons {
     add(name, std::to_string(expected), std::to_string(found), expected == found);
   }
 
-  /// Something that must not occur. @param first  where it does, in words
+  /// Something that must not occur.
+  /// @param first  where it first occurs, in words
   void addNone(const char* name, std::uint64_t count, const std::string& first) {
     add(name, "0", count == 0 ? "0" : std::to_string(count) + " (first: " + first + ")",
         count == 0);
@@ -45,12 +46,12 @@ class Comparisons {
   return "cell " + std::to_string(cell);
 }
 
-// Does a mesh have as many faces, edges and components as its map demands? A second opinion beside
-// the proof, which looks at the mesh alone: faces and edges are what has the same vertices.
+// Does a mesh have as many faces, edges and components as its map implies? A second opinion next to
+// the proof, based on the mesh alone: faces and edges are identified by their vertices.
 
-/// Compares a mesh, with corners in range, with what is expected of it. Says nothing where a map is
-/// so coarse that different edges or faces have the same vertices: where cells meet themselves, or
-/// another one twice.
+/// Compares a mesh, whose corners are in range, with what its map implies. Adds nothing if the map
+/// is so coarse that different edges or faces have the same vertices: where cells meet themselves,
+/// or meet another cell twice.
 void compareSums(const Expectation& expected, const HexMesh& mesh, Stage& stage,
                  Comparisons& comparisons);
 

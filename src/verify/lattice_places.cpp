@@ -13,11 +13,11 @@ namespace hexhex::verification {
 
 namespace {
 
-/// What a position may err by, relative to the coordinates of its tet: a few roundings, and the
+/// Bound of a position's error, relative to the coordinates of its tet: a few roundings, plus the
 /// conversion to text with 17 digits.
 constexpr double kSpaceOfTetRounding = 0x1p-48;
-/// Weights that lose more digits than this are computed exactly. Extraction does so from 2^20 on,
-/// as it measures it, which is at least a sixth of what is measured here.
+/// Weights that lose more digits than this are computed exactly. Extraction does so from 2^20 on by
+/// its own measure, which is at least a sixth of the measure used here.
 constexpr double kMaxCondition = 0x1p23;
 
 }  // namespace
@@ -153,7 +153,8 @@ void LatticePlaces::collectRuns(Index tet, const sweep::VertexNumbers& numbers,
         runs.push_back({static_cast<Index>(run.first - begin_[tet]), run.count,
                         run.line->point(run.offset), run.simplex, run.line->axes()[2]});
       });
-  // Points in the interior of the tet are in order, those on its boundary come in between.
+  // Points in the interior of the tet are already in order; those on its boundary belong in
+  // between.
   std::sort(runs.begin() + firstRun, runs.end(),
             [](const PlaceRun& a, const PlaceRun& b) { return a.first < b.first; });
 }

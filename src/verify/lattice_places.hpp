@@ -1,6 +1,6 @@
-// On which sides of its faces do points near a tet lie, and through which one does a segment leave?
-// For many points: by planes in floating point with a proven bound, and by the exact predicate
-// where that cannot tell.
+// On which sides of its faces do points near a tet lie, and through which face does a segment
+// leave? For many points: by planes in floating point with a proven bound, and by the exact
+// predicate where the bound does not decide.
 #pragma once
 
 #include <algorithm>
@@ -20,18 +20,18 @@ namespace hexhex::verification {
 
 class FaceSides {
  public:
-  /// Rounded, one for each face: positive inside.
+  /// Rounded values, one per face: positive inside.
   using Values = std::array<double, 4>;
 
-  /// Where a point is.
+  /// The position of a point relative to the tet.
   struct Place {
-    lattice::CornerMask simplex;  ///< that has the point in its interior, if it is in the tet
-    unsigned beyond;              ///< the faces that it is beyond: a bit each
+    lattice::CornerMask simplex;  ///< with the point in its interior, if the point is in the tet
+    unsigned beyond;              ///< the faces beyond which the point lies: a bit each
     Values values;
   };
 
   /// @param step  all points are multiples of this, and at most this far from the tet's bounding
-  /// box
+  ///              box
   FaceSides(const lattice::LatticeTet& tet, std::int64_t step) noexcept : tet_(tet) {
     std::int64_t bits = step;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ class FaceSides {
       double magnitude = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         normals_[k][f] = lattice::signedToDouble(lattice::crossComponent(u, v, k));
-        // All faces but the first one go through corner 0.
+        // All faces but the first contain corner 0.
         if (f == 0) atOrigin_ -= normals_[k][0] * static_cast<double>(tet[1][k] - tet[0][k]);
         magnitude += 2 * std::abs(normals_[k][f]) * static_cast<double>(high_[k] - low_[k]);
       }
@@ -86,7 +86,8 @@ class FaceSides {
     return place;
   }
 
-  /// The simplex that has a point, anywhere, in its interior, or kNoSimplex outside of the tet.
+  /// The simplex whose interior contains a point, which may be anywhere; kNoSimplex outside the
+  /// tet.
   [[nodiscard]] lattice::CornerMask simplexOf(const lattice::LatticePoint& point) const noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       if (point[k] < low_[k] || point[k] > high_[k]) return lattice::kNoSimplex;
@@ -95,8 +96,8 @@ class FaceSides {
     return place.beyond == 0 ? place.simplex : lattice::kNoSimplex;
   }
 
-  /// The face through which a segment leaves the tet, or any of several if that is through an edge
-  /// or a vertex; kNoExit if it is not certain.
+  /// The face through which a segment leaves the tet, or any of several if it leaves through an
+  /// edge or a vertex; kNoExit if that is not certain.
   /// @param start  in the closed tet
   /// @param end    outside of it
   [[nodiscard]] int exit(const lattice::LatticePoint& start, const Place& end) const noexcept {
@@ -105,7 +106,7 @@ class FaceSides {
     const Values from = valuesAt(start);
     for (std::size_t f = first + 1; f < 4; ++f) {
       if ((end.beyond >> f & 1U) == 0) continue;
-      // It meets a plane after a share from / (from - to) of its way.
+      // The segment meets a plane after a fraction from / (from - to) of its length.
       const double one = from[f] * end.values[first];
       const double other = from[first] * end.values[f];
       const double error = error_[f] * (std::abs(end.values[first]) + std::abs(from[first])) +
@@ -120,22 +121,22 @@ class FaceSides {
 
  private:
   const lattice::LatticeTet& tet_;
-  lattice::LatticePoint low_;  ///< corners of the box in which errors hold
+  lattice::LatticePoint low_;  ///< corners of the box in which the error bounds hold
   lattice::LatticePoint high_;
-  std::array<Values, 3> normals_;  ///< inwards, by axis and face, to within 2^-52
+  std::array<Values, 3> normals_;  ///< inward, by axis and face, to within 2^-52
   double atOrigin_ = 0;            ///< value of the first face at corner 0
   Values error_;                   ///< bounds; 0 if all values are exact
 };
 
-// Where the lattice points of one tet are in space, to compare vertices with. (The engines place
-// them with sweep/tet_positions.)
+// Positions in space of a tet's lattice points, to compare vertices with. (The engines compute them
+// with sweep/tet_positions.)
 
 class SpaceOfTet {
  public:
   SpaceOfTet(const igm::PreparedMap& map, Index tet);
 
-  /// Calls strange(i) for each of some points that is not where the map has a lattice point of the
-  /// tet, but for rounding.
+  /// Calls strange(i) for each point that is not, up to rounding, where the map puts the tet's
+  /// lattice point.
   /// @param z     the lattice point of the first
   /// @param axis  along which the others follow
   template <class Strange>
@@ -162,7 +163,7 @@ class SpaceOfTet {
  private:
   [[nodiscard]] Vec3 preimage(const lattice::GridPoint& z) const;
   [[nodiscard]] Vec3 exactly(const lattice::GridPoint& z) const;
-  /// False for not-a-number.
+  /// False for NaN.
   [[nodiscard]] bool isNear(const Vec3& p, const Vec3& q) const noexcept {
     return std::abs(p[0] - q[0]) <= error_ && std::abs(p[1] - q[1]) <= error_ &&
            std::abs(p[2] - q[2]) <= error_;
@@ -174,14 +175,14 @@ class SpaceOfTet {
   lattice::GridPoint origin_{};  ///< a grid point near the tet
   Vec3 atOrigin_{};              ///< its preimage
   std::array<Vec3, 3> steps_{};  ///< change of the preimage along each axis
-  double error_ = 0;             ///< bound of the error of preimages
-  bool isFlat_ = false;          ///< so nearly, in the map, that weights are to be computed exactly
+  double error_ = 0;             ///< error bound of preimages
+  bool isFlat_ = false;          ///< so flat in the map that weights must be exact
 };
 
-// The lattice points of a map by canonical number: hints of the sweep over the tets, which are
-// proven before they are used.
+// The lattice points of a map by canonical number: hints from the sweep over the tets, proven
+// before they are used.
 
-/// Things that are wrong, found by several threads: how many, and the first.
+/// Faults found by several threads: their number, and the first.
 class Faults {
  public:
   void add(std::size_t place) noexcept {
@@ -201,13 +202,13 @@ struct LatticePlace {
   Index tet = kNone;
   lattice::GridPoint z{};
   lattice::CornerMask simplex =
-      lattice::kNoSimplex;  ///< of the tet: the one that has the point in its interior
+      lattice::kNoSimplex;  ///< of the tet, with the point in its interior
 };
 
-/// Lattice points of a tet in the interior of one of its simplices, along an axis, with consecutive
-/// numbers.
+/// Lattice points of a tet in the interior of one of its simplices, in a row along an axis, with
+/// consecutive numbers.
 struct PlaceRun {
-  Index first;  ///< number of the first point, counted from the first that the tet owns
+  Index first;  ///< number of the first point, counted from the first one that the tet owns
   Index count;
   lattice::GridPoint z;  ///< the first point
   lattice::CornerMask simplex;
@@ -216,43 +217,43 @@ struct PlaceRun {
 
 class LatticePlaces {
  public:
-  /// @param indexed  whether to keep two bytes per lattice point, with which each is found at once
+  /// @param indexed  whether to keep two bytes per lattice point, so that each is found immediately
   LatticePlaces(const igm::PreparedMap& map, bool indexed, Stage& stage);
-  /// For parts of a mesh: lattice points are known of the tets that were proven last.
+  /// For parts of a mesh: only the lattice points of the tets proven last are known.
   /// @param numbers  hints; outlives this
   LatticePlaces(const igm::PreparedMap& map, const sweep::VertexNumbers& numbers);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return begin_.back(); }
 
-  /// Whether all points of each tet are in it, and have different numbers of its own. To be called
-  /// once, before all that follows.
-  /// @param wrong  receives tets where this is not so
+  /// Checks that all points of each tet are in it and have distinct numbers of its own. Call once,
+  /// before everything below.
+  /// @param wrong  receives the tets that fail
   void prove(Stage& stage, Faults& wrong);
   /// The same for some tets, ascending.
   void proveOnly(std::span<const Index> tets, Stage& stage, Faults& wrong);
-  /// Are points where the map has their lattice points?
+  /// Checks that points are where the map has their lattice points.
   /// @param first  number of the first
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage,
                Faults& wrong) const;
-  /// The same for points with numbers of their own, ascending.
+  /// The same for points with explicit numbers, ascending.
   void compare(std::span<const std::uint64_t> numbers, std::span<const Vec3> points, Stage& stage,
                Faults& wrong) const;
   [[nodiscard]] bool owns(Index tet, std::uint64_t number) const noexcept {
     return begin_[tet] <= number && number < begin_[tet + 1];
   }
   [[nodiscard]] Index ownerOf(std::uint64_t number) const;
-  /// Where a lattice point is.
+  /// The place of a lattice point.
   [[nodiscard]] LatticePlace placeIn(Index owner, std::uint64_t number) const;
 
   /// The lattice points that a tet owns, ascending.
   [[nodiscard]] std::span<const PlaceRun> runsOf(Index tet) const noexcept { return runs_.of(tet); }
   /// Per tet (+1): the first lattice point that it owns.
   [[nodiscard]] const Array<std::uint64_t>& begin() const noexcept { return begin_; }
-  /// The number of the first one.
+  /// The number of the first lattice point that a tet owns.
   [[nodiscard]] std::uint64_t firstOf(Index tet) const noexcept { return begin_[tet]; }
 
  private:
-  /// In the index: a run is to be searched.
+  /// In the index: the run must be searched for.
   static constexpr std::uint16_t kUnknownRun = 0xffff;
 
   void proveTet(Index tet, const sweep::VertexNumbers& numbers,
@@ -265,21 +266,21 @@ class LatticePlaces {
 
   const igm::PreparedMap& map_;
   bool indexed_;
-  sweep::SweptVertices swept_;  ///< until they are proven
+  sweep::SweptVertices swept_;  ///< until proven
   const sweep::VertexNumbers* given_ = nullptr;
-  Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point that it owns
+  Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point it owns
   sweep::TetLists<PlaceRun> runs_;
   Array<std::uint16_t> runOf_;  ///< per lattice point: its run among those of the tet; or empty
 };
 
-/// The tets that own something of [first, end), as a range.
-/// @param begin  per tet (+1): the first that it owns
+/// The range of tets that own something in [first, end).
+/// @param begin  per tet (+1): the first item it owns
 [[nodiscard]] std::pair<std::size_t, std::size_t> tetsWith(const Array<std::uint64_t>& begin,
                                                            std::uint64_t first, std::uint64_t end);
 
-/// Whether lines of a tet are in order, and the simplices at their ends are right; then, by
-/// convexity, so are those of all points between.
-/// @param shift  of the points, in lattice units along each axis: a half grid unit for centres
+/// Whether a tet's lines are in order and the simplices at their ends are right; by convexity, so
+/// are those of all points in between.
+/// @param shift  of the points, in lattice units along each axis: half a grid unit for centres
 [[nodiscard]] bool areInTet(const igm::PreparedMap& map, const FaceSides& sides,
                             std::span<const lattice::SweptLine> lines, std::int64_t shift);
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kMatchGrain = 4096;
 
-/// Points in the cells of a grid so fine that hardly two share one, as lists behind a hash table.
+/// Points in the cells of a grid so fine that cells hardly ever hold two, as lists behind a hash
+/// table.
 class PointFinder {
  public:
   PointFinder(const Array<Vec3>& points, double tolerance, Stage& stage)
@@ -80,7 +81,7 @@ class PointFinder {
   adjacency::VertexLists<Index> buckets_;
 };
 
-/// The three orders of corners that begin with each corner: rotations of a cell.
+/// The three rotations of a cell that start at each corner, as orders of corners.
 constexpr auto kOrders = [] {
   std::array<std::array<std::array<std::uint8_t, 8>, 3>, 8> orders{};
   std::array<std::size_t, 8> count{};
@@ -92,7 +93,7 @@ constexpr auto kOrders = [] {
   return orders;
 }();
 
-/// A cell so rotated that the numbers of its corners' places are smallest in lexicographic order.
+/// A cell rotated so that the place numbers of its corners are lexicographically smallest.
 struct TurnedCell {
   Hex vertices;
   Hex places;
@@ -174,7 +175,7 @@ class Matching {
   }
 
  private:
-  /// The first vertex of the right mesh at the place of each point, or kNone.
+  /// For each point, the first vertex of the right mesh at its place, or kNone.
   [[nodiscard]] Array<Index> placesOf(const Array<Vec3>& points, const PointFinder& finder) const {
     Array<Index> places(points.size());
     parallelFor(stage_, points.size(), kMatchGrain,
@@ -182,7 +183,7 @@ class Matching {
     return places;
   }
 
-  /// Calls accept(cell) for cells of the right mesh with their corners at the same places, until
+  /// Calls accept(cell) for the cells of the right mesh whose corners are at the same places, until
   /// one is accepted.
   template <class Accept>
   void forEachCandidate(std::size_t cell, const Accept& accept) const {
@@ -197,7 +198,7 @@ class Matching {
     }
   }
 
-  /// Calls visit(found, right) for the vertices of a cell that was matched.
+  /// Calls visit(found, right) for the vertices of a matched cell.
   template <class Visit>
   void forEachCorner(std::size_t cell, const Visit& visit) const {
     if (cells_[cell] == kNone) return;
@@ -232,8 +233,8 @@ class Matching {
     if (areContested) matchContestedCells();
   }
 
-  /// Where several cells are at one place, e.g. in components that lie in each other, those are the
-  /// same whose neighbours are: from cells that were matched to their neighbours.
+  /// Where several cells share one place, e.g. in components that lie inside each other, cells
+  /// match if their neighbours do: matches spread from matched cells to their neighbours.
   void matchContestedCells() {
     const adjacency::VertexCells around = adjacency::cellsAroundVertices(found_, stage_);
     Array<Index> rightOf;
@@ -276,7 +277,7 @@ class Matching {
     }
   }
 
-  /// Vertices are the same if they are corners of the same cells.
+  /// Vertices match if they are corners of matching cells.
   void matchVertices() {
     const auto forAllCorners = [this](const auto& visit) {
       parallelFor(stage_, found_.cells.size(), kMatchGrain,
@@ -305,11 +306,10 @@ class Matching {
   const HexMesh& found_;
   Stage& stage_;
   Array<Index> rightPlaces_;  ///< per vertex: the first vertex of the right mesh at its place
-  Array<Index> foundPlaces_;  ///< the same; or kNone
-  adjacency::VertexLists<Index>
-      byFirstPlace_;      ///< cells of the right mesh, by the first of their places
-  Array<Index> cells_;    ///< per cell found: which it is, or kNone
-  Array<Index> finders_;  ///< per cell of the right mesh: the first that is this one, or kNone
+  Array<Index> foundPlaces_;  ///< the same, or kNone
+  adjacency::VertexLists<Index> byFirstPlace_;  ///< cells of the right mesh, by their first place
+  Array<Index> cells_;                          ///< per cell found: the matching cell, or kNone
+  Array<Index> finders_;  ///< per cell of the right mesh: the first cell that matches it, or kNone
   Array<std::uint8_t> isGlued_;
   Array<std::uint8_t> isSplit_;
 };

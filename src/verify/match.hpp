@@ -1,9 +1,9 @@
-// What distinguishes two meshes that should agree up to the numbering of vertices, of cells, and
-// the orientation of each cell?
+// How do two meshes differ that should agree up to the numbering of vertices, the numbering of
+// cells, and the orientation of each cell?
 //
-// Places in space tell which cells are the same, and these tell which vertices are: there may be
-// several vertices at one place, e.g. on both sides of a slit. Where there are even several cells,
-// their neighbours tell.
+// Cells are matched by their places in space, and vertices by their cells, since several vertices
+// may be at one place, e.g. on both sides of a slit. Where even several cells are at one place,
+// their neighbours decide.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace hexhex::verification {
 
-/// How many there are, and the smallest.
+/// Their number, and the smallest.
 struct Odd {
   std::uint64_t count = 0;
   std::size_t first = 0;
@@ -22,16 +22,16 @@ struct Odd {
 
 struct Mismatch {
   Odd strangeVertices;  ///< where the right mesh has no vertex
-  Odd gluedVertices;    ///< one where the right mesh has several
-  Odd splitVertices;    ///< several where the right mesh has one: all but one
-  Odd unusedVertices;   ///< of no cell
-  Odd strangeCells;     ///< that the right mesh does not have, or not twice
-  Odd missingCells;     ///< of the right mesh, by its numbers
+  Odd gluedVertices;    ///< a single one where the right mesh has several
+  Odd splitVertices;    ///< several where the right mesh has one: all but one of them
+  Odd unusedVertices;   ///< in no cell
+  Odd strangeCells;     ///< absent from the right mesh, or duplicates
+  Odd missingCells;     ///< cells of the right mesh, by its numbers
 };
 
-/// @param right  a mesh
-/// @param found  another one; corners of both in range
-/// @param tolerance  how far apart, along each axis, a vertex may be in both
+/// @param right  the reference
+/// @param found  the mesh to compare; corners of both are in range
+/// @param tolerance  maximum distance between matching vertices, along each axis
 [[nodiscard]] Mismatch matchMeshes(const HexMesh& right, const HexMesh& found, double tolerance,
                                    Stage& stage);
 

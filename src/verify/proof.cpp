@@ -20,8 +20,8 @@ Expectation expectationOf(igm::PreparedMap& map, Stage& stage) {
 }
 
 ExpectedElements expectedElements(const Expectation& expected) noexcept {
-  // The 12 edges of all cells are regular edges, of four cells or, on the boundary, of two, and
-  // singular ones.
+  // The 12 edges of all cells are regular edges, of four cells or, on the boundary, two, plus
+  // singular edges.
   std::uint64_t singular = 0;
   std::uint64_t singularBoundary = 0;
   std::uint64_t cellsAtSingular = 0;
@@ -83,7 +83,8 @@ bool isProven(const igm::PreparedMap& map, const Expectation& expected, const He
 
 namespace {
 
-/// Calls visit(begin, end) for stretches of ascending numbers: own ones, then layers of ghosts.
+/// Calls visit(begin, end) for stretches of ascending numbers: first own ones, then layers of
+/// ghosts.
 template <class Visit>
 void forEachStretch(std::span<const std::uint64_t> numbers, const Visit& visit) {
   std::size_t begin = 0;
@@ -94,11 +95,11 @@ void forEachStretch(std::span<const std::uint64_t> numbers, const Visit& visit) 
   }
 }
 
-/// Lists the tets that own things with numbers.
-/// @param begin  per tet (+1): the first that it owns
+/// Lists the tets that own numbered items.
+/// @param begin  per tet (+1): the first item it owns
 void addOwners(const Array<std::uint64_t>& begin, std::span<const std::uint64_t> numbers,
                std::vector<Index>& tets, Faults& wrong) {
-  std::uint64_t first = 1;  // of the last tet
+  std::uint64_t first = 1;  // past the latest tet
   std::uint64_t end = 0;
   for (const std::uint64_t number : numbers) {
     if (first <= number && number < end) continue;
@@ -159,7 +160,7 @@ void PartProof::compare(const MeshPart& part, Stage& stage) {
   requireNone(cells, part.part, "cells with other corners");
 }
 
-/// Those that own vertices or cells.
+/// The tets that own vertices or cells of the part.
 std::vector<Index> PartProof::tetsOf(const MeshPart& part, Faults& wrongPoints,
                                      Faults& wrongCells) const {
   std::vector<Index> tets;

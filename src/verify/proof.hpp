@@ -1,16 +1,16 @@
-// Is a mesh in canonical order the mesh of a map? A proof: every lattice point and every cell
-// centre of the map is looked at once.
+// Is a mesh in canonical order the mesh of a map? A proof that looks at every lattice point and
+// every cell centre of the map once.
 //
-//  1. Lattice points: those that a sweep over the tets names are in their tets by exact predicates,
-//     no two are the same, and they are as many as the Euler characteristic, the boundary's area
-//     and the lengths of singular curves demand. So they are all. Vertex i is the i-th, if it is
-//     there in space.
-//  2. Centres: likewise, as many as the volume demands. Cell i is the one around the i-th.
-//  3. Corners: the half diagonal from the centre to each corner ends at the lattice point that the
-//     cell's vertex is.
+// 1. Lattice points: exact predicates show that those named by a sweep over the tets are in their
+//    tets, no two are the same, and their number is what the Euler characteristic, the boundary's
+//    area and the lengths of singular curves imply. So the list is complete. Vertex i is the i-th
+//    lattice point if it is at that point's position in space.
+// 2. Centres: likewise; their number is what the volume implies. Cell i is the one around centre i.
+// 3. Corners: the half diagonal from the centre to each corner ends at the lattice point of the
+//    cell's vertex.
 //
-// The sweep is that of the engines, and so is the numbering: both are hints, which the steps above
-// prove or refute. What is believed are the prepared map and the exact predicates.
+// The sweep and the numbering are those of the engines: both are hints, which the steps above prove
+// or refute. The proof trusts only the prepared map and the exact predicates.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +27,10 @@
 
 namespace hexhex::verification {
 
-/// What follows from a scaled map, whose topology gets stars.
+/// What a scaled map implies. Adds stars to its topology.
 [[nodiscard]] Expectation expectationOf(igm::PreparedMap& map, Stage& stage);
 
-/// How many vertices, edges and faces the mesh of a map has.
+/// Numbers of vertices, edges and faces of the mesh that a map implies.
 struct ExpectedElements {
   std::uint64_t vertices = 0;
   std::uint64_t edges = 0;
@@ -38,15 +38,15 @@ struct ExpectedElements {
 };
 [[nodiscard]] ExpectedElements expectedElements(const Expectation& expected) noexcept;
 
-/// Looks at a mesh, as a whole or piece by piece. It has as many points and cells as expected.
+/// Checks a mesh, as a whole or piece by piece. It has as many points and cells as expected.
 class Proof {
  public:
   /// @param map       scaled; must outlive this
   /// @param expected  of the scaled map
-  /// @param indexed   as of LatticePlaces
+  /// @param indexed   see LatticePlaces
   Proof(const igm::PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage);
 
-  /// Points from number `first` on. To be called only as long as the hints are right.
+  /// Points from number `first` on. Call only while the hints hold.
   void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
     places_.compare(first, points, stage, positions_);
   }
@@ -54,10 +54,10 @@ class Proof {
   template <class Cell>
   void compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage);
 
-  [[nodiscard]] const Faults& hints() const noexcept { return hints_; }  ///< tets
+  [[nodiscard]] const Faults& hints() const noexcept { return hints_; }  ///< wrong tets
   [[nodiscard]] const Faults& positions() const noexcept { return positions_; }
   [[nodiscard]] const Faults& cells() const noexcept { return cells_; }
-  /// All that was compared so far.
+  /// Whether everything compared so far is right.
   [[nodiscard]] bool passed() const noexcept {
     return hints_.count() + positions_.count() + cells_.count() == 0;
   }
@@ -71,25 +71,25 @@ class Proof {
   Faults cells_;
 };
 
-/// Looks at a whole mesh. Only one in canonical order can pass.
+/// Checks a whole mesh. Only a mesh in canonical order can pass.
 [[nodiscard]] bool isProven(const igm::PreparedMap& map, const Expectation& expected,
                             const HexMesh& mesh, Stage& stage);
 
-// Is a part of a mesh a part of the mesh of a map? The proof of proof.hpp, one part after the
-// other, in memory that does not grow with the whole mesh: each part proves the tets that own
-// something of it. As the numbers of vertices and cells are those that the map demands, tets that
-// own nothing of any part own nothing at all. That all is there, PartSurvey sees by the numbers.
+// Is a part of a mesh a part of the mesh of a map? The proof of proof.hpp, part by part, in memory
+// that does not grow with the whole mesh: each part proves the tets that own something of it. Since
+// the numbers of vertices and cells are those that the map implies, tets that own nothing of any
+// part own nothing at all. PartSurvey checks by the numbers that nothing is missing.
 
 class PartProof {
  public:
-  /// @param map       scaled; outlives this, and so do the counts
+  /// @param map       scaled; outlives this, as do the counts
   /// @param expected  of the scaled map
   /// @param counts    hints
   /// @throws Error VerificationFailed if there are more or fewer vertices or cells than expected
   PartProof(const igm::PreparedMap& map, const Expectation& expected,
             const sweep::ElementCounts& counts);
 
-  /// Looks at all vertices and cells of a part, ghosts too.
+  /// Checks all vertices and cells of a part, including ghosts.
   /// @throws Error VerificationFailed, naming the first that is wrong
   void compare(const MeshPart& part, Stage& stage);
 

@@ -1,5 +1,5 @@
-// The mesh of a map is compared with the map itself if it is in canonical order (proof.hpp), and
-// otherwise with another one that is, and that was proven to be right (match.hpp).
+// A mesh in canonical order is compared with the map itself (proof.hpp); any other mesh is compared
+// with one in canonical order that was proven right (match.hpp).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@
 
 namespace hexhex::verification {
 
-/// A scaled map, and what follows from it.
+/// A scaled map, and what it implies.
 struct Reference {
   igm::PreparedMap map;
   Expectation expected;
@@ -49,7 +49,8 @@ void checkOptions(const VerifyOptions& options) {
 }
 
 /// Adds "indices_in_range"; returns whether it passed.
-/// @param bad  the first cell with a corner that is no vertex; or all of them
+/// @param bad  the first cell with a corner that is no vertex, or the number of cells if there is
+///             none
 bool addIndicesInRange(std::size_t bad, std::size_t cells, Comparisons& comparisons) {
   const bool inRange = bad == cells;
   comparisons.add("indices_in_range", "yes", inRange ? "yes" : "no (first: " + cellName(bad) + ")",
@@ -57,7 +58,8 @@ bool addIndicesInRange(std::size_t bad, std::size_t cells, Comparisons& comparis
   return inRange;
 }
 
-/// How far a vertex may be from its place: digits behind those that coordinates have are unknown.
+/// Maximum distance of a vertex from its place: digits beyond those that coordinates carry are
+/// unknown.
 double toleranceOf(const HexMesh& mesh, const Array<Vec3>& right, int digits) {
   if (digits == 0) {
     const auto isFloat = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
@@ -70,7 +72,7 @@ double toleranceOf(const HexMesh& mesh, const Array<Vec3>& right, int digits) {
   for (const Vec3& p : right) {
     for (const double x : p) largest = std::max(largest, std::abs(x));
   }
-  // Positions are computed with an error of a few roundings; below 2^-1022, numbers lose digits.
+  // Positions are off by a few roundings; below 2^-1022, numbers lose digits.
   return largest * std::max(0x1p-46, 0.5 * std::pow(10.0, 1 - digits)) + 0x1p-1060;
 }
 
@@ -92,7 +94,7 @@ void compareMeshes(const HexMesh& right, const HexMesh& mesh, int digits, Stage&
   addCells("missing_cells", mismatch.missingCells, "in canonical order, ");
 }
 
-/// Adds "map_valid"; nothing if it did not pass.
+/// Adds "map_valid"; returns nothing if it did not pass.
 std::optional<Reference> referenceOf(const TetMapView& map, const VerifyOptions& options,
                                      Context& context, Comparisons& comparisons) {
   igm::DefectCollector defects;
@@ -107,7 +109,7 @@ std::optional<Reference> referenceOf(const TetMapView& map, const VerifyOptions&
   return Reference{std::move(prepared), std::move(expected)};
 }
 
-/// Adds "cells" and "vertices"; returns whether all passed so far.
+/// Adds "cells" and "vertices"; returns whether everything passed so far.
 bool compareCounts(const Expectation& expected, std::uint64_t cells, std::uint64_t vertices,
                    Comparisons& comparisons) {
   comparisons.addEqual<std::uint64_t>("cells", expected.cells, cells);
@@ -119,7 +121,7 @@ void addWrongExtraction(Comparisons& comparisons) {
   comparisons.add("extraction", "right", "wrong: please report this with the map", false);
 }
 
-/// A map, ready to be compared with meshes.
+/// A map that is ready to be compared with meshes.
 class Verification {
  public:
   /// @param map  scaled
@@ -128,7 +130,7 @@ class Verification {
       : map_(map), options_(options), context_(context), stage_(stage), expected_(expected) {}
 
   void compare(const HexMesh& mesh, Comparisons& comparisons) {
-    // A proof looks at all corners, too; so what passes is not looked at twice.
+    // The proof also checks all corners, so there is no need to check them again if it passes.
     if (isProven(map_, expected_, mesh, stage_)) {
       addIndicesInRange(mesh.cells.size(), mesh.cells.size(), comparisons);
       compareCounts(expected_, mesh.cells.size(), mesh.points.size(), comparisons);
@@ -144,7 +146,7 @@ class Verification {
  private:
   void compareCells(const HexMesh& mesh, Comparisons& comparisons) {
     compareCounts(expected_, mesh.cells.size(), mesh.points.size(), comparisons);
-    // Beside a mesh of quite another size, no vertex or cell is worth a name.
+    // If the mesh has a completely different size, naming a vertex or cell is pointless.
     if (mesh.cells.size() / 2 > expected_.cells || expected_.cells / 2 > mesh.cells.size()) return;
     compareWithRightOne(mesh, comparisons);
   }
@@ -277,7 +279,7 @@ class VerifySink::Checker {
     });
   }
 
-  Context quiet_;  ///< pieces come while somebody else reports progress
+  Context quiet_;  ///< pieces arrive while somebody else reports progress
   verification::Comparisons comparisons_;
   std::optional<verification::Reference> reference_;
   std::optional<verification::Proof> proof_;

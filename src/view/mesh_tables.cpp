@@ -1,4 +1,4 @@
-// Which numbers of a mesh go into which table, and how tables are packed.
+// Decides which numbers of a mesh go into which table, and packs the tables.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,16 +20,17 @@
 namespace hexhex::view {
 namespace {
 
-// How a chunk is packed: the row above is subtracted from each row (modulo 2^32), signs go to the
-// lowest bit, and the bytes are sorted by significance: what is left are long runs of the same few
-// bytes, which zlib is good at. Row by row or column by column: whichever packs the first chunk
-// better, which makes points a sixth smaller, and cells of some meshes by 7 %.
+// How a chunk is packed: each row is replaced by its difference from the previous row (modulo
+// 2^32), signs move to the lowest bit, and bytes are sorted by significance. What remains is long
+// runs of few byte values, which zlib compresses well. Either row by row or column by column,
+// whichever packs the first chunk better: this makes points a sixth smaller, and cells of some
+// meshes 7 %.
 
-/// Numbers per chunk: large enough for zlib, small enough for a string in a browser, and for work
-/// on all cores.
+/// Numbers per chunk: large enough for zlib, small enough for a string in a browser and for keeping
+/// all cores busy.
 constexpr std::size_t kNumbersPerChunk = std::size_t{1} << 18;
 
-/// Level 6 takes 1.7 times as long for tables that are 2 to 4 % smaller.
+/// Level 6 takes 1.7 times as long for tables that are only 2 to 4 % smaller.
 constexpr int kZlibLevel = 5;
 
 /// 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
@@ -73,7 +74,7 @@ std::string deflated(const std::string& bytes) {
   const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
                                reinterpret_cast<const Bytef*>(bytes.data()),
                                static_cast<uLong>(bytes.size()), kZlibLevel);
-  // The bound suffices for any content, so nothing else can happen.
+  // The bound suffices for any content, so no other failure is possible.
   if (status != Z_OK) throw std::bad_alloc();
   packed.resize(size);
   packed.shrink_to_fit();
@@ -117,7 +118,7 @@ std::string toBase64(std::string_view bytes) {
     for (std::size_t k = 0; k < 3; ++k) {
       group = group << 8U | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
     }
-    // The digits that no byte reaches stay '='.
+    // Digits without any bits of the input remain '='.
     for (std::size_t k = 0; k <= count; ++k) to[k] = kDigits[group >> (18 - 6 * k) & 63U];
     to += 4;
   }
@@ -126,7 +127,7 @@ std::string toBase64(std::string_view bytes) {
 
 namespace {
 
-/// Which nodes of a cell are on its faces, but not at corners.
+/// Positions, in a cell's list, of the nodes that are on its faces but not at corners.
 std::vector<std::size_t> placesOnFaces(int order) {
   std::vector<std::size_t> places;
   std::size_t place = 0;
@@ -171,15 +172,15 @@ SurfaceNodes surfaceNodesOf(const LagrangeMesh& mesh) {
 
 namespace {
 
-/// 20 bits: in a mesh of a hundred cells along a side, a ten-thousandth of a cell.
+/// 20 bits: a ten-thousandth of a cell in a mesh with a hundred cells along a side.
 constexpr double kPositionSteps = (1U << 20U) - 1U;
 
-/// The tables of a page; those without rows are left out.
+/// The tables of a page; empty ones are omitted.
 class TableList {
  public:
   explicit TableList(Stage& stage) : stage_(stage) {}
 
-  /// @param putRow  of (i, place): puts row i at its place, and returns the place behind
+  /// @param putRow  of (i, place): writes row i to its place, and returns the end of the row
   template <class PutRow>
   void add(std::string_view name, std::size_t rows, std::size_t columns, const PutRow& putRow) {
     const auto fill = [&putRow](std::size_t begin, std::size_t end, std::uint32_t* to) {
@@ -241,7 +242,7 @@ Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     longest = std::max(longest, result.upper[axis] - result.lower[axis]);
   }
-  // The page computes in the same numbers.
+  // The page computes with the same number type.
   if (!std::isfinite(longest)) {
     throw Error(ErrorCode::TooLarge,
                 "The bounding box of the mesh is larger than the largest number. The mesh cannot "

@@ -1,5 +1,5 @@
-// A mesh as the tables of a page: whole numbers, packed as differences, byte planes, zlib. The
-// other side is decodeChunk() in viewer/src/format.ts.
+// A mesh as the tables of a page: integers, packed as differences, byte planes, zlib. The
+// counterpart is decodeChunk() in viewer/src/format.ts.
 #pragma once
 
 #include <cstddef>
@@ -24,57 +24,57 @@ struct PackedTable {
   std::size_t rows = 0;
   std::size_t columns = 0;
   std::size_t rowsPerChunk = 0;
-  bool byRows = false;  ///< whether numbers are packed row by row, otherwise column by column
-  std::vector<std::string> chunks;  ///< a zlib stream each
+  bool byRows = false;  ///< whether numbers are packed row by row; otherwise column by column
+  std::vector<std::string> chunks;  ///< one zlib stream each
 };
 
 /// Writes the numbers of rows [begin, end), row by row, to `to`. Called from several threads.
 using FillRows = std::function<void(std::size_t begin, std::size_t end, std::uint32_t* to)>;
 
-/// Packs a table. Neighbouring rows should be similar.
-/// The result does not depend on the number of threads.
+/// Packs a table. Consecutive rows should be similar. The result does not depend on the number of
+/// threads.
 [[nodiscard]] PackedTable packTable(std::string_view name, std::size_t rows, std::size_t columns,
                                     const FillRows& fill, Stage& stage);
 
 /// The base64 encoding (RFC 4648) of bytes.
 [[nodiscard]] std::string toBase64(std::string_view bytes);
 
-/// What a page takes of cells of higher order: the nodes on their faces, without those at corners.
-/// Their numbers follow those of the hex vertices, in the order in which cells name them first.
+/// What a page needs of higher-order cells: the nodes on their faces, except those at corners. They
+/// are numbered after the hex vertices, in the order in which cells first name them.
 struct SurfaceNodes {
   int order = 1;
   Array<Vec3> points;
   std::size_t perCell = 0;  ///< (p + 1)^3 - (p - 1)^3 - 8
   /// `perCell` numbers per cell: the nodes (i, j, k) of LagrangeMesh with an index that is 0 or p,
-  /// but not all three, in the order there. As in viewer/src/curves.ts.
+  /// but not all three, in the same order. As in viewer/src/curves.ts.
   Array<Index> numbers;
 };
 
 /// @throws Error  as requireConsistent() of the mesh
 [[nodiscard]] SurfaceNodes surfaceNodesOf(const LagrangeMesh& mesh);
 
-/// How good the cells are.
+/// The quality of the cells.
 struct CellQuality {
   std::span<const double> scaledJacobians;
-  std::vector<Index> notPositive = {};  ///< cells that are not certified, ascending
+  std::vector<Index> notPositive = {};  ///< cells without certificate, ascending
 };
 
-/// The same mesh before it was improved. Without points: the page shows one state.
+/// The same mesh before improvement. Without points, the page shows a single state.
 struct StateBefore {
   std::span<const Vec3> points;  ///< of the vertices
   std::span<const Vec3> nodes;   ///< in the order of SurfaceNodes::points
   CellQuality quality = {};
 };
 
-/// Where quantized coordinates are: coordinate = lower + step * number, the same step on all axes.
+/// Quantization of coordinates: coordinate = lower + step * number, with the same step on all axes.
 struct Quantization {
   Vec3 lower{};
   Vec3 upper{};
   double step = 1;
 };
 
-/// The smallest box around vertices and nodes, of both states, in 2^20 - 1 steps along its longest
-/// side.
+/// The smallest box around the vertices and nodes of both states, with 2^20 - 1 steps along its
+/// longest side.
 /// @throws Error NotFinite; TooLarge if the longest side exceeds the largest double
 [[nodiscard]] Quantization quantizationOf(const HexMesh& mesh, const SurfaceNodes& nodes = {},
                                           const StateBefore& before = {});

@@ -1,4 +1,4 @@
-// The page: the template with title, a JSON text, and the packed mesh.
+// The page: the template filled with a title, a JSON text, and the packed mesh.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,20 +27,20 @@
 namespace hexhex::view {
 namespace {
 
-/// Textures of 4096 by 4096 texels, which phones have, too; and their memory ends about here.
+/// Textures of 4096 by 4096 texels, which phones support; their memory ends about here, too.
 constexpr std::size_t kMostElements = (std::size_t{1} << 24U) - 1;
 
-/// Numbers of nodes: half a gigabyte in a browser.
+/// Limit of node numbers: half a gigabyte in a browser.
 constexpr std::size_t kMostNodeNumbers = std::size_t{1} << 27U;
 
-/// Packed mesh and JSON text: all of the page that depends on the mesh.
+/// Packed mesh and JSON text: everything on the page that depends on the mesh.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw, however it is declared.
 struct PageContent {
   nlohmann::json info;
   std::vector<PackedTable> tables;
 };
 
-/// A mesh as it is shown: the straight one between the corners, and how its faces bend.
+/// The displayed mesh: the straight one between the corners, and how its faces bend.
 struct Subject {
   const HexMesh& mesh;
   const SurfaceNodes& nodes;
@@ -192,7 +192,7 @@ NamedSkin namedSkin(const HexMesh& mesh, Stage& stage) {
   return skin;
 }
 
-/// @param before  of subject.before, if that has points
+/// @param before  certificate of subject.before, if that has points
 PageContent makeContent(const Subject& subject, const Certificate& certificate,
                         const Certificate& before, const ViewOptions& options, Context& context) {
   Array<double> quality(options.scaledJacobians.begin(), options.scaledJacobians.end());
@@ -291,14 +291,15 @@ std::string escaped(std::string_view text) {
   return replaced(replaced(text, '&', "&amp;"), '<', "&lt;");
 }
 
-/// JSON that may stand in a script element: nothing in it ends the element. Bytes that are no UTF-8
+/// JSON for a script element: contains nothing that would end the element. Bytes that are not UTF-8
 /// (in file names) are replaced.
 std::string scriptText(const nlohmann::json& value) {
   return replaced(value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), '<',
                   "\\u003c");
 }
 
-/// All before the mesh. @param connect  what the page may connect to
+/// Everything before the mesh.
+/// @param connect  what the page may connect to
 std::string pageHead(const PageContent& content, const ViewOptions& options,
                      std::string_view connect) {
   const PageTemplate& page = *pageTemplate();
@@ -319,7 +320,7 @@ template <class Mesh>
 void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOptions& options,
                Context& context) {
   WorkSteps steps(context, "writeViewPage", kPageSteps);
-  io::OutputFile output(file);  // first, so that a folder that is not writable shows at once
+  io::OutputFile output(file);  // first, so that an unwritable folder is noticed immediately
   const PageContent content = makeContent(mesh, options, context);
   const Stage stage(context, "write page");
   output.write(pageHead(content, options, "'none'"));

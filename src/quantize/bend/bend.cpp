@@ -17,10 +17,10 @@ namespace {
 
 /// More rounds of splitting have not helped any map.
 constexpr int kMostRounds = 16;
-/// Coordinates are multiples of 2^-30: sanitization keeps them exactly up to 2^22, and if the map
-/// is going to be scaled by some hundreds.
+/// Coordinates are multiples of 2^-30: sanitization preserves them exactly up to 2^22, and up to
+/// scales of some hundreds.
 constexpr int kFractionBits = 30;
-/// Of tets around flipped ones that may move to make room for them.
+/// Number of rings of tets around flipped ones that may move to make room.
 constexpr int kRings = 4;
 
 /// Edges of a tet from its first corner.
@@ -32,7 +32,7 @@ double determinantOf(const std::array<Vec3, 3>& edges) {
   return tripleProduct(edges[0], edges[1], edges[2]);
 }
 
-/// One mesh and its unknowns: what is new after each round of splitting.
+/// One mesh and its unknowns: rebuilt after each round of splitting.
 class Round {
  public:
   Round(BendState& state, Stage& stage) : state_(state), stage_(stage) {
@@ -47,12 +47,12 @@ class Round {
   [[nodiscard]] const adjacency::TetTopology& topology() const noexcept { return topology_; }
   [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
 
-  /// As integers alone bind them, wherever vertices may move now.
+  /// How the integers alone bind these tets, regardless of which vertices may currently move.
   [[nodiscard]] Tightness tightness(std::span<const Index> tets) const {
     return findTightness(findUnknowns(state_.problem, topology_, stage_), topology_, tets);
   }
 
-  /// From now on, only vertices near these tets move.
+  /// From now on, moves only vertices near these tets.
   void moveOnlyNear(std::span<const Index> tets) {
     std::vector<bool> isNear(topology_.pointCount, false);
     std::vector<Index> region(tets.begin(), tets.end());
@@ -67,14 +67,15 @@ class Round {
     }
   }
 
-  /// Bends the tets and rounds their corners. Fills `bent`, and what the map knows of this.
-  /// @param isFresh  not from where they are bent to
-  /// @return whether nothing good comes from going on from there: tets are positive, but wind
+  /// Bends the tets and rounds their corners. Fills `bent` and the results in the map.
+  /// @param isFresh  whether to ignore the current `bent` and start anew
+  /// @return whether continuing from the result is useless: tets are positive, but wound around
+  ///         edges
   bool run(bool isFresh, int polishing, BentMap& map) {
     untangle::Problem problem = describe(isFresh);
     untangle::Solver solver(problem, stage_);
     if (isFresh) solver.start();
-    // After a split, most of the map is good: a small penalty leaves it so, and often suffices.
+    // After a split, most of the map is good: a small penalty keeps it so, and often suffices.
     untangle::Result result = solver.run({.epsilon = isFresh ? 1 : 1e-3, .polishing = polishing});
     map.iterations += result.steps;
     if (!isFresh && !result.flipped.empty()) {
@@ -97,9 +98,9 @@ class Round {
     return state_.bent[t][static_cast<std::size_t>(topology_.localCorner(t, v))];
   }
 
-  /// Numbers the unknowns. All tets are elements that are to be as large as the bent map, whose
-  /// volume follows from its integers alone: at low densities that is several times as much as the
-  /// reference, and tets would fight for their size.
+  /// Numbers the unknowns. All tets are elements scaled to the volume of the bent map, which
+  /// follows from its integers alone: at low densities that is several times the reference's
+  /// volume, and tets would compete for their size.
   untangle::Problem describe(bool isFresh) {
     untangle::Problem problem;
     numbers_.assign(topology_.pointCount, {-1, -1, -1});
@@ -149,7 +150,7 @@ class Round {
             element.corners[2].at(x.data()), element.corners[3].at(x.data())};
   }
 
-  /// Rounds unknowns, and derives all corners.
+  /// Rounds unknowns, and computes all corners from them.
   /// @return tets that are not positive, exactly
   std::vector<Index> round(untangle::Problem& problem) {
     constexpr double kUnit = 1 << kFractionBits;
@@ -204,8 +205,8 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
     isFresh = round.run(isFresh, options.polishing, map);
     if (map.flippedTets.empty() && !isLocal) break;
     if (!map.flippedTets.empty()) map.tightness = round.tightness(map.flippedTets);
-    // What is flipped gets a second try, more exactly and without the rest, before it is split; the
-    // whole map is polished in the end.
+    // Flipped tets get a second try, more exactly and without the rest, before they are split; the
+    // whole map is polished at the end.
     if (map.flippedTets.empty() || !(isLocal || isFresh)) continue;
     const auto edges =
         edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);

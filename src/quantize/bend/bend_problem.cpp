@@ -9,9 +9,8 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Walls may cut a tet into parts in several blocks. Its chart is that of the block of one of them;
-/// this is the way from the other ones' integer charts into it: that with the tet's own number,
-/// which comes before them.
+/// Walls may cut a tet into parts in several blocks. The tet's chart is that of the part that kept
+/// its number, which precedes the others; returns the way from each part's integer chart to it.
 std::vector<lattice::LatticeMotion> waysToOriginal(const MotorcycleComplex& complex,
                                                    const BlockIntegers& integers) {
   const WallMesh& mesh = complex.mesh;
@@ -42,12 +41,12 @@ lattice::Transition toTransition(const lattice::LatticeMotion& change) {
   return {change.rotation, {toInt32(t[0]), toInt32(t[1]), toInt32(t[2])}};
 }
 
-/// Lengths that are far below one cell are rounded to one, so that a block may be as many orders
-/// thinner than its integers say. The solver is left to make up for this ratio and its inverse:
-/// within these, maps are nearer to the seamless one; a ratio of 10^4 it cannot follow.
+/// Lengths far below one cell are rounded up to one, so a block may be thinner than its integers
+/// say by orders of magnitude. The solver is left to make up for this ratio and its inverse: up to
+/// these, maps get closer to the seamless one; it cannot follow a ratio of 10^4.
 constexpr double kMostStretch = 4;
 
-/// Per block and axis: the integer length by the real one.
+/// Per block and axis: the integer length divided by the real one.
 /// @param unit  length of a cell on the lattice
 std::vector<Vec3> blockRatios(const MotorcycleComplex& complex, const BlockIntegers& integers,
                               double unit) {
@@ -70,8 +69,8 @@ std::vector<Vec3> blockRatios(const MotorcycleComplex& complex, const BlockInteg
   return ratios;
 }
 
-/// By what the reference of each tet is stretched along its axes: the mean over its parts, beyond
-/// what the solver is left to make up for.
+/// Factors by which the reference of each tet is stretched along its axes: the mean over its parts,
+/// without the factor that is left to the solver.
 std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
                                const std::vector<lattice::LatticeMotion>& ways,
                                const std::vector<Vec3>& ratios, std::size_t originals) {
@@ -98,14 +97,14 @@ std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
   return stretches;
 }
 
-/// Across an axis of an integer chart, through a point of it, in the chart beyond.
+/// The plane across an axis of an integer chart through a given point, in the chart beyond.
 BoundaryPlane toPlane(std::size_t axis, const lattice::LatticePoint& node,
                       const lattice::LatticeMotion& way) {
   const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(way);
   return {static_cast<std::int8_t>(plane.axis), toInt32(plane.value)};
 }
 
-/// The edges and vertices of features that are aligned.
+/// Fixes the edges and vertices of aligned features.
 void fixFeatures(const MotorcycleComplex& complex, const BlockIntegers& integers,
                  const std::vector<lattice::LatticeMotion>& ways, BendProblem& problem) {
   const WallMesh& mesh = complex.mesh;

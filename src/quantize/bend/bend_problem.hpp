@@ -1,5 +1,4 @@
-// From integers on arcs to integers between the charts of a map's tets: what the map is to be bent
-// onto.
+// From integers on arcs to integers between the charts of a map's tets: the target of bending.
 #pragma once
 
 #include <quantize/bend/bend.hpp>

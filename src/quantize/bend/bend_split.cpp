@@ -13,7 +13,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// How many coordinates of an edge's inner points are fixed, by what is around the edge.
+/// Number of coordinates of an edge's inner points that are fixed by what surrounds the edge.
 int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topology, Index tet,
                lattice::CornerMask edge) {
   tetmap::FixedAxes fixed;  // in the chart of the tet
@@ -39,7 +39,7 @@ int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topolog
   return std::popcount(fixed.axes());
 }
 
-/// Edges whose middles are freer than both of their ends.
+/// Edges whose midpoints are freer than both of their ends.
 std::vector<tetmap::EdgeInTet> freeingEdges(const BendProblem& problem,
                                             const adjacency::TetTopology& topology,
                                             const VertexUnknowns& unknowns,
@@ -59,7 +59,7 @@ std::vector<tetmap::EdgeInTet> freeingEdges(const BendProblem& problem,
   return edges;
 }
 
-/// What both parts of a tet have of it. Between them there is one chart.
+/// Gives both parts of a tet its data. They have the same chart.
 void carryCut(BendState& state, const tetmap::Cut& cut) {
   BendProblem& problem = state.problem;
   tetmap::carryCorners(cut, problem.reference);

@@ -1,5 +1,5 @@
-// How often does a map turn around each edge? Positive tets alone do not ensure that it is locally
-// injective: around an inner edge they may wind twice, which would make it singular.
+// How many times does a map turn around each edge? Positive tets alone do not ensure that it is
+// locally injective: they may wind twice around an interior edge, which would make it singular.
 #pragma once
 
 #include <span>
@@ -26,13 +26,13 @@ template <class Corners>
   return irregular;
 }
 
-/// Both halves of an edge turn as it did.
+/// Both halves of a split edge inherit its turns.
 /// @param middle  a new vertex
 void splitIrregular(const tetmap::VertexPair& edge, Index middle, IrregularEdges& irregular);
 
-/// Tets at edges around which a map turns otherwise than expected, ascending. Its boundary
-/// triangles lie along planes of the grid, so that it turns by multiples of a right angle. Needs
-/// the stars of the topology.
+/// Tets at edges around which a map turns differently than expected, ascending. Boundary triangles
+/// must lie in planes of the grid, so that turns are multiples of a right angle. Needs the
+/// topology's stars.
 [[nodiscard]] std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
                                                   const IrregularEdges& expected,
                                                   std::span<const TetParameters> map, Stage& stage);

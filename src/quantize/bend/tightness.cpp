@@ -11,7 +11,7 @@ namespace {
 
 enum class Binding : std::uint8_t { Plane, Curve, Point, None };
 
-/// What is fixed of the corners of a tet, in its chart.
+/// What is fixed at the corners of a tet, in its chart.
 class BoundCorners {
  public:
   BoundCorners(const VertexUnknowns& unknowns, const adjacency::TetTopology& topology, Index tet) {
@@ -43,7 +43,7 @@ class BoundCorners {
   }
 
  private:
-  /// Axes along which these corners are fixed at one coordinate.
+  /// Axes along which these corners are fixed at the same coordinate.
   [[nodiscard]] unsigned sharedAxes(const std::array<std::size_t, 4>& corners) const {
     unsigned axes = 0;
     for (std::size_t k = 0; k < 3; ++k) {

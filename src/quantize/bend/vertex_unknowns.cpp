@@ -16,7 +16,7 @@ constexpr std::size_t kVertexUnknownsGrain = 256;
 
 using Equations = tetmap::PointEquations<tetmap::KnownRest>;
 
-/// Demands that the image of the point lies in a plane.
+/// Requires the image of the point to lie in a plane.
 void addPlane(const lattice::Transition& toPlane, const BoundaryPlane& plane,
               Equations& equations) {
   const auto axis = static_cast<std::uint8_t>(plane.axis);
@@ -24,8 +24,8 @@ void addPlane(const lattice::Transition& toPlane, const BoundaryPlane& plane,
                      {std::int64_t{toPlane.translation[axis]} - plane.coordinate});
 }
 
-/// The coordinates that are determined; false if that is not a point, a line along an axis or a
-/// plane across one, at integers.
+/// Finds the coordinates that are determined; false if these do not leave a point, a line along an
+/// axis or a plane across one, at integers.
 bool solve(Equations equations, lattice::AxisSet& fixed, Vec3& position) {
   const Equations::Solution solution = std::move(equations).solve();
   bool good = std::all_of(solution.left.begin(), solution.left.end(),
@@ -41,14 +41,14 @@ bool solve(Equations equations, lattice::AxisSet& fixed, Vec3& position) {
   return good;
 }
 
-/// What the star of one vertex demands.
+/// Collects what the star of one vertex demands.
 class StarReader {
  public:
   StarReader(const BendProblem& problem, const adjacency::TetTopology& topology,
              VertexUnknowns& unknowns)
       : problem_(problem), topology_(topology), unknowns_(unknowns) {}
 
-  /// @return whether there is a point
+  /// @return whether there is a solution
   bool run(Index vertex) {
     star_.collect(topology_, vertex);
     const auto members = star_.members();
@@ -88,7 +88,7 @@ class StarReader {
   const adjacency::TetTopology& topology_;
   VertexUnknowns& unknowns_;
   igm::VertexStar star_;
-  std::vector<lattice::Transition> charts_;  ///< per member: from the first one's chart
+  std::vector<lattice::Transition> charts_;  ///< per member: from the first member's chart
 };
 
 }  // namespace
@@ -96,7 +96,7 @@ class StarReader {
 VertexUnknowns findUnknowns(const BendProblem& problem, const adjacency::TetTopology& topology,
                             Stage& stage) {
   VertexUnknowns unknowns;
-  unknowns.fixed.assign(topology.pointCount, lattice::kAllAxes);  // isolated vertices stay so
+  unknowns.fixed.assign(topology.pointCount, lattice::kAllAxes);  // isolated vertices remain fixed
   unknowns.fixedPosition.resize(topology.pointCount);
   unknowns.toCorner.resize(4 * topology.tetCount());
   unknowns.contradictions =

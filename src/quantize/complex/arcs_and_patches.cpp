@@ -35,7 +35,7 @@ std::vector<WallEdge> wallEdges(const WallMesh& mesh) {
   return edges;
 }
 
-/// The complex's edges, and which arc each belongs to.
+/// The complex's edges, and the arc to which each belongs.
 class ArcFinder {
  public:
   ArcFinder(MotorcycleComplex& complex, DisjointSets& sides) : complex_(complex), sides_(sides) {}
@@ -50,7 +50,7 @@ class ArcFinder {
     linkEdges();
   }
 
-  /// Numbers arcs. After collect().
+  /// Numbers arcs. Call after collect().
   void follow() {
     for (Index edge = 0; edge < edges_.size(); ++edge) {
       for (const bool fromHead : {false, true}) {
@@ -71,8 +71,8 @@ class ArcFinder {
     return edgesAt_[vertex].size() != 2 || complex_.mesh.featureVertices.contains(vertex);
   }
 
-  /// How a directed edge lies in its arc: the arc, and whether it goes the arc's way; how far from
-  /// the arc's first node it begins.
+  /// Position of a directed edge in its arc: the arc, whether the edge runs along it or against it,
+  /// and the distance of the edge's tail from the arc's first node.
   struct Position {
     Index arc = kNone;  ///< kNone: not an edge of the complex
     bool isForward = true;
@@ -91,11 +91,11 @@ class ArcFinder {
     std::array<Index, 2> vertices{};
     std::int64_t length = 0;
     Index arc = kNone;
-    Index first = kNone;      ///< its end that is nearer to the arc's first node
+    Index first = kNone;      ///< the end closer to the arc's first node
     std::int64_t offset = 0;  ///< of that end
   };
 
-  /// An edge with all triangles of walls at it.
+  /// Adds an edge, given all triangles of walls at it.
   void addEdge(std::span<const WallEdge> same) {
     const WallMesh& mesh = complex_.mesh;
     std::size_t triangles = 0;
@@ -114,7 +114,7 @@ class ArcFinder {
     edges_.push_back(edge);
   }
 
-  /// Of two triangles at an edge: joins them if they lie in a plane.
+  /// Given two triangles at an edge, joins them if they lie in a plane.
   bool joinIfFlat(std::span<const WallEdge> same) {
     for (const WallEdge& each : same) {
       const adjacency::HalfFace other =
@@ -136,7 +136,7 @@ class ArcFinder {
       for (const Index v : edges_[e].vertices) edgesAt_[v].push_back(e);
     }
   }
-  /// Numbers the arc that begins with an edge.
+  /// Numbers the arc that starts with an edge.
   void follow(Index edge, Index start) {
     Arc arc;
     arc.nodes[0] = start;
@@ -195,7 +195,7 @@ class PatchFinder {
     }
   }
 
-  /// A directed edge of a triangle, if it is one of an arc.
+  /// Adds a directed edge of a triangle if it belongs to an arc.
   void addEdge(adjacency::HalfFace h, std::size_t tail, std::size_t head) {
     const Index tet = adjacency::tetOf(h);
     const WallMesh& mesh = complex_.mesh;
@@ -207,7 +207,7 @@ class PatchFinder {
     side.arc = at.arc;
     while (along[side.axis] == 0) ++side.axis;
     side.sign = along[side.axis] > 0 ? 1 : -1;
-    // The arc's node from which the side comes lies this far behind.
+    // The arc's node where the side starts is this far behind.
     const std::int64_t length = complex_.arcs[at.arc].length;
     const std::int64_t behind = at.isForward ? at.offset : length - at.offset;
     side.start = side.end = from;

@@ -1,4 +1,4 @@
-// What lies between the blocks of a motorcycle complex: rectangles where two of them touch, and the
+// What separates the blocks of a motorcycle complex: rectangles where two blocks touch, and the
 // edges and corners of these.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace hexhex::quantization {
 
-/// Fills in arcs, patches and corners on features, from walls and the charts of blocks.
+/// Fills in arcs, patches and corners on features, given walls and the charts of blocks.
 void findArcsAndPatches(MotorcycleComplex& complex);
 
 /// Per vertex of the complex's mesh: whether arcs end there.

@@ -13,11 +13,12 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// By this power of two less than others, ways around a ring lead along an axis by noise alone.
+/// Paths around a ring that lead this power of two less far along an axis than others do so only by
+/// noise.
 constexpr int kNoiseBits = 24;
 
-/// Numbers the parts between walls, each in one chart.
-/// @return a tet where a block does not close up, as it is a ring; or kNone
+/// Numbers the blocks, i.e. the parts between walls, each in one chart.
+/// @return a tet where a block does not close up because it is a ring; or kNone
 Index findBlocks(MotorcycleComplex& complex) {
   const WallMesh& mesh = complex.mesh;
   const auto forEachNeighbour = [&](Index tet, const auto& visit) {
@@ -42,7 +43,7 @@ Index findBlocks(MotorcycleComplex& complex) {
   return kNone;
 }
 
-/// Cuts a block that returns to itself, and is no box, across.
+/// Cuts across a block that returns to itself and so is no box.
 class RingCutter {
  public:
   /// @param inRing  a tet of the block
@@ -61,7 +62,7 @@ class RingCutter {
                   "A part of the map returns to itself turned over; it has no motorcycle complex.",
                   {PlaceKind::Tet, mesh_.original[inRing_]});
     }
-    // The chart is unrolled somewhere: the plane may lie one way around from there.
+    // The chart is cut open somewhere: the plane may be a way around the ring further on.
     for (const std::int64_t shift : {std::int64_t{0}, moves[axis], -moves[axis]}) {
       if (startAt({axis, somePlace()[axis] + shift}, moves)) return;
     }
@@ -71,7 +72,7 @@ class RingCutter {
   }
 
  private:
-  /// How far the block moves along each axis when one comes back from it, at most.
+  /// Maximum displacement along each axis by a way around the block.
   [[nodiscard]] lattice::LatticePoint findMoves() const {
     lattice::LatticePoint most{};
     for (const Index t : tets_) {
@@ -91,7 +92,7 @@ class RingCutter {
     return static_cast<std::size_t>(std::max_element(moves.begin(), moves.end()) - moves.begin());
   }
 
-  /// A node, so that no short arcs arise.
+  /// A node, to avoid short arcs.
   [[nodiscard]] lattice::LatticePoint somePlace() const {
     const std::vector<bool> isNode = findNodes(complex_);
     lattice::LatticePoint place = complex_.toBlock[inRing_](mesh_.at(inRing_, 0));
@@ -103,9 +104,9 @@ class RingCutter {
     return place;
   }
 
-  /// Cuts along a plane of the block's chart. Where ways around lead along several axes, a wall
-  /// alone may wind for ever: two that begin at one point end at each other.
-  /// @return false if no tet reaches to both sides of the plane
+  /// Cuts along a plane of the block's chart. If ways around lead along several axes, a single wall
+  /// could wind forever: two walls that start at one point end at each other.
+  /// @return false if no tet reaches both sides of the plane
   bool startAt(const AxisPlane& plane, const lattice::LatticePoint& moves) {
     WallTracer tracer(mesh_);
     const auto before = static_cast<Index>(mesh_.tetCount());
@@ -126,7 +127,7 @@ class RingCutter {
     return false;
   }
 
-  /// In the middle of where a plane cuts a tet, in the tet's chart, if it does.
+  /// The centre of the intersection of a plane and a tet, in the tet's chart, if they intersect.
   [[nodiscard]] lattice::LatticePoint pointIn(Index t, const AxisPlane& plane) const {
     Vec3 sum{};
     double count = 0;

@@ -6,10 +6,11 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// A tet may be left with so much of its volume when a corner is moved.
+/// A tet must keep this fraction of its volume when a corner is moved.
 constexpr double kLeastShare = 0.2;
 
-/// Between two points, where a coordinate has a value; the others rounded.
+/// The point between two others where a coordinate has a given value; its other coordinates are
+/// rounded.
 lattice::LatticePoint pointBetween(const lattice::LatticePoint& a, const lattice::LatticePoint& b,
                                    std::size_t axis, std::int64_t value) {
   const lattice::Int128 whole = static_cast<lattice::Int128>(b[axis]) - a[axis];
@@ -17,7 +18,7 @@ lattice::LatticePoint pointBetween(const lattice::LatticePoint& a, const lattice
   lattice::LatticePoint u;
   for (std::size_t k = 0; k < 3; ++k) {
     const lattice::Int128 product = (static_cast<lattice::Int128>(b[k]) - a[k]) * share;
-    // Rounded to the nearest, symmetrically, so that constant coordinates stay as they are.
+    // Rounded to nearest, symmetrically, so that constant coordinates remain unchanged.
     const lattice::Int128 doubled = 2 * product;
     const bool isNegative = (doubled < 0) != (whole < 0);
     const lattice::Int128 numerator = doubled < 0 ? -doubled : doubled;
@@ -122,7 +123,7 @@ bool WallMesh::leavesKeptEdge(const MovedCorner& moved) const {
     if (i == moved.corner || !featureEdges.contains(tetmap::pairOf(tet[i], tet[moved.corner])))
       continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      // Along an axis, an edge has one coordinate that differs.
+      // An edge along an axis has one coordinate that differs.
       const bool isAlong = at(moved.tet, i)[k] != at(moved.tet, moved.corner)[k];
       if (moved.by[k] != 0 && !isAlong) return true;
     }
@@ -170,7 +171,7 @@ bool WallMesh::moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::i
         moved_[there] = static_cast<Index>(star.size());
         star.push_back({there, cornerOf(there, tets[here.tet][here.corner]), by});
       } else if (star[moved_[there]].by != by) {
-        isPossible = false;  // around a singular curve, which would leave its line
+        isPossible = false;  // around a singular curve, the vertex would leave its line
       }
     }
   }

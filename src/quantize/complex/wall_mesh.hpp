@@ -17,24 +17,24 @@ namespace hexhex::quantization {
 /// Not on a face of the tet that it is a part of.
 inline constexpr std::uint8_t kInside = 4;
 
-/// Walls that pass very near to each other leave nothing of a tet between them.
+/// Walls that pass very close to each other leave no room for tets between them.
 class TooThinForWalls : public Error {
  public:
   using Error::Error;
 };
 
-/// Grows as edges are split; tets that were there before keep their numbers, as one of the parts
-/// into which they were split, and their charts.
+/// Grows as edges are split; existing tets keep their charts, and their numbers go to one of the
+/// parts into which they are split.
 class WallMesh : public tetmap::MutableTets {
  public:
   explicit WallMesh(const SeamlessMap& map);
 
-  /// Whether a vertex is none of the map's.
+  /// Whether a vertex is not one of the map's.
   [[nodiscard]] bool isNew(Index vertex) const noexcept { return vertex >= originalVertices_; }
   [[nodiscard]] const lattice::LatticePoint& at(Index tet, std::size_t corner) const noexcept {
     return corners[tet][corner];
   }
-  /// Leaves what is asked of a mesh that will not be split again, without room to grow.
+  /// Releases spare capacity, and what only splitting needs.
   void shrink();
 
   /// Marks a triangle, on both sides.
@@ -43,33 +43,33 @@ class WallMesh : public tetmap::MutableTets {
     if (mate[h] != kNone) isWall[mate[h]] = true;
   }
 
-  /// Makes an edge one of a feature, at which walls are to start.
+  /// Makes an edge a feature edge from which walls start.
   void keepEdge(Index v, Index w);
 
-  /// Splits an edge, and all tets around it, where a coordinate of its tet's chart has a value that
-  /// lies between those at its ends. The other coordinates are rounded to the lattice.
+  /// Splits an edge, and all tets around it, where a coordinate in its tet's chart has a value
+  /// between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
   /// @throws TooThinForWalls if rounding leaves nothing of a part
   Index split(const adjacency::TetEdge& at, std::size_t axis, std::int64_t value);
 
-  /// Moves a vertex along an axis of its tet's chart, into a plane close by, so that no flat tets
+  /// Moves a vertex along an axis of its tet's chart into a nearby plane, so that no flat tets
   /// arise where a wall passes it.
-  /// @return false, and nothing is moved, if a wall, a curve or a kept edge would be left, or a tet
-  ///         became much smaller
+  /// @return false, with nothing moved, if the vertex would leave a wall, a curve or a kept edge,
+  ///         or a tet would become much smaller
   bool moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::int64_t value);
 
   std::vector<lattice::LatticeTet> corners;
   FaceMotions change;
   std::vector<bool> isWall;                   ///< per half-face; the boundary is a wall, too
   std::vector<bool> isFeature;                ///< per half-face
-  std::set<tetmap::VertexPair> featureEdges;  ///< that walls alone keep where they are
+  std::set<tetmap::VertexPair> featureEdges;  ///< kept in place only by walls
   std::set<Index> featureVertices;
-  std::vector<bool> isHeld;     ///< per vertex: on an edge that walls are still to start at
-  std::vector<Index> original;  ///< per tet: of which tet of the map it is a part
-  std::vector<std::uint8_t> originalFace;  ///< per half-face: on which face of that, or kInside
+  std::vector<bool> isHeld;                ///< per vertex: on an edge where walls have yet to start
+  std::vector<Index> original;             ///< per tet: the tet of the map of which it is a part
+  std::vector<std::uint8_t> originalFace;  ///< per half-face: which face of that, or kInside
 
  private:
-  /// A tet at a vertex that is moved, and by what in its chart.
+  /// A tet at a moved vertex, and the displacement in its chart.
   struct MovedCorner {
     Index tet;
     std::uint8_t corner;
@@ -82,7 +82,7 @@ class WallMesh : public tetmap::MutableTets {
   void carryCut(const tetmap::Cut& cut, const lattice::LatticePoint& middle);
 
   Index originalVertices_;
-  std::vector<Index> moved_;  ///< per tet: its place in a list, while one is made; else kNone
+  std::vector<Index> moved_;  ///< per tet: its index in a list, while one is made; else kNone
 };
 
 }  // namespace hexhex::quantization

@@ -9,7 +9,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// By this power of two, on the lattice of 2^52 units, thicknesses have to differ to matter.
+/// Thicknesses matter only if they differ by this power of two, on the lattice of 2^52 units.
 constexpr int kThicknessBits = 28;
 
 class WallRemover {
@@ -39,12 +39,12 @@ class WallRemover {
     }
   }
 
-  /// @return whether there were any
+  /// @return whether any wall was removed
   bool run() {
     std::vector<std::pair<std::int64_t, Index>> removable;
     for (Index p = 0; p < complex_.patches.size(); ++p) {
       const std::int64_t thick = thicknessBeside(p);
-      // Without noise that would decide in symmetric maps.
+      // Without the noise that would decide in symmetric maps.
       if (thick > 0) removable.emplace_back(thick >> kThicknessBits, p);
     }
     std::sort(removable.begin(), removable.end());
@@ -67,7 +67,7 @@ class WallRemover {
   }
 
  private:
-  /// Of the thinner block beside a wall that may go, otherwise 0.
+  /// Thickness of the thinner block beside a wall that may be removed, otherwise 0.
   [[nodiscard]] std::int64_t thicknessBeside(Index p) const {
     const Index other = complex_.acrossPatch(p);
     if (other == kNone || other < p || isFeature_[p]) return 0;
@@ -76,23 +76,23 @@ class WallRemover {
     if (here.block == there.block) return 0;
     return std::min(thickness(here), thickness(there));
   }
-  /// A patch at an arc, which goes along an axis of the patch's block.
+  /// A patch at an arc that runs along an axis of the patch's block.
   struct SideAtArc {
     Index patch;
     Index arc;
     std::size_t axis;
   };
 
-  /// Where nothing but a wall ends at an arc, the patches on its two sides become one without it.
-  /// Marks them as joined.
-  /// @return false, and nothing is done, if that may not be a rectangle
+  /// Where only the wall ends at an arc, the patches on its two sides become one without it. Marks
+  /// them as joined.
+  /// @return false, with nothing done, if the result might not be a rectangle
   bool joinPatchesAround(Index wall) {
     std::vector<Index> joined;
     for (const ArcSide& at : complex_.patches[wall].border) {
       std::set<Index> sheets;
       for (const SideAtArc& side : sidesAt_[at.arc]) sheets.insert(sheetOf(side.patch));
       if (sheets.size() == 2) return false;  // around a curve with two cells
-      if (sheets.size() > 3) continue;       // other walls keep them apart
+      if (sheets.size() > 3) continue;       // other walls separate them
       for (const SideAtArc& side : sidesAt_[at.arc]) {
         const Index sheet = sheetOf(side.patch);
         if (sheet == sheetOf(wall)) continue;
@@ -104,7 +104,7 @@ class WallRemover {
     return true;
   }
 
-  /// The same for both sides of a patch.
+  /// One number for both sides of a patch.
   [[nodiscard]] Index sheetOf(Index p) const { return std::min(p, complex_.acrossPatch(p)); }
 
   [[nodiscard]] bool isWholeSide(const SideAtArc& side) const {
@@ -112,7 +112,7 @@ class WallRemover {
     return patch.high[side.axis] - patch.low[side.axis] == complex_.arcs[side.arc].length;
   }
 
-  /// How thick a block is behind a patch that is a whole side of it, otherwise 0.
+  /// Thickness of a block behind a patch that is an entire side of it, otherwise 0.
   [[nodiscard]] std::int64_t thickness(const PatchSide& patch) const {
     Extent own;
     own.add(patch);
@@ -132,8 +132,8 @@ class WallRemover {
   MotorcycleComplex& complex_;
   std::vector<Extent> blocks_;
   std::vector<Extent> extents_;  ///< per side of a patch
-  std::vector<bool> isFeature_;  ///< per side of a patch: it has to stay
-  std::vector<bool> isJoined_;   ///< per side of a patch: to another one, without a wall
+  std::vector<bool> isFeature_;  ///< per side of a patch: it must stay
+  std::vector<bool> isJoined_;   ///< per side of a patch: joined to another one by removing a wall
   std::vector<std::vector<SideAtArc>> sidesAt_;  ///< per arc
 };
 

@@ -1,14 +1,14 @@
-// Walls of a motorcycle complex that nothing needs.
+// Removes unnecessary walls of a motorcycle complex.
 #pragma once
 
 #include <quantize/complex/motorcycle_complex.hpp>
 
 namespace hexhex::quantization {
 
-/// Takes away walls between two blocks that are one box without it: arcs that nothing needs would
-/// only demand hexahedra (the reduced complex of Brueckner et al.). Thin blocks go first, and no
-/// block twice: what is to be found anew then are blocks, arcs and patches.
-/// @return whether there were any
+/// Removes walls between two blocks that together are one box: arcs that nothing needs would only
+/// demand hexahedra (the reduced complex of Brückler et al.). Thin blocks go first, and no block
+/// twice; afterwards blocks, arcs and patches must be found again.
+/// @return whether any wall was removed
 bool removeNeedlessWalls(MotorcycleComplex& complex);
 
 }  // namespace hexhex::quantization

@@ -9,9 +9,9 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// A wall that crosses an edge so close to its end, as a share of the edge, moves the end.
+/// A wall that crosses an edge within this fraction of an end moves that end instead.
 constexpr double kClose = 0.25;
-/// Of distances between which priorities tell, on the lattice of 2^52 units.
+/// Distances that differ by less have the same priority, on the lattice of 2^52 units.
 constexpr double kDistanceUnits = 0x1p28;
 
 Vec3 toVector(const lattice::LatticePoint& u) {
@@ -45,7 +45,8 @@ AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall) {
 
 namespace {
 
-/// Turns around an edge until it meets a plane through the edge, on whose `side` it begins.
+/// Turns around an edge until it meets a plane through the edge, starting on the given `side` of
+/// it.
 PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
                     adjacency::EdgeTurn<WallMesh> turn) {
   PlaneMeeting meeting;
@@ -54,7 +55,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
     const int sideAhead = side * plane.sideOf(mesh.at(tet, turn.ahead()));
     if (sideAhead < 0) {
       meeting.kind = PlaneMeeting::Kind::Inside;
-      // From the corner behind to that ahead.
+      // From the corner behind to the one ahead.
       meeting.crossed = {tet, static_cast<std::uint8_t>(adjacency::localOf(turn.out())),
                          static_cast<std::uint8_t>(turn.ahead())};
       meeting.plane = plane;
@@ -76,7 +77,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
   }
 }
 
-/// Half a turn from a wall, around one of its edges.
+/// Meets the plane half a turn from a wall, around one of its edges.
 PlaneMeeting meetOpposite(const WallMesh& mesh, adjacency::HalfFace wall, Index v, Index w) {
   const Index tet = adjacency::tetOf(wall);
   const adjacency::TetEdge edge = mesh.edge(tet, v, w);
@@ -149,7 +150,7 @@ adjacency::HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
     const auto& [tet, corner0, corner1] = meeting.crossed;
     const int moved = moveEnd(meeting.crossed, meeting.plane);
     if (moved < 0) split(meeting.crossed, meeting.plane);
-    // Always as a half-face of the tet before it: a turn goes on from its mate.
+    // Always as a half-face of the previous tet: a turn continues from its mate.
     face = moved == corner0 ? mesh_.mate[adjacency::halfFaceOf(tet, corner1)]
                             : adjacency::halfFaceOf(tet, corner0);
   }
@@ -159,7 +160,8 @@ adjacency::HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
 
 void WallTracer::push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
                       const std::array<double, 2>& distances) {
-  // Distance grows by one per unit away from the edge, linearly (the update of fast marching).
+  // Distance is a linear function that grows by one per unit away from the edge (the update of fast
+  // marching).
   const Index tet = adjacency::tetOf(wall);
   const auto point = [&](Index vertex) {
     return toVector(mesh_.at(tet, mesh_.cornerOf(tet, vertex)));
@@ -182,7 +184,7 @@ void WallTracer::push(adjacency::HalfFace wall, const std::array<Index, 2>& edge
 
 void WallTracer::push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances,
                       Index tet) {
-  // Without the noise that would decide who comes first in symmetric maps.
+  // Without the noise that would decide the order in symmetric maps.
   const double distance = std::round((distances[0] + distances[1]) / kDistanceUnits);
   fronts_.push({distance, order_++, edge, distances, tet});
 }
@@ -196,7 +198,7 @@ void WallTracer::startAt(const adjacency::TetEdge& edge, int face) {
   while (along[axis] == 0) ++axis;
   const std::size_t a = (axis + 1) % 3;
   const std::size_t b = (axis + 2) % 3;
-  // The first direction of the grid that a turn from `face` meets, if that is not in it.
+  // The first grid direction that a turn from `face` meets, unless `face` lies in one.
   adjacency::HalfFace wall = adjacency::halfFaceOf(edge.tet, face);
   const lattice::LatticePoint behind =
       mesh_.at(edge.tet, static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge.mask(), face))) -
@@ -222,7 +224,7 @@ void WallTracer::startAt(const adjacency::TetEdge& edge, int face) {
   };
   const Index first = thirdOf(wall);
   if (!mesh_.isBoundary(wall)) push(wall, ends, {0, 0});
-  // Quarter turn by quarter turn, always from the far side of the wall.
+  // Quarter turn by quarter turn, always starting on the far side of the wall.
   bool isStart = true;
   while (true) {
     const adjacency::HalfFace from = isStart && mesh_.isBoundary(wall) ? wall : mesh_.mate[wall];
@@ -339,7 +341,7 @@ void WallTracer::startAlong(Index v, Index w, Index tet) {
                                        mesh_.tets[edge.tet][edge.corner1]};
     adjacency::EdgeTurn turn(mesh_, edge.tet, edge.mask(),
                              adjacency::otherFaceAtEdge(edge.mask(), -1));
-    // From the boundary, inwards.
+    // From the boundary inward.
     turn.goToBoundary();
     startAt(mesh_.edge(turn.tet(), ends[0], ends[1]), adjacency::localOf(turn.out()));
   });

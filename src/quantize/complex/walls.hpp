@@ -1,4 +1,4 @@
-// Walls of the motorcycle complex (Brueckner et al. 2022, "The 3D Motorcycle Complex for Structured
+// Walls of the motorcycle complex (Brückler et al. 2022, "The 3D Motorcycle Complex for Structured
 // Volume Decomposition"): planes that grow from singular edges until they meet others.
 #pragma once
 
@@ -19,40 +19,40 @@ struct AxisPlane {
   [[nodiscard]] int sideOf(const lattice::LatticePoint& u) const noexcept {
     return (u[axis] > value ? 1 : 0) - (u[axis] < value ? 1 : 0);
   }
-  /// The same in the chart beyond.
+  /// The same plane in the chart beyond.
   [[nodiscard]] AxisPlane beyond(const lattice::LatticeMotion& change) const noexcept;
 };
 
 /// Where a turn around an edge meets a plane.
 struct PlaneMeeting {
   enum class Kind : std::uint8_t { Boundary, Face, Inside } kind = Kind::Boundary;
-  adjacency::HalfFace face = kNone;  ///< that lies in the plane
-  adjacency::TetEdge crossed{};      ///< that the plane crosses inside of its tet
-  AxisPlane plane{};                 ///< in the chart of that tet
-  bool wallBefore = false;           ///< whether a wall was passed on the way
+  adjacency::HalfFace face = kNone;  ///< lies in the plane
+  adjacency::TetEdge crossed{};      ///< crossed by the plane inside its tet
+  AxisPlane plane{};                 ///< in that tet's chart
+  bool wallBefore = false;           ///< whether the turn passed a wall
 };
 
-/// Lets walls grow, nearest to their singular edge first.
+/// Grows walls, always the one nearest to its singular edge first.
 class WallTracer {
  public:
   explicit WallTracer(WallMesh& mesh) : mesh_(mesh) {}
 
-  /// Walls in all directions of the grid from what was an edge of a tet, parallel to an axis: a
+  /// Starts walls in all grid directions from a (former) edge of a tet, parallel to an axis: a
   /// singular edge, or one that is to become part of the complex.
   void startAlong(Index v, Index w, Index tet);
 
-  /// A wall from an aligned triangle.
+  /// Starts a wall at an aligned triangle.
   void startAt(adjacency::HalfFace feature);
 
-  /// A wall along a plane that crosses a tet, or runs along its side.
-  /// @return false if there is nothing of it
+  /// Starts a wall along a plane that crosses a tet, or runs along its side.
+  /// @return false if the plane does neither
   bool startIn(Index tet, const AxisPlane& plane);
 
-  /// Lets all walls grow until each ends at others or at the boundary.
+  /// Grows all walls until each ends at others or at the boundary.
   void grow();
 
  private:
-  /// The edge of a wall, and its distance from where the wall began, at both ends.
+  /// The edge of a wall, and the distance of both its ends from where the wall began.
   struct Front {
     double distance = 0;
     std::uint64_t order = 0;
@@ -66,12 +66,13 @@ class WallTracer {
   /// @param face  of the edge's tet, at the edge: on the boundary if the edge is
   void startAt(const adjacency::TetEdge& edge, int face);
   void grow(const Front& front);
-  /// Moves an end of an edge into a plane that crosses the edge close by.
-  /// @return its corner, or -1 if neither end is close, or may move
+  /// Moves an end of an edge into a plane that crosses the edge nearby.
+  /// @return the end's corner, or -1 if neither end is close or may move
   int moveEnd(const adjacency::TetEdge& edge, const AxisPlane& plane);
-  /// Splits an edge where a plane crosses it. If it ends at a vertex of another wall, so are all
-  /// edges of tets around it that the plane crosses: two walls that cross one edge would otherwise
-  /// split what the other has made, by turns and without end, beside that edge.
+  /// Splits an edge where a plane crosses it. If the edge ends at a vertex made by another wall,
+  /// also splits all edges of the tets around it that the plane crosses: otherwise two walls that
+  /// cross one edge would split, alternately and without end, what the other has made beside that
+  /// edge.
   void split(const adjacency::TetEdge& edge, const AxisPlane& plane);
   adjacency::HalfFace wallAt(const PlaneMeeting& meeting);
   void push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
@@ -84,11 +85,11 @@ class WallTracer {
   std::uint64_t order_ = 0;
 };
 
-/// The axis to which a triangle of a wall is perpendicular, in the chart of the half-face's tet.
+/// The axis perpendicular to a triangle of a wall, in the chart of the half-face's tet.
 [[nodiscard]] AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall);
 
-/// The wall, if any, that continues a wall's triangle beyond its edge (v, w), on the same side;
-/// kNone if there is none or the edge is on the boundary.
+/// The wall that continues a wall's triangle beyond its edge (v, w), on the same side; kNone if
+/// there is none or the edge is on the boundary.
 [[nodiscard]] adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall,
                                                Index v, Index w);
 

@@ -77,7 +77,7 @@ void BlockIntegers::findPositions(const MotorcycleComplex& complex,
       }
     }
     if (positions.size() != steps[block].size()) failClosed("a block's arcs are not connected.");
-    // The first position, in the order of coordinates, is a corner of the box.
+    // The first position in lexicographic order is a corner of the box.
     cells_ +=
         static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
   }

@@ -1,4 +1,4 @@
-// Numbers of hexahedra along the arcs of a motorcycle complex (Brueckner et al. 2022, "Volume
+// Numbers of hexahedra along the arcs of a motorcycle complex (Brückler et al. 2022, "Volume
 // Parametrization Quantization for Hexahedral Meshing").
 #pragma once
 
@@ -10,21 +10,21 @@
 
 namespace hexhex::quantization {
 
-/// Opposite sides of a patch are equally long.
+/// Opposite sides of a patch must be equally long.
 [[nodiscard]] std::vector<ArcEquation> arcEquations(const MotorcycleComplex& complex);
 
-/// Integer positions of what real positions a block has: of the nodes on its border.
+/// Converts the real positions of the nodes on a block's border to integer positions.
 class BlockIntegers {
  public:
   /// @param integers  per arc
   BlockIntegers(const MotorcycleComplex& complex, const std::vector<std::int64_t>& integers);
 
-  /// Of a node of a block, at its position in the block's chart.
+  /// The integer position of a node of a block, given its position in the block's chart.
   [[nodiscard]] const lattice::LatticePoint& operator()(
       Index block, const lattice::LatticePoint& position) const {
     return positions_[block].at(position);
   }
-  /// Across a half-face, between the integer charts of the blocks on its sides.
+  /// The motion across a half-face, between the integer charts of the blocks on its sides.
   [[nodiscard]] lattice::LatticeMotion across(const MotorcycleComplex& complex,
                                               adjacency::HalfFace h) const {
     return complex.mesh.isWall[h] ? across_[complex.patchOf[h]] : lattice::LatticeMotion{};

@@ -18,16 +18,16 @@ struct Choice {
   double cells = 0;
 };
 
-/// A motorcycle complex, and what integers its arcs may have. Does not change.
+/// A motorcycle complex, and the constraints on its arcs' integers. Immutable.
 class BlockStructure {
  public:
   /// @param map  must outlive this
-  /// @param reduced  whether walls that nothing needs are taken away
+  /// @param reduced  whether unnecessary walls are removed
   BlockStructure(const SeamlessMap& map, bool reduced, Context& context);
 
   [[nodiscard]] const MotorcycleComplex& complex() const noexcept { return complex_; }
 
-  /// Integers whose number of cells is near to what is wanted, if there are any.
+  /// Integers whose number of cells is close to the target, if there are any.
   [[nodiscard]] std::optional<Choice> choose(double cells, const IntegerSolver& solver,
                                              Context& context) const;
 

@@ -1,3 +1,5 @@
+// Integers for arcs without a solver: rounds the nearest real solution, then improves it greedily
+// by steps along integer solutions of the equations.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +11,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Costs more than any distance: a number below its bound.
+/// Cost of a number below its bound: exceeds that of any distance.
 constexpr double kTooSmall = 1e6;
 
 double cost(std::int64_t integer, double length, int least) {
@@ -17,17 +19,17 @@ double cost(std::int64_t integer, double length, int least) {
   return distance + kTooSmall * static_cast<double>(std::max<std::int64_t>(least - integer, 0));
 }
 
-/// A change of arcs that keeps all equations.
+/// A change of arcs that preserves all equations.
 struct Move {
   std::vector<std::pair<Index, std::int64_t>> arcs;
 };
 
-/// What happens if one free variable grows by as little as it can.
+/// The smallest moves of single free variables, and what follows from them.
 std::vector<Move> movesOf(const IntegerSystem& system, std::size_t arcCount) {
   std::vector<Move> moves;
   for (const Index free : system.freeVariables()) {
     std::vector<double> direction(arcCount);
-    // Twice or more where another variable would be a fraction.
+    // Two or four times as much if another variable would be a fraction.
     for (std::int64_t step = 1; step <= 4; step *= 2) {
       direction[free] = static_cast<double>(step);
       const std::vector<std::int64_t> values = system.roundedTo(direction, 1);
@@ -58,7 +60,7 @@ std::vector<std::int64_t> solveByRounding(const IntegerProgram& program, const C
   }
   if (integers.empty()) return {};
   const std::vector<Move> moves = movesOf(system, n);
-  // The best step, again and again, until none makes it better.
+  // Takes the best step repeatedly until none improves the cost.
   while (true) {
     context.throwIfCancelled();
     double bestGain = 1e-9;

@@ -21,13 +21,14 @@ namespace hexhex::quantization {
 #if defined(HEXHEX_LOADS_HIGHS)
 namespace {
 
-/// What it searches ends as near to the minimum as this, relatively ...
+/// The search ends within this relative distance of the minimum ...
 constexpr double kGap = 0.01;
-/// ... or when it has asked so often whether to go on, which is about a second: those of real maps
-/// take some thirty questions. A limit of time would make the outcome depend on the machine.
+/// ... or after it has asked this often whether to continue, about a second: programs of real maps
+/// take some thirty questions. A time limit would make the result depend on the machine.
 constexpr int kMostQuestions = 10000;
 
-/// What of HiGHS 1 is called, as interfaces/highs_c_api.h declares it (HighsInt is int).
+/// The functions of HiGHS 1 that are used, as declared in interfaces/highs_c_api.h (HighsInt is
+/// int).
 struct Highs {
   using Model = void*;
   struct Answer {
@@ -56,7 +57,7 @@ struct Highs {
                      double* rowDuals) = nullptr;
 };
 
-// Their values in that header.
+// Values from that header.
 constexpr int kError = -1;
 constexpr int kContinuous = 0;
 constexpr int kInteger = 1;
@@ -70,7 +71,7 @@ constexpr int kMipInterrupt = 6;
 void* open(const std::string& file) {
   void* const loaded = dlopen(file.c_str(), RTLD_NOW);
   const std::string problem = loaded == nullptr ? dlerror() : "";
-  // Without it, integers are others: that must not depend on what happens to fail.
+  // Without HiGHS, the integers differ: that must not depend on what happens to fail.
   const bool isChosen = std::getenv("HEXHEX_HIGHS") != nullptr;
   if (loaded == nullptr && (isChosen || problem.find("No such file") == std::string::npos)) {
     throw Error(ErrorCode::FileUnsupported,
@@ -81,9 +82,9 @@ void* open(const std::string& file) {
   return loaded;
 }
 
-/// @return nullptr if it is not there. Stays loaded
+/// @return nullptr if it is not installed. Stays loaded
 void* openAny() {
-  // Libraries cannot be loaded without memory, and may crash then: so much it takes.
+  // Loading a library without memory fails and may crash; this is how much it takes.
   static_cast<void>(Array<char>(std::size_t{1} << 25));
   if (const char* const chosen = std::getenv("HEXHEX_HIGHS")) return open(chosen);
   for (const char* const file : {HEXHEX_HIGHS_FILES "libhighs.so.1", "libhighs.so"}) {
@@ -124,14 +125,14 @@ Highs load() {
   return highs;
 }
 
-/// Loaded when the first program is to be solved.
+/// Loaded when the first program is solved.
 const Highs& highsLibrary() {
   static const Highs loaded = load();
   return loaded;
 }
 
-/// The program as HiGHS takes it. The first half of the columns are the integers, the other half
-/// their distances from the lengths.
+/// The program in the form that HiGHS takes. The first half of the columns are the integers, the
+/// other half their distances from the lengths.
 struct Rows {
   explicit Rows(const IntegerProgram& program) {
     const auto n = static_cast<int>(program.lengths.size());
@@ -159,7 +160,7 @@ struct Rows {
   std::vector<double> factors;
 
  private:
-  /// Of the entries that are last.
+  /// Ends a row: bounds of the entries added last.
   void add(double lowest, double highest) {
     lower.push_back(lowest);
     upper.push_back(highest);

@@ -1,4 +1,4 @@
-// The integer program of quantization, and what solves it.
+// The integer program of quantization (Brückler et al. 2022), and its solvers.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace hexhex::quantization {
 
-/// A sum of arcs, with signs, that has to be zero: arc and factor, ascending.
+/// A signed sum of arcs that must be zero: arc and factor, ascending.
 using ArcEquation = std::vector<std::pair<Index, int>>;
 
-/// Integers n that fulfil the equations and are not below their bounds, with the least sum of |n -
+/// Integers n that satisfy the equations and are not below their bounds, with the least sum of |n -
 /// l| / max(l, 1).
 struct IntegerProgram {
   std::vector<double> lengths;  ///< l
-  std::vector<int> least;       ///< bounds: 1, or 0 for what has no length but noise
+  std::vector<int> least;       ///< bounds: 1, or 0 for arcs whose length is mere noise
   std::vector<ArcEquation> equations;
 };
 
@@ -32,18 +32,17 @@ struct IntegerSolver {
 };
 
 /// HiGHS (Huangfu and Hall 2018, "Parallelizing the dual revised simplex method"), if it can be
-/// loaded: from the file that the environment names in HEXHEX_HIGHS, or from where it was installed
-/// with hexhex or when hexhex was built, or from where the system looks. It comes to within 1 % of
-/// the minimum, unless it takes too long.
-/// @throws Error FileUnsupported if it is there, but cannot be loaded
+/// loaded: from the file named by the environment variable HEXHEX_HIGHS, from where it was
+/// installed with hexhex or when hexhex was built, or from the system's search path. It gets within
+/// 1 % of the minimum, unless that takes too long.
+/// @throws Error FileUnsupported if it exists but cannot be loaded
 [[nodiscard]] IntegerSolver highsSolver();
 
-/// Rounds the nearest real solution, and then changes it step by step along integer solutions of
-/// the equations. Finds good solutions where lengths are large, and none in some cases where they
-/// are small.
+/// Rounds the nearest real solution, then improves it step by step along integer solutions of the
+/// equations. Finds good solutions for large lengths, and sometimes none for small ones.
 [[nodiscard]] IntegerSolver roundingSolver();
 
-/// HiGHS, if it is there.
+/// HiGHS, if available.
 [[nodiscard]] IntegerSolver integerSolver();
 
 }  // namespace hexhex::quantization

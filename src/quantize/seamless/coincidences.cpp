@@ -12,15 +12,15 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// So many planes are compared with each other at most: more of them come near to each other by
+/// Maximum number of planes that are compared with each other: among more, some are close by
 /// chance.
 constexpr std::size_t kMostPlanes = 10'000;
-/// So often one is taken across a piece of the cut at most: for maps with many pieces, the rest of
-/// quantization takes longer than this.
+/// Maximum number of times that a plane is carried across a piece of the cut: for maps with more
+/// pieces, the rest of quantization takes longer than this.
 constexpr std::size_t kMostIntersections = 200'000;
 
-/// Planes may also lie anywhere: one on each axis stands for those, at this share of the extent,
-/// which no other plane is likely to have.
+/// Planes may also have arbitrary coordinates: one plane per axis represents those, at this
+/// fraction of the extent, where hardly any other plane will be.
 constexpr std::array<double, 3> kAnywhere = {0.1234567, 0.2345671, 0.3456712};
 
 /// A coordinate that conditions fix, times two.
@@ -31,7 +31,7 @@ struct FixedCoordinate {
   [[nodiscard]] auto operator<=>(const FixedCoordinate&) const = default;
 };
 
-/// All of a vertex, in the charts of its sectors.
+/// Collects all coordinates that are fixed at a vertex, in the charts of its sectors.
 void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>& all) {
   for (const VertexConditions::Sector& sector : conditions.sectors) {
     for (int from = 0; from < 3; ++from) {
@@ -47,7 +47,7 @@ void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>&
   }
 }
 
-/// Planes, each once: what is nearly the same as one that is there becomes an equation.
+/// Planes without duplicates: one that is nearly the same as an existing one gives an equation.
 class Planes {
  public:
   /// @param values  of shared unknowns
@@ -76,7 +76,7 @@ class Planes {
     if (other == plane.form) return;
     IntegerForm difference = plane.form;
     difference.add(other, -1);
-    // What depends on where planes lie that may lie anywhere is chance.
+    // What depends on planes with arbitrary coordinates is chance.
     const auto& terms = difference.terms();
     if (terms.back().first >= sharedCount_) return;
     isAny_ = isAny_ || at->first.second != value;
@@ -88,7 +88,7 @@ class Planes {
   [[nodiscard]] std::int64_t valueOf(const FixedCoordinate& plane) const {
     return plane.form(values_);
   }
-  /// None if all planes that are nearly the same are the same: these have to stay so.
+  /// None if all planes that are nearly the same are exactly the same: these have to stay so.
   [[nodiscard]] std::vector<IntegerForm> equations() && {
     if (!isAny_) equations_.clear();
     return std::move(equations_);
@@ -96,17 +96,17 @@ class Planes {
 
  private:
   std::size_t sharedCount_;
-  std::vector<std::int64_t> values_;  ///< of shared unknowns, and of planes anywhere
+  std::vector<std::int64_t> values_;  ///< of shared unknowns, and of arbitrary planes
   std::int64_t near_;
   std::vector<FixedCoordinate> planes_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> numbers_;  ///< by axis and value
-  std::vector<IntegerForm> equations_;                                   ///< each once
+  std::vector<IntegerForm> equations_;                                   ///< without duplicates
   std::set<IntegerForm> seen_;
   bool isAny_ = false;
 };
 
-/// Adds the planes as they are beyond pieces of the cut, beyond further ones, and so on: walls may
-/// go around through the map many times. Those far outside of all charts are none of a wall's.
+/// Adds planes as they appear beyond pieces of the cut, beyond further pieces, and so on: walls may
+/// wind through the map many times. Planes far outside all charts belong to no wall.
 void addBeyondCut(const CutGraph& graph, const SharedUnknowns& unknowns, double extent,
                   Planes& planes) {
   const std::vector<adjacency::HalfFace> pieces = unknowns.cutPieces();

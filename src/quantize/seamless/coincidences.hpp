@@ -1,4 +1,4 @@
-// Planes and lines of a seamless map that noise alone keeps apart, as symmetric objects have them.
+// Planes and lines of a seamless map that only noise separates, as in symmetric objects.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 
 namespace hexhex::quantization {
 
-/// Equations for what is fixed at nearly the same coordinate of the common charts: as symmetric
-/// objects have it.
-/// @param extent  of coordinates in all charts; as noise, and values, on the lattice
+/// Equations for coordinates fixed at nearly the same value of the common charts, as in symmetric
+/// objects.
+/// @param extent  of coordinates in all charts; on the lattice, like noise and values
 /// @return none if all of them are the same
 [[nodiscard]] std::vector<IntegerForm> coincidences(const CutGraph& graph,
                                                     const SharedUnknowns& unknowns,

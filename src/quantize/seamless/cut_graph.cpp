@@ -14,10 +14,10 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// How charts are moved on their way from tet to tet.
+/// The motion of a chart on its way from tet to tet.
 using Motion = lattice::GridMotion<double>;
 
-/// The same triangle's middle in both its tets.
+/// The centre of the same triangle in both its tets.
 std::array<Vec3, 2> middlesOf(const igm::SharedTriangle& triangle) {
   std::array<Vec3, 2> middles{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -30,8 +30,8 @@ std::array<Vec3, 2> middlesOf(const igm::SharedTriangle& triangle) {
   return middles;
 }
 
-/// The one after which two edges of a tet come last in the alphabet: the same in whatever chart the
-/// tet is given.
+/// The rotation after which two edges of a tet come last in lexicographic order: the same whatever
+/// chart the tet is given in.
 lattice::Rotation canonicalRotation(const TetParameters& u) {
   lattice::Rotation best;
   std::array<Vec3, 2> last{};
@@ -39,7 +39,7 @@ lattice::Rotation canonicalRotation(const TetParameters& u) {
     const lattice::Rotation rotation(r);
     std::array<Vec3, 2> image = {rotation(minus(u[1], u[0])), rotation(minus(u[2], u[0]))};
     for (Vec3& v : image) {
-      for (double& x : v) x = static_cast<double>(static_cast<float>(x));  // but for noise
+      for (double& x : v) x = static_cast<double>(static_cast<float>(x));  // removes noise
     }
     if (r == 0 || image > last) {
       best = rotation;
@@ -49,7 +49,7 @@ lattice::Rotation canonicalRotation(const TetParameters& u) {
   return best;
 }
 
-/// Walks a tree of each component and puts all tets into the chart of its first one.
+/// Walks a spanning tree of each component and moves all tets into the chart of the first one.
 /// @return the motion of each tet; marks triangles of the tree in `isTree`
 std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
                                   std::span<const TetParameters> parameters,
@@ -72,10 +72,10 @@ std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
   return lattice::chartsAlongTrees<Motion>(topology.tetCount(), begin, forEachNeighbour).motions;
 }
 
-/// Takes triangles out of the cut that are its last ones at an edge around which nothing rotates.
+/// Removes triangles from the cut that are the last ones at an edge around which nothing rotates.
 void mendCut(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
              CutGraph& graph) {
-  std::vector<Index> cutFaces(edges.size());  // half-faces, that is, two for each triangle
+  std::vector<Index> cutFaces(edges.size());  // counts half-faces, i.e. two per triangle
   std::vector<Index> ends;
   const auto lookAt = [&](Index edge) {
     if (cutFaces[edge] == 2 && !edges.isBoundary(edge)) ends.push_back(edge);
@@ -109,8 +109,8 @@ void mendCut(const adjacency::TetTopology& topology, const adjacency::EdgeFans& 
   }
 }
 
-/// Moves charts such that corners differ as little as can be across uncut triangles (least
-/// squares): along the tree alone, the noise of each triangle adds to that of those before.
+/// Moves charts to minimize the differences between corners across uncut triangles (least squares):
+/// along the tree alone, the noise of successive triangles adds up.
 void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
   const auto n = static_cast<Eigen::Index>(topology.tetCount());
   std::vector<Eigen::Triplet<double>> entries;
@@ -147,7 +147,7 @@ void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
   }
 }
 
-/// Numbers corners at a vertex alike that uncut triangles connect.
+/// Gives corners at a vertex the same number if uncut triangles connect them.
 void numberSectors(const adjacency::TetTopology& topology, CutGraph& graph) {
   DisjointSets sets(4 * topology.tetCount());
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
@@ -161,7 +161,7 @@ void numberSectors(const adjacency::TetTopology& topology, CutGraph& graph) {
   }
   graph.sectors.resize(4 * topology.tetCount());
   for (adjacency::CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
-    // The smallest corner of a set has come before.
+    // The smallest corner of a set has already been visited.
     const adjacency::CornerIndex first = sets.find(corner);
     graph.sectors[corner] =
         first == corner ? static_cast<Index>(graph.sectorCount++) : graph.sectors[first];
@@ -187,7 +187,8 @@ CutGraph cutOpen(const adjacency::TetTopology& topology, const adjacency::EdgeFa
                  std::span<const lattice::Rotation> rotations) {
   CutGraph graph;
   std::vector<bool> isTree(topology.mate.size());
-  // Charts may lie anywhere: far away, sums would lose what differences still have.
+  // Charts may lie anywhere: far from the origin, sums would lose digits that differences still
+  // have.
   graph.parameters.assign(parameters.begin(), parameters.end());
   for (TetParameters& tet : graph.parameters) {
     const Vec3 origin = tet[0];

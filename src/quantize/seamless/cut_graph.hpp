@@ -1,5 +1,5 @@
-// Where charts of a map must differ: tets in common charts, cut along as few triangles as that
-// takes.
+// Where the charts of a map must differ: tets in common charts, cut along as few triangles as
+// necessary.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace hexhex::quantization {
 
 /// Quarter turns around each edge: the sum of its tets' angles in the map.
-/// @tparam Corners  four points each, of whatever numbers
+/// @tparam Corners  four points each, of any number type
 template <class Corners>
 [[nodiscard]] std::vector<int> quartersAround(const adjacency::EdgeFans& edges,
                                               std::span<const Corners> map) {
@@ -36,35 +36,37 @@ template <class Corners>
   return quarters;
 }
 
-/// As many are around an edge that is not singular.
+/// Number of quarter turns around a nonsingular edge.
 [[nodiscard]] inline int regularQuarters(const adjacency::EdgeFans& edges, std::size_t edge) {
   return edges.isBoundary(edge) ? 2 : 4;
 }
 
-/// Whether an edge is singular, but charts agree around it: an inner one with several full turns,
-/// or one of the boundary, which turns back on itself there. Nothing else makes it follow an axis.
+/// Whether an edge is singular although charts agree around it: an interior edge with several full
+/// turns, or a boundary edge where the boundary folds back on itself. Nothing else aligns it with
+/// an axis.
 [[nodiscard]] inline bool isSingularByTurnsAlone(const adjacency::EdgeFans& edges, std::size_t edge,
                                                  int quarters) {
   const int regular = regularQuarters(edges, edge);
   return quarters != regular && quarters % regular == 0;
 }
 
-/// A seamless map in charts that agree across all triangles but those of a cut.
+/// A seamless map in charts that agree across all triangles except those of a cut.
 struct CutGraph {
   std::vector<TetParameters> parameters;     ///< per tet, in the common charts
   std::vector<lattice::Rotation> rotations;  ///< per half-face, from here to the neighbour
   std::vector<bool> isCut;                   ///< per half-face
-  std::vector<Index> sectors;  ///< per corner: a number for all that are not cut apart
+  std::vector<Index> sectors;  ///< per corner: shared by corners not separated by the cut
   std::size_t sectorCount = 0;
 };
 
-/// Per half-face, the rotation that takes its triangle nearest to the neighbour's.
+/// Per half-face, the rotation that brings its triangle closest to the neighbour's.
 [[nodiscard]] std::vector<lattice::Rotation> fitRotations(
     const adjacency::TetTopology& topology, std::span<const TetParameters> parameters);
 
-/// Moves charts along a tree of tets, cuts all other triangles, then mends the cut where it ends:
-/// across the last triangle of the cut at an inner edge charts agree, unless the edge is singular.
-/// @param rotations  per half-face, between the charts given
+/// Moves charts along a tree of tets, cuts all other triangles, then removes loose ends of the cut:
+/// across the last triangle of the cut at an interior edge charts agree, unless the edge is
+/// singular.
+/// @param rotations  per half-face, between the given charts
 [[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology,
                                const adjacency::EdgeFans& edges,
                                std::span<const TetParameters> parameters,
@@ -78,8 +80,8 @@ void forEachFaceAt(const adjacency::EdgeCorner& at, const Visit& visit) {
   }
 }
 
-/// The cut that bounds, beyond `halfFace`, the tets at an edge that are not cut apart: the
-/// half-face on its near side; or kNone if that is the boundary of the mesh.
+/// The cut that bounds, beyond `halfFace`, the connected tets at an edge: the half-face on its near
+/// side, or kNone for the boundary of the mesh.
 [[nodiscard]] adjacency::HalfFace nextCutAround(const adjacency::TetTopology& topology,
                                                 const CutGraph& graph, lattice::CornerMask edge,
                                                 adjacency::HalfFace halfFace);

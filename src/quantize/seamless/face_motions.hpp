@@ -14,7 +14,7 @@
 
 namespace hexhex::quantization {
 
-/// Nearly all are the identity, and those across a patch of a cut one.
+/// Nearly all are the identity; those across one patch of the cut are equal.
 class FaceMotions {
  public:
   explicit FaceMotions(std::size_t halfFaces = 0) : places_(halfFaces, 0) {}
@@ -28,12 +28,12 @@ class FaceMotions {
     if (isNew) distinct_.push_back(motion);
     places_[h] = found->second;
   }
-  /// Leaves no room to grow.
+  /// Releases spare capacity.
   void shrink() { places_.shrink_to_fit(); }
   void appendCopyOf(adjacency::HalfFace h) { places_.push_back(Index{places_[h]}); }
 
  private:
-  std::vector<Index> places_;  ///< in `distinct_`, per half-face
+  std::vector<Index> places_;  ///< index in `distinct_`, per half-face
   std::vector<lattice::LatticeMotion> distinct_ = {{}};
   std::map<std::pair<int, lattice::LatticePoint>, Index> placeOf_ = {{{0, {}}, 0}};
 };

@@ -14,7 +14,7 @@
 namespace hexhex::quantization {
 namespace {
 
-/// The coordinate of a face along the axis that it is perpendicular to.
+/// The coordinate of a face along the axis perpendicular to it.
 double planeOf(const TetParameters& corners, adjacency::HalfFace face) {
   double least = INFINITY;
   double plane = 0;
@@ -33,8 +33,8 @@ double planeOf(const TetParameters& corners, adjacency::HalfFace face) {
   return plane;
 }
 
-/// Sizes of all that has to be an integer, in the charts given: those of the seamless map begin
-/// anywhere.
+/// Magnitudes of all numbers that must be integers, in the given charts: the origin of the seamless
+/// map is arbitrary.
 std::vector<double> conditions(const adjacency::TetTopology& topology,
                                std::span<const TetParameters> parameters) {
   std::vector<double> sizes;
@@ -54,9 +54,9 @@ std::vector<double> conditions(const adjacency::TetTopology& topology,
   return sizes;
 }
 
-/// The largest length of which all are multiples but for some noise; 0 if there is none.
+/// The largest length of which all are multiples up to noise; 0 if there is none.
 double commonLength(const std::vector<double>& sizes, double noise) {
-  // A length with less than that many noises would fit anything.
+  // Any size fits a length of fewer noises than this.
   constexpr double kNoisesPerLength = 1000;
   double length = 0;
   for (double size : sizes) {
@@ -71,8 +71,7 @@ double commonLength(const std::vector<double>& sizes, double noise) {
   return length == 0 ? 0 : sizes.back() / std::round(sizes.back() / length);
 }
 
-/// What a person has divided by, where roundings of the parameters hide it: a number with six
-/// digits.
+/// The divisor that a person chose, hidden by rounding of the parameters: a number with six digits.
 double withFewDigits(double number) {
   const double unit = std::pow(10.0, std::floor(std::log10(number)) - 5);
   const double shorter = unit < 1 ? std::round(number / unit) / std::round(1 / unit)
@@ -104,11 +103,11 @@ double integerFactor(const TetMapView& map, const SeamlessMap& seamless, Context
   const std::vector<double> sizes = conditions(seamless.topology, input.view.parameters);
   stage.finish();
   if (sizes.empty()) return 0;
-  // Twice what made it seamless, and what is lost in sums of doubles.
+  // Twice the move that made it seamless, plus what sums of doubles lose.
   const double noise = 2 * seamless.maxDisplacement + 1e-12 * sizes.back();
   const double length = commonLength(sizes, noise);
   if (length == 0) return 0;
-  // Around singular edges, halves of translations have to be integers as well.
+  // Around singular edges, halves of translations must be integers as well.
   for (const double multiple : {1.0, 2.0}) {
     const double factor = withFewDigits(multiple / length);
     if (isInteger(map, factor, context)) return factor;

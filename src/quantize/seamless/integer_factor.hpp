@@ -5,9 +5,9 @@
 
 namespace hexhex::quantization {
 
-/// The smallest number that makes the map's parameters those of an integer-grid map: the inverse of
-/// the largest length of which all boundary coordinates and translations are multiples. Checked as
-/// extract() checks maps.
+/// The smallest number that scales the parameters to those of an integer-grid map: the inverse of
+/// the largest length of which all boundary coordinates and translations are multiples. Checked in
+/// the same way as extract() checks maps.
 /// @return 0 if there is none
 [[nodiscard]] double integerFactor(const TetMapView& map, const SeamlessMap& seamless,
                                    Context& context);

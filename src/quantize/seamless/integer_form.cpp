@@ -18,15 +18,16 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Of the matrix that has all variables as combinations of the free ones: one gigabyte.
+/// Maximum number of entries of the matrix that expresses all variables by the free ones: one
+/// gigabyte.
 constexpr std::size_t kMostEntries = std::size_t{1} << 27;
 
-/// Of coefficients; those of values, which stay far below, are sums of a few of them.
+/// Limits of coefficients and of values; values, sums of a few coefficients, stay far below theirs.
 constexpr std::int64_t kLargestCoefficient = std::int64_t{1} << 40;
 constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
-/// By what a preference may divide: planes of symmetric objects that come back after several ways
-/// around make fractions of up to eighths. Larger ones, of chains of them, would need a coarser
-/// lattice.
+/// Limit of the divisors of a preference: planes of symmetric objects that come back after several
+/// ways around produce fractions down to eighths. Smaller fractions, from chains of them, would
+/// need a finer lattice.
 constexpr std::int64_t kLargestDivisor = 8;
 
 [[noreturn]] void failForSize() {
@@ -108,7 +109,7 @@ IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm>
 }
 
 void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_t largestPivot) {
-  // The same equation comes from many vertices.
+  // Many vertices give the same equation.
   for (IntegerForm& form : equations) {
     if (form.isZero()) continue;
     const std::int64_t divisor = form.commonDivisor();
@@ -119,7 +120,8 @@ void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_
   for (IntegerForm& form : equations) addEquation(std::move(form), largestPivot);
 }
 
-/// Of the variables in a form, the place of that which was solved for first; kNone if none was.
+/// The smallest index, in the order of solving, of a solved variable in a form; kNone if there is
+/// none.
 Index IntegerSystem::firstSolvedIn(const IntegerForm& form) const noexcept {
   Index first = kNone;
   for (const auto& [variable, factor] : form.terms()) first = std::min(first, solvedBy_[variable]);
@@ -127,7 +129,7 @@ Index IntegerSystem::firstSolvedIn(const IntegerForm& form) const noexcept {
 }
 
 void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
-  // Puts in what earlier equations say, in their order: each brings in variables of later ones.
+  // Substitutes earlier solutions in their order: each brings in variables of later ones.
   for (Index place = firstSolvedIn(form); place != kNone; place = firstSolvedIn(form)) {
     const Solved& solved = solved_[place];
     const std::int64_t factor = form.coefficient(solved.variable);
@@ -137,7 +139,7 @@ void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
     form.divide(std::max<std::int64_t>(form.commonDivisor(), 1));
   }
   if (form.isZero()) return;
-  // A coefficient of one keeps all integer; they are rarely others.
+  // A coefficient of one keeps everything integer; other pivots are rare.
   const auto pivot = std::min_element(
       form.terms().begin(), form.terms().end(),
       [](const auto& a, const auto& b) { return std::abs(a.second) < std::abs(b.second); });

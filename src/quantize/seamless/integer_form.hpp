@@ -1,4 +1,4 @@
-// Linear forms with integer coefficients, and systems of equations of them.
+// Linear forms with integer coefficients, and systems of homogeneous equations in them.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ class IntegerForm {
   IntegerForm(Index variable, std::int64_t coefficient) : terms_{{variable, coefficient}} {}
 
   [[nodiscard]] bool isZero() const noexcept { return terms_.empty(); }
-  /// Ascending by variable, no coefficient zero.
+  /// Ascending by variable, with nonzero coefficients.
   [[nodiscard]] std::span<const Term> terms() const noexcept { return terms_; }
   [[nodiscard]] std::int64_t coefficient(Index variable) const noexcept;
 
   /// Adds `factor` times `other`.
-  /// @throws Error TooLarge, as multiply() and operator(), beyond 64 bits
+  /// @throws Error TooLarge beyond 64 bits, as do multiply() and operator()
   void add(const IntegerForm& other, std::int64_t factor);
   void multiply(std::int64_t factor);
   /// Divides by an integer that divides all coefficients.
@@ -40,33 +40,34 @@ class IntegerForm {
   std::vector<Term> terms_;
 };
 
-/// Homogeneous equations in integer variables, solved for as many of them as there are independent
-/// equations; the other ones are free.
+/// Homogeneous equations in integer variables, solved for as many variables as there are
+/// independent equations; the others are free.
 class IntegerSystem {
  public:
-  /// @param equations  forms that are to vanish
-  /// @param preferences     further ones, but for those that would make fractions of more than
-  /// eighths
+  /// @param equations  forms that must vanish
+  /// @param preferences     further forms that should vanish, except those that would produce
+  ///                        fractions smaller than eighths
   IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
                 std::vector<IntegerForm> preferences = {});
 
   /// The solution nearest to `wanted` (least squares).
-  /// @throws Error TooLarge for more variables than charts of real maps bring
+  /// @throws Error TooLarge for more variables than the charts of real maps produce
   [[nodiscard]] std::vector<double> nearest(const std::vector<double>& wanted) const;
 
-  /// The solution whose free variables are `rounded` to multiples of `step`.
-  /// @return no values if another variable is not an integer then
+  /// The solution with its free variables `rounded` to multiples of `step`.
+  /// @return no values if another variable is then not an integer
   [[nodiscard]] std::vector<std::int64_t> roundedTo(const std::vector<double>& solution,
                                                     std::int64_t step) const;
 
-  /// Each variable as a combination of free ones, which are in terms of themselves: pairs of a free
-  /// variable and its factor, ascending.
+  /// Each variable as a combination of free ones (a free one is itself): pairs of a free variable
+  /// and its factor, ascending.
   [[nodiscard]] std::vector<std::vector<std::pair<Index, double>>> combinations() const;
 
   [[nodiscard]] const std::vector<Index>& freeVariables() const noexcept { return free_; }
 
  private:
-  /// coefficient * variable + rest = 0, where `rest` has free variables and those of later ones.
+  /// coefficient * variable + rest = 0, where `rest` contains free variables and those solved
+  /// later.
   struct Solved {
     Index variable;
     std::int64_t coefficient;
@@ -79,7 +80,7 @@ class IntegerSystem {
 
   std::size_t variableCount_;
   std::vector<Solved> solved_;
-  std::vector<Index> solvedBy_;  ///< per variable: its place in `solved_`, or kNone
+  std::vector<Index> solvedBy_;  ///< per variable: its index in `solved_`, or kNone
   std::vector<Index> free_;
 };
 

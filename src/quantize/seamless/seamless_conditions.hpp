@@ -1,5 +1,5 @@
-// What makes a map seamless, as integer equations: for each vertex, what translations and planes
-// say about its parameter, and what they say about each other.
+// The conditions that make a map seamless, as integer equations: for each vertex, what translations
+// and planes imply for its parameter, and for each other.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace hexhex::quantization {
 
-/// What is to be aligned with axes beside singular curves.
+/// What must be aligned with axes, apart from singular curves.
 struct Alignment {
   std::vector<std::uint8_t> axes;  ///< per half-face: the axis perpendicular to it, or kFree
   /// An edge along an axis of its tet's common chart.
@@ -23,7 +23,7 @@ struct Alignment {
 inline constexpr std::uint8_t kFree = 3;
 
 /// Unknown numbers that many vertices share: three for the translation of each piece of the cut,
-/// one for each plane in which a piece of the boundary, or an aligned feature, lies.
+/// and one for each plane that contains a piece of the boundary or an aligned feature.
 class SharedUnknowns {
  public:
   SharedUnknowns(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
@@ -40,7 +40,7 @@ class SharedUnknowns {
   [[nodiscard]] const std::vector<IntegerForm>& equations() const noexcept { return equations_; }
   /// A half-face of each piece of the cut, on both of its sides.
   [[nodiscard]] std::vector<adjacency::HalfFace> cutPieces() const;
-  /// Means of what the map has.
+  /// Their mean values in the map.
   [[nodiscard]] std::vector<double> measured() const;
 
  private:
@@ -50,14 +50,14 @@ class SharedUnknowns {
   const adjacency::TetTopology& topology_;
   const CutGraph& graph_;
   std::size_t size_ = 0;
-  std::vector<adjacency::HalfFace>
-      pieces_;                 ///< per half-face of the cut: the first of its piece, on its side
-  std::vector<Index> first_;   ///< per half-face that is first: its first unknown, or kNone
+  std::vector<adjacency::HalfFace> pieces_;  ///< per half-face of the cut: the first of its piece,
+                                             ///< on its side
+  std::vector<Index> first_;   ///< per first half-face of a piece: its first unknown, or kNone
   std::vector<Index> planes_;  ///< per sector and axis
   std::vector<IntegerForm> equations_;
 };
 
-/// The parameter of a vertex in one of its sectors, and in all others.
+/// The parameter of a vertex in one of its sectors, and its relation to all others.
 struct VertexConditions {
   /// factor * coordinate + rest = 0.
   struct Fixed {
@@ -74,8 +74,8 @@ struct VertexConditions {
   std::array<Fixed, 3> fixed;
 };
 
-/// @pre around each edge inside, charts turn about an axis, or agree
-/// @param equations  receives what must hold between shared unknowns
+/// @pre around each interior edge, charts turn about an axis, or agree
+/// @param equations  receives the conditions on shared unknowns
 [[nodiscard]] VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topology,
                                             const CutGraph& graph, const SharedUnknowns& unknowns,
                                             std::vector<IntegerForm>& equations);

@@ -16,25 +16,26 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Coordinates on the lattice stay below this.
+/// Bound of coordinates on the lattice.
 constexpr double kLargest = 0x1p52;
 
-/// Of a map's size, and its inverse: products of eight lengths stay finite.
+/// Bound of a map's size and of its inverse: products of eight lengths stay finite.
 constexpr double kMostSize = 0x1p100;
 
-/// Shared unknowns are multiples of this: half of them are on the lattice, too, and two planes are
-/// the same or so far apart that points between them can be rounded to the lattice.
+/// Shared unknowns are multiples of this: their halves are on the lattice as well, and two planes
+/// either coincide or are so far apart that points between them can be rounded to the lattice.
 constexpr std::int64_t kStep = 1 << 16;
 
-/// Planes that are less apart than this share of the map's size are meant to be one.
+/// Planes closer than this fraction of the map's size are meant to be one.
 constexpr double kNoise = 1e-9;
-/// The map moves by so many times its noise at most so that they are.
+/// Maximum move for that, in multiples of the noise.
 constexpr double kChainedNoise = 16;
-/// Planes that come together may bring others near to each other; nearly all are found at once.
+/// Planes that are joined may bring others close to each other; nearly all are found in the first
+/// round.
 constexpr int kRoundsOfPreferences = 3;
 
-/// The axis to which a triangle is perpendicular: along which it extends least. The normal of a
-/// thin one may be noise.
+/// The axis perpendicular to a triangle: the one along which it extends least. The normal of a thin
+/// triangle may be noise.
 std::uint8_t normalAxis(const CutGraph& graph, adjacency::HalfFace h) {
   const TetParameters& u = graph.parameters[adjacency::tetOf(h)];
   const auto corner = [&](std::size_t k) {
@@ -54,7 +55,7 @@ bool areLevel(const TetParameters& u, std::size_t a, std::size_t b, std::size_t 
   return std::abs(u[a][axis] - u[b][axis]) <= tolerance;
 }
 
-/// The tets of a feature edge, or of a feature triangle (as half-faces).
+/// A tet with a feature edge, or the half-face of a feature triangle.
 std::optional<adjacency::TetEdge> findEdge(const adjacency::TetTopology& topology, Index v,
                                            Index w) {
   for (const adjacency::CornerIndex corner : topology.star(v)) {
@@ -103,9 +104,9 @@ std::vector<adjacency::HalfFace> innerFaces(const SeamlessMap& map, std::int32_t
   return faces;
 }
 
-/// The boundary, singular edges that charts do not tell of, and those features that are aligned
-/// within the tolerance: the others are not in the way of a seamless map, and will not be lines or
-/// planes of the mesh.
+/// The boundary, singular edges that charts do not reveal, and features that are aligned within the
+/// tolerance: the others do not prevent a seamless map, but will not be lines or planes of the
+/// mesh.
 Alignment findAlignment(SeamlessMap& map, const adjacency::EdgeFans& edges, const CutGraph& graph,
                         const SeamlessOptions& options) {
   const adjacency::TetTopology& topology = map.topology;
@@ -176,7 +177,7 @@ class VertexSolver {
         unit_(unit),
         bySector_(graph.sectorCount) {}
 
-  /// @return false if a coordinate that is fixed is not on the lattice
+  /// @return false if a fixed coordinate is not on the lattice
   bool solve(Index vertex, const VertexConditions& conditions) {
     lattice::LatticePoint u = meanOf(vertex, conditions);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -202,7 +203,7 @@ class VertexSolver {
             sector.translation[2](values_)};
   }
 
-  /// Of the parameters given at all its corners, seen from the first sector.
+  /// The mean of the parameters given at all its corners, seen from the first sector.
   [[nodiscard]] lattice::LatticePoint meanOf(Index vertex,
                                              const VertexConditions& conditions) const {
     Vec3 sum{};
@@ -237,7 +238,7 @@ std::vector<Index> flippedTets(std::span<const lattice::LatticeTet> corners) {
   return flipped;
 }
 
-/// On the lattice, which is finer than what doubles have of the largest coordinates.
+/// Decided on the lattice, which is finer than the last digit of the largest coordinates.
 std::vector<Index> flippedAsGiven(const CutGraph& graph, double unit) {
   std::vector<lattice::LatticeTet> corners(graph.parameters.size());
   for (std::size_t t = 0; t < corners.size(); ++t) {
@@ -256,7 +257,7 @@ void throwFlipped(std::span<const Index> flipped) {
   defects.throwIfAny();
 }
 
-/// What flipped tets bring about is not told before them.
+/// Reports flipped tets first, since they may cause other faults.
 [[noreturn]] void notSeamless(const SeamlessMap& map, const std::string& what, Place place) {
   throwFlipped(map.flippedAsGiven);
   throw Error(
@@ -275,8 +276,8 @@ void requireSize(double size) {
   throw Error(ErrorCode::TooLarge, what.str());
 }
 
-/// No corner may move by more than the tolerance: so transitions of a triangle's corners differ by
-/// four of them at most. Asked early, as what is far from seamless has no end of conditions.
+/// No corner may move by more than the tolerance, so transitions of a triangle's corners differ by
+/// at most four tolerances. Checked early, since a map far from seamless has countless conditions.
 void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double tolerance) {
   const adjacency::TetTopology& topology = map.topology;
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
@@ -302,8 +303,7 @@ void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double to
   }
 }
 
-/// Whether charts turn about an axis around an inner edge, and the edge is parallel to it; or
-/// agree.
+/// Whether the charts around an interior edge turn about an axis parallel to the edge, or agree.
 bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& graph,
                        const adjacency::TetEdge& at, double tolerance) {
   const std::optional<lattice::Rotation> around = adjacency::visitAroundEdge(
@@ -315,13 +315,14 @@ bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& g
   if (!around || around->isIdentity()) return true;
   if (around->axis() < 0) return false;
   const auto axis = static_cast<std::size_t>(around->axis());
-  // Each end moves by the tolerance at most.
+  // Each end moves by at most the tolerance.
   const TetParameters& u = graph.parameters[at.tet];
   return areLevel(u, at.corner0, at.corner1, (axis + 1) % 3, 2 * tolerance) &&
          areLevel(u, at.corner0, at.corner1, (axis + 2) % 3, 2 * tolerance);
 }
 
-/// Around any other edge, no hexahedra fit; and all that charts demand of a vertex are coordinates.
+/// No hexahedra fit around any other edge. This also ensures that charts impose only conditions on
+/// single coordinates of a vertex.
 void requireAxesOfCurves(const SeamlessMap& map, const adjacency::EdgeFans& edges,
                          const CutGraph& graph, double tolerance) {
   const adjacency::TetTopology& topology = map.topology;
@@ -352,7 +353,7 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
   }
 }
 
-/// Between charts as they are after the cut.
+/// Transitions between the charts after cutting.
 void findChanges(SeamlessMap& map, const CutGraph& graph) {
   map.changes = FaceMotions(map.topology.mate.size());
   for (adjacency::HalfFace h = 0; h < map.topology.mate.size(); ++h) {
@@ -393,7 +394,7 @@ void requireDisplacement(const SeamlessMap& map, double tolerance) {
   notSeamless(map, what.str(), {PlaceKind::Tet, map.mostDisplaced});
 }
 
-/// Corners of the nearest seamless map, by conditions on unknowns that they share.
+/// Corners of the nearest seamless map, from conditions on shared unknowns.
 class NearestMap {
  public:
   NearestMap(SeamlessMap& map, const CutGraph& graph, const SharedUnknowns& unknowns)
@@ -414,8 +415,8 @@ class NearestMap {
     take(values_);
   }
 
-  /// Finds it once more with all planes as one that noise alone keeps apart: walls between them
-  /// were a mess. @pre find()
+  /// Solves again with planes joined that only noise separates: walls between them would be
+  /// chaotic. @pre find()
   void joinPlanes(double noise) {
     std::vector<IntegerForm> preferences;
     std::vector<std::int64_t> best = values_;
@@ -433,16 +434,16 @@ class NearestMap {
   }
 
  private:
-  /// Values of shared unknowns for the seamless map that is nearest under all equations.
-  /// @param preferences  further equations, as far as they make no fractions
+  /// Values of shared unknowns for the nearest seamless map under all equations.
+  /// @param preferences  further equations, honoured as far as they produce no fractions
   /// @return empty if they are not on the lattice
   [[nodiscard]] std::vector<std::int64_t> nearest(
       const std::vector<IntegerForm>& preferences) const {
     const IntegerSystem system(unknowns_.size(), equations_, preferences);
     std::vector<double> wanted = system.nearest(unknowns_.measured());
     for (double& x : wanted) x *= map_.unit;
-    // Nearly all that depends on others is their sum, or half of it, and the step is a power of
-    // two; some is a third, a ninth ...
+    // Nearly all dependent values are sums of others, or half of that, and the step is a power of
+    // two; some are a third, a ninth ...
     std::vector<std::int64_t> values;
     for (const std::int64_t divisible : {1, 3, 15, 105, 315, 945}) {
       if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
@@ -489,7 +490,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   defects.throwIfAny();
   result.topology = igm::buildTopology(result.input.view, stage, defects);
   defects.throwIfAny();
-  // Walks around edges and vertices come back only on manifolds.
+  // Walks around edges and vertices return only on manifolds.
   igm::collectTopologyDefects(result.topology, stage, defects);
   defects.throwIfAny();
   const adjacency::TetTopology& topology = result.topology;

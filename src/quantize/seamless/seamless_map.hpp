@@ -1,7 +1,9 @@
-// The seamless map nearest to one that is nearly seamless: what quantization begins with.
+// The seamless map nearest to a nearly seamless one: the start of quantization. As in Mandad and
+// Campen 2019, "Exact Constraint Satisfaction for Truly Seamless Parametrization", constraints that
+// held up to a tolerance then hold exactly.
 //
-// A map is seamless if charts of neighbours differ by a rotation of the grid and any translation,
-// boundary triangles are perpendicular to an axis, and singular edges parallel to one. An
+// A map is seamless if neighbouring charts differ by a rotation of the grid and any translation,
+// boundary triangles are perpendicular to an axis, and singular edges are parallel to one. An
 // integer-grid map is a seamless map whose translations, planes and lines are integers.
 #pragma once
 
@@ -23,35 +25,36 @@ struct SeamlessMap {
   adjacency::TetTopology topology;           ///< with stars
   std::vector<lattice::LatticeTet> corners;  ///< per tet, in charts that mostly agree
   FaceMotions changes;                       ///< from here to the neighbour's chart
-  /// Features that are aligned with axes, and to stay so, and what else charts do not tell of:
+  /// Features that are aligned with axes and must stay so, and whatever else charts do not reveal:
   /// edges, inner faces.
   std::vector<adjacency::TetEdge> featureEdges;
   std::vector<adjacency::HalfFace> featureFaces;
   double unit = 1;
   double size = 0;                    ///< extent from a corner, along the axis where it is longest
-  double maxDisplacement = 0;         ///< of a parameter from that given, along an axis
-  Index mostDisplaced = 0;            ///< a tet
-  std::vector<Index> flippedAsGiven;  ///< tets; none if they were so by noise alone, which is gone
+  double maxDisplacement = 0;         ///< of a parameter from the given one, along an axis
+  Index mostDisplaced = 0;            ///< the tet where that occurs
+  std::vector<Index> flippedAsGiven;  ///< tets; none if only noise, now removed, flipped them
 };
 
 struct SeamlessOptions {
-  double tolerance = 0;         ///< for displacements, as a share of the map's size
-  double featureTolerance = 0;  ///< features that are aligned so well, too, become it exactly
+  double tolerance = 0;         ///< of displacements, relative to the map's size
+  double featureTolerance = 0;  ///< features aligned within this tolerance become exactly aligned
   std::int32_t wallTag = 0;     ///< as in QuantizeOptions
-  /// Planes that are less apart than this share of the map's size become one, where that makes no
-  /// fractions; the map may move so far for that beyond the tolerance. Those that noise keeps apart
-  /// always do.
+  /// Planes closer than this fraction of the map's size are joined where that produces no
+  /// fractions; for that, the map may move by as much beyond the tolerance. Planes separated only
+  /// by noise are always joined.
   double apart = 0;
 };
 
-/// @throws Error where the mesh is not a manifold, or the map is not even nearly seamless
+/// @throws Error if the mesh is not a manifold, or the map is not even nearly seamless
 [[nodiscard]] SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options,
                                        Context& context);
 
-/// @throws Error FlippedTet if a tet is not positive; those that were not as given are named first
+/// @throws Error FlippedTet if a tet is not positive; names tets first that were not positive in
+///         the input
 void requirePositiveTets(const SeamlessMap& map);
 
-/// In unit cubes.
+/// Volume in unit cubes.
 [[nodiscard]] double volumeOf(const SeamlessMap& map);
 
 }  // namespace hexhex::quantization
