@@ -29,7 +29,7 @@ int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint
   const LatticePoint w = d - a;
   const RoundedDeterminant determinant(rounded(u), rounded(v), rounded(w));
   if (!determinant.hasCertifiedSign()) {
-    // Coordinates of special places often have few bits, or are the same.
+    // Coordinates in special positions often have few bits, or coincide.
     const std::int64_t bits = u[0] | u[1] | u[2] | v[0] | v[1] | v[2] | w[0] | w[1] | w[2];
     if (determinant.magnitude >= exactBelow(bits)) {
       return orientationDeterminant(a, b, c, d).sign();
@@ -53,7 +53,7 @@ NormalSigns::NormalSigns(const LatticeTet& corners) noexcept {
 CornerMask holder(const NormalSigns& signs, CornerMask generator, Direction d1) noexcept {
   CornerMask simplex = kWholeTet;
   for (int face = 0; face < 4; ++face) {
-    if (contains(generator, face)) continue;  // the face does not contain the generator
+    if (contains(generator, face)) continue;  // the generator is not in this face
     const int side = signs.dot(face, d1);
     if (side < 0) return kNoSimplex;
     if (side == 0) simplex = static_cast<CornerMask>(simplex & faceMask(face));
