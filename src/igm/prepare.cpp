@@ -14,7 +14,7 @@ namespace hexhex::igm {
 
 namespace {
 
-/// From a quarter on, the nearest integer stops being the obvious one for two corners of an edge.
+/// From a quarter on, the nearest integer is no longer the obvious one for two corners of an edge.
 constexpr double kMaxTolerance = 0.25;
 
 void checkArguments(double tolerance, int scale) {
@@ -34,14 +34,14 @@ void checkArguments(double tolerance, int scale) {
               "bug; please report it with the map.");
 }
 
-/// As RegularVertices::isIrregular, if no vertex were certain to be regular.
+/// RegularVertices::isIrregular as if no vertex were certainly regular.
 Array<std::uint8_t> usedVertices(const adjacency::TetTopology& topology) {
   Array<std::uint8_t> used(topology.pointCount);
   for (Index v = 0; v < topology.pointCount; ++v) used[v] = topology.isIsolated(v) ? 0 : 1;
   return used;
 }
 
-/// On maps of a million tets.
+/// Measured on maps of a million tets.
 constexpr std::array<WorkStep, 7> kPrepareSteps = {{{"input", 0.5},
                                                     {"topology", 4},
                                                     {"unfolding", 1},
@@ -89,7 +89,7 @@ class Preparation {
   }
 
  private:
-  /// @return whether the input is good enough for anything else
+  /// @return whether the input is good enough to go on
   [[nodiscard]] bool read() {
     {
       Stage stage(context_, "input");
@@ -114,7 +114,7 @@ class Preparation {
     return transitions;
   }
 
-  /// @return whether there is an exact map to be found
+  /// @return whether there is an exact map to find
   [[nodiscard]] bool findSingularities(const LocalParameters& parameters,
                                        const Transitions& transitions,
                                        const RegularVertices& regular, VertexKinds& vertices) {
@@ -165,7 +165,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
       Preparation(map, tolerance, maxScale, context, defects, switches).run(charts);
   if (defects.empty() || !prepared.isUnfolded) return prepared;
   defects.clear();
-  prepared = {};  // gives its memory back before the next one takes some
+  prepared = {};  // frees its memory before the next one takes some
   return Preparation(map, tolerance, maxScale, context, defects, switches)
       .run(ChartChoice::AsGiven);
 }

@@ -11,7 +11,7 @@ namespace hexhex::tetmap {
 
 namespace {
 
-/// Tagged parts of tagged edges or triangles.
+/// The tagged parts of tagged edges or triangles.
 /// @tparam Simplex  FeatureEdge or FeatureFace
 template <class Simplex>
 class Carrier {
@@ -34,7 +34,7 @@ class Carrier {
     found_.push_back({sorted(vertices), found->second});
   }
 
-  /// Each once.
+  /// Each part once.
   std::vector<Simplex> take() {
     const auto less = [](const Simplex& a, const Simplex& b) { return a.vertices < b.vertices; };
     std::sort(found_.begin(), found_.end(), less);
