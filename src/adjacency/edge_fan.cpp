@@ -1,3 +1,4 @@
+// The table of all edges of a tet mesh, each with its tets.
 #include <algorithm>
 
 #include <adjacency/edge_fan.hpp>

@@ -1,3 +1,4 @@
+// Collects defects, and checks that the mesh is an oriented manifold (Section 3.1).
 #include <algorithm>
 #include <atomic>
 #include <string>

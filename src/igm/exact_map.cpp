@@ -1,3 +1,4 @@
+// Sanitization (Section 5.1.3).
 #include <algorithm>
 #include <array>
 #include <bit>

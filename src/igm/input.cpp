@@ -1,3 +1,4 @@
+// Checks and orients the input, and moves charts towards the origin (for Section 5.1).
 #include <algorithm>
 #include <cmath>
 #include <string>

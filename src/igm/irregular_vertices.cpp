@@ -1,3 +1,4 @@
+// Tells flat vertices from irregular ones, by their stars (for Section 5.1.2).
 #include <algorithm>
 #include <bit>
 #include <cmath>

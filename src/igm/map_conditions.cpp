@@ -1,3 +1,4 @@
+// Checks conditions (IGM2) to (IGM4) of Section 3.2.
 #include <algorithm>
 #include <array>
 #include <cmath>

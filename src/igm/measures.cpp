@@ -1,3 +1,4 @@
+// Volume, area, lengths and genus of a map in exact integers (not in the paper).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -71,7 +72,7 @@ lattice::Int192 sixfoldVolume(const RegularVertices& regular, const ExactMap& ma
     lattice::Int192 sum;
     for (const RegularVertices::BoundaryFace& face : regular.boundaryFaces[block]) {
       const LatticeTriangle triangle(map, face.halfFace);
-      // Its plane is axis-parallel, and so is the normal.
+      // The normal is parallel to an axis.
       sum.addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
     }
     for (const adjacency::HalfFace halfFace : regular.unequalFaces[block]) {

@@ -1,3 +1,4 @@
+// Runs the steps of Section 5.1 in sequence.
 #include <array>
 #include <optional>
 #include <string>

@@ -1,3 +1,4 @@
+// Counts the tets at each vertex in one direction, to find regular vertices (for Section 5.1.2).
 #include <atomic>
 #include <bit>
 

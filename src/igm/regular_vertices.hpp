@@ -30,12 +30,12 @@ namespace hexhex::igm {
 /// general direction is the sum of the surfaces' degrees; if it is one, there is one surface, and
 /// its projection is one-to-one. Images need not be made: the mirrored direction does as well.
 ///
-/// Where the star is on one side of its plane at all boundary faces, one direction is enough, which
-/// leads to that side: across the plane the number of tets in a direction changes by that of the
-/// boundary faces there, at least one, so if it is one on this side, it is none on the other.
+/// If the star is on one side of its plane at all boundary faces, one direction to that side is
+/// enough: across the plane the number of tets in a direction changes by that of the boundary faces
+/// there, at least one, so if it is one on this side, it is none on the other.
 struct RegularVertices {
   Array<std::uint8_t> isIrregular;  ///< per vertex: 1 unless it is certainly regular, or isolated
-  Array<std::uint8_t> plane;  ///< per regular vertex: bit k on a boundary plane across axis k, or 0
+  Array<std::uint8_t> plane;  ///< per regular vertex: bit k if on a boundary plane across axis k
 
   /// Inner triangles whose two tets do not agree on the corners' parameters, by the larger
   /// half-face, ascending; one list per block of kBlock tets.

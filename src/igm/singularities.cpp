@@ -1,3 +1,4 @@
+// Valences of the edges at irregular vertices (Section 5.1.2).
 #include <algorithm>
 #include <atomic>
 #include <cmath>

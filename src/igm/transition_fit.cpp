@@ -1,3 +1,4 @@
+// The best rotation and the nearest translation between two charts (Section 5.1.1).
 #include <algorithm>
 #include <cmath>
 #include <limits>

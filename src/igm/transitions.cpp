@@ -1,3 +1,4 @@
+// Fits transitions to all inner faces (Section 5.1.1).
 #include <algorithm>
 
 #include <igm/transition_fit.hpp>

@@ -1,3 +1,4 @@
+// Searches the dual graph for gauges, and rewrites the map in common charts (not in the paper).
 #include <algorithm>
 #include <array>
 #include <cmath>

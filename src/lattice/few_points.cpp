@@ -1,3 +1,5 @@
+// Grid points of a tet one by one, where its box has few: signs by a filter, then exactly (for
+// Section 5.2).
 #include <algorithm>
 #include <bit>
 

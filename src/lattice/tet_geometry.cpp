@@ -1,3 +1,5 @@
+// Exact predicates on a tet: orientation, holder, casing, exits of turns and lines (Algorithms 4,
+// 5, 7 and 9).
 #include <cmath>
 
 #include <lattice/tet_geometry.hpp>
@@ -87,11 +89,11 @@ int stepSign(const LatticePoint& from, const LatticePoint& to, Direction d) noex
   return s * signOf(d);
 }
 
-/// Whether the plane with normal d3 through the simplex's inner point, oriented as the turn, leaves
-/// the cone of the tet at the simplex through face f. With the face's inward normal a x b, where a
-/// and b are the directions to its other corners, a point r of the face that lies in the plane
-/// moves with velocity d3 x r, and (a x b).(d3 x r) = (a.d3)(b.r) - (a.r)(b.d3) is negative, i.e.
-/// points out of the tet, exactly if a.d3 <= 0 <= b.d3.
+/// Whether the plane with normal d3 through the simplex's inner point, oriented like the turn,
+/// leaves the cone of the tet at the simplex through face f. With the face's inward normal a x b,
+/// where a and b are the directions to its other corners, a point r of the face that lies in the
+/// plane moves with velocity d3 x r, and (a x b).(d3 x r) = (a.d3)(b.r) - (a.r)(b.d3) is negative,
+/// i.e. points out of the tet, exactly if a.d3 <= 0 <= b.d3.
 bool planeLeavesThrough(const LatticeTet& corners, CornerMask simplex, int f,
                         Direction d3) noexcept {
   const std::array<int, 3>& face = kFaceCorners[static_cast<std::size_t>(f)];

@@ -1,3 +1,4 @@
+// Rasterization of a tet, with proven error bounds (Section 5.2, Algorithms 2 and 3).
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,3 +1,4 @@
+// The half diagonals of cells that a triangle may cut (for the atlas engine; not in the paper).
 #include <algorithm>
 #include <bit>
 #include <cmath>

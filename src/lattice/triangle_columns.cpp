@@ -1,3 +1,5 @@
+// Conservative rasterization of a triangle, column by column (for the atlas engine; not in the
+// paper).
 #include <bit>
 #include <limits>
 

@@ -1,3 +1,4 @@
+// Finds the simplices of a split mesh that are parts of tagged ones.
 #include <algorithm>
 #include <utility>
 

@@ -1,3 +1,4 @@
+// Splits edges and tets, and finds the parts of what has been split.
 #include <algorithm>
 #include <utility>
 

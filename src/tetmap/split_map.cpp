@@ -1,3 +1,4 @@
+// Splits edges of a map, with everything that is known about them.
 #include <algorithm>
 #include <utility>
 #include <vector>
