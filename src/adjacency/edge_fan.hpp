@@ -13,8 +13,8 @@
 
 namespace hexhex::adjacency {
 
-/// The half-face through which a walk around the edge (two corners) leaves a tet that it entered
-/// through half-face `entered`: the other face at the edge.
+/// The face through which a walk around the edge (two corners) leaves a tet that it entered through
+/// face `entered`: the other face at the edge; with -1, the first.
 [[nodiscard]] constexpr int otherFaceAtEdge(lattice::CornerMask edge, int entered) noexcept {
   for (int face = 0; face < 4; ++face) {
     if (!lattice::contains(edge, face) && face != entered) return face;

@@ -1,4 +1,4 @@
-// The atlas: tets glued together to charts.
+// The atlas: tets glued into charts.
 #pragma once
 
 #include <cassert>

@@ -216,7 +216,7 @@ bool CellTracer::endsExactlyBefore(const Segment& segment, int face) const noexc
   return true;
 }
 
-/// Goes on into the neighbour across a face.
+/// Continues in the neighbour across a face.
 void CellTracer::cross(Segment& segment, int face) const {
   const adjacency::HalfFace halfFace = adjacency::halfFaceOf(segment.tet, face);
   const adjacency::HalfFace mate = topology_.mate[halfFace];

@@ -15,7 +15,7 @@ struct ElementCounts {
   Array<std::uint64_t> cells;  ///< per tet (+1): the first cell that it owns
 };
 
-/// A range of items; `first` is included, the end is not.
+/// A half-open range of items.
 struct ItemRange {
   std::size_t first;
   std::size_t end;

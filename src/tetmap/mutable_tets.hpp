@@ -77,9 +77,8 @@ class MutableTets {
  private:
   struct Part {
     Index tet;
-    Index next;  ///< another part of the same tet, in `parts_`, or kNone
-    Index kept, given,
-        middle;  ///< the edge that was split: its end here, its end there, its midpoint
+    Index next;                 ///< another part of the same tet, in `parts_`, or kNone
+    Index kept, given, middle;  ///< the edge that was split: its end here, that there, its midpoint
   };
   void addPart(Index tet, Part part);
   void join(adjacency::HalfFace a, adjacency::HalfFace b) {
