@@ -1,6 +1,6 @@
 // Short vectors of numbers (SIMD). Each lane behaves as a scalar would. Compilers like GCC and
 // Clang have types for vector registers; elsewhere, or with HEXHEX_PLAIN_VECTORS, a class stands in
-// for them, which optimizers see through more or less.
+// for them, which optimizers see through to varying degrees.
 #pragma once
 
 #include <cmath>

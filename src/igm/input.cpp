@@ -167,7 +167,7 @@ Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defec
   return total;
 }
 
-/// Reverses the corners of all tets and mirrors all charts, as `oriented` says.
+/// Reverses the corners of all tets and mirrors all charts, as `oriented` demands.
 void reorient(OrientedMap& oriented, const TetMapView& map, Stage& stage) {
   oriented.tets.resize(map.tets.size());
   oriented.parameters.resize(map.tets.size());

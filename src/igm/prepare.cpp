@@ -98,7 +98,7 @@ class Preparation {
       if (!defects_.empty()) return false;
     }
     defects_.setCornersReversed(prepared_.input.cornersReversed);
-    // Flipped tets falsify angles, hence singularities, hence what is snapped where.
+    // Flipped tets falsify angles, hence singularities, hence where vertices snap.
     if (prepared_.input.flippedTets) defects_.setRootCause(ErrorCode::FlippedTet);
     Stage stage(context_, "topology");
     prepared_.topology = buildTopology(prepared_.input.view, stage, defects_);

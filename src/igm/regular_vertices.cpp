@@ -220,8 +220,8 @@ class Survey {
     }
   }
 
-  /// Whether both tets have the corners of an inner face in the same bits, as nearly always. If so,
-  /// agree() holds, too; this is faster.
+  /// Whether the corners of an inner face are the same bits in both tets, as nearly always happens.
+  /// If so, agree() holds, too; this is faster.
   [[nodiscard]] bool haveSameBits(adjacency::HalfFace halfFace) const {
     const adjacency::HalfFace mate = topology_.mate[halfFace];
     const TetParameters& u = parameters_.given(adjacency::tetOf(halfFace));

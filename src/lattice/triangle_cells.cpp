@@ -18,7 +18,7 @@ constexpr std::int64_t greater(std::int64_t a, std::int64_t b) noexcept { return
 
 /// Two lines through the centre of a cell, and the weights of the triangle's corners at the points
 /// where its plane meets the lines. In units in which half diagonals are `sum` / 2 long, the plane
-/// is as far from the centre as the determinant of the triangle's corners says.
+/// is as far from the centre as the determinant of the triangle's corners.
 struct LinePair {
   Pair least;  ///< weight
   Pair most;
