@@ -49,7 +49,7 @@ class DefectCollector {
 /// Builds adjacency through faces and collects defects; after a defect the result must not be used.
 /// Checks faces (non-manifold, inconsistent orientation); whether edges and vertices are manifold
 /// is up to computeSingularities().
-/// @param map  has passed checkInput()
+/// @param map  has passed readInput()
 [[nodiscard]] adjacency::TetTopology buildTopology(const TetMapView& map, Stage& stage,
                                                    DefectCollector& defects);
 
