@@ -1,4 +1,4 @@
-// Faces and edges of cells: which corners they have, and which of them are the same.
+// Faces and edges of cells: their corners, and which of them coincide.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 
 namespace hexhex::adjacency {
 
-/// Edges are the same if these are.
+/// Two edges are the same if these are equal.
 [[nodiscard]] inline std::array<Index, 2> ascending(Index a, Index b) noexcept {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Quads are the same if these are.
+/// Two quads are the same if these are equal.
 [[nodiscard]] inline Quad ascending(Quad quad) noexcept {
   std::sort(quad.begin(), quad.end());
   return quad;
@@ -73,8 +73,8 @@ inline constexpr std::size_t kFaceCount =
 template <class Cell>
 inline constexpr std::size_t kFaceSize = std::is_same_v<Cell, Hex> ? 4 : 3;
 
-/// The vertices of a face of a cell: of a hexahedron counter-clockwise seen from outside, of a
-/// positive tet from inside.
+/// The vertices of a face of a cell: counter-clockwise seen from outside for a hexahedron, from
+/// inside for a positive tet.
 template <std::size_t n>
 [[nodiscard]] constexpr auto faceVertices(const std::array<Index, n>& cell,
                                           std::size_t face) noexcept {
@@ -109,10 +109,10 @@ void forEachRun(std::span<const T> sorted, const Same& same, const Visit& visit)
   }
 }
 
-/// A half-face: a face as one of its cells has it.
+/// A half-face: a face as one of its cells sees it.
 template <class Cell>
 struct CellFace {
-  /// The face's vertices but for the smallest one, ascending.
+  /// The face's vertices except the smallest, ascending.
   std::array<Index, kFaceSize<Cell> - 1> others{};
   Index cell = kNone;
   std::uint8_t face = 0;
@@ -120,12 +120,12 @@ struct CellFace {
   auto operator<=>(const CellFace&) const = default;
 };
 
-/// Calls visit(its half-faces, by cell) for each face, by its smallest vertex and then in
-/// lexicographic order. Faces are the same if they have the same vertices, so that all their cells
-/// have them at the smallest one.
-/// @param begin, end  the smallest vertices of the faces in question
-/// @param cellsAt  of a vertex: the cells at it, ascending; a repeated one counts once
-/// @param isWanted  of (cell, face): whether a half-face is to be looked at
+/// Calls visit(half-faces of the face, by cell) for each face, by smallest vertex and then in
+/// lexicographic order. Faces are the same if they have the same vertices, so all cells of a face
+/// are found at its smallest vertex.
+/// @param begin, end  range of the smallest vertices of faces
+/// @param cellsAt  cellsAt(vertex): the cells at it, ascending; a repeated one counts once
+/// @param isWanted  isWanted(cell, face): whether to look at a half-face
 template <class Cell, class CellsAt, class Filter, class Visit>
 void forEachFace(std::span<const Cell> cells, std::size_t begin, std::size_t end,
                  const CellsAt& cellsAt, const Filter& isWanted, const Visit& visit) {

@@ -1,5 +1,5 @@
-// How the vertices of a tet are ordered. Two tets that share a face list its vertices in any order;
-// in ascending order, they agree.
+// The order of a tet's vertices. Two tets that share a face list its vertices in any order; in
+// ascending order, they agree.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace hexhex::adjacency {
 
-/// A number below kCornerOrders for each order of a tet's four different vertices: which corner has
+/// A number below kCornerOrders for each order of a tet's four distinct vertices: which corner has
 /// the smallest, and so on.
 using CornerOrder = std::uint8_t;
 inline constexpr std::size_t kCornerOrders = 32;
@@ -23,7 +23,7 @@ inline constexpr std::size_t kCornerOrders = 32;
   return static_cast<CornerOrder>(rank0 + 4 * above1 + (tet[3] < tet[2] ? 16 : 0));
 }
 
-/// A T for each order, made by make(tet) from a tet with such an order.
+/// One T per order, made by make(tet) from a tet with that order.
 template <class T, class F>
 [[nodiscard]] constexpr std::array<T, kCornerOrders> byCornerOrder(const F& make) {
   std::array<T, kCornerOrders> table{};
@@ -34,7 +34,7 @@ template <class T, class F>
   return table;
 }
 
-/// By order: the corners in ascending order of vertices.
+/// Per order: the corners in ascending order of vertices.
 inline constexpr auto kAscendingCorners =
     byCornerOrder<std::array<std::uint8_t, 4>>([](const Tet& tet) {
       std::array<std::uint8_t, 4> corners{0, 1, 2, 3};
@@ -43,8 +43,7 @@ inline constexpr auto kAscendingCorners =
       return corners;
     });
 
-/// By order, and by the number of a face within the tet: the face's corners in ascending order of
-/// vertices.
+/// Per order, and per local number of a face: the face's corners in ascending order of vertices.
 inline constexpr auto kAscendingFaceCorners =
     byCornerOrder<std::array<std::array<std::uint8_t, 3>, 4>>([](const Tet& tet) {
       std::array<std::array<std::uint8_t, 3>, 4> corners{};

@@ -1,4 +1,4 @@
-// Whether cells name vertices that there are.
+// Checks that cells refer to existing vertices.
 #pragma once
 
 #include <cstddef>

@@ -1,3 +1,4 @@
+// The table of all edges of a tet mesh, each with its tets.
 #include <algorithm>
 
 #include <adjacency/edge_fan.hpp>
@@ -13,7 +14,7 @@ constexpr std::array<std::uint8_t, 16> kEdgeOfCorners = {0, 0, 0, 0, 0, 1, 2, 0,
 }  // namespace
 
 EdgeFans::EdgeFans(const TetTopology& topology) : topology_(topology), edges_(topology.tetCount()) {
-  // As many edges as Euler's formula has, where no component is a closed space.
+  // As many edges as Euler's formula gives if no component is a closed space.
   const auto boundary =
       static_cast<std::size_t>(std::count(topology.mate.begin(), topology.mate.end(), kNone));
   begin_.reserve(topology.pointCount + topology.tetCount() + boundary / 2 + 1);

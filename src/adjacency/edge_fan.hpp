@@ -13,8 +13,8 @@
 
 namespace hexhex::adjacency {
 
-/// The half-face of a tet through which a walk around the edge (two corners) leaves that came in
-/// through half-face `entered`: the other face at the edge.
+/// The face through which a walk around the edge (two corners) leaves a tet that it entered through
+/// face `entered`: the other face at the edge; with -1, the first.
 [[nodiscard]] constexpr int otherFaceAtEdge(lattice::CornerMask edge, int entered) noexcept {
   for (int face = 0; face < 4; ++face) {
     if (!lattice::contains(edge, face) && face != entered) return face;
@@ -22,13 +22,13 @@ namespace hexhex::adjacency {
   return entered;
 }
 
-/// From tet to tet around an edge.
-/// @tparam Mesh  has `tets` and, per half-face, `mate`, as TetTopology has them
+/// A walk from tet to tet around an edge.
+/// @tparam Mesh  has `tets` and, per half-face, `mate`, as TetTopology does
 template <class Mesh>
 class EdgeTurn {
  public:
   /// @param edge  two corners of the tet
-  /// @param face  at the edge, through which it goes first
+  /// @param face  at the edge, through which the walk goes first
   EdgeTurn(const Mesh& mesh, Index tet, lattice::CornerMask edge, int face) noexcept
       : mesh_(mesh),
         tet_(tet),
@@ -41,21 +41,21 @@ class EdgeTurn {
   [[nodiscard]] Index tet() const noexcept { return tet_; }
   /// The edge, as corners of the tet.
   [[nodiscard]] lattice::CornerMask edge() const noexcept { return edge_; }
-  /// The half-face that it leaves the tet through.
+  /// The half-face through which the walk leaves the tet.
   [[nodiscard]] HalfFace out() const noexcept { return out_; }
-  /// The corner on that face beside the edge.
+  /// The corner of that face that is not on the edge.
   [[nodiscard]] std::size_t ahead() const noexcept {
     return static_cast<std::size_t>(otherFaceAtEdge(edge_, localOf(out_)));
   }
   /// The same half-face in the next tet, or kNone.
   [[nodiscard]] HalfFace next() const noexcept { return mesh_.mate[out_]; }
 
-  /// Enters the next tet, of which there must be one.
+  /// Enters the next tet, which must exist.
   void step() noexcept {
     const HalfFace in = next();
     assert(in != kNone);
     tet_ = tetOf(in);
-    // The third corner of the face behind is the one opposite the face ahead.
+    // The third corner of the face behind is opposite the face ahead.
     const auto opposite = static_cast<int>(localCorner(mesh_.tets[tet_], vertexAhead_));
     edge_ = static_cast<lattice::CornerMask>(lattice::kWholeTet ^ lattice::cornerBit(opposite) ^
                                              lattice::cornerBit(localOf(in)));
@@ -63,7 +63,7 @@ class EdgeTurn {
     out_ = halfFaceOf(tet_, opposite);
   }
 
-  /// Goes on to the boundary or, if the edge is not there, once around.
+  /// Goes on to the boundary or, if the edge is inside, once around.
   /// @return whether it is at the boundary
   bool goToBoundary() noexcept {
     const Index start = tet_;
@@ -82,11 +82,11 @@ class EdgeTurn {
   Index vertexAhead_;
 };
 
-/// Calls visit(turn, value) for the other tets around an edge, in one direction and, where that
-/// ends at the boundary, in the other one; until it returns false.
+/// Calls visit(turn, value) for the other tets around an edge, in one direction and, if that ends
+/// at the boundary, in the other, until it returns false.
 /// @param start  the value in the first tet: a chart, say
 /// @param carry  carry(value, half-face): the value beyond
-/// @return what the value is after a whole turn; nothing without one
+/// @return the value after a full turn; nothing without one
 template <class Mesh, class T, class Carry, class Visit>
 std::optional<T> visitAroundEdge(const Mesh& mesh, Index tet, lattice::CornerMask edge, T start,
                                  const Carry& carry, const Visit& visit) {
@@ -128,7 +128,7 @@ class EdgeFans {
   [[nodiscard]] std::span<const EdgeCorner> operator()(std::size_t edge) const noexcept {
     return std::span(corners_).subspan(begin_[edge], begin_[edge + 1] - begin_[edge]);
   }
-  /// The edge of two corners of a tet.
+  /// The edge between two corners of a tet.
   [[nodiscard]] Index edgeOf(Index tet, lattice::CornerMask ends) const noexcept;
   [[nodiscard]] Index edgeOf(const TetEdge& at) const noexcept { return edgeOf(at.tet, at.mask()); }
   [[nodiscard]] bool isBoundary(std::size_t edge) const noexcept {

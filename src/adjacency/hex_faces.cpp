@@ -1,5 +1,5 @@
-// Most neighbours number their corners alike and find each other at once. Other faces are few in
-// most meshes, and are compared at their smallest vertices.
+// Matches the faces of hexahedra. Most neighbours number their corners alike and find each other at
+// once. Other faces are few in most meshes, and are compared at their smallest vertices.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kHexFacesGrain = 2048;
 
-/// By face: its corners as bits.
+/// Per face: its corners as bits.
 constexpr std::array<unsigned, 6> makeCornersOfFaces() {
   std::array<unsigned, 6> result{};
   for (std::size_t f = 0; f < 6; ++f) {
@@ -27,16 +27,15 @@ constexpr std::array<unsigned, 6> makeCornersOfFaces() {
 }
 constexpr std::array<unsigned, 6> kCornersOfFaces = makeCornersOfFaces();
 
-/// The corners of the faces 0, 2 and 4 of a cell, each with the corner of the cell before it that
-/// is the same vertex if both number their corners alike: face 1, 3 or 5 of that cell.
+/// The corners of faces 0, 2 and 4 of a cell, each with the corner of the preceding cell that is
+/// the same vertex if both number their corners alike, on face 1, 3 or 5 of that cell.
 constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 3> kAlignedCorners = {
     {{{{0, 1}, {3, 2}, {7, 6}, {4, 5}}},
      {{{0, 3}, {1, 2}, {5, 6}, {4, 7}}},
      {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}}}};
 
-/// Cells beside each other that number their corners alike, as most neighbours do in most meshes:
-/// one look-up finds each, wherever it stands in the mesh, by the last cell that has a vertex at
-/// corner 0.
+/// Adjacent cells that number their corners alike, as most neighbours do in most meshes: one
+/// look-up finds each, wherever it is in the mesh, by the last cell that has a vertex at corner 0.
 class AlignedCells {
  public:
   /// @param cells  with corners below vertexCount; must outlive this object
@@ -52,16 +51,16 @@ class AlignedCells {
         if (place.compare_exchange_weak(known, cell, std::memory_order_relaxed)) return;
       }
     };
-    // Cells beyond what an index can name are not found.
+    // Cells beyond the range of an index are not found.
     parallelFor(stage, std::min<std::size_t>(cells.size(), kNone), 8 * kHexFacesGrain, enter);
   }
 
-  /// Calls link(cell, axis, next) where face 2 * axis + 1 of a cell is face 2 * axis of the next
-  /// one, from any thread.
+  /// Calls link(cell, axis, next) where face 2 * axis + 1 of a cell is face 2 * axis of the next,
+  /// from any thread.
   template <class Link>
   void forEachPair(Stage& stage, const Link& link) const {
     parallelFor(stage, cells_.size(), kHexFacesGrain, [&](std::size_t c) {
-      // Neighbours may be far from each other in memory.
+      // Neighbours may be far apart in memory.
       constexpr std::size_t kAhead = 16;
       if (c + kAhead < cells_.size()) fetch(c + kAhead);
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -71,8 +70,8 @@ class AlignedCells {
     });
   }
 
-  /// Calls visit(cell, axis) for the cells that forEachPair() may have named as the next ones
-  /// behind a face with these vertices, until it returns true; returns whether it did.
+  /// Calls visit(cell, axis) for the cells that forEachPair() may have reported as the next behind
+  /// a face with these vertices, until it returns true; returns whether it did.
   template <class Visit>
   [[nodiscard]] bool anyBehind(Quad quad, const Visit& visit) const {
     std::sort(quad.begin(), quad.end());
@@ -88,9 +87,9 @@ class AlignedCells {
   }
 
  private:
-  /// A cell with face 2 * axis where this cell has face 2 * axis + 1, whose four corners there are
-  /// what its neighbour along the axis is in this cell; or kNone. Cells that share a vertex at
-  /// corner 0 with a later cell are not found.
+  /// The neighbour along the axis: a cell whose face 2 * axis is this cell's face 2 * axis + 1,
+  /// with corners numbered alike; or kNone. Cells that share the vertex at corner 0 with a later
+  /// cell are not found.
   [[nodiscard]] Index behind(std::size_t cell, std::size_t axis) const noexcept {
     const Hex& here = cells_[cell];
     const Index candidate = cellAt_[here[kAlignedCorners[axis][0][1]]];
@@ -115,7 +114,7 @@ class AlignedCells {
 };
 
 /// Per cell: bit k if corner k is a vertex of a face without a mate.
-/// @param balance  grows by how many more faces at corner 6 than at corner 0 have mates
+/// @param balance  grows by the number of faces with mates at corner 6, minus that at corner 0
 Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex> cells,
                                     const Array<Index>& mates, Stage& stage,
                                     std::atomic<std::int64_t>& balance) {
@@ -126,7 +125,7 @@ Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex
     for (std::size_t face = 0; face < 6; ++face) {
       linked |= unsigned{mates[6 * c + face] != kNone} << face;
     }
-    if (linked == 63) return;  // as of most cells
+    if (linked == 63) return;  // as for most cells
     balance.fetch_add(std::popcount(linked & 0b101010U) - std::popcount(linked & 0b010101U),
                       std::memory_order_relaxed);
     for (std::size_t face = 0; face < 6; ++face) {
@@ -145,10 +144,10 @@ Array<std::uint8_t> findSeamCorners(std::size_t vertexCount, std::span<const Hex
   return seamCorners;
 }
 
-/// Calls visit(its half-faces, list) for each face that is wanted, from any thread.
-/// @param mayHave  of a cell: false if none of its faces is wanted
-/// @param isWanted  of (cell, face)
-/// @return all that was appended to lists
+/// Calls visit(its half-faces, list) for each wanted face, from any thread.
+/// @param mayHave  mayHave(cell): false if none of its faces is wanted
+/// @param isWanted  isWanted(cell, face)
+/// @return everything that was appended to the lists
 template <class MayHave, class Filter, class Visit>
 std::vector<std::uint64_t> collectFromFaces(std::size_t vertexCount, std::span<const Hex> cells,
                                             Stage& stage, const MayHave& mayHave,
@@ -191,7 +190,7 @@ std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const H
   });
   std::atomic<std::int64_t> balance{0};
   result.seamCorners = findSeamCorners(vertexCount, cells, mates, stage, balance);
-  // In a broken mesh, two cells may claim the same half-face: then fewer are claimed than claim.
+  // In a broken mesh, two cells may claim the same half-face: fewer are then claimed than claim.
   if (balance != 0) return std::nullopt;
   const auto hasSeams = [&](std::size_t cell) { return result.seamCorners[cell] != 0; };
   const auto isOnSeam = [&](std::size_t cell, std::size_t face) {
@@ -216,7 +215,7 @@ std::optional<HexMates> matchHexFaces(std::size_t vertexCount, std::span<const H
 
 std::vector<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
   // Per cell: which of its faces are linked to others; one byte each, so that threads need not wait
-  // for each other. The last two are always set.
+  // for each other. The last two bytes are always set.
   using Linked = std::array<std::uint8_t, 8>;
   constexpr auto kAllLinked = std::bit_cast<std::uint64_t>(Linked{1, 1, 1, 1, 1, 1, 1, 1});
   Array<Linked> linked(mesh.cells.size());
@@ -235,7 +234,7 @@ std::vector<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage) {
   const auto add = [&](std::span<const CellFace<Hex>> halfFaces,
                        std::vector<std::uint64_t>& places) {
     const CellFace<Hex>& first = halfFaces.front();
-    // In a broken mesh, others may be linked across it.
+    // In a broken mesh, other cells may be linked across it.
     if (halfFaces.size() == 1 &&
         !aligned.anyBehind(faceVertices(mesh.cells[first.cell], first.face), isNear)) {
       places.push_back(8 * std::uint64_t{first.cell} + first.face);

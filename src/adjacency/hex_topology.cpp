@@ -1,4 +1,4 @@
-// Faces and edges of a hexahedral mesh and what follows from them.
+// Faces and edges of a hexahedral mesh, and what follows from them.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -17,10 +17,10 @@
 namespace hexhex::adjacency {
 namespace {
 
-/// Vertices or cells per block: a block has about 10^5 operations, so its start costs nothing.
+/// Vertices or cells per block: about 10^5 operations, so starting a block costs next to nothing.
 constexpr std::size_t kHexTopologyGrain = 2048;
 
-/// One more fault. Blocks are merged in order, so the first one noted is the first of all.
+/// Counts another fault. Blocks are merged in order, so the first fault noted is the first of all.
 void note(FaceFault& fault, const CellFace<Hex>& face) {
   if (fault.count++ == 0) fault.first = face;
 }
@@ -30,7 +30,7 @@ void merge(FaceFault& sum, const FaceFault& part) {
   sum.count += part.count;
 }
 
-/// One face, given by its half-faces.
+/// Adds one face, given its half-faces.
 /// @param boundary, cells  shared by several threads
 void addFace(const HexMesh& mesh, std::span<const CellFace<Hex>> halfFaces,
              Array<std::uint8_t>& boundary, DisjointSets& cells, HexFaces& sum) {
@@ -51,7 +51,7 @@ void addFace(const HexMesh& mesh, std::span<const CellFace<Hex>> halfFaces,
   }
 }
 
-/// Throws unless every corner is a vertex and cell numbers fit an Index.
+/// Throws unless every corner is a vertex and all cell numbers fit an Index.
 void requireIndexable(const HexMesh& mesh, Stage& stage) {
   if (mesh.cells.size() >= kNone) {
     throw Error(ErrorCode::TooLarge,
@@ -132,7 +132,7 @@ FaceNeighbours findFaceNeighbours(const HexMesh& mesh, Stage& stage) {
 
 namespace {
 
-/// The two faces of a cell that meet in each of its edges.
+/// The two faces of a cell that meet at each of its edges.
 constexpr std::array<std::array<std::uint8_t, 2>, 12> facesOfEdges() {
   std::array<std::array<std::uint8_t, 2>, 12> result{};
   for (std::size_t e = 0; e < 12; ++e) {
@@ -149,10 +149,10 @@ constexpr std::array<std::array<std::uint8_t, 2>, 12> facesOfEdges() {
 }
 constexpr auto kFacesOfEdges = facesOfEdges();
 
-/// An edge seen from one cell. Its smaller vertex is known from the context.
+/// An edge seen from one cell. Its smaller vertex is known from context.
 struct EdgeEntry {
   Index other;                 ///< the larger vertex
-  std::array<Index, 2> quads;  ///< boundary quads of this cell at this edge, kNone if inside
+  std::array<Index, 2> quads;  ///< this cell's boundary quads at this edge, kNone if inside
   auto operator<=>(const EdgeEntry&) const = default;
 };
 
@@ -187,7 +187,7 @@ class QuadNumbers {
   Array<Index> firsts_;
 };
 
-/// Collects the edges of the cells around a vertex that have it as their smaller vertex, sorted.
+/// Collects the edges of the cells around a vertex for which it is the smaller vertex, sorted.
 void collectEdges(const HexMesh& mesh, std::span<const Index> around, Index vertex,
                   const QuadNumbers& numbers, std::vector<EdgeEntry>& entries) {
   entries.clear();
@@ -207,7 +207,7 @@ void collectEdges(const HexMesh& mesh, std::span<const Index> around, Index vert
   std::sort(entries.begin(), entries.end());
 }
 
-/// One edge, given by its appearances in cells.
+/// Adds one edge, given its appearances in cells.
 /// @param quads  of the boundary; shared by several threads
 void addEdge(Index vertex, std::span<const EdgeEntry> wedges, DisjointSets& quads,
              HexEdges& edges) {

@@ -1,6 +1,6 @@
-// Faces, edges and connected components of a hexahedral mesh, whatever is wrong with it, in linear
-// time and without hashing: everything that shares a face or an edge also shares its smallest
-// vertex, so it suffices to sort the few faces and edges around each vertex.
+// Faces, edges and connected components of a hexahedral mesh, however broken, in linear time and
+// without hashing: everything that shares a face or an edge also shares its smallest vertex, so it
+// suffices to sort the few faces and edges around each vertex.
 //
 // Faces are the same if they have the same four vertices, edges if they have the same two.
 #pragma once
@@ -31,7 +31,7 @@ using VertexCells = VertexLists<Index, std::uint64_t>;
 ///         2^32 - 1 cells or more
 [[nodiscard]] VertexCells cellsAroundVertices(const HexMesh& mesh, Stage& stage);
 
-/// How often something wrong occurs, and where first (by smallest vertex, then cell).
+/// How often a fault occurs, and where first (by smallest vertex, then cell).
 struct FaceFault {
   std::uint64_t count = 0;
   CellFace<Hex> first;
@@ -40,10 +40,10 @@ struct FaceFault {
 /// What the cells share with each other.
 struct HexFaces {
   Array<std::uint8_t> boundary;  ///< per cell: bit f is set if face f belongs to this cell alone
-  std::uint64_t count = 0;       ///< all different faces
+  std::uint64_t count = 0;       ///< distinct faces
   std::uint64_t boundaryCount = 0;
   FaceFault overfull;               ///< faces shared by more than two cells
-  FaceFault sameDirection;          ///< faces of two cells that do not run in opposite directions
+  FaceFault sameDirection;          ///< faces that two cells do not traverse in opposite directions
   std::uint64_t components = 0;     ///< of cells, connected through faces
   std::uint64_t usedVertices = 0;   ///< vertices of at least one cell
   Index firstUnusedVertex = kNone;  ///< kNone if all are used
@@ -58,30 +58,30 @@ using FaceNeighbours = Array<std::array<Index, 6>>;
 /// @throws Error InvalidArgument for a face with more than two cells, and as cellsAroundVertices()
 [[nodiscard]] FaceNeighbours findFaceNeighbours(const HexMesh& mesh, Stage& stage);
 
-/// By axis: the corner next to corner 0.
+/// Per axis: the corner next to corner 0.
 inline constexpr std::array<std::size_t, 3> kNextCorner = {1, 3, 4};
 
-/// A half-face by its number is 6 * cell + face (row of kHexFaces).
+/// Half-faces are numbered 6 * cell + face (row of kHexFaces).
 ///
 /// *Seams* are the faces whose two cells do not number their corners alike, and the boundary. A
-/// vertex that is on no seam has eight cells, each of which has it at another corner: to go from
-/// one to the next is to look up a mate.
+/// vertex on no seam has eight cells, each of which has it at a different corner: going from one to
+/// the next takes one look-up of a mate.
 struct HexMates {
   Array<Index> mates;               ///< per half-face: the same face in the other cell, or kNone
   Array<std::uint8_t> seamCorners;  ///< per cell: bit k if corner k is on a seam
 };
 
-/// @param cells  fewer than 2^32 / 6, with vertices in range, and different ones in each
-/// @return nothing if a face has more than two cells, or two that do not pass it in opposite
+/// @param cells  fewer than 2^32 / 6, each with distinct vertices, all in range
+/// @return nothing if a face has more than two cells, or two that do not traverse it in opposite
 ///         directions
 [[nodiscard]] std::optional<HexMates> matchHexFaces(std::size_t vertexCount,
                                                     std::span<const Hex> cells, Stage& stage);
 
 /// The faces that belong to one cell only, by their places in the mesh: 8 * cell + face, ascending.
-/// The mesh may have any faults, but corners out of range.
+/// The mesh may have any fault except corners out of range.
 [[nodiscard]] std::vector<std::uint64_t> boundaryPlaces(const HexMesh& mesh, Stage& stage);
 
-/// The vertices of faces that are given in this way, facing outwards.
+/// The vertices of faces given by their places, facing outwards.
 [[nodiscard]] Array<Quad> quadsAt(const HexMesh& mesh, std::span<const std::uint64_t> places);
 
 /// An edge of the mesh by its vertices, vertex0 <= vertex1.
@@ -90,15 +90,15 @@ struct MeshEdge {
   Index vertex1 = kNone;
 };
 
-/// What is known about the edges.
+/// Numbers and lists of edges.
 struct HexEdges {
-  std::uint64_t count = 0;          ///< all different edges
+  std::uint64_t count = 0;          ///< distinct edges
   std::uint64_t boundaryCount = 0;  ///< edges of boundary quads
-  /// Number of edges by number of cells around, without the regular ones (4 inside, 2 on the
+  /// Number of edges by number of cells around them, without the regular ones (4 inside, 2 on the
   /// boundary).
   std::map<int, std::uint64_t> innerSingular;
   std::map<int, std::uint64_t> boundarySingular;
-  Array<SingularHexEdge> singular;       ///< the same edges one by one, in lexicographic order
+  Array<SingularHexEdge> singular;       ///< the same edges individually, in lexicographic order
   std::uint64_t openCount = 0;           ///< boundary edges not in exactly two boundary quads
   MeshEdge firstOpen;                    ///< the lexicographically first of them
   std::uint64_t boundaryComponents = 0;  ///< of boundary quads, connected through edges

@@ -1,4 +1,4 @@
-// A small hash table for things that are collected anew for every vertex.
+// A small hash table for things that are collected anew at every vertex.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace hexhex::adjacency {
 
-/// Numbers keys (tets, vertices) in the order in which they come. Emptied in no time, and made so
-/// that the processor has no branch to predict: whether a key is new follows no pattern. With
+/// Numbers keys (tets, vertices) in order of insertion. Cleared in no time, and written without
+/// branches, which the processor could not predict: whether a key is new follows no pattern. With
 /// branches here and in tet_faces.cpp, an extraction of s17c_sphere_r0.1 takes 8 % longer.
 class KeyTable {
   struct Slot {
@@ -24,14 +24,14 @@ class KeyTable {
   void clear() {
     size_ = 0;
     if (++generation_ != 0) return;
-    // All numbers have been used: slots of long ago would look fresh.
+    // All generations have been used: old slots would look fresh.
     std::fill(slots_.begin(), slots_.end(), Slot{});
     generation_ = 1;
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-  /// The number of a key, which is the former size() if the key is new.
+  /// The number of a key; it is the former size() if the key is new.
   Index insert(Index key) {
     makeRoom(size_ + 1);
     const Index number = numberer()(key, size_);
@@ -39,15 +39,15 @@ class KeyTable {
     return number;
   }
 
-  /// Does the work, as an object that a loop can keep in registers. The caller counts the keys, and
-  /// size() knows nothing of them.
+  /// Does the work, as an object that a loop can keep in registers. The caller counts the keys;
+  /// size() does not notice them.
   class Numberer {
    public:
     /// The number of a key: `size` if it is new. There must be room.
     Index operator()(Index key, Index size) const noexcept {
       const std::uint64_t tag = generation_ | key;
       Slot& slot = *find(slots_, shift_, tag);
-      // Chosen by arithmetic, as the compiler would make a branch of a condition.
+      // By arithmetic, as the compiler would turn a condition into a branch.
       const Index isKnown = slot.tag == tag ? 1 : 0;
       const Index number = size ^ ((slot.number ^ size) & (0 - isKnown));
       slot = {tag, number};
@@ -70,23 +70,23 @@ class KeyTable {
 
   [[nodiscard]] bool hasRoom(std::size_t size) const noexcept { return 2 * size <= slots_.size(); }
 
-  /// For this many keys.
+  /// Makes room for this many keys.
   void makeRoom(std::size_t size) {
     while (!hasRoom(size)) grow();
   }
 
  private:
-  /// Many more than the tets or edges at nearly all vertices, so that keys hardly ever collide.
+  /// Far more than the tets or edges at nearly all vertices, so that keys hardly ever collide.
   static constexpr std::size_t kInitialSlots = 512;
   static constexpr int kInitialShift = 23;  ///< 2^(32 - 23) slots
 
-  /// The slot of a key, or the one that it would get.
+  /// The slot of a key, or the one it would get.
   [[nodiscard]] static Slot* find(Slot* slots, int shift, std::uint64_t tag) noexcept {
     const std::size_t mask = 0xffffffffU >> shift;
     // The upper bits of a product with an odd constant near 2^32 / golden ratio spread well.
     std::size_t i = (static_cast<std::uint32_t>(tag) * 0x9e3779b9U) >> shift;
-    // While the slot is of this generation, but of another key: in one comparison, as two would
-    // make a branch.
+    // While the slot is of this generation, but has another key: one comparison, as two would make
+    // a branch.
     while ((slots[i].tag ^ tag) - 1 < 0xffffffffU) i = (i + 1) & mask;
     return &slots[i];
   }

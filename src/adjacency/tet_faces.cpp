@@ -1,3 +1,4 @@
+// Matches the half-faces of tets: each triangle at its smallest vertex, by a small hash table.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -10,24 +11,24 @@ namespace hexhex::adjacency {
 
 namespace {
 
-/// Vertices whose faces are matched in one go; small meshes must still have work for all threads.
+/// Vertices per block; small meshes must still have work for all threads.
 constexpr std::size_t kVertexGrain = 256;
 
-/// Tets are divided into at most as many parts: each part costs three numbers per vertex.
+/// Tets are divided into at most this many parts: each costs three numbers per vertex.
 constexpr std::size_t kMaxParts = 8;
 
-/// A half-face as the hash table keeps it: its number in the lower half. In the upper half, bit 0
-/// if its corners, in the order of kFaceCorners, ascend but for a rotation, and bit 1 if they
-/// descend; both if it has been matched. So two that share a bit must not be matched.
+/// A half-face in the hash table: the lower half is its number. In the upper half, bit 0 is set if
+/// its corners, in the order of kFaceCorners, ascend up to rotation, bit 1 if they descend, and
+/// both if it has been matched. So two that share a bit must not be matched.
 using OpenFace = std::uint64_t;
 constexpr OpenFace kAscends = std::uint64_t{1} << 32;
 constexpr OpenFace kDescends = std::uint64_t{2} << 32;
-/// Matched, or none yet.
+/// A matched half-face; no half-face yet.
 constexpr OpenFace kMatched = kAscends | kDescends;
 constexpr OpenFace kNoFace = kNone;
 
-/// By order of a tet, and by rank of the corner opposite a face: the face's number within the tet,
-/// and whether it ascends or descends.
+/// Per order of a tet, and per rank of the corner opposite a face: the face's number within the
+/// tet, and whether it ascends or descends.
 constexpr auto kRankedFaces = byCornerOrder<std::array<OpenFace, 4>>([](const Tet& tet) {
   std::array<OpenFace, 4> faces{};
   for (std::size_t rank = 0; rank < 4; ++rank) {
@@ -44,15 +45,15 @@ constexpr auto kRankedFaces = byCornerOrder<std::array<OpenFace, 4>>([](const Te
   return faces;
 });
 
-/// Each triangle is found at its smallest vertex. In a tet, that is the tet's smallest vertex for
-/// three faces and the second smallest for the fourth: so each tet is in two linked lists, one of
-/// the tets whose smallest vertex it is and one of those whose second smallest. Each thread has
-/// lists of its own.
+/// Each triangle is found at its smallest vertex. That is the tet's smallest vertex for three
+/// faces, and its second smallest for the fourth: so each tet is in two linked lists, one of the
+/// tets with this smallest vertex and one of those with this second smallest. Each thread has its
+/// own lists.
 struct FaceLists {
   struct Heads {
-    Index threeFaces = kNone;  ///< the first tet of whom this is the smallest vertex,
-    Index oneFace = kNone;     ///< and the second smallest
-    Index smallest = kNone;    ///< tet of all
+    Index threeFaces = kNone;  ///< the first tet whose smallest vertex this is,
+    Index oneFace = kNone;     ///< and whose second smallest it is
+    Index smallest = kNone;    ///< the smallest tet of all at it
   };
   struct Next {
     Index threeFaces;
@@ -61,7 +62,7 @@ struct FaceLists {
   std::size_t parts = 1;
   std::size_t vertices = 0;
   Array<Heads> heads;  ///< per part and vertex
-  Array<Next> next;    ///< per tet: the tet behind it in both lists, or kNone
+  Array<Next> next;    ///< per tet: the next one in both lists, or kNone
 
   [[nodiscard]] const Heads& at(std::size_t part, Index vertex) const {
     return heads[part * vertices + vertex];
@@ -75,7 +76,7 @@ struct FaceLists {
   }
 };
 
-/// Enters tets [begin, end) into the lists of one part, and notes how their corners are ordered.
+/// Enters tets [begin, end) into the lists of one part, and records the order of their corners.
 void listFaces(FaceLists& lists, TetTopology& topology, std::size_t part, std::size_t begin,
                std::size_t end) {
   FaceLists::Heads* const heads =
@@ -108,7 +109,7 @@ FaceLists listFaces(TetTopology& topology, Stage& stage) {
   return lists;
 }
 
-/// What a hash table has found at a vertex: a triangle's other two vertices, the smaller one in the
+/// An entry of the hash table at a vertex: a triangle's other two vertices, the smaller one in the
 /// upper half, and its half-face.
 struct FoundFace {
   std::uint64_t vertices = 0;
@@ -120,13 +121,13 @@ struct FaceTable {
   /// Enough at nearly every vertex, and cleared in no time.
   static constexpr int kBits = 8;
 
-  std::vector<std::uint32_t> slots;  ///< numbers in `found`; 0: empty
+  std::vector<std::uint32_t> slots;  ///< indices in `found`; 0: empty
   std::vector<FoundFace> found;
 };
 
 /// Matches the half-faces at one vertex, by a hash table. Whether a triangle is found for the first
-/// or the second time cannot be predicted, so both go the same path
-/// (key_table.hpp has the figure).
+/// or the second time cannot be predicted, so both cases take the same path (key_table.hpp has the
+/// figure).
 class FaceMatcher {
  public:
   /// @param bits  of the table's size
@@ -138,7 +139,7 @@ class FaceMatcher {
     found_ = table.found;
   }
 
-  /// Whether so many can be added.
+  /// Whether this many more can be added.
   [[nodiscard]] bool hasRoom(std::size_t more) const { return count_ + more < found_.size(); }
 
   /// @param low,high  the other two vertices, low < high
@@ -156,11 +157,11 @@ class FaceMatcher {
     mate_[here] = there;
   }
 
-  /// Whether no triangle was there more than twice, or twice in the same orientation.
+  /// Whether no triangle occurred more than twice, or twice with the same orientation.
   [[nodiscard]] bool isSound() const { return (shared_ & kMatched) == 0; }
 
  private:
-  /// The slot with the number of the last half-face of a triangle; 0 if there was none so far.
+  /// The slot with the number of a triangle's last half-face; 0 if there has been none.
   [[nodiscard]] std::uint32_t& slotOf(std::uint64_t key) {
     found_[0].vertices = key;  // ends the search at an empty slot
     // Odd, and near 2^64 / golden ratio: the upper bits of products with it spread well.
@@ -177,7 +178,7 @@ class FaceMatcher {
   OpenFace shared_ = 0;
 };
 
-/// Matches the half-faces whose smallest vertex is the same.
+/// Matches the half-faces with the same smallest vertex.
 /// @return false if they do not fit the table
 bool matchFacesAt(Index v, const FaceLists& lists, TetTopology& topology, FaceTable& table,
                   int bits, bool& sound) {

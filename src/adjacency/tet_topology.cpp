@@ -1,3 +1,4 @@
+// Stars of vertices, edges, and owners of simplices (Section 5.2: parent tets).
 #include <atomic>
 
 #include <adjacency/edge_fan.hpp>

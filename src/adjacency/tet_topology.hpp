@@ -1,4 +1,4 @@
-// Who touches whom in a tet mesh.
+// Adjacency in a tet mesh: half-faces and their mates, stars of vertices, edges.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +33,8 @@ using HalfFace = std::uint32_t;
   return 4 * tet + static_cast<HalfFace>(opposite);
 }
 
-/// Position of a vertex in a tet that contains it: as a number of two bits, of which nothing is to
-/// be foretold.
+/// Position of a vertex in a tet that contains it: a number of two bits, computed without branches,
+/// which could not be predicted.
 [[nodiscard]] constexpr Index localCorner(const Tet& tet, Index vertex) noexcept {
   const Index isLast = tet[3] == vertex ? 1 : 0;
   const Index low = (tet[1] == vertex ? 1U : 0U) | isLast;
@@ -42,7 +42,7 @@ using HalfFace = std::uint32_t;
   return low | (high << 1);
 }
 
-/// An edge as a tet at it has it: its corners at the edge's ends.
+/// An edge as one of its tets sees it: the corners at its ends.
 struct TetEdge {
   Index tet;
   std::uint8_t corner0;
@@ -107,7 +107,7 @@ class SharedFace {
       : here_(kTurns[here % 4][0]) {
     const Tet& mate = topology.tets[tetOf(there)];
     const Index first = topology.tets[tetOf(here)][here_[0]];
-    // The mate has the corners in reverse order: only the first one is to be found.
+    // The mate has the corners in reverse order: only the first must be found.
     const auto& turns = kTurns[there % 4];
     there_ =
         &turns[3 + (mate[turns[0][1]] == first ? 1U : 0U) + (mate[turns[0][2]] == first ? 2U : 0U)];
@@ -118,7 +118,7 @@ class SharedFace {
  private:
   using Turn = std::array<std::uint8_t, 3>;
 
-  /// Per face: its corners beginning with each of them, then the same in reverse order.
+  /// Per face: its corners starting from each of them, then the same in reverse order.
   static constexpr std::array<std::array<Turn, 6>, 4> kTurns = [] {
     std::array<std::array<Turn, 6>, 4> turns{};
     for (std::size_t face = 0; face < 4; ++face) {
@@ -139,7 +139,7 @@ class SharedFace {
   const Turn* there_ = nullptr;
 };
 
-/// What the tets of an inner face have at its corners.
+/// Values at the corners of an inner face, in both its tets.
 template <class Value>
 struct SharedCorners {
   std::array<Value, 3> here;
@@ -157,7 +157,7 @@ struct SharedCorners {
   }
 };
 
-/// A simplex of a face as the neighbour has it.
+/// A simplex of a face as the neighbour sees it.
 /// @param here  the face, as a half-face that is not on the boundary
 [[nodiscard]] inline lattice::CornerMask acrossFace(const TetTopology& topology, HalfFace here,
                                                     lattice::CornerMask simplex) noexcept {
@@ -165,17 +165,17 @@ struct SharedCorners {
 }
 
 /// Finds the neighbour of each tet across each of its faces: fills `mate`, `vertexTet` and `order`.
-/// @return false if a triangle belongs to more than two tets, or if two tets at one do not see it
-///         with opposite orientation; nothing may then be made of the result but a list of defects
+/// @return false if a triangle belongs to more than two tets, or if its two tets do not see it with
+///         opposite orientation; the result is then only good for a list of defects
 [[nodiscard]] bool matchFaces(TetTopology& topology, Stage& stage);
 
-/// The same of tets that should be a manifold.
+/// The same for tets that should form a manifold.
 /// @param tets  must outlive the result
-/// @return nothing if they are not
+/// @return nothing if they do not
 [[nodiscard]] std::optional<TetTopology> manifoldTopology(std::span<const Tet> tets,
                                                           std::size_t pointCount, Stage& stage);
 
-/// Lists the corners at each vertex. Does nothing if they are listed.
+/// Lists the corners at each vertex, unless they are listed already.
 void addStars(TetTopology& topology, Stage& stage);
 
 /// Needs addStars().
@@ -210,7 +210,8 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
       [&visit](std::span<const EdgeCorner> fan) { visit(fan.front().other, fan); });
 }
 
-/// The boundary faces among the two faces of each tet at an edge: 0 inside, 2 on the boundary.
+/// Number of boundary faces among the two faces of each tet at an edge: 0 inside, 2 on the
+/// boundary.
 [[nodiscard]] std::size_t boundaryFacesAt(const TetTopology& topology,
                                           std::span<const EdgeCorner> fan);
 
@@ -218,7 +219,7 @@ void forEachEdge(const TetTopology& topology, Index v, std::vector<EdgeCorner>& 
 [[nodiscard]] Index ownerTet(const TetTopology& topology, Index tet,
                              lattice::CornerMask simplex) noexcept;
 
-/// Whether that is the tet itself, which takes less time to say.
+/// Whether that is the tet itself, which is quicker to decide.
 [[nodiscard]] bool ownsSimplex(const TetTopology& topology, Index tet,
                                lattice::CornerMask simplex) noexcept;
 

@@ -1,4 +1,4 @@
-// Lists of what vertices have (cells, corners, edges): a counting sort in which all threads take
+// Lists of things at vertices (cells, corners, edges), by a counting sort in which all threads take
 // part.
 #pragma once
 
@@ -24,7 +24,7 @@ class VertexLists {
  public:
   VertexLists() = default;
 
-  /// @param forEach  calls its argument with (vertex, value) for each value, from any thread; it is
+  /// @param forEach  calls its argument with (vertex, value) for each value, from any thread;
   ///                 called twice, to count values and to enter them
   template <class ForEach>
   VertexLists(std::size_t vertexCount, Stage& stage, const ForEach& forEach)
@@ -36,10 +36,10 @@ class VertexLists {
     };
     forEach([&next](Index vertex, const T& /*value*/) { next(vertex); });
     values_.resize(exclusiveScan(std::span(ends_)));
-    // Where a list begins moves on to its end while it is filled.
+    // While a list is filled, its begin moves on to its end.
     forEach([&](Index vertex, const T& value) { values_[next(vertex)] = value; });
     assert(ends_.back() == values_.size() && beginOf(vertexCount) == values_.size());
-    // Threads come in any order: once sorted, lists are the same for any number of them.
+    // Threads come in any order; sorted, lists are the same for any number of them.
     parallelFor(stage, vertexCount, kGrain, [this](std::size_t v) {
       const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(beginOf(v));
       const auto end = values_.begin() + static_cast<std::ptrdiff_t>(ends_[v]);
@@ -47,7 +47,7 @@ class VertexLists {
     });
   }
 
-  /// Whether nothing has been listed at all.
+  /// Whether nothing has been listed.
   [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
   [[nodiscard]] std::span<const T> operator()(std::size_t vertex) const noexcept {
@@ -67,8 +67,8 @@ class VertexLists {
   Array<T> values_;
 };
 
-/// The other ends of the edges of each vertex.
-/// @param edges  each with the smaller vertex first; any number of times
+/// The other ends of each vertex's edges.
+/// @param edges  each with the smaller vertex first; may occur repeatedly
 [[nodiscard]] inline VertexLists<Index> verticesBeside(std::vector<std::array<Index, 2>> edges,
                                                        std::size_t vertexCount, Stage& stage) {
   std::sort(edges.begin(), edges.end());

@@ -1,3 +1,4 @@
+// The stages of the atlas engine, for whole meshes and for pieces (docs/atlas.md).
 #include <array>
 #include <atomic>
 #include <cassert>
@@ -17,7 +18,7 @@ namespace hexhex::atlas {
 
 namespace {
 
-/// More vertices than this need wide ids: two values are reserved.
+/// More vertices than this need wide ids: two narrow ones are reserved.
 constexpr std::uint64_t kMaxNarrowVertices = std::numeric_limits<std::uint32_t>::max() - 1;
 
 void requireExpected(std::uint64_t cells, std::uint64_t expected) {
@@ -34,7 +35,7 @@ constexpr std::array<WorkStep, 6> kEngineSteps = {{{"charts", 0.01},
                                                    {"overlaps", 0.15},
                                                    {"cuts", 0.05},
                                                    {"cells", 1.3}}};
-/// ... where writing a piece is a part of making it.
+/// ... where writing a piece is part of making it.
 constexpr std::array<WorkStep, 7> kStreamSteps = {{{"charts", 0.01},
                                                    {"sweep", 0.3},
                                                    {"grid", 0.4},
@@ -58,7 +59,7 @@ class Atlas {
     charts_ = buildCharts(map, stage);
   }
 
-  /// @param observer  sees every tet, if there is one
+  /// @param observer  sees every tet, if not null
   /// @return the number of vertices
   std::uint64_t sweep(std::uint64_t expectedCells, sweep::SweepObserver* observer = nullptr) {
     Stage stage(context_, "sweep");
@@ -109,7 +110,7 @@ class Atlas {
   EngineSwitches switches_;
 };
 
-/// Tets that one thread works on at a time where each has many elements.
+/// Tets per block where each has many elements.
 constexpr std::size_t kFewTets = 64;
 
 /// Consecutive tets, and the vertices or cells that they own.
@@ -144,7 +145,7 @@ std::uint64_t emitCells(const igm::PreparedMap& map, const Atlas<Id>& atlas, con
                         std::span<typename CellEmitter<Id>::Cell> cells, Stage& stage) {
   struct Workspace {
     CellEmitter<Id> emitter;
-    std::vector<lattice::SweptLine> lines;  ///< of a tet, where they are not kept
+    std::vector<lattice::SweptLine> lines;  ///< of a tet, if they are not kept
   };
   const Array<std::uint64_t>& begin = atlas.cells().begin;
   std::atomic<std::uint64_t> resolved{0};

@@ -1,5 +1,5 @@
-// The sparse voxel grid of the atlas: for every lattice point of every chart the hex vertex there,
-// in bricks of 8 x 8 x 8 points behind a hash table; and what cells remember of cuts.
+// The sparse voxel grid of the atlas: the hex vertex at every lattice point of every chart, in
+// bricks of 8 x 8 x 8 points behind a hash table; and the cuts recorded for cells.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 
 namespace hexhex::atlas {
 
-/// The points of one tet's sweep in its chart: as a gauge, but prepared for many points.
+/// The points of one tet's sweep in its chart: a gauge, prepared for many points.
 class SweepFrame {
  public:
   SweepFrame(const lattice::Gauge& gauge, const std::array<std::uint8_t, 3>& axes) noexcept
@@ -62,9 +62,9 @@ class SweepFrame {
 inline constexpr std::uint32_t kBrickSide = 8;
 inline constexpr std::size_t kBrickPoints = std::size_t{kBrickSide} * kBrickSide * kBrickSide;
 
-/// Names a brick: chart and brick coordinates, modulo 2^16 each. Charts and places that the modulus
-/// makes equal overlap, no more (see lattice/gauge.hpp). What it takes off coordinates changes the
-/// chart, or tets longer than 2^19 grid units would overlap themselves.
+/// Names a brick: chart and brick coordinates, modulo 2^16 each. Charts and places that coincide
+/// modulo 2^16 overlap, nothing worse (see lattice/gauge.hpp). The bits that coordinates lose
+/// change the chart; otherwise tets longer than 2^19 grid units would overlap themselves.
 using BrickKey = std::uint64_t;
 inline constexpr BrickKey kNoBrick = std::numeric_limits<BrickKey>::max();
 
@@ -79,13 +79,13 @@ inline constexpr BrickKey kNoBrick = std::numeric_limits<BrickKey>::max();
   return (c[2] % kBrickSide * kBrickSide + c[1] % kBrickSide) * kBrickSide + c[0] % kBrickSide;
 }
 
-/// From the place of a point to that of its neighbour in a direction, in the same brick.
+/// Offset from the place of a point to that of its neighbour in a direction, in the same brick.
 [[nodiscard]] constexpr std::ptrdiff_t strideInBrick(lattice::Direction d) noexcept {
   constexpr std::array<std::ptrdiff_t, 3> kStrides = {1, kBrickSide, kBrickSide * kBrickSide};
   return lattice::signOf(d) * kStrides[static_cast<std::size_t>(lattice::axisOf(d))];
 }
 
-/// A table of recently used bricks has one entry for all bricks with the same coordinates modulo 8.
+/// A table of recently used bricks has one entry for all bricks whose coordinates agree modulo 8.
 inline constexpr std::size_t kRecentBricks = 512;
 [[nodiscard]] constexpr std::size_t recentBrick(const lattice::ChartPoint& c) noexcept {
   return (c[0] / kBrickSide % 8) | (c[1] / kBrickSide % 8) << 3 | (c[2] / kBrickSide % 8) << 6;
@@ -99,7 +99,8 @@ struct ChartRow {
   std::uint32_t count;
 
   /// Calls visit(point, offset, count, stride) for each part of the row within one brick: its first
-  /// point, its offset in the row, its number of points, and the distance of their places.
+  /// point, that point's offset in the row, the number of points, and the distance between their
+  /// places.
   template <class Visit>
   void forEachPart(const Visit& visit) const {
     const auto axis = static_cast<std::size_t>(lattice::axisOf(along));
@@ -117,7 +118,7 @@ struct ChartRow {
   }
 };
 
-// What the cells of a brick remember of cuts.
+// The cuts recorded for the cells of a brick.
 
 /// Names a transition across a cut (CutTransitions).
 using CutTransitionId = std::uint8_t;
@@ -127,8 +128,8 @@ inline constexpr CutTransitionId kNoCut = 0;
 inline constexpr CutTransitionId kAnyCuts = std::numeric_limits<CutTransitionId>::max();
 
 /// The cuts that the half diagonals of a cell may meet: for each corner, in terms of the chart, the
-/// transition across them. A cell remembers two different transitions: with one, whole extractions
-/// of s17c_sphere_r0.1 take 6 % longer, of s17c_sphere_r10 5 %.
+/// transition across them. A cell records two different transitions: with one, whole extractions of
+/// s17c_sphere_r0.1 take 6 % longer, of s17c_sphere_r10 5 %.
 class alignas(4) CutCell {
  public:
   [[nodiscard]] constexpr bool isCut() const noexcept { return transitions_[0] != kNoCut; }
@@ -149,14 +150,14 @@ class alignas(4) CutCell {
     return common;
   }
 
-  /// With one more cut in front of some corners.
+  /// The same, with one more cut in front of some corners.
   [[nodiscard]] constexpr CutCell with(lattice::CellCornerSet corners,
                                        CutTransitionId transition) const noexcept {
     CutCell after = *this;
     std::size_t i = 0;
     while (i < kMost && transitions_[i] != kNoCut && transitions_[i] != transition) ++i;
     if (i == kMost) {
-      // Which one the last was is forgotten.
+      // Forget which transition was last.
       i = kMost - 1;
       transition = kAnyCuts;
     }
@@ -178,7 +179,7 @@ class alignas(4) CutCell {
 struct CutCells {
   std::array<CutCell, kBrickPoints> cells{};
 
-  /// Adds a cut face. Thread-safe.
+  /// Adds a cut face to a cell. Thread-safe.
   void add(std::size_t place, lattice::CellCornerSet corners, CutTransitionId transition) noexcept {
     const std::atomic_ref cell(cells[place]);
     CutCell before = cell.load(std::memory_order_relaxed);
@@ -191,8 +192,8 @@ struct CutCells {
   }
 };
 
-// The sparse voxel grid of the atlas: for every lattice point of every chart the hex vertex there,
-// in bricks of 8 x 8 x 8 points behind a hash table.
+// The grid itself: the hex vertex at every lattice point of every chart, in bricks of 8 x 8 x 8
+// points behind a hash table.
 
 template <class Id>
 struct Brick {
@@ -204,8 +205,8 @@ struct Brick {
 
   std::array<Id, kBrickPoints> ids;
   CutCells* cuts;           ///< null if no cut may meet any cell
-  std::uint32_t contested;  ///< not 0 if two vertices claim one of the points
-  std::uint32_t locked;     ///< not 0 while a thread changes the brick
+  std::uint32_t contested;  ///< nonzero if two vertices claim one of the points
+  std::uint32_t locked;     ///< nonzero while a thread changes the brick
 
   void clear() noexcept {
     ids.fill(kEmpty);
@@ -213,7 +214,7 @@ struct Brick {
     contested = 0;
     locked = 0;
   }
-  /// What stands for bricks that do not exist: no vertices, no cuts.
+  /// Stands for bricks that do not exist: no vertices, no cuts.
   [[nodiscard]] static const Brick& none() {
     static const Brick brick = [] {
       Brick empty;
@@ -224,8 +225,8 @@ struct Brick {
   }
 };
 
-/// Keeps other threads from a brick, for no longer than a few points take: exchanges of all these
-/// points would take longer.
+/// Keeps other threads from a brick, for no longer than a few points take; atomic exchanges of all
+/// these points would take longer.
 template <class Id>
 class BrickLock {
  public:
@@ -273,7 +274,7 @@ class BrickGrid {
     }
   }
 
-  /// The brick of a key, added if there is none. Not while others use the grid.
+  /// The brick of a key; adds it if there is none. Not while other threads use the grid.
   Brick<Id>& add(BrickKey key) {
     assert(key != kNoBrick);
     if (Brick<Id>* const brick = find(key)) return *brick;
@@ -285,7 +286,7 @@ class BrickGrid {
     return brick;
   }
 
-  /// What is known of cuts in a brick, made when it is first asked for. Thread-safe.
+  /// The cuts recorded in a brick, allocated on first use. Thread-safe.
   [[nodiscard]] CutCells& cutsOf(Brick<Id>& brick) {
     const std::atomic_ref known(brick.cuts);
     if (CutCells* const cuts = known.load(std::memory_order_acquire)) return *cuts;
@@ -305,7 +306,7 @@ class BrickGrid {
   [[nodiscard]] std::size_t home(BrickKey key) const noexcept {
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15U) >> shift_);
   }
-  /// At most half full: probes stay short.
+  /// At most half full, so that probes stay short.
   void resizeTable(std::size_t keys) {
     std::size_t size = 64;
     shift_ = 58;
@@ -352,12 +353,12 @@ class BrickGrid {
   std::deque<CutCells> cuts_;
 };
 
-/// Finds bricks without the hash table while accesses stay close. One per thread.
+/// Finds bricks without the hash table as long as accesses stay close together. One per thread.
 template <class Id>
 class BrickCache {
  public:
   explicit BrickCache(const BrickGrid<Id>& grid) : grid_(grid) {
-    // All bits of kNoBrick are set; bricks are looked at behind other keys only.
+    // All bits of kNoBrick are set; bricks are only read behind other keys.
     std::memset(entries_.data(), 0xff, sizeof entries_);
   }
 

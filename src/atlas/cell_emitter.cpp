@@ -1,3 +1,4 @@
+// Reads cells off the vertex grid, and resolves corners behind cuts (docs/atlas.md).
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -23,7 +24,7 @@ bool CornerResolver<Id>::resolve(const CellInQuestion& question, Cell& cell,
   return cell != shown;
 }
 
-/// Takes vertices from the other sides of cuts.
+/// Takes vertices from the far sides of cuts.
 /// @return the corners that are still in question, in terms of the tet's own chart
 template <class Id>
 lattice::CellCornerSet CornerResolver<Id>::lookAcross(const CellInQuestion& question, Cell& cell,
@@ -62,7 +63,7 @@ typename CornerResolver<Id>::Image CornerResolver<Id>::imageAcross(CutTransition
   return {id, &map, image, cuts->cells[placeInBrick(image)]};
 }
 
-/// What the chart on the other side shows at a corner.
+/// What the chart on the far side shows at a corner.
 /// @return nothing if the half diagonal may meet further cuts
 template <class Id>
 std::optional<Id> CornerResolver<Id>::shownBeyond(const Image& image, std::size_t corner,
@@ -90,8 +91,8 @@ template class CornerResolver<std::uint64_t>;
 
 namespace {
 
-/// The corners of a cell by the row of points along the third sweep axis that they are in: row r is
-/// shifted by r % 2 along the first sweep axis, and by r / 2 along the second.
+/// The corners of a cell by the row of points along the third sweep axis that contains them: row r
+/// is shifted by r % 2 along the first sweep axis, and by r / 2 along the second.
 struct RowCorners {
   std::array<std::size_t, 4> near{};  ///< with coordinate 0 along the third
   std::array<std::size_t, 4> far{};   ///< with coordinate 1
@@ -108,7 +109,7 @@ constexpr RowCorners rowCorners(std::size_t permutation) {
   return corners;
 }
 
-/// Goes on along four rows of points; each cell shares four corners with the one before.
+/// Continues along four rows of points; each cell shares four corners with the one before.
 /// @param rows  at the next point
 /// @param near  the points before
 template <std::size_t Permutation, class Id>
@@ -142,7 +143,7 @@ std::uint64_t CellEmitter<Id>::emit(Index tet, std::span<const lattice::SweptLin
     resolved += emitSome(frame, {line, first, cells.first(count)});
     cells = cells.subspan(count);
   }
-  assert(cells.empty());  // all that the tet owns
+  assert(cells.empty());  // the tet owns no others
   return resolved;
 }
 
@@ -169,7 +170,7 @@ std::uint64_t CellEmitter<Id>::emitLine(const Frame& frame, const Cells& cells) 
   const std::int32_t point = line.first + static_cast<std::int32_t>(cells.first);
   ChartRow row{frame.chart, frame.sweep(line.level, line.row, point), frame.sweep.along(2),
                static_cast<std::uint32_t>(cells.corners.size()) + 1};
-  // With a table of corners in place of templates, dense extractions take 8 to 12 % longer.
+  // With a table of corners instead of templates, dense extractions take 8 to 12 % longer.
   constexpr std::array kRead = {
       &CellEmitter::template readCells<0>, &CellEmitter::template readCells<1>,
       &CellEmitter::template readCells<2>, &CellEmitter::template readCells<3>,
@@ -194,7 +195,8 @@ std::uint64_t CellEmitter<Id>::emitWithoutChart(const Frame& frame, const Cells&
 
 /// Reads the corners of a line of cells from the chart.
 /// @tparam Permutation  of the sweep's axes
-/// @param row  the first of the four rows of points around them, with one point more than cells
+/// @param row  the first of the four rows of points around the cells, with one more point than
+///             cells
 /// @return whether any of the bricks has cut cells
 template <class Id>
 template <std::size_t Permutation>
@@ -217,8 +219,8 @@ bool CellEmitter<Id>::readCells(const Frame& frame, const ChartRow& row, const C
   return isCut;
 }
 
-/// The points of the four rows beside point c of the first.
-/// @param isCut  becomes true if a brick has cut cells
+/// The points of the four rows at point c of the first.
+/// @param isCut  set to true if a brick has cut cells
 template <class Id>
 std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Frame& frame, const lattice::ChartPoint& c,
                                                  bool& isCut) {
@@ -242,7 +244,7 @@ std::array<const Id*, 4> CellEmitter<Id>::rowsAt(const Frame& frame, const latti
   return rows;
 }
 
-/// Has the cells looked at for which cuts are noted.
+/// Resolves the cells for which cuts are recorded.
 /// @param row  their smallest corners
 template <class Id>
 std::uint64_t CellEmitter<Id>::resolveCells(const Frame& frame, const ChartRow& row,

@@ -1,13 +1,13 @@
-// Which vertices lie at the corners of a cell that its chart may not show: for a cell that meets a
-// cut, or whose tet has no chart.
+// Which vertices lie at those corners of a cell that its chart may not show, because the cell meets
+// a cut or its tet has no chart.
 //
-// 1. Look across one cut. If all cuts noted in front of a corner have the same transition, and all
-//    those noted at the cell's image on the other side have its inverse, the half diagonal ends in
-//    one of these two charts; if just one of them shows a vertex there, or both the same, that is
-//    it. Without this step whole extractions take up to 27 % longer (s17c_sphere_r10; 5 to 12 % on
-//    most maps; switch lookAcrossCuts, docs/ablation.md).
-// 2. Trace. Where several cuts come together, or both charts show something else, the half diagonal
-//    is followed exactly, tet by tet. (To walk to all such corners of a cell at once, in floating
+// 1. Look across one cut. If all cuts recorded in front of a corner have the same transition, and
+//    all those recorded at the cell's image on the other side have its inverse, the half diagonal
+//    ends in one of these two charts; if only one of them shows a vertex there, or both show the
+//    same, that is it. Without this step whole extractions take up to 27 % longer (s17c_sphere_r10;
+//    5 to 12 % on most maps; switch lookAcrossCuts, docs/ablation.md).
+// 2. Trace. Where several cuts meet, or the two charts show different vertices, the half diagonal
+//    is followed exactly, tet by tet. (Walking to all such corners of a cell at once, in floating
 //    point, gained nothing.)
 #pragma once
 
@@ -26,16 +26,16 @@
 
 namespace hexhex::atlas {
 
-/// A cell, as the tet that owns its centre sees it.
+/// A cell, as seen by the tet that owns its centre.
 struct CellInQuestion {
   Index tet;
   const lattice::SweptLine* centers;  ///< a line of the tet's sweep over centres
   std::uint32_t index;                ///< of the cell's centre in that line
   lattice::ChartPoint place;          ///< the cell's smallest corner in the tet's chart
-  CutCell cuts;                       ///< noted there: corners behind them are in question
+  CutCell cuts;                       ///< recorded there: corners behind them are in question
 };
 
-/// Answers for one cell after the other. One per thread.
+/// Resolves the corners of one cell after the other. One per thread.
 template <class Id>
 class CornerResolver {
  public:
@@ -50,7 +50,7 @@ class CornerResolver {
 
   /// Finds the vertices at the corners in question.
   /// @param cell  what the tet's chart shows at each corner; receives the vertices that are there
-  /// @param cache  of the vertices' grid
+  /// @param cache  of the vertex grid
   /// @return whether the chart showed something else
   bool resolve(const CellInQuestion& question, Cell& cell, BrickCache<Id>& cache);
 
@@ -58,9 +58,9 @@ class CornerResolver {
   /// A cell on the other side of a cut.
   struct Image {
     CutTransitionId id = kNoCut;         ///< leads there
-    const CutTransition* map = nullptr;  ///< null if it leads to no certain place
+    const CutTransition* map = nullptr;  ///< null if it is uncertain where it leads
     lattice::ChartPoint place{};         ///< smallest corner
-    CutCell cuts;                        ///< noted there
+    CutCell cuts;                        ///< recorded there
   };
 
   [[nodiscard]] lattice::CellCornerSet lookAcross(const CellInQuestion& question, Cell& cell,
@@ -81,10 +81,10 @@ class CornerResolver {
 extern template class CornerResolver<std::uint32_t>;
 extern template class CornerResolver<std::uint64_t>;
 
-// Hex cells, tet by tet in canonical order: read from the grid of the tet's chart; where a cut may
-// come in between, CornerResolver is asked.
+// Hex cells, tet by tet in canonical order: read from the grid of the tet's chart, and resolved by
+// CornerResolver where a cut may come in between.
 
-/// Emits the cells of one tet after another. One per thread.
+/// Emits the cells of one tet after the other. One per thread.
 template <class Id>
 class CellEmitter {
  public:
@@ -97,13 +97,13 @@ class CellEmitter {
         cache_(vertices.grid()),
         resolver_(map, vertices, transitions, lookAcrossCuts) {}
 
-  /// Writes the cells whose centres the tet owns: as many as there are elements.
+  /// Writes the cells whose centres the tet owns; there are as many as elements of `cells`.
   /// @param lines  the tet's lines of centres
   /// @return how many have a corner that their chart does not show
   std::uint64_t emit(Index tet, std::span<const lattice::SweptLine> lines, std::span<Cell> cells);
   /// Writes consecutive cells with centres on one of the tet's lines, whoever owns these.
-  /// @param first  of the centres
-  /// @return likewise
+  /// @param first  index of the first centre
+  /// @return as emit()
   std::uint64_t emitOn(Index tet, const lattice::SweptLine& line, std::uint32_t first,
                        std::span<Cell> cells) {
     return emitSome(frameOf(tet, line.axes), {line, first, cells});
@@ -115,9 +115,9 @@ class CellEmitter {
     Index tet;
     Index chart;
     SweepFrame sweep;
-    /// From the first of the four rows of points around a line of cells to each of them.
+    /// Offsets from the first of the four rows of points around a line of cells to each of them.
     std::array<lattice::ChartPoint, 4> rows{};
-    std::array<std::ptrdiff_t, 4> strides{};  ///< the same as places in a brick
+    std::array<std::ptrdiff_t, 4> strides{};  ///< the same, in places of a brick
     lattice::ChartPoint toSmallest{};  ///< from a cell's first corner in the sweep to its smallest
   };
   /// Consecutive cells of a line of centres.

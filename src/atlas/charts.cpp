@@ -1,3 +1,4 @@
+// Glues tets into charts (docs/atlas.md).
 #include <array>
 #include <utility>
 #include <vector>
@@ -21,8 +22,8 @@ class Patches {
     const Array<adjacency::HalfFace>& mate = map.topology.mate;
     DisjointSets sets(tets);
     parallelFor(stage, tets, kChartsGrain, [&](std::size_t t) {
-      // Smaller neighbours, as each face needs to be seen once; listed without branches, which
-      // cannot be predicted: with them, an extraction of s17c_sphere_r0.1 takes 4 % longer.
+      // Only smaller neighbours, as each face must be seen once; listed without branches, which
+      // could not be predicted: with them, an extraction of s17c_sphere_r0.1 takes 4 % longer.
       std::array<Index, 4> smaller{};
       std::size_t count = 0;
       const auto first = static_cast<adjacency::HalfFace>(4 * t);
@@ -54,7 +55,7 @@ class Patches {
   Index count_ = 0;
 };
 
-/// The half-faces through which one patch borders on another, by patch.
+/// The half-faces through which patches border on others, by patch.
 struct Borders {
   std::vector<adjacency::HalfFace> halfFaces;
   std::vector<std::size_t> begin;  ///< per patch (+1)

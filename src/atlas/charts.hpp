@@ -1,4 +1,4 @@
-// The atlas: tets glued to charts.
+// The atlas: tets glued into charts.
 #pragma once
 
 #include <cassert>
@@ -14,7 +14,7 @@ namespace hexhex::atlas {
 
 /// Every tet belongs to a chart and has a gauge that takes its own chart there.
 struct Charts {
-  /// Of a tet that no chart could take without overlap: its cells are traced.
+  /// The chart of a tet that no chart could take without overlap: its cells are traced.
   static constexpr Index kNoChart = kNone;
 
   Array<Index> chart;    ///< per tet
@@ -51,7 +51,7 @@ struct Charts {
   }
 };
 
-/// One chart for every connected component. Tets connected by identity transitions share a gauge;
+/// Builds one chart per connected component. Tets connected by identity transitions share a gauge;
 /// these patches are joined along a breadth-first tree.
 [[nodiscard]] Charts buildCharts(const igm::PreparedMap& map, Stage& stage);
 

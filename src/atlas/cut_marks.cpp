@@ -1,3 +1,4 @@
+// Marks the half diagonals that cut faces may meet (docs/atlas.md).
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -22,7 +23,7 @@ Triangle triangleOf(const igm::ExactMap& map, adjacency::HalfFace halfFace) {
           corners[static_cast<std::size_t>(face[2])]};
 }
 
-/// Gauge::cell() prepared for many cells: it differs from the gauge by a constant.
+/// Gauge::cell(), prepared for many cells: it differs from the gauge by a constant.
 SweepFrame cellFrame(const lattice::Gauge& gauge) noexcept {
   return {{gauge.rotation, gauge.cell(lattice::GridPoint{})}, {0, 1, 2}};
 }
@@ -33,7 +34,7 @@ struct CutFace {
   std::span<const lattice::GridBox> boxes;  ///< none: everywhere
 };
 
-/// Those of a region. Of a face between two of its tets the half-face of one is enough, as their
+/// The cut faces of a region. For a face between two of its tets, one half-face is enough, as their
 /// boxes agree.
 std::vector<CutFace> findCuts(const igm::PreparedMap& map, const Charts& charts,
                               const GridRegion& region, Stage& stage) {
@@ -63,7 +64,7 @@ std::vector<CutFace> findCuts(const igm::PreparedMap& map, const Charts& charts,
     return !charts.isGlued(map.topology, map.exact.transitions, halfFace);
   };
   if (identitiesGlue) {
-    // Both half-faces of a face with another transition are neighbours, behind the identity.
+    // After the identity, the two half-faces of each face with another transition are adjacent.
     const Array<adjacency::HalfFace>& halfFaces = map.exact.transitions.halfFaces;
     return collectFromBlocks<CutFace>(
         stage, halfFaces.size() / 2, kGrain,
@@ -122,8 +123,8 @@ CutTransitions::Key CutTransitions::keyOf(Index from, Index to,
           map.translation[2]};
 }
 
-// Not unnamed: closures in templates that are instantiated explicitly have linkage, and so must the
-// types that they capture.
+// Not in an unnamed namespace: closures in explicitly instantiated templates have linkage, and so
+// must the types that they capture.
 namespace detail {
 
 /// A cut cell without a brick.
@@ -147,7 +148,7 @@ class CutMarker {
   void mark(const CutFace& cut, CutTransitionId transition, std::vector<LoneCut>& lone) {
     const adjacency::HalfFace halfFace = cut.halfFace;
     const Triangle triangle = triangleOf(map_.exact, halfFace);
-    // Made when first needed, as most small triangles meet no half diagonal.
+    // Computed when first needed, as most small triangles meet no half diagonal.
     std::optional<BothSides> sides;
     lattice::TriangleCells(triangle, map_.exact.unit)
         .run([&](const lattice::GridPoint& z, lattice::CellCornerSet corners) {
@@ -193,7 +194,7 @@ class CutMarker {
     Index chart;
     lattice::ChartPoint point;
   };
-  /// @param isWanted  whether the cell gets a brick if there is none
+  /// @param isWanted  whether the cell gets a brick if it has none
   template <class IsWanted>
   void add(const Place& place, lattice::CellCornerSet corners, CutTransitionId transition,
            const IsWanted& isWanted, std::vector<LoneCut>& lone) {

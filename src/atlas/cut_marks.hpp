@@ -1,4 +1,4 @@
-// Cut faces: where they come between the centre of a cell and its corners.
+// Cut faces, and the cells in which they come between the centre and corners.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@
 
 namespace hexhex::atlas {
 
-/// What many faces of a cut have in common.
+/// What the faces of a cut have in common.
 struct CutTransition {
   Index from;               ///< the chart on this side
   Index to;                 ///< the chart on the other side
-  lattice::Gauge map;       ///< takes places of the one to places of the other
+  lattice::Gauge map;       ///< from places of the former to places of the latter
   CutTransitionId inverse;  ///< from the other side back
 };
 
-/// The different transitions across the cuts of an atlas. There are few: two for each sheet of
-/// cuts. Of more than there are names for, those that come late have none. (Names of one byte let a
-/// cell remember two of them, see CutCell.)
+/// The distinct transitions across the cuts of an atlas. There are few: two per sheet of cuts. If
+/// there are more than names, the last ones get none. (One-byte names let a cell record two of
+/// them, see CutCell.)
 class CutTransitions {
  public:
-  /// The transition across a half-face that is not glued, found or added together with its inverse;
-  /// kAnyCuts if there is no chart on one of the sides, or no name left.
+  /// The transition across an unglued half-face, found or added together with its inverse; kAnyCuts
+  /// if one of the sides has no chart, or no name is left.
   [[nodiscard]] CutTransitionId across(const igm::PreparedMap& map, const Charts& charts,
                                        adjacency::HalfFace halfFace);
 
@@ -48,20 +48,20 @@ class CutTransitions {
   std::unordered_map<Key, CutTransitionId, Hash> ids_;
 };
 
-/// The faces that are not glued.
+/// The unglued faces.
 struct Cuts {
   std::uint64_t faces = 0;
   CutTransitions transitions;
 };
 
-/// Marks, on both sides of every face that is not glued, the cells in which the face may meet a
-/// half diagonal. Faces of the boundary lie in grid planes and meet none.
+/// Marks, on both sides of every unglued face, the cells in which the face may meet a half
+/// diagonal. Boundary faces lie in grid planes and meet none.
 /// @param identitiesGlue  whether faces with the identity as transition are known to be glued
 template <class Id>
 [[nodiscard]] Cuts markCutCells(const igm::PreparedMap& map, const Charts& charts,
                                 bool identitiesGlue, BrickGrid<Id>& grid, Stage& stage);
 
-/// The same for the cells in the boxes of a region; faces to tets without a chart are cut.
+/// The same for the cells in the boxes of a region; faces to tets without a chart count as cut.
 template <class Id>
 [[nodiscard]] Cuts markCutCells(const igm::PreparedMap& map, const Charts& charts,
                                 const GridRegion& region, BrickGrid<Id>& grid, Stage& stage);

@@ -1,3 +1,4 @@
+// Selects the points of lines that are in boxes.
 #include <algorithm>
 #include <cassert>
 #include <limits>

@@ -1,4 +1,4 @@
-// A part of a map, for a grid of the vertices of that part alone.
+// A part of a map, for a grid of only that part's vertices.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace hexhex::atlas {
 
-/// Some tets, and in the chart of each the boxes of grid points that may be asked for. What lies
+/// Some tets, and in the chart of each the boxes of grid points that may be asked for. Points
 /// beyond may be in the grid or not.
 struct GridRegion {
   std::vector<Index> tets;         ///< ascending
-  std::vector<std::size_t> begin;  ///< of each of them (+1): its boxes; none if all of it counts
+  std::vector<std::size_t> begin;  ///< per tet (+1): its boxes; none if all of it counts
   std::vector<lattice::GridBox> boxes;
-  /// Of each tet: its faces that the boxes may meet, a bit for each. The tets behind are in the
+  /// Per tet: its faces that the boxes may meet, one bit each. The tets behind them are in the
   /// region, too.
   std::vector<std::uint8_t> faces;
 
@@ -43,39 +43,40 @@ struct LinePoints {
   std::uint32_t count;
 };
 
-/// The points of one tet's lines that are in boxes.
+/// The points of a tet's lines that are in boxes.
 class BoxedLines {
  public:
-  /// @param boxes   if there are none, everything is
-  /// @param beyond  0 for points; 1 for cells, by smallest corner: all their corners are in a box
+  /// @param boxes   if there are none, all points count
+  /// @param beyond  0 for points; 1 for cells, by smallest corner: all their corners must be in a
+  ///                box
   BoxedLines(std::span<const lattice::GridBox> boxes, std::int32_t beyond) noexcept
       : boxes_(boxes), beyond_(beyond) {}
 
-  /// Ascending ranges that do not touch.
+  /// Disjoint ranges that do not touch, ascending.
   [[nodiscard]] std::span<const LinePoints> of(const lattice::SweptLine& line);
 
  private:
-  /// Coordinates for which something was found; no others.
+  /// The coordinates for which a result is known; it holds for no others.
   struct Known {
     std::int64_t first = 0;
     std::int64_t end = 0;
 
     [[nodiscard]] bool holds(std::int64_t at) const noexcept { return first <= at && at < end; }
   };
-  /// The boxes that hold a coordinate.
-  /// @return up to where these are the same
+  /// The boxes that contain a coordinate.
+  /// @return the range in which they stay the same
   [[nodiscard]] Known select(std::span<const lattice::GridBox> from, std::size_t axis,
                              std::int64_t at, std::vector<lattice::GridBox>& selected) const;
   void join(std::size_t axis);
 
   std::span<const lattice::GridBox> boxes_;
   std::int32_t beyond_;
-  // Many lines in a row are in the same boxes.
+  // Many successive lines are in the same boxes.
   Known levels_;
   Known rows_;
   std::vector<lattice::GridBox> atLevel_;
   std::vector<lattice::GridBox> atRow_;
-  std::vector<lattice::GridRange> ranges_;  ///< along lines, ascending, apart
+  std::vector<lattice::GridRange> ranges_;  ///< along lines, ascending, disjoint
   std::vector<LinePoints> found_;
 };
 

@@ -1,3 +1,4 @@
+// Finds contested points, and moves their tets to further charts (docs/atlas.md).
 #include <atomic>
 #include <cassert>
 
@@ -28,8 +29,8 @@ void forEachEntry(const TetClaims& tet, const BrickAt& brickAt, const Visit& vis
 
 }  // namespace
 
-// Not unnamed: closures in templates that are instantiated explicitly have linkage, and so must the
-// types that they capture.
+// Not in an unnamed namespace: closures in explicitly instantiated templates have linkage, and so
+// must the types that they capture.
 namespace detail {
 
 /// Moves tets to other charts.
@@ -39,8 +40,8 @@ class TetMover {
   TetMover(const igm::PreparedMap& map, Charts& charts, BrickGrid<Id>& grid)
       : map_(map), charts_(charts), grid_(grid) {}
 
-  /// Takes tets out of their charts, and into charts again one sheet after the other: the first
-  /// may stay, so that the border of the others is all that is cut anew.
+  /// Takes tets out of their charts, then puts them into charts again, one sheet after the other:
+  /// the first sheet may stay, so that only the borders of the others are cut anew.
   void run(const std::vector<const TetClaims*>& contested) {
     contested_ = contested;
     pending_.assign(map_.topology.tetCount(), kNone);
@@ -57,14 +58,14 @@ class TetMover {
     }
     for (std::size_t i = 0; i < contested_.size(); ++i) {
       if (pending_[contested_[i]->tet] == kNone) continue;
-      // Only a tet that overlaps itself does not fit an empty chart.
+      // Only a tet that overlaps itself does not fit into an empty chart.
       fill(charts_.count++, i);
       pending_[contested_[i]->tet] = kNone;
     }
   }
 
  private:
-  /// Takes pending tets into a chart, breadth first, as long as they fit.
+  /// Puts pending tets into a chart, breadth first, as long as they fit.
   void fill(Index chart, std::size_t start) {
     if (!tryClaim(*contested_[start], chart)) return;
     std::vector<Index> queue(1, contested_[start]->tet);
@@ -80,8 +81,8 @@ class TetMover {
     }
   }
 
-  /// Claims all points of a tet in a chart if none of them belongs to another vertex, be it one of
-  /// the tet's own.
+  /// Claims all points of a tet in a chart if none of them belongs to another vertex, be it another
+  /// one of the tet's own.
   bool tryClaim(const TetClaims& tet, Index chart) {
     assert(charts_.chart[tet.tet] == Charts::kNoChart);
     const auto brickAt = [&](const lattice::ChartPoint& c) {
@@ -121,13 +122,13 @@ class TetMover {
 template <class Id>
 std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<TetClaims>& claims,
                               Charts& charts, BrickGrid<Id>& grid, Stage& stage) {
-  constexpr std::size_t kClaimingTets = 64;  // of which each may take long
+  constexpr std::size_t kClaimingTets = 64;  // each of which may take long
   const auto forEachOf = [&](BrickCache<Id>& cache, const TetClaims& tet, const auto& visit) {
     const Index chart = charts.chart[tet.tet];
     forEachEntry<Id>(
         tet, [&](const lattice::ChartPoint& c) { return cache.find(chart, c); }, visit);
   };
-  // Entries are only ever replaced by "contested", so it does not matter who looks first.
+  // Entries only ever change to "contested", so it does not matter who looks first.
   parallelBlocks(stage, claims.size(), kClaimingTets,
                  [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
                    BrickCache<Id> cache(grid);
@@ -135,7 +136,7 @@ std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<Tet
                      forEachOf(cache, claims[i], [](Id& shared, Id vertex) {
                        const std::atomic_ref entry(shared);
                        const Id claimed = entry.load(std::memory_order_relaxed);
-                       // Beyond the boxes of a region, claims may be left out.
+                       // Beyond the boxes of a region, claims may be missing.
                        if (claimed == vertex || claimed == Brick<Id>::kEmpty) return;
                        entry.store(Brick<Id>::kContested, std::memory_order_relaxed);
                      });

@@ -1,5 +1,5 @@
-// Where a chart overlaps itself: finds the points that several vertices claim, and gives the tets
-// that claim them charts in which they do not.
+// Where a chart overlaps itself: finds the points that several vertices claim, and moves the tets
+// that claim them to charts where they do not overlap.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace hexhex::atlas {
 
-/// Points of a tet in its chart, which it claims for consecutive vertices.
+/// Points of a tet in its chart, claimed for consecutive vertices.
 struct Claim {
   ChartRow row;
   std::uint64_t first;
@@ -27,7 +27,7 @@ struct TetClaims {
 
 /// @param claims  of all tets with a contested point, and of any others
 /// @param charts  receives further charts
-/// @param grid    with the claims of all tets entered, one of each contested point
+/// @param grid    with the claims of all tets entered; a contested point has one of its claims
 /// @return the number of tets with contested points
 template <class Id>
 std::uint64_t resolveOverlaps(const igm::PreparedMap& map, const std::vector<TetClaims>& claims,

@@ -1,3 +1,4 @@
+// Enters the vertices of all tets into the grid (docs/atlas.md).
 #include <algorithm>
 #include <cassert>
 
@@ -15,9 +16,9 @@ ChartRow rowOf(const sweep::VertexRun& run, const SweepFrame& frame, Index chart
   return {chart, frame(line.level, line.row, first), frame.along(2), run.count};
 }
 
-/// Enters consecutive vertices. Of two that claim the same place, the one that comes later finds
-/// the other, and marks the brick.
-/// @return whether some did
+/// Enters consecutive vertices. Of two that claim the same place, the later one finds the other,
+/// and marks the brick.
+/// @return whether any did
 template <class Id>
 bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, std::uint64_t first,
                    std::uint32_t count) {
@@ -89,7 +90,7 @@ void VertexGrid<Id>::sweep(sweep::CellCenters& cells, Stage& stage, sweep::Sweep
   exclusiveScan(std::span(cells.begin));
 }
 
-/// Lists the bricks of a region. Only these are made, so that claims beyond the boxes are left out.
+/// Lists the bricks of a region. Only these are made, which leaves out claims beyond the boxes.
 template <class Id>
 void VertexGrid<Id>::collectRegion(Stage& stage) {
   assert(std::is_sorted(region_->tets.begin(), region_->tets.end()));
@@ -116,7 +117,7 @@ void VertexGrid<Id>::collectRegion(Stage& stage) {
                  });
 }
 
-/// Calls visit(ChartPoint) with the first point of each row of the tet's points in each brick.
+/// Calls visit(ChartPoint) for the first point of each row of the tet's points in each brick.
 template <class Id>
 template <class Visit>
 void VertexGrid<Id>::forEachBrick(Index tet, std::span<const lattice::SweptLine> lines,
@@ -131,7 +132,7 @@ void VertexGrid<Id>::forEachBrick(Index tet, std::span<const lattice::SweptLine>
   }
 }
 
-/// Lists the bricks that the tet's points are in.
+/// Lists the bricks that contain the tet's points.
 template <class Id>
 void VertexGrid<Id>::collectKeys(Index tet, std::span<const lattice::SweptLine> lines,
                                  KeyFilter& filter, std::vector<BrickKey>& keys) const {
@@ -167,7 +168,7 @@ void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const lattic
   if (faces == Faces::Owned) return;
   for (int face = 0; face < 4; ++face) {
     if (((numbering.foreignFaces() >> face) & 1U) == 0) continue;
-    // The owner enters the points of a glued face at the same places.
+    // The owner enters the points of a glued face in the same places.
     if (faces == Faces::All ||
         !charts_.isGlued(map_.topology, map_.exact.transitions, adjacency::halfFaceOf(tet, face))) {
       forEachForeignClaim(tet, face, visitRow);
@@ -175,7 +176,7 @@ void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const lattic
   }
 }
 
-/// The points of a face that another tet owns are numbered in the order of the owner's sweep.
+/// The points of a face owned by another tet are numbered in the order of the owner's sweep.
 template <class Id>
 template <class VisitRow>
 void VertexGrid<Id>::forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const {
@@ -276,7 +277,7 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
     }
   };
   const auto tets = collectFromBlocks<std::size_t>(stage, tetCount(), sweep::kSweepBlock, listTets);
-  // Listed once, as finding the owners of vertices takes longer than all that follows.
+  // Listed once, as finding the owners of vertices takes longer than everything after that.
   std::vector<TetClaims> claims(tets.size());
   constexpr std::size_t kListedTets = 64;
   const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {

@@ -19,7 +19,7 @@
 
 namespace hexhex::atlas {
 
-/// Recognizes most keys that it has seen before.
+/// Recognizes most keys it has seen before.
 class KeyFilter {
  public:
   KeyFilter() { seen_.fill(kNoBrick); }
@@ -34,7 +34,7 @@ class KeyFilter {
   std::array<BrickKey, kRecentBricks> seen_;
 };
 
-/// Where vertices are written: arrays from the vertex number `first` on; none if null.
+/// Arrays for vertices, from vertex number `first` on; null: not written.
 struct VertexArrays {
   std::uint64_t first = 0;
   Vec3* points = nullptr;
@@ -48,20 +48,20 @@ struct VertexArrays {
 /// A point that two vertices claim is contested, and the tets that claim it move to other charts.
 /// In the end, all points of a tet that has a chart belong to its own vertices there.
 ///
-/// With a region, all that holds for its tets and the points in their boxes; the others have no
+/// With a region, all this holds for its tets and the points in their boxes; other tets have no
 /// chart.
 template <class Id>
 class VertexGrid {
  public:
   /// @param charts     may receive further charts
-  /// @param numbers    of all vertices of the map, which sweep() fills
+  /// @param numbers    of all vertices of the map; filled by sweep()
   /// @param keepLines  whether to store lines between the steps or to sweep again
   VertexGrid(const igm::PreparedMap& map, Charts& charts, sweep::VertexNumbers& numbers,
              bool keepLines)
       : map_(map), charts_(charts), numbers_(numbers) {
     if (keepLines) stored_.emplace(map.topology.tetCount());
   }
-  /// Of a part of the map, in place of sweep().
+  /// For a part of the map, instead of sweep().
   /// @param charts  a chart for each tet of the region, and none for others
   VertexGrid(const igm::PreparedMap& map, Charts& charts, sweep::VertexNumbers& numbers,
              const GridRegion& region, Stage& stage)
@@ -70,7 +70,7 @@ class VertexGrid {
   }
 
   /// Sweeps all tets, for vertices and for cells, and numbers both.
-  /// @param observer   sees every tet, if there is one
+  /// @param observer   sees every tet, if not null
   /// @param fewPoints  as in EngineSwitches
   void sweep(sweep::CellCenters& cells, Stage& stage, sweep::SweepObserver* observer = nullptr,
              bool fewPoints = true);
@@ -81,7 +81,7 @@ class VertexGrid {
   std::uint64_t resolveOverlaps(Stage& stage);
   /// Frees what only the steps above need.
   void dropLines() noexcept { stored_.reset(); }
-  /// Takes away what there is of vertices besides the grid, if lines were kept.
+  /// Moves out what is known of vertices besides the grid, if lines were kept.
   [[nodiscard]] sweep::SweptVertices takeVertices() noexcept {
     assert(stored_);
     return {std::move(*stored_), std::move(numbers_)};
@@ -93,7 +93,7 @@ class VertexGrid {
   /// The hex vertex at a grid point of a closed tet.
   [[nodiscard]] Id vertexAt(Index tet, const lattice::GridPoint& z, BrickCache<Id>& cache) const;
 
-  /// The same without the grid: slow, but right for tets without a chart, too.
+  /// The same without the grid: slow, but correct even for tets without a chart.
   [[nodiscard]] std::uint64_t exactNumber(Index tet, const lattice::GridPoint& z) const;
 
   [[nodiscard]] const sweep::VertexNumbers& numbers() const noexcept { return numbers_; }
@@ -105,7 +105,7 @@ class VertexGrid {
   using Bricks = Brick<Id>;
   enum class Faces : std::uint8_t { Owned, OwnedAndCut, All };
 
-  /// Of a block of tets.
+  /// The lines of a block of tets.
   struct SweptLines {
     sweep::BlockLines vertices;
     sweep::BlockLines centers;

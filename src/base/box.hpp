@@ -1,4 +1,4 @@
-// The box around points.
+// Axis-aligned bounding boxes.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace hexhex {
 
 struct Box {
   static constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vec3 low = {kFar, kFar, kFar};  ///< as long as there is no point
+  Vec3 low = {kFar, kFar, kFar};  ///< while empty
   Vec3 high = {-kFar, -kFar, -kFar};
 
   void add(const Vec3& point) noexcept {

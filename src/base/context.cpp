@@ -24,7 +24,7 @@ void Context::begin(std::string_view step) {
 
 void Context::report(std::string_view stage, double share) {
   if (!progress_) return;
-  // Whoever comes while another thread reports is late by definition: drop the report.
+  // Another thread is reporting: drop this report, which would be late anyway.
   if (reporting_.exchange(true, std::memory_order_acquire)) return;
   struct Release {
     std::atomic<bool>& flag;
@@ -45,7 +45,7 @@ void Context::addStageTime(std::string_view stage, double seconds) {
   try {
     stageTimes_.push_back({std::string(stage), seconds});
   } catch (const std::bad_alloc&) {
-    // Stages end while exceptions pass, also those about memory; nobody will miss this time then.
+    // Stages also end during unwinding, after std::bad_alloc too; nobody will miss this time then.
   }
 }
 
@@ -74,14 +74,14 @@ void WorkSteps::begin(std::string_view step) {
   const auto rest = steps_.subspan(next_);
   const auto found = std::find_if(rest.begin(), rest.end(), hasName);
   if (found == rest.end()) {
-    // Either once more what has begun last, which keeps its range, or of unknown length.
+    // Either the last step once more, which keeps its range, or one of unknown length.
     const bool isRepeated = next_ > 0 && hasName(steps_[next_ - 1]);
     if (!isRepeated) context_.step_.begin = context_.step_.end;
     return;
   }
   double skipped = 0;
   for (auto other = rest.begin(); other != found; ++other) skipped += other->weight;
-  // The share begins with 0, whatever comes first.
+  // Progress starts at 0, whichever step comes first.
   if (next_ == 0) {
     total_ -= skipped;
   } else {

@@ -11,8 +11,8 @@
 
 namespace hexhex {
 
-/// Sets of elements 0 .. n-1, each element in its own set at first. The representative of a set is
-/// its smallest element, whatever the order of calls, so results do not depend on threads.
+/// Disjoint sets of elements 0 .. n-1, at first one per element. A set's representative is its
+/// smallest element, whatever the order of calls, so results do not depend on threads.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n) : parents_(n) {
@@ -34,7 +34,7 @@ class DisjointSets {
   }
 
   /// Merges the sets of two elements. Thread-safe.
-  /// @return the smallest element of both, as far as this thread knows: a good way to name the set
+  /// @return the smallest element of both, as far as this thread knows: a good name for the set
   ///         when it is merged with others next
   Index unite(Index a, Index b) {
     while (true) {
@@ -42,8 +42,8 @@ class DisjointSets {
       b = find(b);
       if (a == b) return a;
       if (a < b) std::swap(a, b);
-      // Parents are always smaller, so there are no cycles; if `a` lost its root status to another
-      // thread in the meantime, the exchange fails and we look again.
+      // Parents are always smaller, so there are no cycles; if `a` has meanwhile lost its root
+      // status to another thread, the exchange fails and we retry.
       Index expected = a;
       if (std::atomic_ref(parents_[a])
               .compare_exchange_strong(expected, b, std::memory_order_relaxed)) {
@@ -52,7 +52,7 @@ class DisjointSets {
     }
   }
 
-  /// Number of sets. Not while others call unite().
+  /// Number of sets. Not while other threads call unite().
   [[nodiscard]] std::uint64_t count() const noexcept {
     std::uint64_t roots = 0;
     for (std::size_t i = 0; i < parents_.size(); ++i) {

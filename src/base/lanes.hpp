@@ -1,6 +1,6 @@
-// Some numbers that are worked with at once. Each behaves as it would alone. Compilers like GCC and
-// Clang have types for the processor's registers; elsewhere, or with HEXHEX_PLAIN_VECTORS, a class
-// stands in for them, which optimizers see through more or less.
+// Short vectors of numbers (SIMD). Each lane behaves as a scalar would. Compilers like GCC and
+// Clang have types for vector registers; elsewhere, or with HEXHEX_PLAIN_VECTORS, a class stands in
+// for them, which optimizers see through to varying degrees.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ namespace hexhex {
 #pragma GCC diagnostic ignored "-Wpsabi"  // all is inline
 #endif
 
-/// The same bits as another type of the same size.
+/// Reinterprets the bits as another type of the same size.
 template <class To, class From>
 #if defined(__GNUC__)
 [[gnu::always_inline]]
@@ -48,7 +48,7 @@ struct Lanes {
       Lanes<std::conditional_t<sizeof(T) == sizeof(std::int64_t), std::int64_t, std::int32_t>, n>;
 
   Lanes() = default;
-  // As those of compilers do, numbers become lanes that are all the same.
+  // As with the compilers' own types, a number converts to lanes that all hold it.
   constexpr Lanes(T all) noexcept {
     for (T& each : lanes) each = all;
   }
@@ -100,7 +100,7 @@ struct Lanes {
     return result;
   }
 
-  /// Of each, the first where the mask is set, elsewhere the second.
+  /// Per lane: `a` where the mask is set, otherwise `b`.
   [[nodiscard]] static constexpr Lanes choose(const Mask& first, const Lanes& a,
                                               const Lanes& b) noexcept {
     Lanes result;
@@ -111,7 +111,7 @@ struct Lanes {
   T lanes[n];  // NOLINT: no std::array, whose element functions are not inlined in debug builds
 };
 
-/// The nearest numbers towards zero.
+/// Rounds each lane towards zero.
 template <class To, class T, std::size_t n>
 [[nodiscard]] constexpr To truncated(const Lanes<T, n>& x) noexcept {
   To result;
@@ -131,8 +131,8 @@ template <class T, std::size_t n>
 
 #else
 
-/// In programs for narrower registers, GCC aligns these as the narrower ones, and in functions for
-/// wide ones counts on more: what is in memory there needs alignas.
+/// In programs for narrower registers, GCC aligns these like narrower ones, yet functions for wide
+/// registers rely on more: variables in memory there need alignas.
 template <class T, std::size_t n>
 struct LanesOf {
   using Type __attribute__((vector_size(n * sizeof(T)))) = T;
@@ -140,17 +140,17 @@ struct LanesOf {
 template <class T, std::size_t n>
 using Lanes = typename LanesOf<T, n>::Type;
 
-/// The nearest numbers towards zero.
+/// Rounds each lane towards zero.
 template <class To, class From>
 [[nodiscard]] inline To truncated(const From& x) noexcept {
   return __builtin_convertvector(x, To);
 }
-/// As std::max.
+/// std::max per lane.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V larger(const V& a, const V& b) noexcept {
   return a < b ? b : a;
 }
-/// As std::min.
+/// std::min per lane.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V smaller(const V& a, const V& b) noexcept {
   return a < b ? a : b;
@@ -158,7 +158,7 @@ template <class V>
 
 #endif
 
-/// Square roots of doubles.
+/// Per-lane square root of doubles.
 template <class V>
 #if defined(__GNUC__)
 [[gnu::always_inline]]
@@ -167,7 +167,7 @@ template <class V>
 rootOf(const V& x) noexcept {
   V roots;
 #if defined(__SSE2__) && !defined(HEXHEX_PLAIN_VECTORS)
-  // Compilers call a function for each that is negative, so that it may tell of an error.
+  // Compilers would add a call for each negative lane, so that it can report an error.
   for (std::size_t i = 0; i < sizeof x / sizeof(__m128d); ++i) {
     __m128d two;
     std::memcpy(&two, reinterpret_cast<const char*>(&x) + i * sizeof two, sizeof two);
@@ -184,17 +184,17 @@ rootOf(const V& x) noexcept {
 #pragma GCC diagnostic pop
 #endif
 
-// Two doubles that are worked with at once. Each behaves as it would alone.
+// Two doubles at a time. Each lane behaves as a scalar would.
 
 using Pair = Lanes<double, 2>;
-/// One mask for each: 0 or -1.
+/// One mask per lane: 0 or -1.
 using PairMask = Lanes<std::int64_t, 2>;
 
 using PairBits = Lanes<std::uint64_t, 2>;
 
 using IntPair = Lanes<std::int32_t, 2>;
 
-/// Two numbers in a row.
+/// Loads two consecutive numbers.
 [[nodiscard]] inline Pair loadPair(const double* first) noexcept {
   Pair pair;
   std::memcpy(&pair, first, sizeof pair);
@@ -206,16 +206,16 @@ using IntPair = Lanes<std::int32_t, 2>;
   return bitsAs<Pair>(bitsAs<PairMask>(x) & PairMask{kAllButSign, kAllButSign});
 }
 
-/// 1 for negative numbers, 0 for others.
+/// The sign bit of each lane: 1 for negative numbers and -0, otherwise 0.
 [[nodiscard]] inline PairBits signBits(Pair x) noexcept { return bitsAs<PairBits>(x) >> 63; }
 
-/// The first where the mask is set, elsewhere the second.
+/// Per lane: `first` where the mask is set, otherwise `second`.
 [[nodiscard]] inline Pair chosen(PairMask mask, Pair first, Pair second) noexcept {
   return bitsAs<Pair>((mask & bitsAs<PairMask>(first)) | (~mask & bitsAs<PairMask>(second)));
 }
 
-/// Nearest multiples (even if there are two) of 2^-52 times `large`, which are powers of two, of
-/// numbers below `large` in magnitude; where that is 0, the numbers themselves.
+/// Rounds numbers below `large` in magnitude to the nearest multiple of 2^-52 `large`, ties to
+/// even. `large` is a power of two, or 0, which leaves the number unchanged.
 [[nodiscard]] inline Pair nearestMultiples(Pair x, Pair large) noexcept {
   constexpr std::int64_t kSign = std::numeric_limits<std::int64_t>::min();
   const PairMask sign = bitsAs<PairMask>(x) & PairMask{kSign, kSign};
@@ -223,7 +223,7 @@ using IntPair = Lanes<std::int32_t, 2>;
   return (x + signedLarge) - signedLarge;
 }
 
-/// Largest integers that are not larger, of numbers below 2^51 in magnitude.
+/// Per-lane floor of numbers below 2^51 in magnitude.
 [[nodiscard]] inline Pair floorOf(Pair x) noexcept {
   constexpr Pair kLarge = {0x1.8p52, 0x1.8p52};
   constexpr Pair kOne = {1, 1};

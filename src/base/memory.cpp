@@ -15,13 +15,13 @@ namespace hexhex {
 
 namespace {
 
-/// From here on, arrays have huge pages of their own: without, extractions take 11 % longer in the
-/// geometric mean, up to 28 % (docs/ablation.md).
+/// From this size on, arrays get huge pages of their own: without them, extractions take 11 %
+/// longer in the geometric mean, up to 28 % (docs/ablation.md).
 constexpr std::size_t kLarge = 2 * kHugePage;
-/// From here on, they share them.
+/// From this size on, arrays share huge pages.
 constexpr std::size_t kMedium = std::size_t{1} << 15;
 
-// Sanitizers know the standard allocator, and see what is written beyond the end of its memory.
+// Sanitizers know the standard allocator, and detect writes beyond the end of its memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kPooled = false;
 #elif defined(__has_feature)
@@ -37,13 +37,13 @@ constexpr bool kPooled = true;
 std::atomic<bool> hugePagesForLarge{true};
 std::atomic<bool> hugePagesShared{true};
 
-/// Never destroyed, as arrays may live until the end of the program.
+/// Never destroyed, as arrays may live until the program ends.
 PagePool& pool() {
   static auto* const pool = new PagePool;
   return *pool;
 }
 
-/// Advice to the system: where the system has no huge pages, ordinary ones do.
+/// A hint: systems without huge pages use ordinary ones.
 void adviseHugePages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
   static_cast<void>(::madvise(memory, bytes, MADV_HUGEPAGE));
@@ -54,7 +54,7 @@ void* allocateLarge(std::size_t bytes) {
   if (bytes > static_cast<std::size_t>(-1) / 2) throw std::bad_alloc();
   const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
   void* const memory = ::operator new (rounded, std::align_val_t{kHugePage});
-  // Not for a rest that would waste much of the last one.
+  // Leaves out the last huge page if much of it would be wasted.
   const bool wastesLittle = rounded - bytes <= bytes / 16;
   if (hugePagesForLarge) adviseHugePages(memory, wastesLittle ? rounded : rounded - kHugePage);
   return memory;
@@ -68,7 +68,7 @@ bool isPooled(std::size_t bytes) { return kPooled && bytes >= kMedium && bytes <
 
 char* mapHugePages(std::size_t bytes) noexcept {
   assert(bytes % kHugePage == 0);
-  // Twice as much has an aligned part of the size; the rest is returned.
+  // A mapping of twice the size contains an aligned part; the rest is returned.
   void* const mapped = ::mmap(nullptr, 2 * bytes, PROT_READ | PROT_WRITE,
                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (mapped == MAP_FAILED) return nullptr;

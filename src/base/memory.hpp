@@ -13,31 +13,31 @@
 
 namespace hexhex {
 
-/// Whether large arrays are to have huge pages from now on, and whether smaller ones share some, in
-/// the whole process: an allocator knows nothing but globals. For ablations alone; arrays may end
-/// under another rule than they began.
+/// Sets, for the whole process, whether large arrays get huge pages from now on, and whether
+/// smaller ones share some; global, as an allocator knows nothing else. Only for ablations: an
+/// array may be freed under another setting than it was allocated under.
 void useHugePages(bool forLarge, bool shared);
 
 inline constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
-/// Address space in which the system is to provide huge pages, where it has them.
+/// Address space that the system is to back with huge pages, where it has them.
 /// @param bytes  a multiple of kHugePage
-/// @return nullptr if there is none
+/// @return nullptr if there is none left
 [[nodiscard]] char* mapHugePages(std::size_t bytes) noexcept;
 void unmapHugePages(char* memory, std::size_t bytes) noexcept;
 
-/// An array of less than a few huge pages that has pages of its own costs a page fault for each of
-/// them. So such arrays share slabs of huge pages, and memory that one stage has given back serves
-/// the next: without, an extraction of s17c_sphere_r10 takes 7.5 % longer (docs/ablation.md). Empty
-/// slabs go back to the system. Several threads may use a pool at the same time.
+/// An array of less than a few huge pages would pay a page fault for each page of its own. So such
+/// arrays share slabs of huge pages, and memory that one stage returns serves the next: without
+/// this, an extraction of s17c_sphere_r10 takes 7.5 % longer (docs/ablation.md). Empty slabs return
+/// to the system. Thread-safe.
 class PagePool {
  public:
   static constexpr std::size_t kPage = 4096;
   static constexpr std::size_t kSlab = 4 * kHugePage;
 
-  /// Memory that begins on a page, uninitialized.
+  /// Uninitialized memory that begins on a page.
   /// @param bytes  at least 1
-  /// @return nullptr if there is none to be had: for larger arrays than slabs, too
+  /// @return nullptr if there is none left, or if `bytes` exceeds a slab
   [[nodiscard]] void* allocate(std::size_t bytes) {
     assert(bytes > 0);
     if (bytes > kSlab) return nullptr;
@@ -46,7 +46,7 @@ class PagePool {
     for (Slab& slab : slabs_) {
       if (void* const memory = slab.take(pages)) return memory;
     }
-    slabs_.reserve(slabs_.size() + 1);  // before there is anything that could be lost
+    slabs_.reserve(slabs_.size() + 1);  // before there is anything to lose
     Slab slab;
     if (slab.memory == nullptr) return nullptr;
     slabs_.push_back(std::move(slab));
@@ -54,8 +54,8 @@ class PagePool {
   }
 
   /// Takes memory back.
-  /// @param bytes  as of allocate()
-  /// @return false, without having done anything, if it is not from this pool
+  /// @param bytes  as passed to allocate()
+  /// @return false, with nothing done, if it is not from this pool
   bool release(void* memory, std::size_t bytes) noexcept {
     const std::scoped_lock lock(mutex_);
     const auto slab =
@@ -80,14 +80,14 @@ class PagePool {
 
   struct Slab {
     std::unique_ptr<char, Free> memory{mapHugePages(kSlab)};
-    std::array<bool, kSlab / kPage> inUse{};  ///< by page
+    std::array<bool, kSlab / kPage> inUse{};  ///< per page
     std::size_t used = 0;                     ///< pages
 
     [[nodiscard]] bool contains(const void* what) const noexcept {
       return !std::less<>()(what, static_cast<void*>(memory.get())) &&
              std::less<>()(what, static_cast<void*>(memory.get() + kSlab));
     }
-    /// The first of so many free pages in a row; nullptr if there are none.
+    /// The first of `pages` consecutive free pages; nullptr if there are none.
     [[nodiscard]] void* take(std::size_t pages) noexcept {
       if (inUse.size() - used < pages) return nullptr;
       auto* const first = std::search_n(inUse.begin(), inUse.end(), pages, false);

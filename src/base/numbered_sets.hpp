@@ -1,4 +1,4 @@
-// Numbers for sets.
+// Consecutive numbers for sets.
 #pragma once
 
 #include <cassert>
@@ -20,7 +20,7 @@ struct NumberedSets {
   result.setOf.resize(elements);
   for (std::size_t i = 0; i < elements; ++i) {
     const Index first = sets.find(static_cast<Index>(i));
-    assert(first <= i);  // so that it has its number
+    assert(first <= i);  // so it already has its number
     result.setOf[i] = first == i ? result.count++ : result.setOf[first];
   }
   return result;

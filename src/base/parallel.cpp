@@ -40,8 +40,8 @@ namespace detail {
 #if HEXHEX_HAS_TBB
 namespace {
 
-/// oneTBB guarantees that what was written before a loop is seen in it, and what the loop wrote is
-/// seen after it. The thread sanitizer cannot look into oneTBB, so it is told.
+/// oneTBB guarantees that a loop sees what was written before it, and that its own writes are
+/// visible after it. ThreadSanitizer cannot see into oneTBB, so this tells it.
 class KnownOrder {
  public:
   /// Lives while the caller waits for a loop, or while a thread works on a range of it.
@@ -66,14 +66,14 @@ class KnownOrder {
   Of of_;
 };
 
-/// Arenas for their next use. oneTBB keeps some kilobytes of every arena that ever was, so a
-/// process that works for long must not make a new one each time. Calls that run at the same time
-/// get different arenas: sharing one would make them wait for each other.
+/// Arenas for reuse. oneTBB keeps a few kilobytes of every arena ever made, so a long-running
+/// process must not make a new one for each call. Concurrent calls get different arenas: in a
+/// shared one they would wait for each other.
 class ArenaPool {
  public:
   using Arena = oneapi::tbb::task_arena;
 
-  /// Calls f(arena) with an arena of so many threads.
+  /// Calls f(arena) with an arena for this many threads.
   template <class F>
   void with(int threads, const F& f) {
     const Loan loan{*this, take(threads)};
@@ -83,7 +83,7 @@ class ArenaPool {
  private:
   using Idle = std::multimap<int, Arena>;  ///< by number of threads
 
-  /// Lives while an arena is in use. Giving it back takes no memory.
+  /// Lives while an arena is in use. Returning the arena allocates nothing.
   struct Loan {
     ArenaPool& pool;
     mutable Idle::node_type arena;
@@ -99,8 +99,8 @@ class ArenaPool {
     if (found == idle_.end()) {
       Idle fresh;
       found = fresh.emplace(threads, threads);
-      // Not when it is first used: an arena for which there was no memory then waits for itself for
-      // ever when it is used again. This one is destroyed.
+      // Initialized here, not on first use: an arena that ran out of memory then would wait for
+      // itself forever when used again. This one is destroyed.
       found->second.initialize();
       return fresh.extract(found);
     }
@@ -111,28 +111,28 @@ class ArenaPool {
   Idle idle_;
 };
 
-/// Never destroyed: at the end of a process, nobody knows whether oneTBB ends before.
+/// Never destroyed: at the end of a process, oneTBB may be gone first.
 ArenaPool& arenaPool() {
   static auto* const pool = new ArenaPool;
   return *pool;
 }
 
-/// How a loop that runs on several threads fares. Exceptions do not travel through oneTBB: it loses
-/// them when there is no memory to note them, and the loop would seem complete.
+/// Outcome of a loop on several threads. Exceptions do not go through oneTBB: it loses them if it
+/// has no memory to record them, and the loop would seem complete.
 class LoopOutcome {
  public:
   [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_relaxed); }
-  /// Keeps the exception that is being handled, if it is the first.
+  /// Keeps the current exception if it is the first.
   void fail() noexcept {
     if (!failed_.exchange(true)) failure_ = std::current_exception();
   }
   void complete(std::size_t blocks) noexcept {
     completed_.fetch_add(blocks, std::memory_order_relaxed);
   }
-  /// To be called when the loop has ended.
+  /// Call after the loop has ended.
   void rethrow(std::size_t blocks) const {
     if (failure_) std::rethrow_exception(failure_);
-    // oneTBB had no memory for its own tasks, or to tell so.
+    // oneTBB had no memory for its own tasks, or to report that.
     if (completed_.load(std::memory_order_relaxed) != blocks) throw std::bad_alloc();
   }
 
@@ -142,15 +142,15 @@ class LoopOutcome {
   std::atomic<std::size_t> completed_{0};
 };
 
-/// Whether so many more threads can run at the same time, each with the memory that it takes: found
-/// out by starting and ending them. oneTBB takes it for granted that threads can be started: if one
-/// cannot, because address space is limited or exhausted or there are too many threads, it throws
-/// where it cannot recover from that. The stacks of those that were tried stay in the system's
-/// cache for oneTBB's, so they are about as large.
+/// Whether this many more threads can run at the same time, each with the memory it takes: starts
+/// them and lets them end. oneTBB assumes that threads can be started: if one cannot, because
+/// address space is limited or exhausted or there are too many threads, it throws where it cannot
+/// recover. The system caches the stacks of the threads tried here for those of oneTBB, so they are
+/// about as large.
 bool haveSpareThreads([[maybe_unused]] int wanted) {
 #if defined(__unix__) || defined(__APPLE__)
   constexpr std::size_t kStack = (std::size_t{4} << 20) + (std::size_t{1} << 18);
-  constexpr std::size_t kHeap = std::size_t{1} << 18;  // oneTBB allocates some kilobytes for each
+  constexpr std::size_t kHeap = std::size_t{1} << 18;  // oneTBB allocates a few kilobytes for each
   const auto count = static_cast<std::size_t>(wanted);
   std::vector<pthread_t> threads;
   // Not by operator new, which programs may replace.
@@ -180,12 +180,12 @@ bool haveSpareThreads([[maybe_unused]] int wanted) {
 #endif
 }
 
-/// Returns when so many threads are here, or when there is no hope left that they come: threads
-/// start within microseconds, unless the machine is crowded; if other work of the process holds
-/// them, they have been started.
+/// Returns when this many threads have arrived, or can no longer be expected to: threads start
+/// within microseconds unless the machine is overloaded; threads that other work of the process
+/// holds have been started already.
 void gather(std::atomic<int>& arrived, int expected) {
-  // Has the C++ library make what it keeps of exceptions for each thread. There may be no memory
-  // for it when the first one is thrown, and that would end the process.
+  // Makes the C++ library allocate its per-thread exception state. If there is no memory for it
+  // when the first exception is thrown, the process ends.
   [[maybe_unused]] const volatile int exceptions = std::uncaught_exceptions();
   using Clock = std::chrono::steady_clock;
   const Clock::time_point deadline = Clock::now() + std::chrono::milliseconds(300);
@@ -195,8 +195,8 @@ void gather(std::atomic<int>& arrived, int expected) {
   }
 }
 
-/// Makes oneTBB start its threads now, by a loop whose blocks wait for each other. It starts them
-/// when they are first needed, and has no way to go on if the system refuses one then.
+/// Makes oneTBB start its threads now, with a loop whose blocks wait for each other. Otherwise it
+/// starts them when first needed, and cannot recover if the system refuses one then.
 void startWorkers(ArenaPool::Arena& arena, int threads) {
   std::atomic<int> arrived{0};
   const KnownOrder loop(KnownOrder::Of::Loop);
@@ -214,17 +214,16 @@ void startWorkers(ArenaPool::Arena& arena, int threads) {
 /// How many threads this process can have.
 class WorkerThreads {
  public:
-  /// `wanted`, or as many as have worked before if the system does not have enough more to spare.
+  /// Returns `wanted`, or the number that has worked before if the system cannot spare enough more.
   int start(int wanted) {
     const std::lock_guard lock(mutex_);
     if (wanted <= started_) return wanted;
-    // All or none, and a few to spare: oneTBB may start a thread more while another is about to
-    // sleep.
+    // All or none, plus a few: oneTBB may start one more thread while another is about to sleep.
     if (!haveSpareThreads(wanted - started_ + kSpare)) return started_;
     try {
       arenaPool().with(wanted, [wanted](auto& arena) { startWorkers(arena, wanted); });
     } catch (const std::runtime_error&) {
-      throw std::bad_alloc();  // how oneTBB says that it could not start a thread
+      throw std::bad_alloc();  // oneTBB's way to say that it could not start a thread
     }
     started_ = wanted;
     return started_;
@@ -255,7 +254,7 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
     if (progress != nullptr) progress->advance(end - begin);
   };
 #if HEXHEX_HAS_TBB
-  // Outside of withThreads(), only with threads that have been started.
+  // Outside withThreads(), only with threads that have been started.
   if (blocks > 1 && currentThreads() > 1 && workerThreads().started() > 1) {
     LoopOutcome outcome;
     {
@@ -285,8 +284,8 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
 void runWithThreads(int threads, const std::function<void()>& function) {
 #if HEXHEX_HAS_TBB
   const int count = effectiveThreads(threads);
-  // More threads than cores have to be allowed first. The permission holds for the whole process,
-  // so it is not touched without need.
+  // More threads than cores must be permitted first. The permission holds for the whole process, so
+  // it is changed only if necessary.
   std::optional<oneapi::tbb::global_control> permission;
   if (count > oneapi::tbb::info::default_concurrency()) {
     permission.emplace(oneapi::tbb::global_control::max_allowed_parallelism,

@@ -1,7 +1,7 @@
-// Parallel loops over index ranges. All of the project's use of oneTBB is in parallel.cpp; without
-// oneTBB the same functions run on the calling thread.
+// Parallel loops over index ranges. Only parallel.cpp uses oneTBB; without oneTBB, the same
+// functions run on the calling thread.
 //
-// Determinism: the blocks of a loop depend on the grain alone, never on the number of threads, so a
+// Determinism: the blocks of a loop depend only on the grain, never on the number of threads, so a
 // loop whose blocks write to disjoint places gives the same result on any machine.
 #pragma once
 
@@ -21,13 +21,13 @@
 
 namespace hexhex {
 
-/// Number of blocks that a loop over n elements with this grain has.
+/// Number of blocks of a loop over n elements with this grain.
 [[nodiscard]] constexpr std::size_t blockCount(std::size_t n, std::size_t grain) noexcept {
   return (n + grain - 1) / grain;
 }
 
 namespace detail {
-/// Of (begin, end, block).
+/// Called with (begin, end, block).
 using BlockFunction = std::function<void(std::size_t, std::size_t, std::size_t)>;
 void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
                const BlockFunction& function);
@@ -50,7 +50,7 @@ void parallelFor(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   });
 }
 
-/// Lowers a number that several threads look for the smallest value of.
+/// Lowers the minimum that several threads look for.
 inline void lowerTo(std::size_t value, std::atomic<std::size_t>& least) {
   std::size_t known = least.load(std::memory_order_relaxed);
   while (value < known && !least.compare_exchange_weak(known, value)) {
@@ -58,7 +58,7 @@ inline void lowerTo(std::size_t value, std::atomic<std::size_t>& least) {
 }
 
 /// Calls isGood(i) for all i in [0, n), in parallel.
-/// @param grain  of the loop; a block takes some tens of microseconds at least
+/// @param grain  of the loop; a block should take at least tens of microseconds
 /// @return the smallest i for which it is false, or n
 template <class F>
 [[nodiscard]] std::size_t firstFault(Stage& stage, std::size_t n, const F& isGood,
@@ -72,7 +72,7 @@ template <class F>
   return first.load();
 }
 
-/// All lists, one behind the other.
+/// Concatenates lists.
 template <class T>
 [[nodiscard]] std::vector<T> joined(std::span<const std::vector<T>> lists) {
   std::size_t size = 0;
@@ -83,9 +83,9 @@ template <class T>
   return all;
 }
 
-/// Calls f(begin, end, list) for consecutive blocks as parallelBlocks() does, each with a list of
-/// its own to append to.
-/// @return all lists, one behind the other
+/// Calls f(begin, end, list) for consecutive blocks as parallelBlocks() does, each with its own
+/// list to append to.
+/// @return the lists, concatenated
 template <class T, class F>
 std::vector<T> collectFromBlocks(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
   std::vector<std::vector<T>> blocks(blockCount(n, grain));
@@ -96,25 +96,25 @@ std::vector<T> collectFromBlocks(Stage& stage, std::size_t n, std::size_t grain,
   return joined<T>(blocks);
 }
 
-/// Runs f() so that all parallel loops inside use at most this many threads (0: all cores).
+/// Runs f(); parallel loops inside use at most this many threads (0: all cores).
 template <class F>
 void withThreads(int threads, const F& f) {
   detail::runWithThreads(threads, std::cref(f));
 }
 
-/// More threads than this, or than cores, are not used, whatever is asked for: they would only
-/// cost.
+/// Never more threads than this, or than cores if there are more of them, whatever the caller asks
+/// for: they would only cost time.
 inline constexpr int kMaxThreads = 64;
 
 /// The number of threads that `threads` (0: all cores) stands for; 1 without oneTBB.
 [[nodiscard]] int effectiveThreads(int threads);
 
-/// The number of threads that a loop called from here may use: for work that is divided among
+/// The number of threads available to a loop called from here, for work that is divided among
 /// threads by hand. No result may depend on it.
 [[nodiscard]] int currentThreads();
 
-/// withThreads() for short loops, many times: where that many threads are at work anyway, f() is
-/// called as it is, since entering takes some microseconds.
+/// withThreads() for short loops that run many times: if that many threads are in use anyway, calls
+/// f() directly, as entering an arena takes some microseconds.
 template <class F>
 void withThreadsHere(int threads, const F& f) {
   if (currentThreads() == effectiveThreads(threads)) {
@@ -124,9 +124,9 @@ void withThreadsHere(int threads, const F& f) {
   }
 }
 
-/// Replaces counts by their exclusive prefix sums; the last element, an unused slot, receives the
-/// total, which is returned. Sequential: it runs at the speed of memory.
-/// @throws Error TooLarge for a total that T does not hold
+/// Replaces counts by their exclusive prefix sums. The last element is an unused slot; it receives
+/// the total, which is also returned. Sequential: it runs at the speed of memory.
+/// @throws Error TooLarge if T cannot hold the total
 template <class T>
 T exclusiveScan(std::span<T> counts) {
   assert(!counts.empty());

@@ -10,8 +10,8 @@
 
 namespace hexhex {
 
-// All functions of a team begin with the same question, whether all processes are well. One that
-// has failed answers it with no, whichever function the others are in, and all learn why.
+// Every function of a team begins by asking whether all processes are well. A process that has
+// failed answers no, whichever function the others are in, and so all learn why.
 void ProcessTeam::run(const std::function<void()>& work) {
   if (running_) return work();
   running_ = true;
@@ -40,7 +40,7 @@ void ProcessTeam::settle(const Error* failure) {
   throw firstError(failure);
 }
 
-/// Without memory for this, the others would wait for ever: the process ends.
+/// Ends the process if there is no memory for this: the others would wait forever.
 Error ProcessTeam::firstError(const Error* failure) noexcept {
   constexpr std::size_t kNumbers = 5;
   std::array<std::uint64_t, kNumbers> mine{};
@@ -89,7 +89,7 @@ void ProcessTeam::requireSame(const std::string& text, const std::string& what) 
                                                 "\", that of process 0 \"" + first +
                                                 "\". Give all processes the same.");
   });
-  barrier();  // before anybody goes on
+  barrier();  // nobody goes on before all are here
 }
 
 std::vector<std::uint64_t> ProcessTeam::gatherCounts(std::uint64_t count) {
@@ -108,7 +108,7 @@ GatheredNumbers ProcessTeam::gather(std::span<const std::uint64_t> mine) {
     gathered.begin[r + 1] = gathered.begin[r] + counts[r];
   }
   gathered.numbers.resize(gathered.begin.back());
-  barrier();  // where there is no memory for it, nobody waits
+  barrier();  // if a process had no memory for it, all fail here instead of waiting
   doGather(mine, counts, gathered.numbers);
   return gathered;
 }
@@ -121,7 +121,7 @@ void ProcessTeam::showAll(
   for (std::uint32_t r = 0; r < counts.size(); ++r) {
     const std::span<std::uint64_t> numbers = std::span(shown).first(counts[r]);
     if (r == rank()) std::copy(mine.begin(), mine.end(), numbers.begin());
-    barrier();  // where there was no memory, nobody waits
+    barrier();  // likewise
     doShare(r, std::as_writable_bytes(numbers));
     take(r, numbers);
   }

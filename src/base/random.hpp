@@ -1,4 +1,4 @@
-// A small random number generator with the same numbers on every machine (the distributions of the
+// A small random number generator with the same output on every machine (the distributions of the
 // standard library differ between implementations).
 #pragma once
 

@@ -1,4 +1,4 @@
-// Numbers in sentences.
+// Numbers for messages.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace hexhex {
 
-/// "0.0123": three digits that count.
+/// "0.0123": three significant digits.
 [[nodiscard]] inline std::string shortNumber(double value) {
   std::array<char, 32> text{};
   static_cast<void>(std::snprintf(text.data(), text.size(), "%.3g", value));

@@ -1,4 +1,4 @@
-// Vertices of an edge, a face or a cell in an order that does not depend on who lists them.
+// The vertices of an edge, a face or a cell in an order that does not depend on who lists them.
 #pragma once
 
 #include <algorithm>

@@ -32,8 +32,8 @@ class Stage {
     context_.addStageTime(name_, seconds.count());
   }
 
-  /// All loops of the stage together run over this many elements, more or less: progress is that
-  /// of the stage. Otherwise the first loop's is all that is seen.
+  /// Approximate number of elements that all loops of this stage process together; progress then
+  /// refers to the stage. Otherwise only the first loop's progress is visible.
   void setTotal(std::size_t total) { total_ = total; }
 
   [[nodiscard]] Context& context() const noexcept { return context_; }
@@ -45,11 +45,11 @@ class Stage {
   std::string_view name_;
   std::chrono::steady_clock::time_point begin_;
   bool finished_ = false;
-  std::size_t total_ = 0;  ///< 0: each loop has its own
+  std::size_t total_ = 0;  ///< 0: each loop has its own total
   std::atomic<std::size_t> done_{0};
 };
 
-/// Runs the work of a public function, which reports progress from 0 to 1.
+/// Runs the work of a public function and reports its progress from 0 to 1.
 /// @param name   of the function
 /// @param steps  its stages, and other public functions that it calls; weights are their seconds on
 ///               a map of the evaluation with millions of cells
@@ -78,8 +78,8 @@ std::invoke_result_t<Work, Stage&> inStage(Context& context, std::string_view na
   });
 }
 
-/// Progress of a loop over `total` elements, reported at most a hundred times; also the place where
-/// cancellation takes effect.
+/// Progress of a loop over `total` elements, reported at most a hundred times. Cancellation takes
+/// effect here, too.
 class LoopProgress {
  public:
   LoopProgress(Stage& stage, std::size_t total)
@@ -87,7 +87,7 @@ class LoopProgress {
         total_(stage.total_ != 0 ? stage.total_ : total),
         done_(stage.total_ != 0 ? stage.done_ : own_) {}
 
-  /// `count` more elements are done. Thread-safe.
+  /// Counts `count` more elements as done. Thread-safe.
   void advance(std::size_t count) {
     stage_.context().throwIfCancelled();
     const std::size_t before = done_.fetch_add(count, std::memory_order_relaxed);

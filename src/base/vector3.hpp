@@ -1,4 +1,4 @@
-// The little vector arithmetic that measuring takes.
+// Basic vector arithmetic, as much as measuring takes.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace hexhex {
   return {factor * a[0], factor * a[1], factor * a[2]};
 }
 
-/// Exact ones: points of lattices, far from where they would overflow.
+/// Exact vectors: lattice points, far from overflow.
 using IntegerVector = std::array<std::int64_t, 3>;
 
 [[nodiscard]] constexpr IntegerVector operator+(const IntegerVector& a,
@@ -50,12 +50,12 @@ using IntegerVector = std::array<std::int64_t, 3>;
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Six times the volume of the tet that they span.
+/// Six times the volume of the tet spanned by three vectors.
 [[nodiscard]] constexpr double tripleProduct(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   return dot(a, cross(b, c));
 }
 
-/// The angle of a tet at the edge between two of its corners, as if it were positive.
+/// Dihedral angle of a tet at the edge between two of its corners, as if the tet were positive.
 [[nodiscard]] inline double dihedralAngle(const std::array<Vec3, 4>& tet, std::size_t a,
                                           std::size_t b) noexcept {
   std::size_t c = 0;
@@ -68,23 +68,23 @@ using IntegerVector = std::array<std::int64_t, 3>;
   return std::atan2(std::sqrt(dot(normal, normal)), dot(left, right));
 }
 
-/// The axis of the largest component, the first of several.
+/// The axis of the component of largest magnitude, the first if there are several.
 [[nodiscard]] inline std::size_t dominantAxis(const Vec3& v) noexcept {
-  // As numbers, since a branch could not be predicted.
+  // As arithmetic, since a branch could not be predicted.
   const std::size_t first = std::abs(v[1]) > std::abs(v[0]) ? 1 : 0;
   const std::size_t isThird = std::abs(v[2]) > std::max(std::abs(v[0]), std::abs(v[1])) ? 1 : 0;
   return first + isThird * (2 - first);
 }
 
-/// Nearest integer (even if there are two) of a number below 2^52 in magnitude, as std::nearbyint
-/// gives it, but without a call.
+/// Nearest integer (ties to even) of a number below 2^52 in magnitude, like std::nearbyint, but
+/// without a call.
 [[nodiscard]] inline double nearestInteger(double x) noexcept {
   const double large = std::copysign(0x1p52, x);
   return (x + large) - large;
 }
 
-/// 0 if a rounded sum is a + b itself, otherwise positive: if it is not, then the sum without the
-/// larger one of both is a number other than the smaller one, and exact (Dekker).
+/// 0 if a rounded sum is exactly a + b, otherwise positive: if it is not, the sum minus the larger
+/// number is exact and differs from the smaller one (Dekker).
 [[nodiscard]] inline double restOfSum(double sum, double a, double b) noexcept {
   return std::abs((sum - a) - b) + std::abs((sum - b) - a);
 }
@@ -93,9 +93,10 @@ using IntegerVector = std::array<std::int64_t, 3>;
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/// Of all corners.
+/// Whether all coordinates of all corners are finite.
 [[nodiscard]] inline bool isFinite(const TetParameters& corners) noexcept {
-  // 0 times a number is 0 if that is finite. Two overlapping pairs have all three coordinates.
+  // 0 times a number is 0 only if the number is finite. Two overlapping pairs cover all three
+  // coordinates.
   Pair rest = {0, 0};
   for (const Vec3& u : corners) rest += 0 * loadPair(&u[0]) + 0 * loadPair(&u[1]);
   return rest[0] + rest[1] == 0;
@@ -103,7 +104,7 @@ using IntegerVector = std::array<std::int64_t, 3>;
 
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
-/// The mean of some points.
+/// The mean of points.
 [[nodiscard]] inline Vec3 centreOf(std::span<const Vec3> points) noexcept {
   Vec3 sum{};
   for (const Vec3& point : points) sum = plus(sum, point);

@@ -1,4 +1,4 @@
-// Memory that blocks of a parallel loop work in, one block after the other.
+// Working memory for the blocks of a parallel loop, reused from block to block.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace hexhex {
 
-/// Lends workspaces: as many as are in use at the same time, hence at most one per thread.
+/// Lends workspaces: as many as are in use at once, hence at most one per thread.
 template <class Workspace>
 class Workspaces {
  public:
@@ -20,19 +20,19 @@ class Workspaces {
   Workspaces(const Workspaces&) = delete;
   Workspaces& operator=(const Workspaces&) = delete;
 
-  /// Calls use(workspace) with one that was used before, or with what make() returns. Several
-  /// threads may call this.
+  /// Calls use(workspace) with a workspace that has been used before, or with a new one from
+  /// make(). Thread-safe.
   template <class Make, class Use>
   void with(const Make& make, const Use& use) {
     std::unique_ptr<Workspace> workspace = take();
     if (!workspace) workspace.reset(new Workspace(make()));
     use(*workspace);
-    // Not after an exception: nobody knows in which state that leaves it.
+    // Not after an exception, which may leave it in any state.
     const std::scoped_lock lock(mutex_);
     idle_.push_back(std::move(workspace));
   }
 
-  /// Calls visit(workspace) for all that came back. Not while any is in use.
+  /// Calls visit(workspace) for all that have been returned. Not while any is in use.
   template <class Visit>
   void forEach(const Visit& visit) const {
     for (const std::unique_ptr<Workspace>& workspace : idle_) visit(std::as_const(*workspace));
@@ -52,10 +52,10 @@ class Workspaces {
   std::vector<std::unique_ptr<Workspace>> idle_;
 };
 
-/// As parallelBlocks(), and lends each block a workspace that no other one uses at the same time:
-/// f(begin, end, block, workspace). Workspaces come from make(), and then from block to block with
-/// all that they hold, so that what they allocate is allocated once. No result may depend on what a
-/// block finds in them.
+/// Like parallelBlocks(), but lends each block a workspace that no other block uses at the same
+/// time: f(begin, end, block, workspace). Workspaces come from make() and keep their contents from
+/// block to block, so that memory is allocated once. No result may depend on what a block finds in
+/// its workspace.
 template <class Make, class F>
 void parallelBlocksWith(Stage& stage, std::size_t n, std::size_t grain, const Make& make,
                         const F& f) {
@@ -65,7 +65,7 @@ void parallelBlocksWith(Stage& stage, std::size_t n, std::size_t grain, const Ma
   });
 }
 
-/// As parallelFor(), and lends f(i, workspace) a workspace in the same way.
+/// Like parallelFor(), with a workspace for each call, as above: f(i, workspace).
 template <class Make, class F>
 void parallelForWith(Stage& stage, std::size_t n, std::size_t grain, const Make& make, const F& f) {
   parallelBlocksWith(

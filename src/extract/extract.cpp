@@ -1,4 +1,4 @@
-// The public entries: options and errors around the engines.
+// The public functions: options and errors around the engines.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -28,9 +28,9 @@ void checkOptions(const ExtractOptions& options) {
 
 namespace {
 
-/// Whether a repair is to be tried, even if this build can only say that it cannot: for flipped and
-/// flat tets, and for what they may have caused, as they falsify angles around edges and thereby
-/// singularities. Other defects are repaired only if rounding was asked for.
+/// Whether to try a repair, even if this build can only say that it cannot: for flipped and flat
+/// tets, and for what they may have caused, as they falsify angles around edges and thereby
+/// singularities. Other defects are repaired only if rounding was requested.
 bool isToBeRepaired(const igm::DefectCollector& defects, const ExtractOptions& options) {
   if (options.repair == RepairMode::Off) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };
@@ -39,7 +39,7 @@ bool isToBeRepaired(const igm::DefectCollector& defects, const ExtractOptions& o
 }
 
 /// Prepares the map, or what a repair makes of it.
-/// @param report  of the repair, if there was one
+/// @param report  on the repair, if there was one
 ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOptions& options,
                          Context& context, RepairReport& report) {
   {

@@ -1,3 +1,4 @@
+// The public class Extractor.
 #include <utility>
 
 #include <hexhex/extractor.hpp>

@@ -1,3 +1,5 @@
+// Tags of hex edges and faces, found where these begin (holder and casing, Sections 5.3.2 and
+// 5.3.3).
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -20,7 +22,7 @@ constexpr std::size_t kFeaturesGrain = std::size_t{1} << 14;
 template <std::size_t n>
 class TagTable {
  public:
-  /// @param features  those with tag 0 are left out
+  /// @param features  those with tag 0 are ignored
   template <class Feature>
   explicit TagTable(std::span<const Feature> features) {
     for (const Feature& feature : features) {
@@ -31,7 +33,7 @@ class TagTable {
     });
   }
 
-  /// The tag of the simplex of a tet, 0 if it has none or has another number of corners.
+  /// The tag of a tet's simplex; 0 if it has none, or another number of corners.
   [[nodiscard]] std::int32_t find(const Tet& tet, lattice::CornerMask simplex) const {
     if (lattice::dimension(simplex) != static_cast<int>(n) - 1) return 0;
     Simplex wanted{};
@@ -73,7 +75,7 @@ class TagTable {
   std::vector<Entry> entries_;  ///< ascending
 };
 
-/// A hex vertex may begin a tagged edge, or may be the corner of a tagged face.
+/// A hex vertex may be the beginning of a tagged edge, or the corner of a tagged face.
 using Mark = std::uint8_t;
 constexpr Mark kAtEdges = 1;
 constexpr Mark kAtFaces = 2;
@@ -116,9 +118,9 @@ class Marks {
   Array<Mark> ofVertex_;
 };
 
-/// What the cells of a block of tets see; elements that several cells share occur repeatedly.
+/// What the cells of a block of tets see; elements shared by several cells occur repeatedly.
 struct Seen {
-  /// An edge from its smaller vertex to its larger one, and from where its tag was seen.
+  /// An edge from its smaller vertex to its larger one, and the end from which its tag was seen.
   struct Edge {
     std::array<Index, 2> vertices;
     bool fromLarger;
@@ -143,7 +145,7 @@ constexpr std::size_t neighbour(std::size_t corner, std::size_t axis) noexcept {
   return cornerAt(offset);
 }
 
-/// Looks at one cell after the other. One per thread.
+/// Examines one cell after the other. One per thread.
 class CellViewer {
  public:
   CellViewer(const TetMapView& given, const igm::PreparedMap& prepared, const HexMesh& mesh,
@@ -224,14 +226,14 @@ class CellViewer {
     }
   }
 
-  /// The tag of the face across the third axis, seen from a corner beside the first.
+  /// The tag of the face across the third axis, seen from a corner beside the edge along the first.
   std::int32_t faceTag(const Hex& cell, std::size_t corner, const sweep::TiltOrder& axes) {
     const Beginning at = begin(cell, corner, axes);
     return faceTags_.find(prepared_.topology.tets[at.tet],
                           lattice::casing(at.signs, at.simplex, at.first, at.second));
   }
 
-  /// Where an edge and a face of the cell begin, as seen in a tet that holds their beginnings.
+  /// Where an edge and a face of the cell begin, in a tet that contains both beginnings.
   struct Beginning {
     Index tet;
     lattice::NormalSigns signs;
@@ -288,7 +290,7 @@ std::vector<FeatureVertex> tagVertices(const TetMapView& given, const HexMesh& m
       });
 }
 
-/// One entry per edge: that from the smaller vertex, if there is one.
+/// One entry per edge: the one seen from the smaller vertex, if there is one.
 std::vector<FeatureEdge> uniqueEdges(std::vector<Seen::Edge> seen) {
   std::sort(seen.begin(), seen.end(), [](const Seen::Edge& a, const Seen::Edge& b) {
     return a.vertices != b.vertices ? a.vertices < b.vertices : a.fromLarger < b.fromLarger;
@@ -301,7 +303,7 @@ std::vector<FeatureEdge> uniqueEdges(std::vector<Seen::Edge> seen) {
   return edges;
 }
 
-/// Both cells at a face see the same.
+/// Both cells at a face see the same tag.
 std::vector<FeatureQuad> uniqueQuads(std::vector<FeatureQuad> quads) {
   std::sort(quads.begin(), quads.end(),
             [](const FeatureQuad& a, const FeatureQuad& b) { return a.vertices < b.vertices; });

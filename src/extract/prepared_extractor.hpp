@@ -63,9 +63,9 @@ class Extractor::Prepared {
     return result;
   }
 
-  /// Not to be scaled; stages may add to its topology.
+  /// Must not be scaled; stages may add to its topology.
   [[nodiscard]] igm::PreparedMap& map() noexcept { return map_; }
-  /// To scale it further: the next call begins with the unscaled one again.
+  /// May be scaled further: the next call starts from the unscaled map again.
   [[nodiscard]] igm::PreparedMap& mapToScale() {
     keepUnscaled();
     scale_ = 0;
@@ -75,7 +75,7 @@ class Extractor::Prepared {
   [[nodiscard]] std::uint64_t volume() const noexcept { return volume_; }
 
  private:
-  /// Copies what scaling changes, before the first time.
+  /// Copies what scaling changes, before the first scaling.
   void keepUnscaled() {
     if (!unscaledCorners_.empty()) return;
     Array<lattice::Transition> transitions = map_.exact.transitions.table;
@@ -83,14 +83,14 @@ class Extractor::Prepared {
     unscaledTransitions_ = std::move(transitions);
   }
 
-  /// Leaves the parameters in map_ scaled. What is kept at scale 1 is a copy, and not obtained by
-  /// division, so that a cancelled call leaves nothing half-scaled behind.
+  /// Leaves the parameters in map_ scaled. Those at scale 1 are kept as a copy rather than obtained
+  /// by division, so that a cancelled call leaves nothing half-scaled behind.
   void setScale(int scale, Context& context) {
     if (scale == scale_) return;
     Stage stage(context, "scaling");
     keepUnscaled();
     assert(scale >= 1 && unscaledCorners_.size() == map_.exact.corners.size());
-    scale_ = 0;  // neither, until all is done
+    scale_ = 0;  // no valid scale until all is done
     map_.exact.transitions.table = unscaledTransitions_;
     constexpr std::size_t kGrain = 4096;
     parallelFor(stage, unscaledCorners_.size(), kGrain,

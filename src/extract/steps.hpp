@@ -19,14 +19,14 @@
 
 namespace hexhex::extraction {
 
-/// As many cells as 32-bit indices can number, and as pieces can.
+/// The most cells that 32-bit indices can number, and the most that pieces can.
 inline constexpr double kMaxCells = kNone;
 inline constexpr double kMaxStreamedCells = igm::kMaxCountedCells;
 
 /// @throws Error InvalidArgument for an epsilon out of range
 void checkOptions(const ExtractOptions& options);
 
-/// The caller's options, and how the engine works.
+/// The caller's options, and the engine's switches.
 struct EngineOptions : ExtractOptions {
   // NOLINTNEXTLINE(google-explicit-constructor): options without switches mean the defaults.
   EngineOptions(const ExtractOptions& options, const EngineSwitches& switches_ = {})
@@ -40,16 +40,16 @@ struct ValidMap {
   std::shared_ptr<const TetMap> repaired;  ///< what it was prepared from if not the caller's map
 };
 
-/// Checks tags, prepares a map, or the repaired one, and throws its first defect if it has any.
+/// Checks tags, prepares the map or its repair, and throws the first defect, if any.
 /// @param maxScale  the map is going to be scaled by at most this
 /// @param statistics  receives what is known about the map
 [[nodiscard]] ValidMap prepareValid(const TetMapView& map, int maxScale,
                                     const EngineOptions& options, Context& context,
                                     ExtractStatistics& statistics);
 
-/// All stages behind the scaling. Adds to the map's topology what the engine needs.
+/// All stages after scaling. Adds to the map's topology what the engine needs.
 /// @param map       scaled
-/// @param observer  of the atlas engine; nullptr with the other one
+/// @param observer  of the atlas engine; nullptr with the other engine
 [[nodiscard]] HexMesh runEngine(igm::PreparedMap& map, std::uint64_t expectedCells,
                                 const EngineOptions& options, Context& context,
                                 ExtractStatistics& statistics,
@@ -86,14 +86,14 @@ struct ScaleLimits {
 
 [[noreturn]] void throwOutOfMemory();
 
-/// From a map to its mesh; weights as inSteps() has them.
+/// From a map to its mesh; weights as in inSteps().
 inline constexpr std::array<WorkStep, 6> kExtractSteps = {{{"prepare", 0.1},
                                                            {"repair", 0.3},
                                                            {"prepare", 0.1},
                                                            {"scaling", 0.1},
                                                            {"engine", 4},
                                                            {"features", 0.5}}};
-/// ... with what an observer of it gains afterwards.
+/// ... and what an observer of it computes afterwards.
 inline constexpr std::array<WorkStep, 8> kPiecewiseSteps = {{{"prepare", 0.1},
                                                              {"repair", 0.3},
                                                              {"prepare", 0.1},
@@ -102,7 +102,7 @@ inline constexpr std::array<WorkStep, 8> kPiecewiseSteps = {{{"prepare", 0.1},
                                                              {"features", 0.5},
                                                              {"arcs", 6},
                                                              {"patches", 12}}};
-/// ... with the nodes of order 2.
+/// ... and the nodes of order 2.
 inline constexpr std::array<WorkStep, 9> kLagrangeSteps = {{{"prepare", 0.1},
                                                             {"repair", 0.3},
                                                             {"prepare", 0.1},
@@ -119,8 +119,8 @@ struct ReportedCall {
   std::span<const WorkStep> steps = kExtractSteps;
 };
 
-/// Runs work(statistics) with the context's threads; translates what may escape from it, and notes
-/// the time.
+/// Runs work(statistics) with the context's threads; translates exceptions that escape from it, and
+/// records the time.
 /// @param known  what the statistics begin with
 template <class Work>
 void runExtraction(const ReportedCall& call, const ExtractStatistics& known, Context& context,

@@ -1,5 +1,5 @@
-// What do the first steps of Section 5.1 find out about a map, without extracting its mesh: its
-// measures, defects, singular edges and transitions?
+// Checks a map by the first steps of Section 5.1, without extracting its mesh: its measures,
+// defects, singular edges and transitions.
 #include <array>
 #include <cmath>
 
@@ -34,8 +34,8 @@ void countSingularities(const Singularities& singularities, CheckReport& report)
 
 using RotationMatrix = std::array<std::array<std::int8_t, 3>, 3>;
 
-/// A rotation between charts of the pipeline, between those of the caller: all charts of the former
-/// have the first parameter negated if the map is mirrored.
+/// A rotation between the pipeline's charts, as one between the caller's: if the map is mirrored,
+/// the first parameter is negated in all of the pipeline's charts.
 RotationMatrix matrixOf(const lattice::Rotation& rotation, bool mirrored) {
   RotationMatrix matrix{};
   for (std::size_t column = 0; column < 3; ++column) {
@@ -50,10 +50,10 @@ RotationMatrix matrixOf(const lattice::Rotation& rotation, bool mirrored) {
   return matrix;
 }
 
-/// The integers nearest to what is left of the parameters of the face's corners after the rotation.
-/// (The pipeline has moved charts towards the origin; here they are the caller's.)
+/// The integers nearest to what the rotation leaves of the face's corner parameters. (The pipeline
+/// has moved charts towards the origin; these are the caller's.)
 std::array<double, 3> translationOf(const TetMapView& map, const ChartJump& jump) {
-  std::array<double, 3> first{};  // sums of large numbers would be rounded
+  std::array<double, 3> first{};  // separate, as sums of large numbers would be rounded
   std::array<double, 3> sum{};
   for (const Index vertex : jump.vertices) {
     std::array<Vec3, 2> u{};
@@ -123,7 +123,7 @@ CheckReport check(const TetMapView& map, const CheckOptions& options, Context& c
     report.mirrored = prepared.input.mirrored;
     report.cornersReversed = prepared.input.cornersReversed;
     report.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
-    // What a defect kept from being computed stays empty, and is counted as nothing.
+    // What could not be computed because of a defect stays empty, and counts as nothing.
     if (!prepared.singularities.areKnown()) return;
     adjacency::addStars(prepared.topology, stage);
     report.edges = adjacency::countEdges(prepared.topology, stage);

@@ -1,3 +1,4 @@
+// Collects defects, and checks that the mesh is an oriented manifold (Section 3.1).
 #include <algorithm>
 #include <atomic>
 #include <string>
@@ -12,10 +13,10 @@ namespace {
 
 constexpr std::size_t kDefectsGrain = 1024;
 
-/// At most this many places of each kind are kept (a list that a person reads).
+/// At most this many places of each kind are kept: a person reads the list.
 constexpr std::size_t kWorst = 10;
 
-/// What is wrong and what to do, in a sentence or two.
+/// What is wrong and what to do about it, in a sentence or two.
 const char* explanation(ErrorCode code) {
   switch (code) {
     case ErrorCode::EmptyMesh:
@@ -74,7 +75,7 @@ bool worse(const Defect::Occurrence& a, const Defect::Occurrence& b) {
          std::tie(b.place.kind, b.place.index, b.place.second);
 }
 
-/// Makes the half-faces of one triangle mates, or boundary if there is only one.
+/// Makes the half-faces of a triangle mates, or boundary if there is only one.
 void joinMates(adjacency::TetTopology& topology, std::span<const adjacency::CellFace<Tet>> same,
                DefectCollector& defects) {
   const auto halfFaceAt = [](const adjacency::CellFace<Tet>& at) {
@@ -97,7 +98,7 @@ void joinMates(adjacency::TetTopology& topology, std::span<const adjacency::Cell
   }
 }
 
-/// Matches half-faces once more.
+/// Matches half-faces again, collecting defects.
 void checkFaces(adjacency::TetTopology& topology, Stage& stage, DefectCollector& defects) {
   topology.mate.resize(4 * topology.tetCount());
   const auto join = [&](std::span<const adjacency::CellFace<Tet>> same) {
@@ -180,9 +181,9 @@ bool isConnected(const adjacency::TetTopology& topology,
   return queue.size() == star.size();
 }
 
-/// The link of a vertex must be a sphere (inside) or a disk (on the boundary). As its triangles are
-/// glued edge to edge and its boundary is free of branching (checked at edges), that is so if it is
-/// connected and has the right Euler characteristic.
+/// The link of a vertex must be a sphere (inside) or a disk (on the boundary). Its triangles are
+/// glued edge to edge and its boundary does not branch (checked at edges), so it suffices that it
+/// is connected and has the right Euler characteristic.
 void checkLinks(const adjacency::TetTopology& topology, const Array<Index>& degree, Stage& stage,
                 DefectCollector& defects) {
   parallelFor(stage, topology.pointCount, kDefectsGrain, [&](std::size_t v) {

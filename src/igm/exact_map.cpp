@@ -1,3 +1,4 @@
+// Sanitization (Section 5.1.3).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -16,13 +17,13 @@ namespace {
 
 constexpr std::size_t kExactMapGrain = 1024;
 
-/// Unscaled lattice coordinates stay below 2^52 and scaled ones below 2^60, which the predicates
+/// Lattice coordinates stay below 2^52 before scaling and below 2^60 after it, which the predicates
 /// rely on (tet_geometry.hpp).
 constexpr int kLatticeBits = 52;
 constexpr int kScaledLatticeBits = 60;
 /// Grid coordinates and translations between charts stay below 2^30 after scaling: they are 32-bit.
 constexpr int kGridBits = 29;
-/// Fewer fractional bits than this would move parameters noticeably.
+/// With fewer fractional bits, rounding would move parameters noticeably.
 constexpr int kMinFractionBits = 16;
 
 /// Number of fractional bits of the lattice: as many as the largest coordinate allows.
@@ -37,7 +38,7 @@ int fractionBits(double largest, int maxScale, DefectCollector& defects) {
   return bits;
 }
 
-/// To which multiples coordinates are rounded. A table, as branches cannot be predicted.
+/// The multiples to which coordinates are rounded. A table, as branches could not be predicted.
 class Grains {
  public:
   explicit Grains(double unit) {
@@ -47,8 +48,8 @@ class Grains {
       }
     }
   }
-  /// 2^52 times the multiples in units of the lattice, by axis; 0 if a star decides.
-  /// @param fixed  axes along which there are to be integers, or a Rounding
+  /// 2^52 times the multiples in lattice units, per axis; 0 if a star decides.
+  /// @param fixed  axes along which coordinates are to be integers, or a Rounding
   [[nodiscard]] const Vec3& at(lattice::AxisSet fixed) const noexcept { return large_[fixed]; }
   [[nodiscard]] const Vec3& at(Rounding rounding) const noexcept {
     return large_[static_cast<lattice::AxisSet>(rounding)];
@@ -58,8 +59,8 @@ class Grains {
   std::array<Vec3, static_cast<std::size_t>(Rounding::ByStar) + 1> large_{};
 };
 
-/// The point of the lattice nearest to parameters.
-/// @param large  by Grains
+/// The lattice point nearest to given parameters.
+/// @param large  from Grains
 lattice::LatticePoint nearestPoint(const Vec3& u, const Vec3& large, double unit) {
   const Pair xy = nearestMultiples(loadPair(&u[0]) * unit, loadPair(&large[0]));
   const Pair z = nearestMultiples(Pair{u[2], u[2]} * unit, Pair{large[2], large[2]});
@@ -78,12 +79,12 @@ struct Sanitization {
   Grains grains{unit};
 };
 
-/// Rounds corners at regular and flat vertices, which do not depend on others.
+/// Rounds corners at regular and flat vertices, each independently of the others.
 class CornerRounder {
  public:
   explicit CornerRounder(const Sanitization& in) : in_(in) {}
 
-  /// @param rounding  other than by the star
+  /// @param rounding  not by the star
   void run(adjacency::CornerIndex index, Rounding rounding) {
     const Vec3 u = in_.parameters(adjacency::tetOf(index), adjacency::localOf(index));
     lattice::LatticePoint& corner = in_.map.corners[index / 4][index % 4];
@@ -98,7 +99,7 @@ class CornerRounder {
  private:
   void report(adjacency::CornerIndex index, Rounding rounding, double displacement) {
     const Index vertex = in_.topology.vertex(index);
-    // The same at all corners of the vertex, and to be reported once.
+    // The same at all corners of the vertex, and to be reported only once.
     if (in_.topology.vertexTet[vertex] != adjacency::tetOf(index)) return;
     in_.defects.add(
         rounding != Rounding::Free ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual,
@@ -110,14 +111,14 @@ class CornerRounder {
 };
 
 /// Far more than in any star whose transitions do not contradict each other, and far less than what
-/// another transition could make an overflow.
+/// could make another transition overflow.
 bool outOfRange(const lattice::LatticePoint& value) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 58;
   return std::any_of(value.begin(), value.end(),
                      [](std::int64_t x) { return x > kLimit || x < -kLimit; });
 }
 
-/// Makes the corners of one irregular vertex after the other what its star demands.
+/// Sets the corners of irregular vertices to what their stars demand, one vertex after the other.
 class StarSanitizer {
  public:
   using Star = std::span<const VertexStar::Member>;
@@ -164,24 +165,24 @@ class StarSanitizer {
     return fixed.axes();
   }
 
-  /// Carries the value of the first member to all others, along the walk, as in
-  /// VertexStar::collect(); false if not all paths through the star lead to the same values.
+  /// Carries the value of the first member to all others, along the walk of VertexStar::collect();
+  /// false if not all paths through the star lead to the same values.
   [[nodiscard]] bool spread(Star star) {
     std::int64_t difference = 0;
     std::size_t reached = 1;
     const auto cross = [&](std::size_t i, std::size_t k) {
       const VertexStar::Member& member = star[i];
       const lattice::LatticePoint image = carried(values_[i], member.halfFace(k));
-      // At the boundary, a member is behind itself.
+      // At the boundary, a member is its own neighbour.
       const std::size_t behind = member.neighbour[k] == kNone ? i : member.neighbour[k];
-      values_[reached] = image;  // in vain if the one behind is not new
+      values_[reached] = image;  // wasted if the one behind is not new
       reached += behind == reached ? 1 : 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         difference |= values_[behind][axis] ^ image[axis];
       }
     };
     for (std::size_t k = 0; k < 3; ++k) cross(0, k);
-    // What came through the entry would be carried back.
+    // Going through the entry would only carry the value back.
     for (std::size_t i = 1; i < star.size(); ++i) {
       cross(i, star[i].entry == 0 ? 1 : 0);
       cross(i, star[i].entry == 2 ? 1 : 2);
@@ -196,7 +197,7 @@ class StarSanitizer {
     return outOfRange(image) ? value : image;
   }
 
-  /// The condition that a vertex which had to move too far violates.
+  /// The condition violated by a vertex that had to move too far.
   [[nodiscard]] ErrorCode causeOfDisplacement(Index v, lattice::AxisSet planes) const {
     if (singularities_.degree(v) > 0) return ErrorCode::SingularityOffLattice;
     return planes != 0 ? ErrorCode::BoundaryOffLattice : ErrorCode::TransitionResidual;
@@ -236,7 +237,7 @@ class TetRounder {
         rounding_(rounding),
         leastDeterminant_(leastCertainDeterminant(in.parameters, in.unit)) {}
 
-  /// @return whether the tet is finished, and certainly positive
+  /// @return whether the tet is finished and certainly positive
   bool run(Index t) {
     TetParameters scratch;
     const TetParameters& u = in_.parameters.see(t, scratch);
@@ -260,7 +261,7 @@ class TetRounder {
                                                 leastDeterminant_);
   }
 
-  /// Without corners that are decided by their stars.
+  /// Ignores corners that are decided by their stars.
   [[nodiscard]] double maxDisplacement() const {
     return std::max(displacement_[0], displacement_[1]);
   }
@@ -278,9 +279,9 @@ class TetRounder {
   Pair displacement_ = {0, 0};
 };
 
-/// Rounds all corners, but those that stars decide in vain.
-/// @return tets with such corners, and those that are not certainly positive; in lists to be worked
-/// on in parallel
+/// Rounds all corners; without effect on those that stars decide.
+/// @return tets with such corners, and tets that are not certainly positive, in lists to be worked
+///         on in parallel
 std::vector<std::vector<Index>> roundTets(const Sanitization& in,
                                           std::span<const Rounding> rounding, Stage& stage) {
   const std::size_t tets = in.topology.tetCount();
@@ -312,7 +313,7 @@ std::vector<std::vector<Index>> roundTets(const Sanitization& in,
   return unfinished;
 }
 
-/// Makes corners what the stars of their vertices demand.
+/// Sets corners to what the stars of their vertices demand.
 void sanitizeStars(const Sanitization& in, std::span<const StarBlock> stars,
                    const Singularities& singularities, Stage& stage) {
   std::vector<double> displacements(stars.size());

@@ -1,5 +1,5 @@
-// What does a walk through the charts of tets meet at a half-face: another chart, or a boundary
-// plane (Section 5.1.1)?
+// What a walk through the charts of tets meets at a half-face: another chart, or a boundary plane
+// (Section 5.1.1).
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 namespace hexhex::igm {
 
 /// Either the rotation into the neighbour's chart (the translation follows from the parameters), or
-/// the boundary, across an axis. A byte, so that all of them fit a cache.
+/// the boundary, with the axis across it. One byte, so that all of them fit a cache.
 class HalfFaceTransition {
  public:
-  /// To a neighbour that agrees on the parameters of the common corners.
+  /// Leads to a neighbour that agrees on the parameters of the common corners.
   constexpr HalfFaceTransition() = default;
 
-  /// @param isExact  whether a transition carries the parameters over without rounding
+  /// @param isExact  whether the transition carries the parameters over without rounding
   [[nodiscard]] static constexpr HalfFaceTransition inner(lattice::Rotation rotation,
                                                           bool isExact) noexcept {
     return {static_cast<unsigned>(rotation.index()), isExact};
@@ -29,7 +29,7 @@ class HalfFaceTransition {
     return {static_cast<unsigned>((1 + axis) * kBoundary), isConstant};
   }
 
-  /// Whether anything about it is rounded, or may be.
+  /// Whether anything about it is, or may be, rounded.
   [[nodiscard]] constexpr bool isInexact() const noexcept { return (code_ & kInexact) != 0; }
   /// Whether it leads to a neighbour in the same chart.
   [[nodiscard]] constexpr bool isTrivial() const noexcept { return code_ == 0; }
@@ -39,13 +39,13 @@ class HalfFaceTransition {
   [[nodiscard]] constexpr lattice::Rotation rotation() const noexcept {
     return lattice::Rotation(code_ % kInexact);
   }
-  /// The axis across a boundary half-face; none of an inner one.
+  /// The axis across a boundary half-face; none for an inner one.
   [[nodiscard]] constexpr lattice::AxisSet plane() const noexcept {
     return (1U << code_ / kBoundary) >> 1;
   }
 
  private:
-  // The bits of the byte: five for the rotation, one, and two for the axis plus one.
+  // The bits of the byte: five for the rotation, one for inexactness, two for the axis plus one.
   static constexpr unsigned kInexact = 32;
   static constexpr unsigned kBoundary = 64;
 

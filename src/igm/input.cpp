@@ -1,3 +1,4 @@
+// Checks and orients the input, and moves charts towards the origin (for Section 5.1).
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -12,19 +13,19 @@ namespace {
 
 constexpr std::size_t kInputGrain = 1024;
 
-/// The smallest step by which charts are moved: maps whose coordinates stay below half of it,
+/// The smallest step by which charts are moved. Maps whose coordinates stay below half of it,
 /// nearly all, are not moved at all. It costs ten of the 52 bits of a coordinate.
 constexpr double kMinChartGrid = 1024;
 
-/// Volumes in space are to be finite: products of three differences of coordinates.
+/// Keeps volumes in space finite: they are products of three coordinate differences.
 constexpr double kMaxCoordinate = 0x1p300;
 
-/// Beyond, doubles are not even all integers. (What a chart far away has rounded before shows as
-/// any other inexactness does.)
+/// Beyond, doubles do not even represent all integers. (What a distant chart has rounded before
+/// shows like any other inexactness.)
 constexpr double kMaxParameter = 0x1p53;
 
-/// Translations between charts are 32-bit integers: with coordinates below this they, and twice
-/// them, fit. (Sanitization, which knows the scale, allows no more either.)
+/// Translations between charts are 32-bit integers: with coordinates below this, translations fit,
+/// even doubled. (Sanitization, which knows the scale, allows no more either.)
 constexpr double kMaxLocalParameter = 0x1p28;
 
 /// @param corners  of a feature, the i-th of its kind
@@ -83,8 +84,8 @@ bool hasRepeatedVertex(const Tet& tet) {
          tet[1] == tet[3] || tet[2] == tet[3];
 }
 
-/// What a pass over all tets finds out. Numbers of tets are those in space and those in the map,
-/// whose volumes are computed at once; so far as signs are to be trusted.
+/// The result of a pass over all tets. Pairs count tets in space and tets in the map, whose volumes
+/// are computed at once, as far as signs can be trusted.
 struct Measures {
   PairMask positive = {0, 0};
   PairMask negative = {0, 0};
@@ -135,7 +136,7 @@ struct Measures {
   }
 };
 
-/// Measures those tets that can be measured; others are defects.
+/// Measures the tets that can be measured; the others are defects.
 Measures measureBlock(const TetMapView& map, std::size_t begin, std::size_t end,
                       DefectCollector& defects) {
   Measures measures;
@@ -166,7 +167,7 @@ Measures measureTets(const TetMapView& map, Stage& stage, DefectCollector& defec
   return total;
 }
 
-/// Reverses the corners of all tets, and mirrors all charts, as far as `oriented` says so.
+/// Reverses the corners of all tets and mirrors all charts, as `oriented` demands.
 void reorient(OrientedMap& oriented, const TetMapView& map, Stage& stage) {
   oriented.tets.resize(map.tets.size());
   oriented.parameters.resize(map.tets.size());
@@ -185,7 +186,7 @@ void reorient(OrientedMap& oriented, const TetMapView& map, Stage& stage) {
   });
   oriented.view.tets = oriented.tets;
   oriented.view.parameters = oriented.parameters;
-  oriented.view.rotations = {};  // redundant, and given for the charts as they were
+  oriented.view.rotations = {};  // redundant, and valid only for the charts as they were
 }
 
 }  // namespace

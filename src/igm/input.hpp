@@ -1,4 +1,4 @@
-// The input as Section 5.1 wants it: plausible, positively oriented, and with charts near the
+// The input as Section 5.1 needs it: plausible, positively oriented, and with charts near the
 // origin.
 #pragma once
 
@@ -16,17 +16,18 @@
 
 namespace hexhex::igm {
 
-/// More tets than this cannot be indexed by corner in 32 bits.
+/// With more tets than this, 32 bits cannot index corners.
 inline constexpr std::size_t kMaxTets = (std::size_t{1} << 30) - 1;
 
-/// A view of a map whose tets are positive in the map and (but for a minority) in space, with
-/// copies of the arrays where they had to change.
+/// A view of a map whose tets are positive in the map and (except for a minority) in space, with
+/// copies of the arrays that had to change.
 ///
-/// Decided here, once: if most tets are negative in space, their corners are listed in reverse, and
+/// Decided here, once: if most tets are negative in space, their corners are listed in reverse:
 /// corners 2 and 3 of every tet are swapped. If most tets then have opposite signs in space and in
 /// the map, the map is a reflection, and the first parameter is negated in every chart;
-/// integer-grid maps stay integer-grid maps thereby. What is still negative in the map is a defect;
-/// what is still negative in space does not matter, as the combinatorics lives in the map.
+/// integer-grid maps remain integer-grid maps. Tets that are still negative in the map are defects;
+/// tets that are still negative in space do not matter, as the combinatorics depends on the map
+/// alone.
 struct OrientedMap {
   TetMapView view;
   bool cornersReversed = false;
@@ -61,21 +62,21 @@ struct OrientedMap {
 
 /// Checks indices and numbers, and orients the map. After a defect (indices out of range, a vertex
 /// twice in a tet, numbers that are not finite, no tets or too many) the result must not be used.
-/// @throws Error InvalidArgument for arrays whose sizes do not match, and edge valences and
-/// features of vertices that do not exist
+/// @throws Error InvalidArgument for arrays whose sizes do not match, and for edge valences and
+///         features of vertices that do not exist
 [[nodiscard]] OrientedMap readInput(const TetMapView& map, Stage& stage, DefectCollector& defects);
 
-/// Parameters near the origin. Charts may sit far away (translations of 1e9 occur), which would
-/// cost fractional bits: each tet's chart is therefore moved by a multiple of `grid`, exactly. The
-/// grid is coarse, so that neighbours in one chart nearly always move alike and identity
-/// transitions stay identities.
+/// Parameters near the origin. Charts may lie far away (translations of 1e9 occur), which would
+/// cost fractional bits; so each tet's chart is moved by a multiple of `grid`, exactly. The grid is
+/// coarse, so that neighbours in one chart nearly always move alike and identity transitions remain
+/// identities.
 class LocalParameters {
  public:
   /// @param map  must outlive this
   explicit LocalParameters(const OrientedMap& map) noexcept;
 
-  /// Whether coordinates are too large for the arithmetic behind. Nothing but comparisons may then
-  /// be done with parameters.
+  /// Whether coordinates are too large for the arithmetic of later stages. Parameters may then only
+  /// be compared.
   [[nodiscard]] bool tooLarge() const noexcept { return tooLarge_; }
 
   [[nodiscard]] Vec3 operator()(Index tet, int corner) const noexcept {
@@ -95,21 +96,21 @@ class LocalParameters {
     }
     return parameters;
   }
-  /// Whether (*this)(tet) is other than what the caller gave.
+  /// Whether (*this)(tet) may differ from the caller's parameters.
   [[nodiscard]] bool moved() const noexcept { return moved_; }
-  /// What the caller gave.
+  /// The caller's parameters.
   [[nodiscard]] const TetParameters& given(Index tet) const noexcept { return parameters_[tet]; }
-  /// The multiple of the grid by which a chart is moved that has this coordinate at corner 0.
+  /// The multiple of the grid by which a chart with this coordinate at corner 0 is moved.
   [[nodiscard]] double roundedToGrid(double coordinate) const noexcept {
     return std::nearbyint(coordinate / grid_) * grid_;
   }
-  /// Asks for the parameters of a tet that will be looked at soon.
+  /// Prefetches the parameters of a tet.
   void prefetch(Index tet) const noexcept {
     const TetParameters& parameters = parameters_[tet];
     hexhex::prefetch(&parameters.front());
     hexhex::prefetch(&parameters.back().back());
   }
-  /// All corners of a tet, without a copy if they are where the caller has put them.
+  /// All corners of a tet, without a copy if they are where the caller put them.
   /// @param scratch  must outlive the result
   [[nodiscard]] const TetParameters& see(Index tet, TetParameters& scratch) const noexcept {
     return moved_ ? copyTo(scratch, tet) : parameters_[tet];
@@ -120,7 +121,7 @@ class LocalParameters {
   [[nodiscard]] double largestExtent() const noexcept { return largestExtent_; }
 
  private:
-  /// Apart, as compilers would otherwise share the copy's loads with the usual case.
+  /// Separate, as compilers would otherwise share the copy's loads with the usual case.
   const TetParameters& copyTo(TetParameters& scratch, Index tet) const noexcept;
   [[nodiscard]] Vec3 move(const TetParameters& parameters) const noexcept {
     Vec3 by{};

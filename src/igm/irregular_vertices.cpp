@@ -1,3 +1,4 @@
+// Tells flat vertices from irregular ones, by their stars (for Section 5.1.2).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,18 +11,18 @@ namespace hexhex::igm {
 
 namespace {
 
-/// Most vertices are regular, and the star of another one takes long.
+/// Most vertices are regular, and the star of any other takes long.
 constexpr std::size_t kIrregularVerticesGrain = 128;
 
-/// Whether a coordinate is halfway between two integers. The plane across its axis to snap to then
-/// depends on the chart.
+/// Whether a coordinate is halfway between two integers. The plane to which it snaps then depends
+/// on the chart.
 bool isBetweenIntegers(double x) { return std::abs(x - std::nearbyint(x)) == 0.5; }
 
-/// Whether the edges from a corner of a tet go far enough into an octant that a ray in it can lead
+/// Whether the edges from a corner of a tet reach far enough into an octant for a ray in it to lead
 /// into the tet.
 bool reachesOctant(const TetParameters& u, std::size_t corner, const Ray& ray) {
   PairMask reaches = {-1, -1};
-  // Two overlapping pairs have all three coordinates.
+  // Two overlapping pairs cover all three coordinates.
   for (std::size_t k = 0; k < 2; ++k) {
     const Pair signs = loadPair(&ray.signs[k]);
     const auto at = [&](std::size_t i) { return signs * loadPair(&u[i][k]); };
@@ -30,7 +31,7 @@ bool reachesOctant(const TetParameters& u, std::size_t corner, const Ray& ray) {
   return (reaches[0] & reaches[1]) != 0;
 }
 
-/// Looks at one star after the other.
+/// Classifies one star after the other.
 class StarClassifier {
  public:
   StarClassifier(const adjacency::TetTopology& topology, const LocalParameters& parameters,
@@ -71,7 +72,8 @@ class StarClassifier {
     return static_cast<std::size_t>(std::countr_zero(lattice::imageOf(planes_, rotation)));
   }
 
-  /// Whether all boundary faces are in one plane, and it is certain to which one the vertex snaps.
+  /// Whether all boundary faces are in one plane, and it is certain to which plane the vertex
+  /// snaps.
   [[nodiscard]] bool isInOnePlane(std::span<const VertexStar::Member> star) const {
     if (planes_ == 0) return true;
     const adjacency::CornerIndex first = star.front().corner;
@@ -98,13 +100,13 @@ class StarClassifier {
     return cones == 1;
   }
 
-  /// Lists what may lead into tets: where charts are rotated the direction, and on the boundary its
-  /// mirror image. In other charts, cones are known.
-  /// @return how many of these contain the direction
+  /// Lists the rays that may lead into tets: in rotated charts the direction, and on the boundary
+  /// its mirror image. In unrotated charts, the cones are known.
+  /// @return how many of the known cones contain the direction
   std::size_t listRays(std::span<const VertexStar::Member> star) {
     if (rays_.size() <= 2 * star.size()) rays_.resize(4 * star.size());
     std::size_t count = 0;
-    // Neither where charts are rotated nor which octants are reached can be predicted.
+    // Neither which charts are rotated nor which octants are reached can be predicted.
     const auto add = [&](adjacency::CornerIndex corner, const Ray& ray, bool isWanted) {
       rays_[count] = {corner, &ray};
       count += isWanted ? 1 : 0;
@@ -157,7 +159,7 @@ VertexKinds classifyVertices(const adjacency::TetTopology& topology,
   result.kind.resize(topology.pointCount);
   result.rounding.resize(topology.pointCount);
   result.blocks.resize(blockCount(topology.pointCount, kIrregularVerticesGrain));
-  // What the caller claims about edges, if anything, is to be looked up for each.
+  // The caller's claims about edges, if any, have to be looked up for each edge.
   const bool flatAllowed = findFlat && known.empty();
   const auto makeClassifier = [&] {
     return StarClassifier(topology, parameters, regular, faceTransitions, flatAllowed, result);

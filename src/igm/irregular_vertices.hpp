@@ -1,4 +1,4 @@
-// A closer look at the vertices that are not certainly regular: at their stars (Section 5.1.2).
+// Classifies the vertices that are not certainly regular, by their stars (Section 5.1.2).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace hexhex::igm {
 
 enum class VertexKind : std::uint8_t {
   Regular,   ///< as RegularVertices finds it, or isolated
-  Flat,      ///< regular, but for charts that differ
+  Flat,      ///< regular, except that charts differ
   Irregular  ///< everything else: singular, between boundary planes, or not certainly regular
 };
 
@@ -25,7 +25,7 @@ enum class Rounding : std::uint8_t {
   ByStar = 8   ///< corner by corner, as the star says
 };
 
-/// The stars of the irregular vertices among consecutive vertices.
+/// The stars of the irregular vertices in a range of vertices.
 struct StarBlock {
   std::vector<Index> vertices;
   /// Per vertex: the axes across its boundary faces in the chart of its first member.
@@ -33,16 +33,16 @@ struct StarBlock {
   std::vector<std::size_t> ends;  ///< per vertex: where its members end
   Array<VertexStar::Member> members;
 
-  /// A corner at a flat vertex of the boundary, and how it is rounded in its chart.
+  /// A corner at a flat vertex on the boundary, and how it is rounded in its chart.
   struct PlaneCorner {
     adjacency::CornerIndex corner;
     Rounding rounding;
   };
   std::vector<PlaneCorner> planeCorners;
 
-  std::size_t cornersSeen = 0;  ///< in all stars, of irregular and flat vertices
+  std::size_t cornersSeen = 0;  ///< in the stars of all irregular and flat vertices
 
-  /// Makes room for as many vertices.
+  /// Makes room for this many vertices.
   void reserve(std::size_t count) {
     vertices.reserve(count);
     planes.reserve(count);
@@ -66,18 +66,18 @@ struct VertexKinds {
   std::vector<StarBlock> blocks;  ///< ascending
 };
 
-/// Finds out which vertices are flat, and keeps the stars of irregular ones.
+/// Finds the flat vertices, and keeps the stars of the irregular ones.
 ///
 /// A star is flat if its tets, brought into one chart by exact transitions, are those of a regular
 /// vertex (regular_vertices.hpp): the transitions carry the parameters of common corners over
 /// without rounding, all paths through the star lead to the same chart, and the boundary is in one
-/// axis-parallel plane through the vertex. All that is said of regular vertices then holds. Brought
-/// into that chart is only the direction to be covered once: by rotations, which is exact. Rounding
-/// to the lattice commutes with exact transitions, hence corners may be rounded each in its own
-/// chart. (Without this test, whole extractions take 6 to 17 % longer where hexahedra are few.)
+/// axis-parallel plane through the vertex. Everything said of regular vertices then holds. Only the
+/// direction that must be covered once is brought into that chart, by rotations, which is exact.
+/// Rounding to the lattice commutes with exact transitions, so corners may be rounded each in its
+/// own chart. (Without this test, whole extractions take 6 to 17 % longer where hexahedra are few.)
 ///
-/// @param known  valence offsets that the caller gave, or empty; their vertices become irregular
-/// @param findFlat  otherwise flat stars count as irregular
+/// @param known  valence offsets given by the caller, or empty; their vertices become irregular
+/// @param findFlat  if false, flat stars count as irregular
 [[nodiscard]] VertexKinds classifyVertices(const adjacency::TetTopology& topology,
                                            const LocalParameters& parameters,
                                            const RegularVertices& regular,

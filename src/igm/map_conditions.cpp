@@ -1,3 +1,4 @@
+// Checks conditions (IGM2) to (IGM4) of Section 3.2.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +11,7 @@ namespace hexhex::igm {
 
 namespace {
 
-/// Without rounding: coordinates are below 2^52.
+/// Exact: coordinates are below 2^52.
 TetParameters exactDoubles(const lattice::LatticeTet& corners) {
   TetParameters doubles{};
   for (std::size_t i = 0; i < 4; ++i) {

@@ -1,5 +1,5 @@
-// Does the map fulfil the conditions (IGM2) to (IGM4) of Section 3.2, up to the tolerance? Others
-// are found violated while the map is sanitized (Section 5.1.3).
+// Checks conditions (IGM2) to (IGM4) of Section 3.2, up to the tolerance. Other violations are
+// found while the map is sanitized (Section 5.1.3).
 #pragma once
 
 #include <base/vector3.hpp>
@@ -11,22 +11,22 @@ namespace hexhex::igm {
 [[nodiscard]] std::size_t edgeAxis(const LocalParameters& parameters,
                                    const SingularEdge& edge) noexcept;
 
-/// (IGM2) up to the tolerance: what snapping may repair.
+/// (IGM2) up to the tolerance, within which snapping may repair it.
 void checkBoundary(const RegularVertices& regular, const LocalParameters& parameters,
                    double tolerance, Stage& stage, DefectCollector& defects);
 
-/// (IGM3) up to the tolerance, for edges; nodes are noticed when they are snapped.
+/// (IGM3) up to the tolerance, for edges; nodes are checked when they are snapped.
 void checkSingularities(const Singularities& singularities, const LocalParameters& parameters,
                         double tolerance, DefectCollector& defects);
 
-/// A determinant of a tet that is larger is certainly positive, though floating point has computed
-/// it, from edges that are exact: in units of the lattice, and unless corners have moved by more
-/// than half a parameter.
+/// A tet with a larger determinant is certainly positive, although the determinant is computed in
+/// floating point, from exact edges. In lattice units; valid unless corners have moved by more than
+/// half a parameter unit.
 [[nodiscard]] double leastCertainDeterminant(const LocalParameters& parameters,
                                              double unit) noexcept;
 
-/// Whether the determinant of a tet, in floating point, is larger than this.
-/// @param corners  in units of the lattice
+/// Whether a tet's floating-point determinant exceeds this.
+/// @param corners  in lattice units
 [[nodiscard]] inline bool isPositive(const TetParameters& corners,
                                      double leastDeterminant) noexcept {
   return tripleProduct(minus(corners[1], corners[0]), minus(corners[2], corners[0]),

@@ -1,3 +1,4 @@
+// Volume, area, lengths and genus of a map in exact integers (not in the paper).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -43,13 +44,14 @@ struct LatticeTriangle {
     a = corner(1) - origin;
     b = corner(2) - origin;
   }
-  /// A component of the normal, which leads into the tet.
+  /// A component of the normal, which points into the tet.
   [[nodiscard]] lattice::Int128 normal(std::size_t axis) const noexcept {
     return lattice::crossComponent(a, b, axis);
   }
 };
 
-/// The boundary half-face across an edge of a boundary half-face, around the tets between them.
+/// The boundary half-face across an edge of a boundary half-face, on the far side of the tets
+/// between them.
 adjacency::HalfFace acrossBoundaryEdge(const adjacency::TetTopology& topology,
                                        adjacency::HalfFace halfFace, lattice::CornerMask edge) {
   adjacency::EdgeTurn turn(topology, adjacency::tetOf(halfFace), edge,
@@ -60,9 +62,9 @@ adjacency::HalfFace acrossBoundaryEdge(const adjacency::TetTopology& topology,
 
 }  // namespace
 
-/// The volume of a tet is the sum of those between its faces and the origin. They cancel at inner
-/// faces, but for what the transition makes of it: if it is a translation by t after a rotation,
-/// then the scalar product of t with the triangle's normal is left.
+/// The volume of a tet is the sum of the volumes between its faces and the origin. At inner faces
+/// these cancel, except for the effect of the transition: if it is a rotation followed by a
+/// translation by t, the scalar product of t with the triangle's normal remains.
 lattice::Int192 sixfoldVolume(const RegularVertices& regular, const ExactMap& map, Stage& stage) {
   const Transitions& transitions = map.transitions;
   std::vector<lattice::Int192> sums(regular.boundaryFaces.size());
@@ -70,7 +72,7 @@ lattice::Int192 sixfoldVolume(const RegularVertices& regular, const ExactMap& ma
     lattice::Int192 sum;
     for (const RegularVertices::BoundaryFace& face : regular.boundaryFaces[block]) {
       const LatticeTriangle triangle(map, face.halfFace);
-      // Its plane is axis-parallel, and so is the normal.
+      // The normal is parallel to an axis.
       sum.addProduct(triangle.normal(face.axis), -triangle.origin[face.axis]);
     }
     for (const adjacency::HalfFace halfFace : regular.unequalFaces[block]) {
@@ -97,7 +99,7 @@ std::uint64_t boundaryArea(const adjacency::TetTopology& topology, const ExactMa
   for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
     if (!topology.isBoundary(halfFace)) continue;
     const LatticeTriangle triangle(map, halfFace);
-    // It lies in a grid plane: one component of its normal is not zero.
+    // It lies in a grid plane: some component of its normal is not zero.
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const lattice::Int128 component = triangle.normal(axis);
       sum += lattice::Int192(component < 0 ? -component : component);
@@ -138,8 +140,8 @@ std::uint64_t componentCount(const adjacency::TetTopology& topology) {
 }
 
 std::vector<std::int64_t> boundaryGenus(const adjacency::TetTopology& topology) {
-  // Boundary faces as elements named by half-face; vertices and edges are counted at their
-  // component's root.
+  // The elements are boundary faces, named by half-face; vertices and edges are counted at the root
+  // of their component.
   DisjointSets sets(topology.mate.size());
   std::vector<adjacency::HalfFace> faceAtVertex(topology.pointCount, kNone);
   for (adjacency::HalfFace halfFace = 0; halfFace < topology.mate.size(); ++halfFace) {
@@ -176,7 +178,7 @@ Expectation computeExpectation(const PreparedMap& map, std::uint64_t edges, int 
   Expectation expected;
   expected.cells = scaledCells(parametricVolume(map.exact), scale);
   expected.boundaryQuads = boundaryArea(map.topology, map.exact) * s * s;
-  // One length is below 2^54, but there may be 2^32 of them.
+  // A single length is below 2^54, but there may be 2^32 of them.
   std::map<int, lattice::Int128> inner;
   std::map<int, lattice::Int128> boundary;
   for (const SingularEdge& edge : map.singularities.edges) {

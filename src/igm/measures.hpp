@@ -1,5 +1,5 @@
-// What does a map measure, exactly? The mesh that it implies must have as many cells, quads and
-// edges (not in the paper).
+// Exact measures of a map. The mesh that it implies must have as many cells, quads and edges (not
+// in the paper).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace hexhex::igm {
 
-/// ExactMap::sixfoldVolume of a map without defects, before it is scaled.
+/// ExactMap::sixfoldVolume of a map without defects, before scaling.
 /// @param regular  knows the boundary, and where tets differ
 [[nodiscard]] lattice::Int192 sixfoldVolume(const RegularVertices& regular, const ExactMap& map,
                                             Stage& stage);
@@ -30,7 +30,7 @@ namespace hexhex::igm {
 
 /// The number of cells at a scale.
 /// @param volume  at scale 1
-/// @throws Error TooLarge if there were `limit` or more
+/// @throws Error TooLarge for `limit` or more
 [[nodiscard]] std::uint64_t scaledCells(std::uint64_t volume, int scale,
                                         double limit = kMaxCountedCells);
 
@@ -40,7 +40,7 @@ namespace hexhex::igm {
 /// The genus of each boundary component, in descending order.
 [[nodiscard]] std::vector<std::int64_t> boundaryGenus(const adjacency::TetTopology& topology);
 
-/// Everything that follows from a valid map about its mesh.
+/// Everything that a valid map implies about its mesh.
 /// @param edges  of its tets
 /// @param scale  of the mesh; a multiple of that of `map`
 /// @throws Error TooLarge for kMaxCountedCells

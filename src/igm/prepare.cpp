@@ -1,3 +1,4 @@
+// Runs the steps of Section 5.1 in sequence.
 #include <array>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@ namespace hexhex::igm {
 
 namespace {
 
-/// From a quarter on, the nearest integer stops being the obvious one for two corners of an edge.
+/// From a quarter on, the nearest integer is no longer the obvious one for two corners of an edge.
 constexpr double kMaxTolerance = 0.25;
 
 void checkArguments(double tolerance, int scale) {
@@ -34,14 +35,14 @@ void checkArguments(double tolerance, int scale) {
               "bug; please report it with the map.");
 }
 
-/// As RegularVertices::isIrregular, if no vertex were certain to be regular.
+/// RegularVertices::isIrregular as if no vertex were certainly regular.
 Array<std::uint8_t> usedVertices(const adjacency::TetTopology& topology) {
   Array<std::uint8_t> used(topology.pointCount);
   for (Index v = 0; v < topology.pointCount; ++v) used[v] = topology.isIsolated(v) ? 0 : 1;
   return used;
 }
 
-/// On maps of a million tets.
+/// Measured on maps of a million tets.
 constexpr std::array<WorkStep, 7> kPrepareSteps = {{{"input", 0.5},
                                                     {"topology", 4},
                                                     {"unfolding", 1},
@@ -89,7 +90,7 @@ class Preparation {
   }
 
  private:
-  /// @return whether the input is good enough for anything else
+  /// @return whether the input is good enough to go on
   [[nodiscard]] bool read() {
     {
       Stage stage(context_, "input");
@@ -97,7 +98,7 @@ class Preparation {
       if (!defects_.empty()) return false;
     }
     defects_.setCornersReversed(prepared_.input.cornersReversed);
-    // Flipped tets falsify angles, hence singularities, hence what is snapped where.
+    // Flipped tets falsify angles, hence singularities, hence where vertices snap.
     if (prepared_.input.flippedTets) defects_.setRootCause(ErrorCode::FlippedTet);
     Stage stage(context_, "topology");
     prepared_.topology = buildTopology(prepared_.input.view, stage, defects_);
@@ -114,7 +115,7 @@ class Preparation {
     return transitions;
   }
 
-  /// @return whether there is an exact map to be found
+  /// @return whether there is an exact map to find
   [[nodiscard]] bool findSingularities(const LocalParameters& parameters,
                                        const Transitions& transitions,
                                        const RegularVertices& regular, VertexKinds& vertices) {
@@ -165,7 +166,7 @@ PreparedMap prepareMap(const TetMapView& map, double tolerance, int maxScale, Co
       Preparation(map, tolerance, maxScale, context, defects, switches).run(charts);
   if (defects.empty() || !prepared.isUnfolded) return prepared;
   defects.clear();
-  prepared = {};  // gives its memory back before the next one takes some
+  prepared = {};  // frees its memory before the next one takes some
   return Preparation(map, tolerance, maxScale, context, defects, switches)
       .run(ChartChoice::AsGiven);
 }

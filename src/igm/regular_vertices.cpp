@@ -1,3 +1,4 @@
+// Counts the tets at each vertex in one direction, to find regular vertices (for Section 5.1.2).
 #include <atomic>
 #include <bit>
 
@@ -11,11 +12,11 @@ namespace {
 
 constexpr std::size_t kRegularVerticesGrain = RegularVertices::kBlock;
 
-/// Tets whose parameters, 96 bytes each, are still in the innermost cache when they are looked at
-/// for the second time.
+/// Tets whose parameters, 96 bytes each, are still in the innermost cache when they are visited
+/// again.
 constexpr std::size_t kPart = 128;
 
-/// Faces between asking for a tet and looking at it: the memory's delay, in steps of a loop.
+/// Faces between prefetching a tet and looking at it: the memory's latency, in iterations.
 constexpr std::size_t kPrefetchDistance = 12;
 
 /// The boundary planes at a vertex: bit k for those across axis k.
@@ -30,14 +31,14 @@ struct Planes {
 unsigned constantAxes(const Vec3& p, const Vec3& q, const Vec3& r) {
   unsigned axes = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double extent = std::abs(p[k] - q[k]) + std::abs(p[k] - r[k]);  // one comparison
+    const double extent = std::abs(p[k] - q[k]) + std::abs(p[k] - r[k]);  // a single comparison
     axes |= (extent == 0 ? 1U : 0U) << k;
   }
   return axes;
 }
 
-/// Up to four entries for each tet of a part, listed without branches: which ones belong there
-/// cannot be predicted.
+/// Up to four entries per tet of a part, listed without branches: which ones belong there cannot be
+/// predicted.
 class PartList {
  public:
   void add(std::uint32_t entry, bool wanted) {
@@ -69,7 +70,7 @@ RegularVertices::BoundaryFace boundaryFace(const LocalParameters& parameters,
   const std::size_t axis = hasOneBit(constant)
                                ? static_cast<std::size_t>(std::countr_zero(constant))
                                : dominantAxis(cross(minus(q, p), minus(r, p)));
-  // The general direction, positive along all axes, leads inward where the tet is above.
+  // The general direction, positive along all axes, leads inward if the tet is above.
   const bool isAbove = u[halfFace % 4][axis] > p[axis];
   return {halfFace, static_cast<std::uint16_t>(axis), static_cast<std::uint8_t>(constant), isAbove};
 }
@@ -98,7 +99,7 @@ class Survey {
                        listBoundary(first, last, result_.boundaryFaces[block]);
                      });
                    });
-    // By one thread, as faces share most of their corners, and are few.
+    // On one thread, as faces share most of their corners, and are few.
     std::uint64_t boundaryFaces = 0;
     for (const auto& faces : result_.boundaryFaces) {
       boundaryFaces += faces.size();
@@ -114,7 +115,7 @@ class Survey {
                    });
     parallelFor(stage, topology_.pointCount, kRegularVerticesGrain, [&](std::size_t v) {
       result_.plane[v] = planes_[v].all;
-      // On two planes, all cones are counted in vain.
+      // On two planes, the cones were counted in vain.
       if ((cones_[v] != 1 || planes_[v].areMany()) &&
           !topology_.isIsolated(static_cast<Index>(v))) {
         result_.isIrregular[v] = 1;
@@ -133,7 +134,7 @@ class Survey {
     for (const adjacency::HalfFace h : list.get()) faces.push_back(boundaryFace(parameters_, h));
   }
 
-  /// Notes the plane of a boundary face at its corners; without a plane, these are irregular.
+  /// Notes the plane of a boundary face at its corners; without a plane, they are irregular.
   void notePlane(const RegularVertices::BoundaryFace& face) {
     if (face.constantAxes == 0) markFace(face.halfFace);
     for (const int corner : lattice::kFaceCorners[face.halfFace % 4]) {
@@ -143,8 +144,9 @@ class Survey {
     }
   }
 
-  /// Counts tets at the vertices from which the general direction leads into them, and their mirror
-  /// images at vertices on one boundary plane, unless the star is above that everywhere.
+  /// Counts tets at the vertices from which the general direction leads into them, and mirror
+  /// images of tets at vertices on one boundary plane, unless the star is above that plane
+  /// everywhere.
   void countCones(std::size_t begin, std::size_t end) {
     PartList cones;   // vertices
     PartList images;  // tets, and in the two lowest bits the axes along which they are mirrored
@@ -201,8 +203,8 @@ class Survey {
                         parameters_.see(next, scratch[1]), directionOfNext);
   }
 
-  /// Compares parameters of at most kPart tets with those of neighbours, from the larger half-face:
-  /// the other tet has then been looked at not long ago.
+  /// Compares the parameters of at most kPart tets with those of neighbours, from the larger
+  /// half-face: the other tet has then been visited not long ago.
   void compareNeighbours(std::size_t begin, std::size_t end, Array<adjacency::HalfFace>& unequal) {
     PartList inner;
     for (auto h = static_cast<adjacency::HalfFace>(4 * begin); h < 4 * end; ++h) {
@@ -218,8 +220,8 @@ class Survey {
     }
   }
 
-  /// Whether the corners of an inner face do in both tets, as nearly always: the same as agree(),
-  /// if true, and sooner said.
+  /// Whether the corners of an inner face are the same bits in both tets, as nearly always happens.
+  /// If so, agree() holds, too; this is faster.
   [[nodiscard]] bool haveSameBits(adjacency::HalfFace halfFace) const {
     const adjacency::HalfFace mate = topology_.mate[halfFace];
     const TetParameters& u = parameters_.given(adjacency::tetOf(halfFace));
@@ -231,7 +233,7 @@ class Survey {
     const auto bits = [](const double* x) { return bitsAs<PairMask>(loadPair(x)); };
     PairMask difference = {0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      // Two overlapping pairs have all three coordinates.
+      // Two overlapping pairs cover all three coordinates.
       difference |= bits(&u[here[k]][0]) ^ bits(&v[there[k]][0]);
       difference |= bits(&u[here[k]][1]) ^ bits(&v[there[k]][1]);
     }
@@ -241,7 +243,7 @@ class Survey {
   [[nodiscard]] Index vertexOf(adjacency::HalfFace halfFace, int corner) const noexcept {
     return topology_.tets[adjacency::tetOf(halfFace)][static_cast<std::size_t>(corner)];
   }
-  /// Several threads may mark a vertex.
+  /// Several threads may mark the same vertex.
   void mark(Index v) {
     std::atomic_ref(result_.isIrregular[v]).store(1, std::memory_order_relaxed);
   }
@@ -255,7 +257,7 @@ class Survey {
   const adjacency::TetTopology& topology_;
   const LocalParameters& parameters_;
   Array<Planes> planes_;  ///< per vertex
-  Array<Index> cones_;    ///< per vertex: tets in one and the same direction from it
+  Array<Index> cones_;    ///< per vertex: tets in one fixed direction from it
   RegularVertices result_;
 };
 

@@ -1,5 +1,5 @@
-// Tells the many vertices that are certainly regular from the few that need a closer look
-// (Section 5.1.2), and also lists boundary faces and faces whose tets have different charts.
+// Separates the many vertices that are certainly regular from the few that need a closer look
+// (Section 5.1.2). Also lists boundary faces, and faces whose tets have different charts.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace hexhex::igm {
 /// plane if it is on the boundary. That is: its tets agree on the parameters of their common
 /// corners, all are positive, its boundary faces, if any, are in a plane through the vertex, and
 /// the tets, together with their mirror images at this plane, cover the directions around the
-/// vertex once. From this follows that
+/// vertex once. It follows that
 /// - the star is a ball, and each edge at the vertex has one fan (but its other end may be
 ///   irregular and be joined to the vertex by another edge, which then shows there),
 /// - all edges at the vertex are regular,
@@ -30,15 +30,15 @@ namespace hexhex::igm {
 /// general direction is the sum of the surfaces' degrees; if it is one, there is one surface, and
 /// its projection is one-to-one. Images need not be made: the mirrored direction does as well.
 ///
-/// Where the star is on one side of its plane at all boundary faces, one direction is enough, which
-/// leads to that side: across the plane the number of tets in a direction changes by that of the
-/// boundary faces there, at least one, so if it is one on this side, it is none on the other.
+/// If the star is on one side of its plane at all boundary faces, one direction to that side is
+/// enough: across the plane the number of tets in a direction changes by that of the boundary faces
+/// there, at least one, so if it is one on this side, it is none on the other.
 struct RegularVertices {
   Array<std::uint8_t> isIrregular;  ///< per vertex: 1 unless it is certainly regular, or isolated
-  Array<std::uint8_t> plane;  ///< per regular vertex: bit k on a boundary plane across axis k, or 0
+  Array<std::uint8_t> plane;  ///< per regular vertex: bit k if on a boundary plane across axis k
 
-  /// Inner triangles on whose corners' parameters their tets do not agree, by the larger half-face,
-  /// ascending; in one list per block of kBlock tets.
+  /// Inner triangles whose two tets do not agree on the corners' parameters, by the larger
+  /// half-face, ascending; one list per block of kBlock tets.
   std::vector<Array<adjacency::HalfFace>> unequalFaces;
   std::uint64_t innerFaces = 0;
 
@@ -47,9 +47,9 @@ struct RegularVertices {
     adjacency::HalfFace halfFace;
     std::uint16_t axis;
     std::uint8_t constantAxes;  ///< along which it is exactly constant: bit k for axis k
-    bool isAbove;               ///< whether the tet is on the larger side of it along the axis
+    bool isAbove;               ///< whether the tet is on its larger side along the axis
   };
-  /// By half-face, ascending; in one list per block of kBlock tets.
+  /// By half-face, ascending; one list per block of kBlock tets.
   std::vector<Array<BoundaryFace>> boundaryFaces;
 
   /// Per tet: where kGeneralDirection leads.
@@ -58,7 +58,7 @@ struct RegularVertices {
   static constexpr std::size_t kBlock = 1024;
 };
 
-/// All decisions are safe: a vertex where rounding could matter counts as irregular.
+/// All decisions are conservative: a vertex where rounding could matter counts as irregular.
 [[nodiscard]] RegularVertices findRegularVertices(const adjacency::TetTopology& topology,
                                                   const LocalParameters& parameters, Stage& stage);
 

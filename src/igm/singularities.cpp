@@ -1,3 +1,4 @@
+// Valences of the edges at irregular vertices (Section 5.1.2).
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,8 +17,8 @@ namespace {
 
 constexpr std::size_t kTetGrain = 4096;
 
-/// Sum of angles in [0, pi], without trigonometry: a complex number of the sum's argument modulo
-/// pi, kept in the upper half plane, and the number of half turns.
+/// Sum of angles in [0, pi], without trigonometry: a complex number whose argument is the sum
+/// modulo pi, kept in the upper half plane, and the number of half turns.
 class AngleSum {
  public:
   /// Adds the angle whose cosine and sine are proportional to the arguments; sine >= 0.
@@ -44,7 +45,7 @@ class AngleSum {
   int halfTurns_ = 0;
 };
 
-/// The valence offsets that a caller gave, for look-up.
+/// The valence offsets given by the caller, for look-up.
 class KnownOffsets {
  public:
   explicit KnownOffsets(std::span<const EdgeValence> known) : list_(known.begin(), known.end()) {
@@ -69,7 +70,7 @@ class KnownOffsets {
   std::vector<EdgeValence> list_;
 };
 
-/// What is shared by all vertices.
+/// What all vertices share.
 struct Surroundings {
   const adjacency::TetTopology& topology;
   const LocalParameters& parameters;
@@ -79,13 +80,12 @@ struct Surroundings {
   const KnownOffsets& known;
 };
 
-/// The edges of one irregular vertex after the other, with the tets around each.
+/// The edges of irregular vertices, one vertex after the other, with the tets around each edge.
 class VertexEdges {
  public:
   explicit VertexEdges(const Surroundings& in) : in_(in) {}
 
-  /// Appends singular edges to larger vertices. False if the vertex, or an edge, is not that of a
-  /// manifold.
+  /// Appends singular edges to larger vertices. False if the vertex, or an edge, is not manifold.
   bool run(Index vertex, std::span<const VertexStar::Member> star,
            std::vector<SingularEdge>& singular) {
     star_ = star;
@@ -97,7 +97,7 @@ class VertexEdges {
  private:
   struct Edge {
     Index other;                    ///< vertex
-    std::uint32_t turns;            ///< tets in one and the same direction from the edge
+    std::uint32_t turns;            ///< tets in one fixed direction from the edge
     std::uint32_t nonTrivialFaces;  ///< where charts may differ; counted from each tet
     std::uint32_t boundaryFaces;    ///< two in a manifold, or none; counted likewise
   };
@@ -108,7 +108,7 @@ class VertexEdges {
     std::size_t k;                  ///< the edge leads to corner kOthers[corner % 4][k]
   };
 
-  /// Faces and edges are counted without branches, which could not be predicted.
+  /// Counts faces and edges without branches, which could not be predicted.
   void collectEdges() {
     others_.clear();
     others_.makeRoom(3 * star_.size());
@@ -138,7 +138,7 @@ class VertexEdges {
         isBoundary[k] = member.neighbour[k] == kNone ? 1 : 0;
         boundaryFaces += isBoundary[k];
       }
-      // The faces at the edge to corner k are those opposite the two other corners.
+      // The faces at the edge to corner k are opposite the other two corners.
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3;
         const std::size_t m = (k + 2) % 3;
@@ -166,7 +166,7 @@ class VertexEdges {
     sum.add(dot(normalA, normalB), length(edge) * std::abs(dot(normalA, b)));
   }
 
-  /// Lists the tets around an edge, without branches: which ones these are cannot be predicted.
+  /// Lists the tets around an edge, without branches: which ones they are cannot be predicted.
   [[nodiscard]] std::span<const Wedge> wedgesAt(Index e) {
     wedges_.resize(star_.size() + 1);
     std::size_t count = 0;
@@ -179,7 +179,7 @@ class VertexEdges {
     return std::span(wedges_).first(count);
   }
 
-  /// Around an edge, in right angles.
+  /// The sum of angles around an edge, in right angles.
   [[nodiscard]] int sumOfAngles(Index e) {
     AngleSum sum;
     for (const Wedge& wedge : wedgesAt(e)) addAngle(wedge, sum);
@@ -187,7 +187,7 @@ class VertexEdges {
   }
 
   /// The number of hexahedra around an edge. If all tets around it lie in one chart, and are known
-  /// to be positive, they turn around it as often as they meet any direction.
+  /// to be positive, they turn around it as many times as they cover any direction.
   [[nodiscard]] int valenceOf(Index vertex, Index e) {
     const Edge& edge = edges_[e];
     if (!in_.known.empty()) return regularValence(edge) + in_.known.at(vertex, edge.other);
@@ -198,7 +198,7 @@ class VertexEdges {
 
   void appendSingular(Index vertex, std::vector<SingularEdge>& singular) {
     const auto first = static_cast<std::ptrdiff_t>(singular.size());
-    // Edges at a regular vertex are regular; others are listed at their smaller vertex, without
+    // Edges at a regular vertex are regular; the others are listed at their smaller vertex, without
     // branches, which could not be predicted.
     candidates_.resize(edgeCount_ + 1);
     std::size_t count = 0;
@@ -215,7 +215,7 @@ class VertexEdges {
               [](const SingularEdge& a, const SingularEdge& b) { return a.vertex1 < b.vertex1; });
   }
 
-  /// A singular edge, in the smallest tet at it.
+  /// A singular edge, in its smallest tet.
   [[nodiscard]] SingularEdge located(Index vertex, Index number, int valence) {
     const std::span<const Wedge> wedges = wedgesAt(number);
     const Wedge& first =
@@ -232,8 +232,8 @@ class VertexEdges {
   }
 
   /// Whether the link, which the walk has found to be connected, is a sphere or, on the boundary, a
-  /// disk: its Euler characteristic tells, with edges of the same two vertices counted as one. (If
-  /// they are two, the characteristic is too small.)
+  /// disk: its Euler characteristic tells, with edges between the same two vertices counted as one.
+  /// (If there are two, the characteristic is too small.)
   [[nodiscard]] bool isManifold() const {
     for (Index e = 0; e < edgeCount_; ++e) {
       if (edges_[e].boundaryFaces > 2) return false;
@@ -251,7 +251,7 @@ class VertexEdges {
   Index edgeCount_ = 0;
   std::vector<Index> candidates_;              ///< for being singular; more than are in use
   std::vector<Wedge> wedges_;                  ///< more than are in use
-  std::vector<std::array<Index, 3>> numbers_;  ///< per member of the star: of its edges
+  std::vector<std::array<Index, 3>> numbers_;  ///< per member of the star: the numbers of its edges
   std::int64_t boundaryFaces_ = 0;             ///< at the vertex
 };
 
@@ -272,7 +272,7 @@ std::uint64_t countCorners(const adjacency::TetTopology& topology, const VertexK
   return total;
 }
 
-/// Lists the singular edges at each of their two vertices.
+/// Lists each singular edge at both its vertices.
 void indexByVertex(Singularities& singularities, std::size_t pointCount) {
   Array<Index>& begin = singularities.begin;
   begin.assign(pointCount + 1, 0);
@@ -282,7 +282,7 @@ void indexByVertex(Singularities& singularities, std::size_t pointCount) {
     ++begin[edge.vertex1];
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  // Backwards, so that where each vertex's edges end becomes where they begin.
+  // Backwards, so that the end of each vertex's list moves to its beginning.
   singularities.incident.resize(2 * edges.size());
   for (std::size_t e = edges.size(); e > 0;) {
     --e;
@@ -311,7 +311,7 @@ std::optional<Singularities> computeSingularities(
       });
   std::uint64_t cornersSeen = 0;
   for (const StarBlock& block : vertices.blocks) cornersSeen += block.cornersSeen;
-  // Walks that did not see all corners of their vertices met a star in several pieces.
+  // If walks missed corners of their vertices, some star is in several pieces.
   if (!isManifold || cornersSeen != countCorners(topology, vertices, stage)) return {};
   Singularities result;
   result.edges = joined<SingularEdge>(singular);

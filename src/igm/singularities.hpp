@@ -16,11 +16,11 @@
 
 namespace hexhex::igm {
 
-/// A tet edge with another number of hexahedra around it than 4 (inside) or 2 (on the boundary).
+/// A tet edge with a number of hexahedra around it other than 4 (inside) or 2 (on the boundary).
 struct SingularEdge {
   Index vertex0;  ///< smaller
   Index vertex1;
-  Index tet;  ///< the smallest at the edge
+  Index tet;  ///< the smallest tet at the edge
   std::uint8_t corner0;
   std::uint8_t corner1;
   bool boundary;
@@ -30,7 +30,7 @@ struct SingularEdge {
 struct Singularities {
   std::vector<SingularEdge> edges;  ///< in lexicographic order of vertices
 
-  /// By vertex (+1): where its edges begin in `incident`. Empty before they are known.
+  /// By vertex (+1): where its edges begin in `incident`. Empty until they are known.
   Array<Index> begin;
   Array<Index> incident;  ///< indices of edges, at each of their two vertices, ascending there
 
@@ -48,10 +48,10 @@ struct Singularities {
   }
 };
 
-/// Looks at the stars of irregular vertices. Nothing if an edge or vertex turns out not to be that
-/// of a manifold.
-/// @param vertices  by classifyVertices()
-/// @param known  valence offsets that the caller gave, or empty
+/// Examines the stars of irregular vertices. Returns nothing if an edge or vertex turns out not to
+/// be manifold.
+/// @param vertices  from classifyVertices()
+/// @param known  valence offsets given by the caller, or empty
 [[nodiscard]] std::optional<Singularities> computeSingularities(
     const adjacency::TetTopology& topology, const LocalParameters& parameters,
     const RegularVertices& regular, std::span<const HalfFaceTransition> faceTransitions,

@@ -1,4 +1,4 @@
-// Into which tets at a vertex does a direction in general position lead (for Section 5.1.2)?
+// Which tets at a vertex a direction in general position leads into (for Section 5.1.2).
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace hexhex::igm {
 
-/// On which side of the faces of a tet a certain direction leads, as seen from anywhere: bit f if
-/// it leads inward from face f.
+/// How a given direction leads relative to the faces of a tet: bit f if it leads inward from face
+/// f.
 using TetSides = std::uint8_t;
 
-/// Of a tet that may not be positive, or in which the direction may not be in general position.
+/// For a tet that may not be positive, or a direction that may not be in general position.
 inline constexpr TetSides kUncertainSides = 0;
 
 [[nodiscard]] constexpr bool leadsInward(TetSides sides, int face) noexcept {
@@ -26,7 +26,7 @@ inline constexpr TetSides kUncertainSides = 0;
 
 namespace detail {
 
-/// Not within coneCorner(), where compilers may make it anew in every call.
+/// Outside coneCorner(), where compilers might rebuild it in every call.
 inline constexpr auto kConeCorners = [] {
   std::array<std::uint8_t, 16> corners{};
   corners.fill(4);
@@ -36,13 +36,13 @@ inline constexpr auto kConeCorners = [] {
 
 }  // namespace detail
 
-/// The corner from which the direction leads into a tet: the one whose opposite face is the only
-/// one from which the direction leads outward. 4 if there is none.
+/// The corner from which the direction leads into a tet: the one opposite the only face from which
+/// the direction leads outward. 4 if there is none.
 [[nodiscard]] constexpr std::size_t coneCorner(TetSides sides) noexcept {
   return detail::kConeCorners[sides];
 }
 
-/// In general position with respect to all that maps are made of: powers of the plastic number.
+/// In general position relative to everything that maps are made of: powers of the plastic number.
 inline constexpr Vec3 kGeneralDirection = {1, 0.7548776662466927, 0.5698402909980532};
 
 /// A direction, mirrored along an axis.
@@ -51,14 +51,15 @@ inline constexpr Vec3 kGeneralDirection = {1, 0.7548776662466927, 0.569840290998
   return direction;
 }
 
-/// An image of the general direction by a rotation, or by a reflection along an axis after it.
+/// The image of the general direction under a rotation, or a rotation followed by a reflection
+/// along an axis.
 struct Ray {
   Vec3 direction = kGeneralDirection;
   Vec3 signs = {1, 1, 1};  ///< of its components
   std::size_t axis = 0;    ///< along which it has a component of 1 or -1
 };
 
-/// In place of an axis of reflection.
+/// Instead of an axis of reflection.
 inline constexpr std::size_t kNoReflection = 3;
 
 /// By rotation, and by the axis of reflection or kNoReflection.
@@ -77,8 +78,8 @@ inline constexpr auto kRays = [] {
   return rays;
 }();
 
-/// The sides of two tets, each seen along a direction: if the tet is positive and the direction in
-/// general position, so far as floating point can tell; otherwise kUncertainSides. Two at once take
+/// The sides of two tets, each for its own direction: kUncertainSides unless, as far as floating
+/// point can tell, the tet is positive and the direction is in general position. Two at once take
 /// hardly longer than one.
 /// @param axisU, axisV  along which the directions have a component of 1 or -1
 [[nodiscard]] inline std::array<TetSides, 2> sidesOf(const TetParameters& u, const Vec3& directionU,
@@ -93,7 +94,7 @@ inline constexpr auto kRays = [] {
   constexpr double kSmallestSize = 0x1p-300;
   // Edges from corner 0 are projected along the direction onto a plane across the axis: there, the
   // orientation of a face tells from which side the direction meets it. A shear that takes the
-  // direction to the axis keeps determinants as they are.
+  // direction to the axis preserves determinants.
   Pair size = {0, 0};
   std::array<std::array<Pair, 3>, 3> edges{};  // along the axis, and across
   std::array<Pair, 3> direction{};
@@ -112,8 +113,8 @@ inline constexpr auto kRays = [] {
     p[e] = edges[e][1] - edges[e][0] * (direction[1] * direction[0]);
     q[e] = edges[e][2] - edges[e][0] * (direction[2] * direction[0]);
   }
-  // Of the triangles at corner 0, opposite corners 1 to 3, and of the one opposite corner 0, seen
-  // from the other side.
+  // Triangles at corner 0, opposite corners 1 to 3, and the one opposite corner 0, seen from the
+  // other side.
   const Pair cross1 = p[1] * q[2] - q[1] * p[2];
   const Pair cross2 = p[2] * q[0] - q[2] * p[0];
   const Pair cross3 = p[0] * q[1] - q[0] * p[1];
@@ -134,7 +135,7 @@ inline constexpr auto kRays = [] {
   return {sides(0), sides(1)};
 }
 
-/// Of one tet.
+/// The same for one tet.
 [[nodiscard]] inline TetSides sidesOf(const TetParameters& u, const Ray& ray = {}) noexcept {
   return sidesOf(u, ray.direction, u, ray.direction, ray.axis, ray.axis)[0];
 }

@@ -1,3 +1,4 @@
+// The best rotation and the nearest translation between two charts (Section 5.1.1).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,17 +11,18 @@ namespace {
 
 double squaredNorm(const Vec3& a) { return dot(a, a); }
 
-/// How far a rotation is from carrying the vectors over.
+/// Squared error of a rotation that should carry the vectors to their images.
 double residual(lattice::Rotation rotation, const VectorPair& vectors, const VectorPair& images) {
   return squaredNorm(minus(images[0], rotation(vectors[0]))) +
          squaredNorm(minus(images[1], rotation(vectors[1])));
 }
 
-/// How well each of the rotations carries the vectors over: the sum of scalar products of rotated
-/// vectors with the images wanted.
+/// How well each rotation carries the vectors over: the sum of scalar products of the rotated
+/// vectors with the wanted images.
 std::array<double, lattice::Rotation::kCount> agreements(const VectorPair& vectors,
                                                          const VectorPair& images) {
-  // What sending axis `from` to axis `to` adds to the sum; to the opposite direction subtracts it.
+  // What sending axis `from` to axis `to` adds to the sum; sending it to the opposite direction
+  // subtracts it.
   std::array<Vec3, 3> sums{};
   for (std::size_t to = 0; to < 3; ++to) {
     for (std::size_t from = 0; from < 3; ++from) {
@@ -40,16 +42,16 @@ std::array<double, lattice::Rotation::kCount> agreements(const VectorPair& vecto
   return agreement;
 }
 
-/// The rotation that carries both vectors over without rounding, if the first one tells which it
-/// is: its components differ in magnitude, and none is zero, so that all others do worse.
-/// (5 % of a whole extraction with a chart per tet.)
+/// The rotation that carries both vectors over without rounding, if the first vector determines it:
+/// its components differ in magnitude, and none is zero, so that all other rotations do worse. (5 %
+/// of a whole extraction with a chart per tet.)
 std::optional<lattice::Rotation> exactRotation(const VectorPair& vectors,
                                                const VectorPair& images) {
   const Vec3 a = {std::abs(vectors[0][0]), std::abs(vectors[0][1]), std::abs(vectors[0][2])};
   if (!(a[0] > 0 && a[1] > 0 && a[2] > 0)) return std::nullopt;
   if (a[0] == a[1] || a[1] == a[2] || a[2] == a[0]) return std::nullopt;
   std::array<lattice::Direction, 2>
-      source{};  // of the first two axes: what the rotation sends there
+      source{};  // for the first two axes: what the rotation sends there
   for (std::size_t to = 0; to < 2; ++to) {
     const double b = std::abs(images[0][to]);
     const int axis = (b == a[1] ? 1 : 0) + (b == a[2] ? 2 : 0);
@@ -63,7 +65,7 @@ std::optional<lattice::Rotation> exactRotation(const VectorPair& vectors,
   return rotation;
 }
 
-/// The integers nearest to the mean of what is left of the corners after the rotation.
+/// The integers nearest to the mean difference that the rotation leaves at the corners.
 Vec3 meanTranslation(const SharedTriangle& triangle, const std::array<Vec3, 3>& images) {
   Vec3 mean{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -74,7 +76,7 @@ Vec3 meanTranslation(const SharedTriangle& triangle, const std::array<Vec3, 3>& 
   return mean;
 }
 
-/// What remains when a transition carries corners over.
+/// What remains after a transition has carried corners over.
 double residualOf(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
                   const Vec3& translation) {
   double largest = 0;
@@ -85,7 +87,7 @@ double residualOf(const SharedTriangle& triangle, const std::array<Vec3, 3>& ima
   return largest;
 }
 
-/// Whether nothing is rounded when corners are moved by a translation that leaves no residual.
+/// Whether moving corners by a translation that leaves no residual rounds nothing.
 bool isExact(const SharedTriangle& triangle, const std::array<Vec3, 3>& images,
              const Vec3& translation) {
   double rest = 0;
@@ -105,7 +107,7 @@ lattice::Rotation bestRotationOfAll(const VectorPair& vectors, const VectorPair&
   const std::array<double, lattice::Rotation::kCount> agreement = agreements(vectors, images);
   const double size = squaredNorm(vectors[0]) + squaredNorm(vectors[1]) + squaredNorm(images[0]) +
                       squaredNorm(images[1]);
-  // Far above rounding (a few 2^-53), far below what tells rotations apart.
+  // Far above rounding (a few 2^-53), far below the differences between rotations.
   const double enough = *std::max_element(agreement.begin(), agreement.end()) - 0x1p-40 * size;
   lattice::Rotation best;
   double bestResidual = std::numeric_limits<double>::infinity();
@@ -150,7 +152,7 @@ FittedTransition fitTransition(const SharedTriangle& triangle,
   for (double& component : translation) component = nearestInteger(component);
   FittedTransition fitted;
   fitted.residual = residualOf(triangle, images, translation);
-  // If it fits each corner to within a quarter, it is what the mean is nearest to.
+  // If it fits each corner to within a quarter, it is also nearest to the mean.
   if (fitted.residual > 0.25) {
     translation = meanTranslation(triangle, images);
     fitted.residual = residualOf(triangle, images, translation);

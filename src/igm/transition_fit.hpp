@@ -1,5 +1,4 @@
-// The transition between two tets that fits the parameters of their common corners best
-// (Section 5.1.1).
+// Fits the transition between two tets to the parameters of their common corners (Section 5.1.1).
 #pragma once
 
 #include <array>
@@ -21,7 +20,7 @@ namespace hexhex::igm {
 using VectorPair = std::array<Vec3, 2>;
 
 /// argmin over the rotations R of |images[0] - R vectors[0]|^2 + |images[1] - R vectors[1]|^2, as
-/// far as rounding can tell; the first of several.
+/// far as rounding can tell; the first if there are several.
 [[nodiscard]] lattice::Rotation bestRotation(const VectorPair& vectors,
                                              const VectorPair& images) noexcept;
 
@@ -41,10 +40,10 @@ struct SharedTriangle : adjacency::SharedCorners<Vec3> {
                       [&](Index tet, std::size_t corner) { return parameters[tet][corner]; }) {}
 };
 
-/// Of its edges at the first corner.
+/// The best rotation for the triangle's edges at its first corner.
 [[nodiscard]] lattice::Rotation bestRotation(const SharedTriangle& triangle) noexcept;
 
-/// Across a half-face, if the caller knows it.
+/// The rotation across a half-face, if the caller gave it.
 /// @param rotations  as in TetMapView
 [[nodiscard]] inline std::optional<lattice::Rotation> knownRotation(
     std::span<const std::array<std::int8_t, 4>> rotations, adjacency::HalfFace halfFace) {
@@ -57,22 +56,22 @@ struct SharedTriangle : adjacency::SharedCorners<Vec3> {
 [[nodiscard]] bool agree(const adjacency::TetTopology& topology, const LocalParameters& parameters,
                          adjacency::HalfFace halfFace) noexcept;
 
-/// A transition, and how well it does.
+/// A transition, and how well it fits.
 struct FittedTransition {
   lattice::Transition transition;
   double residual = 0;   ///< largest violation of (IGM1), in parameter units
   bool isExact = false;  ///< whether it carries the corners over without rounding
 };
 
-/// From the chart here to that there: the best rotation, and the integers nearest to what is left
-/// then.
+/// From the chart here to that there: the best rotation, and the integers nearest to what it
+/// leaves.
 [[nodiscard]] FittedTransition fitTransition(const SharedTriangle& triangle) noexcept;
 
-/// The same with a rotation that is known.
+/// The same with a given rotation.
 [[nodiscard]] FittedTransition fitTransition(const SharedTriangle& triangle,
                                              lattice::Rotation rotation) noexcept;
 
-/// With each of the rotations, smallest residual first.
+/// One with each rotation, smallest residual first.
 [[nodiscard]] std::vector<FittedTransition> fitAllTransitions(const SharedTriangle& triangle);
 
 }  // namespace hexhex::igm

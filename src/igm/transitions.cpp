@@ -1,3 +1,4 @@
+// Fits transitions to all inner faces (Section 5.1.1).
 #include <algorithm>
 
 #include <igm/transition_fit.hpp>
@@ -7,7 +8,7 @@ namespace hexhex::igm {
 
 namespace {
 
-/// What fitting transitions to a block of triangles gives.
+/// The result of fitting transitions to a block of triangles.
 struct BlockResult {
   struct NonTrivial {
     adjacency::HalfFace here;  ///< the smaller half-face
@@ -19,7 +20,7 @@ struct BlockResult {
   double maxResidual = 0;
 };
 
-/// Fits transitions to the triangles on which tets do not agree.
+/// Fits transitions to the triangles on which tets disagree.
 class TransitionFitter {
  public:
   TransitionFitter(const adjacency::TetTopology& topology, const LocalParameters& parameters,

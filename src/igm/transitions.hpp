@@ -1,4 +1,4 @@
-// How the charts of neighbouring tets differ (Section 5.1.1).
+// Transitions between the charts of neighbouring tets (Section 5.1.1).
 #pragma once
 
 #include <span>
@@ -20,10 +20,10 @@ struct Transitions {
   /// is by far the most frequent.
   Array<Index> ofFace;
   Array<lattice::Transition> table;
-  /// Per entry of the table: the half-face that it belongs to. kNone for the identity.
+  /// Per entry of the table: its half-face. kNone for the identity.
   Array<adjacency::HalfFace> halfFaces;
   /// Per entry of the table: 1 if it carries the triangle's parameters over without rounding. 0 for
-  /// the identity, for the sake of triangles that it fits only best.
+  /// the identity, because of triangles for which it is merely the best fit.
   Array<std::uint8_t> isExact;
   double maxResidual = 0;        ///< largest violation of (IGM1), in parameter units
   std::uint64_t nonTrivial = 0;  ///< inner faces whose transition is not the identity
@@ -40,7 +40,7 @@ struct Transitions {
   [[nodiscard]] const lattice::Transition& across(adjacency::HalfFace halfFace) const noexcept {
     return table[ofFace[halfFace]];
   }
-  /// The index in `table` of the inverse: both are neighbours there.
+  /// The index in `table` of the inverse: the two are adjacent there.
   [[nodiscard]] static constexpr Index inverse(Index index) noexcept {
     return index == 0 ? 0 : ((index - 1) ^ 1U) + 1;
   }
@@ -50,23 +50,22 @@ struct Transitions {
 };
 
 /// @param regular  knows where tets differ
-/// @param rotations  what the caller knows, as in TetMapView; may be empty
-/// @param tolerance  residuals above it make misfits
+/// @param rotations  given by the caller, as in TetMapView; may be empty
+/// @param tolerance  larger residuals are misfits
 [[nodiscard]] Transitions computeTransitions(const adjacency::TetTopology& topology,
                                              const LocalParameters& parameters,
                                              const RegularVertices& regular,
                                              std::span<const std::array<std::int8_t, 4>> rotations,
                                              double tolerance, Stage& stage);
 
-/// Per half-face. Inexact are all of a tet with uncertain sides, and where tets do not agree unless
-/// a transition fits exactly.
+/// Per half-face. Inexact are all faces of a tet with uncertain sides, and those on which tets
+/// disagree unless a transition fits exactly.
 /// @param transitions  may be empty: if parameters are too large, they are not known
 [[nodiscard]] Array<HalfFaceTransition> findHalfFaceTransitions(
     const adjacency::TetTopology& topology, const RegularVertices& regular,
     const Transitions& transitions, Stage& stage);
 
-/// Reports misfits. Not done at once, as nothing is worth saying about them if the mesh is not a
-/// manifold.
+/// Reports misfits. Separate, as they are not worth reporting if the mesh is not a manifold.
 void collectMisfits(const Transitions& transitions, DefectCollector& defects);
 
 }  // namespace hexhex::igm

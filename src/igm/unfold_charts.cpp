@@ -1,3 +1,4 @@
+// Searches the dual graph for gauges, and rewrites the map in common charts (not in the paper).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,18 +19,18 @@ namespace {
 
 constexpr std::size_t kUnfoldChartsGrain = 1024;
 
-/// Tets between asking for parameters and looking at them: the memory's delay.
+/// Tets between prefetching parameters and looking at them: the memory's latency.
 constexpr Index kAhead = 8;
 
-/// Tets that are connected within a block of consecutive tets are a *piece*. Pieces are numbered
-/// from 0 in each block, and then block by block.
+/// A *piece* is a set of tets that are connected within a block of consecutive tets. Pieces are
+/// numbered from 0 in each block, and then block by block.
 struct Block {
   std::vector<adjacency::HalfFace>
       exits;                      ///< half-faces of other blocks whose mates are in this one
   std::vector<std::size_t> ends;  ///< per piece: where its exits end
 };
 
-/// Searches the dual graph: blocks of tets, then the graph of their pieces.
+/// Searches the dual graph: within blocks of tets, then the graph of their pieces.
 class GaugeSearch {
  public:
   GaugeSearch(const adjacency::TetTopology& topology, const LocalParameters& parameters,
@@ -55,9 +56,9 @@ class GaugeSearch {
   }
 
  private:
-  /// Gives the tets of a block gauges relative to the first tets of their pieces. The search comes
-  /// first, then transitions, tet by tet, as they need far more memory. (With branches and without
-  /// prefetching, extractions of cylinder_random_low take 5 % longer.)
+  /// Computes the gauges of a block's tets relative to the first tets of their pieces. The search
+  /// comes first, then transitions, tet by tet, as they need far more memory. (With branches and
+  /// without prefetching, extractions of cylinder_random_low take 5 % longer.)
   void searchBlock(Index begin, Index end, Block& block) {
     Array<adjacency::HalfFace> entry(end - begin, kNone);  // per tet: through which it was found
     std::vector<Index> queue(end - begin + 1);             // tets in the order of the search
@@ -80,7 +81,7 @@ class GaugeSearch {
           pieces_[neighbour] = piece;
           adjacency::HalfFace& entryThere = entry[neighbour - begin];
           entryThere = isNew ? mate : entryThere;
-          queue[count] = neighbour;  // in vain unless it is new, which cannot be predicted
+          queue[count] = neighbour;  // wasted unless it is new, which cannot be predicted
           count += static_cast<std::size_t>(isNew);
         }
       }
@@ -89,7 +90,7 @@ class GaugeSearch {
     composeInBlock(begin, end, entry, std::span(queue).first(count));
   }
 
-  /// @param entry  per tet: the half-face through which the search has found it, or kNone
+  /// @param entry  per tet: the half-face through which the search found it, or kNone
   /// @param order  of the search
   void composeInBlock(Index begin, Index end, std::span<const adjacency::HalfFace> entry,
                       std::span<const Index> order) {
@@ -174,7 +175,7 @@ bool translateExactly(const TetParameters& rotated, const Vec3& by, TetParameter
 }
 
 /// The parameters of a tet in the chart of its gauge, moved to the origin as LocalParameters would
-/// move it. If that rounds, they stay as they are, and the gauge becomes the identity.
+/// do it. If that rounds, they stay unchanged, and the gauge becomes the identity.
 TetParameters rewritten(const LocalParameters& given, Index t, lattice::Gauge& gauge) {
   const TetParameters u = given(t);
   const lattice::Rotation rotation = gauge.rotation;
@@ -210,7 +211,7 @@ bool needsUnfolding(const adjacency::TetTopology& topology, const OrientedMap& m
   const LocalParameters given(map);
   if (!map.view.rotations.empty() || given.tooLarge()) return false;
   constexpr std::size_t kSample = 32;  // tets
-  // Of as many triangles, one between different charts costs as much as unfolding.
+  // If one in this many triangles is between different charts, that costs as much as unfolding.
   constexpr std::size_t kBreakEven = 3;
   const std::size_t step = std::max(topology.tetCount() / kSample, std::size_t{1});
   std::size_t faces = 0;

@@ -18,17 +18,16 @@ namespace hexhex::igm {
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers = {
     {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
-/// By corner and by the local number of a face at it: where the face stands in kOthers.
+/// Per corner and local number of a face at it: the face's position in kOthers.
 inline constexpr std::array<std::array<std::uint8_t, 4>, 4> kPlaceOfFace = {
     {{0, 0, 1, 2}, {0, 0, 1, 2}, {0, 1, 0, 2}, {0, 1, 2, 0}}};
 
-/// The star of one vertex after the other, without any list of stars. Keeps its memory.
+/// The stars of vertices, one after the other, without any list of stars. Keeps its memory.
 class VertexStar {
  public:
   struct Member {
     adjacency::CornerIndex corner = 0;  ///< at the vertex
-    /// Which member is behind the face opposite corner kOthers[corner % 4][k]; kNone at the
-    /// boundary.
+    /// The member behind the face opposite corner kOthers[corner % 4][k]; kNone at the boundary.
     std::array<Index, 3> neighbour{};
     /// From the chart of the first member into this one's, along the walk.
     lattice::Rotation rotation;
@@ -41,8 +40,8 @@ class VertexStar {
     }
   };
 
-  /// Walks breadth first from the smallest tet at the vertex. Only what is connected through faces
-  /// is found: everything, in a manifold.
+  /// Walks breadth first from the smallest tet at the vertex. Finds only what is connected through
+  /// faces: everything, in a manifold.
   /// @param vertex  not isolated
   /// @param faceTransitions  per half-face; without them, nothing is known of charts
   void collect(const adjacency::TetTopology& topology, Index vertex,
@@ -57,7 +56,7 @@ class VertexStar {
     unsigned misfits = 0;
     lattice::AxisSet planes = 0;
     // Looks through face k of a member, without branches: neither whether the member behind is new
-    // nor where the boundary is can be predicted. At the boundary, a member is behind itself.
+    // nor where the boundary is can be predicted. At the boundary, a member is its own neighbour.
     const auto cross = [&](Index head, std::size_t k) {
       const Member here = members[head];
       const adjacency::HalfFace halfFace = here.halfFace(k);
@@ -68,7 +67,7 @@ class VertexStar {
       const Index tet = adjacency::tetOf(isBoundary ? halfFace : mate);
       prefetch(&topology.mate[4 * tet]);
       const Index j = number(tet, count);
-      Member& behind = members[count];  // in vain if it is not new
+      Member& behind = members[count];  // wasted if it is not new
       const Index corner = adjacency::localCorner(topology.tets[tet], vertex);
       behind.corner = 4 * tet + corner;
       behind.entry = kPlaceOfFace[corner][mate % 4];
@@ -82,7 +81,7 @@ class VertexStar {
     };
     for (std::size_t k = 0; k < 3; ++k) cross(0, k);
     for (Index head = 1; head < count; ++head) {
-      // Up to two more, and one that is written in vain.
+      // Up to two more, and one wasted write.
       if (members_.size() < count + 3) {
         members_.resize(2 * members_.size());
         numbers_.makeRoom(members_.size());
@@ -98,11 +97,11 @@ class VertexStar {
     planes_ = planes;
   }
 
-  /// In the order of the walk.
+  /// In walk order.
   [[nodiscard]] std::span<const Member> members() const noexcept {
     return {members_.data(), count_};
   }
-  /// Across boundary faces, in the chart of the first member.
+  /// The axes across boundary faces, in the chart of the first member.
   [[nodiscard]] lattice::AxisSet planes() const noexcept { return planes_; }
   /// Whether transitions are exact, and all paths through the star lead to the same charts.
   [[nodiscard]] bool chartsFit() const noexcept { return fits_; }
@@ -116,7 +115,7 @@ class VertexStar {
 };
 
 /// From the chart of a star's first member into those of all members, along the walk.
-/// @param across  of a half-face: the transition into the neighbour's chart
+/// @param across  across(half-face): the transition into the neighbour's chart
 template <class Across>
 std::vector<lattice::Transition> unfoldStar(std::span<const VertexStar::Member> star,
                                             const Across& across) {

@@ -19,14 +19,14 @@ inline constexpr CellCornerSet kAllCellCorners = 0xff;
 
 namespace detail {
 
-/// Where rotations take the corners of a cell, as corners of the cell's image.
+/// Images of a cell's corners under each rotation, as corners of the cell's image.
 struct TurnedCorners {
   std::array<std::array<std::uint8_t, 8>, Rotation::kCount> corner{};
   std::array<std::array<std::uint8_t, kAllCellCorners + 1>, Rotation::kCount> set{};
 };
 
 constexpr std::uint8_t turnedByDefinition(Rotation rotation, std::size_t corner) {
-  // The cell turns about its centre.
+  // The cell rotates about its centre.
   GridPoint fromCenter{};
   for (std::size_t k = 0; k < 3; ++k) fromCenter[k] = 2 * kCellCorners[corner][k] - 1;
   const GridPoint image = rotation(fromCenter);
@@ -47,7 +47,7 @@ constexpr TurnedCorners makeTurnedCorners() {
     for (std::size_t c = 0; c < 8; ++c) {
       const std::uint8_t image = turnedByDefinition(Rotation(static_cast<int>(r)), c);
       tables.corner[r][c] = image;
-      // A set with c as its largest member is the set without it, and c.
+      // A set whose largest member is c is the set without c, plus c.
       const std::size_t bit = std::size_t{1} << c;
       for (std::size_t rest = 0; rest < bit; ++rest) {
         tables.set[r][rest | bit] = static_cast<std::uint8_t>(tables.set[r][rest] | (1U << image));
@@ -61,12 +61,12 @@ inline constexpr TurnedCorners kTurnedCorners = makeTurnedCorners();
 
 }  // namespace detail
 
-/// A corner of a cell as that of its image.
+/// A corner of a cell, as a corner of its image.
 [[nodiscard]] constexpr std::size_t turnedCorner(Rotation rotation, std::size_t corner) noexcept {
   return detail::kTurnedCorners.corner[static_cast<std::size_t>(rotation.index())][corner];
 }
 
-/// Corners of a cell as those of its image.
+/// A set of corners of a cell, as corners of its image.
 [[nodiscard]] constexpr CellCornerSet turned(Rotation rotation, CellCornerSet corners) noexcept {
   return detail::kTurnedCorners.set[static_cast<std::size_t>(rotation.index())][corners];
 }

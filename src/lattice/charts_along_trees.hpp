@@ -1,5 +1,5 @@
-// Common charts of pieces that have a chart each, as tets or blocks have: those of the roots of
-// breadth-first trees, into which the motions between neighbours are composed.
+// Common charts for pieces that each have a chart of their own, such as tets or blocks: those of
+// the roots of breadth-first trees, found by composing the motions between neighbours.
 #pragma once
 
 #include <vector>
@@ -12,16 +12,16 @@ template <class Motion>
 struct TreeCharts {
   std::vector<Motion> motions;  ///< per piece: from its chart into that of its tree
   std::vector<Index> tree;      ///< per piece; trees are in the order of their roots
-  std::vector<Index> order;     ///< pieces, as the search found them
+  std::vector<Index> order;     ///< in the order of the search
   Index trees = 0;
 };
 
-/// Every piece that earlier trees have not reached is the root of a new one.
+/// Each piece that no earlier tree has reached becomes the root of a new one.
 /// @param begin            begin(root): from its chart into that of its tree
 /// @param forEachNeighbour forEachNeighbour(piece, visit) calls visit(neighbour, toTree), in any
-///                         order, for each neighbour that is to have the same chart:
-///                         toTree(motion of the piece) is that of the neighbour, and only asked
-///                         for if the neighbour is new
+///                         order, for each neighbour that is to share the chart: toTree(motion of
+///                         the piece) is the neighbour's motion, called only if the neighbour is
+///                         new
 template <class Motion, class Begin, class ForEachNeighbour>
 [[nodiscard]] TreeCharts<Motion> chartsAlongTrees(std::size_t pieces, const Begin& begin,
                                                   const ForEachNeighbour& forEachNeighbour) {
@@ -47,7 +47,7 @@ template <class Motion, class Begin, class ForEachNeighbour>
   return charts;
 }
 
-/// In the charts of the roots themselves.
+/// The same in the roots' own charts.
 template <class Motion, class ForEachNeighbour>
 [[nodiscard]] TreeCharts<Motion> chartsAlongTrees(std::size_t pieces,
                                                   const ForEachNeighbour& forEachNeighbour) {

@@ -28,7 +28,7 @@ inline constexpr int kDirections = 6;
   return direction(3 - axisA - axisB, cyclic * signOf(a) * signOf(b));
 }
 
-/// Integer point of the grid, in the chart of some tet.
+/// Integer point of the grid, in some tet's chart.
 using GridPoint = std::array<std::int32_t, 3>;
 
 [[nodiscard]] constexpr GridPoint step(GridPoint z, Direction d) noexcept {

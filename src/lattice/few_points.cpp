@@ -1,3 +1,5 @@
+// Grid points of a tet one by one, where its box has few: signs by a filter, then exactly (for
+// Section 5.2).
 #include <algorithm>
 #include <bit>
 
@@ -8,26 +10,25 @@ namespace hexhex::lattice {
 
 namespace {
 
-/// Doubles hold integers up to here.
+/// Doubles represent all integers up to here.
 constexpr double kMostExact = 0x1p53;
 
-/// Boxes with more half units than this along an axis have more points.
+/// Boxes with more half units than this along an axis hold more than kFewPoints points.
 constexpr double kManySteps = 64;
 
 constexpr double lengthOfHalf(std::int64_t unit) noexcept { return 2 / static_cast<double>(unit); }
 
-/// Of the error of the weight of a first point, or less than 64 steps of whole units from there.
-/// @param size  bounds the distance of corners from all these points, by axis; corners and
-///              first points may carry one rounding of such a distance
+/// Error bound of the weight at a first point, or fewer than 64 whole-unit steps away from it.
+/// @param size  bounds the distance of corners from all these points, per axis; corners and first
+///              points may carry one rounding of such a distance
 constexpr double errorBound(double size) noexcept {
-  // Errors in units of u = 2^-53, with magnitudes: edges, up to 2 size, are known to 4 size;
-  // products of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2,
-  // to 48 size^2. At the first point, three products with distances, each up to 8 size^3 and
-  // known to 72 size^3, make up a weight in two additions of at most 24 size^3: known to 264
-  // size^3. From there to any other point, there are three more products, each up to 8 size^3 and
-  // known to 56 size^3, and 3 additions of at most 48 size^3, or, if it is done step by step,
-  // less than 64: below 264 + 168 + 64 * 48 < 2^12 size^3. 2^13 covers terms of second order as
-  // well.
+  // Errors in units of u = 2^-53, with magnitudes: edges, up to 2 size, are off by at most 4 size;
+  // products of two of them by 20 size^2, and their differences, the gradients, up to 8 size^2, by
+  // 48 size^2. At the first point, three products with distances, each up to 8 size^3 and off by 72
+  // size^3, add up to a weight in two additions of at most 24 size^3: off by 264 size^3. From there
+  // to any other point, there are three more products, each up to 8 size^3 and off by 56 size^3,
+  // and 3 additions of at most 48 size^3, or fewer than 64 if it is done step by step: below 264 +
+  // 168 + 64 * 48 < 2^12 size^3. 2^13 covers second-order terms as well.
   return 0x1p-40 * size * size * size;
 }
 
@@ -45,9 +46,9 @@ HalvedTet::HalvedTet(const LatticeTet& corners, double perHalf) noexcept {
     of01[k] = Pair{at(0), at(1)} * Pair{perHalf, perHalf};
     of23[k] = Pair{at(2), at(3)} * Pair{perHalf, perHalf};
     low[k] = smaller(of01[k], of23[k]);
-    high[k] = larger(of23[k], of01[k]);  // in this order there is an instruction for each
+    high[k] = larger(of23[k], of01[k]);  // in this order, each is one instruction
   }
-  // All as upper bounds: of x and y, of both negated, and of z and -z.
+  // All as upper bounds: of x and y, of -x and -y, and of z and -z.
   const Pair beforeXy = -smaller(Pair{low[0][0], low[1][0]}, Pair{low[0][1], low[1][1]});
   const Pair afterXy = larger(Pair{high[0][0], high[1][0]}, Pair{high[0][1], high[1][1]});
   const Pair aroundZ = larger(Pair{-low[2][0], high[2][0]}, Pair{-low[2][1], high[2][1]});
@@ -72,8 +73,8 @@ double CornerWeights::least() const noexcept {
 WeightField::WeightField(const HalvedTet& tet) noexcept {
   const std::array<Pair, 3>& of01 = tet.of01;
   const std::array<Pair, 3>& of23 = tet.of23;
-  // Normals are products of two edges of their faces: of faces 0 and 1 that are opposite corners
-  // 0 and 1, and so on.
+  // Normals are cross products of two edges of a face; faces 0 and 1 are those opposite corners 0
+  // and 1, and so on.
   std::array<Pair, 3> first01;
   std::array<Pair, 3> second01;
   std::array<Pair, 3> first23;
@@ -110,14 +111,14 @@ CornerWeights WeightField::at(const std::array<double, 3>& point) const noexcept
 FewPoints::FewPoints(const LatticeTet& corners, std::int64_t unit) noexcept
     : corners_(corners), unit_(unit), halved_(corners, lengthOfHalf(unit)) {
   areFew_ = halved_.largest < kMostExact * lengthOfHalf(unit) && halved_.mostSteps < kManySteps;
-  // Of the grid that has most along each axis.
+  // Sizes of the grid that has the most points along each axis.
   const IntPair mostXy = (halved_.stepsXy + 2) >> 1;
   const std::int32_t mostZ = (halved_.stepsZ + 2) >> 1;
   areFew_ = areFew_ && mostXy[0] * mostXy[1] * mostZ <= kFewPoints;
 }
 
 FewPoints::Points FewPoints::pointsOf(HalfGrid grid) const noexcept {
-  // Vertices have even coordinates, in halves.
+  // In half units, vertices have even coordinates.
   const IntPair skippedXy = (halved_.firstXy ^ IntPair{grid & 1, (grid >> 1) & 1}) & 1;
   const std::int32_t skippedZ = (halved_.firstZ ^ (grid >> 2)) & 1;
   return {halved_.firstXy + skippedXy, halved_.firstZ + skippedZ,
@@ -145,8 +146,8 @@ std::size_t FewPoints::find(HalfGrid grid, Lines& lines) noexcept {
   return found == 0 ? 0 : findCandidates(points, weights, found, lines);
 }
 
-/// Each axis multiplies the points that there are so far.
-/// @param weights  those of the first point are known
+/// Each axis multiplies the number of points so far.
+/// @param weights  holds the weights of the first point
 void FewPoints::weigh(const Points& points, WeightsOf& weights) const noexcept {
   CornerWeights* end = weights.data() + 1;
   const auto multiply = [&](std::int32_t count, const CornerWeights& half) {
@@ -163,7 +164,7 @@ void FewPoints::weigh(const Points& points, WeightsOf& weights) const noexcept {
   *end = end[-1];
 }
 
-/// Which points are not certainly outside of a face, as bits.
+/// The points that are not certainly outside of any face, as bits.
 std::uint32_t FewPoints::candidates(const WeightsOf& weights, std::int32_t points) const noexcept {
   const Pair least = {-error_, -error_};
   PairMask found = {0, 0};
@@ -179,10 +180,10 @@ std::uint32_t FewPoints::candidates(const WeightsOf& weights, std::int32_t point
   return static_cast<std::uint32_t>(static_cast<std::uint64_t>(found[0] | found[1]) & all);
 }
 
-/// The simplex whose interior contains a candidate. Most of those near faces are corners.
+/// The simplex whose interior contains a candidate. Most candidates near faces are corners.
 CornerMask FewPoints::simplexOf(const Halves& halves, const CornerWeights& weights) const noexcept {
   if (weights.least() > error_) return kWholeTet;
-  // A product may be odd only where the unit is.
+  // Only an odd unit can make the product odd.
   const LatticePoint point = {halves[0] * unit_ / 2, halves[1] * unit_ / 2, halves[2] * unit_ / 2};
   for (std::size_t i = 0; i < 4; ++i) {
     if (corners_[i] == point) return cornerBit(static_cast<int>(i));
@@ -193,7 +194,7 @@ CornerMask FewPoints::simplexOf(const Halves& halves, const CornerWeights& weigh
   });
 }
 
-/// @param at  steps from the first point, by axis
+/// @param at  steps from the first point, per axis
 /// @return 1 if the point is in the tet, otherwise 0
 std::size_t FewPoints::findOne(const Points& points, const std::array<std::int32_t, 3>& at,
                                const CornerWeights& weights, SweepAxes order,
@@ -235,7 +236,7 @@ std::size_t FewPoints::findCandidates(const Points& points, const WeightsOf& wei
         const Halves halves = points.at(at);
         const CornerMask simplex = simplexOf(halves, weights[static_cast<std::size_t>(i)]);
         if (simplex == kNoSimplex) return;
-        // Tets are convex: what they have of a line is consecutive.
+        // Tets are convex: their points on a line are consecutive.
         if (line.count == 0) {
           line.level = halves[axes[0]] >> 1;
           line.row = halves[axes[1]] >> 1;

@@ -1,7 +1,7 @@
 // Gauges: transitions from the charts of tets into a chart that many tets share.
 //
 // Coordinates there are integers modulo 2^32: they never overflow, however many tets the chart is
-// glued from. Two points that the modulus makes equal are one more overlap of the chart, and the
+// glued from. Two points that coincide modulo 2^32 are just another overlap of the chart, and the
 // atlas resolves overlaps anyway (atlas/overlaps.hpp).
 #pragma once
 

@@ -1,5 +1,5 @@
 // Motions of the grid: rotations and translations that relate charts, be they transitions of an
-// integer-grid map (Section 3.2), of a seamless one, or ways into a chart that many tets share.
+// integer-grid map (Section 3.2), of a seamless one, or gauges of a chart that many tets share.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct GridMotion {
   Rotation rotation;
   std::array<T, 3> translation{};
 
-  /// The one with a rotation that takes one point to the other.
+  /// The motion with a given rotation that takes one point to the other.
   [[nodiscard]] static constexpr GridMotion taking(const std::array<T, 3>& from,
                                                    const std::array<T, 3>& to,
                                                    Rotation rotation) noexcept {
@@ -25,7 +25,7 @@ struct GridMotion {
     return {rotation, {to[0] - turned[0], to[1] - turned[1], to[2] - turned[2]}};
   }
 
-  /// Not defaulted, as GCC would call memcmp.
+  /// Not defaulted: GCC would call memcmp.
   [[nodiscard]] constexpr bool operator==(const GridMotion& other) const noexcept {
     unsigned difference = rotation == other.rotation ? 0 : 1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -35,7 +35,7 @@ struct GridMotion {
   }
   [[nodiscard]] constexpr bool isIdentity() const noexcept { return *this == GridMotion{}; }
 
-  /// Applies to a point; of a type as large, it is converted first.
+  /// Applies to a point; another number type of the same size is converted first.
   template <class Number>
   requires(sizeof(Number) == sizeof(T)) [[nodiscard]] constexpr std::array<T, 3> operator()(
       const std::array<Number, 3>& u) const noexcept {
@@ -61,7 +61,7 @@ struct GridMotion {
   }
   [[nodiscard]] constexpr Direction operator()(Direction d) const noexcept { return rotation(d); }
 
-  /// Where the cell with smallest corner z goes, by its smallest corner there.
+  /// The image of the cell with smallest corner z, also named by its smallest corner.
   template <class Point>
   [[nodiscard]] constexpr std::array<T, 3> cell(const Point& z) const noexcept {
     std::array<T, 3> image = (*this)(z);
@@ -86,11 +86,11 @@ template <class T, class Number>
 
 /// Between charts of an integer-grid map.
 using Transition = GridMotion<std::int32_t>;
-/// Between charts of a seamless map, on its lattice; or between integer ones, of whatever size.
+/// Between charts of a seamless map, on its lattice; or between integer charts of any size.
 using LatticeMotion = GridMotion<std::int64_t>;
 
 }  // namespace hexhex::lattice
 
-/// The table of a map's transitions is as large as the map where each tet has a chart of its own.
+/// Where each tet has its own chart, the table of transitions is as large as the map.
 template <>
 inline constexpr bool hexhex::kLeftUninitialized<hexhex::lattice::Transition> = true;

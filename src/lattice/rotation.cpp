@@ -1,3 +1,4 @@
+// The rotations as AlgoHex numbers them.
 #include <lattice/rotation.hpp>
 
 namespace hexhex::lattice {

@@ -30,7 +30,7 @@ class Rotation {
       const std::array<Number, 3>& v) const noexcept;
 
   [[nodiscard]] constexpr Rotation inverse() const noexcept;
-  /// The axis about which it turns; -1 for the identity and for rotations about diagonals.
+  /// The coordinate axis of rotation; -1 for the identity and for rotations about diagonals.
   [[nodiscard]] constexpr int axis() const noexcept;
   /// Composition: (a * b)(v) = a(b(v)).
   friend constexpr Rotation operator*(Rotation a, Rotation b) noexcept;
@@ -71,7 +71,7 @@ constexpr RotationTables makeRotationTables() {
 
 inline constexpr RotationTables kRotationTables = makeRotationTables();
 
-/// By rotation and axis: the axis that is sent to it or its opposite, and 1 or -1.
+/// Per rotation and axis: the axis that is sent to this one or its opposite, and the sign, 1 or -1.
 struct AxisSources {
   std::array<std::array<std::uint8_t, 3>, Rotation::kCount> axis{};
   std::array<std::array<std::int8_t, 3>, Rotation::kCount> sign{};
@@ -162,7 +162,7 @@ inline constexpr auto kAxisImages = [] {
 
 }  // namespace detail
 
-/// Where a rotation sends axes.
+/// The image of a set of axes.
 [[nodiscard]] constexpr AxisSet imageOf(AxisSet axes, Rotation rotation) noexcept {
   return detail::kAxisImages[static_cast<std::size_t>(rotation.index())][axes];
 }

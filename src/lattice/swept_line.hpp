@@ -1,5 +1,5 @@
-// What a sweep over the grid points of a tet finds: lines of points, each with the simplex in whose
-// interior it lies.
+// The result of a sweep over the grid points of a tet: lines of points, each with the simplex whose
+// interior contains it.
 #pragma once
 
 #include <array>
@@ -9,17 +9,17 @@
 
 namespace hexhex::lattice {
 
-/// The integer grid, moved by one half along some axes: bit k for axis k. Grid point z names the
-/// point that it is moved to: the centre of a cell is named by the cell's smallest corner.
+/// The integer grid, shifted by one half along some axes: bit k for axis k. Grid point z names the
+/// point it is shifted to: a cell's centre is named by the cell's smallest corner.
 using HalfGrid = std::uint8_t;
-/// Those of hex vertices, and of the centres of hex cells.
+/// The grids of hex vertices and of cell centres.
 inline constexpr HalfGrid kVertexGrid = 0;
 inline constexpr HalfGrid kCenterGrid = 7;
 
-/// The order in which a tet is swept: planes of constant coordinate axes[0], in them lines of
-/// constant axes[1], along axes[2].
+/// The order in which a tet is swept: planes of constant coordinate axes[0], in each of them lines
+/// of constant axes[1], along axes[2].
 struct SweepAxes {
-  std::uint8_t index = 0;  ///< of the six permutations
+  std::uint8_t index = 0;  ///< among the six permutations
 
   static constexpr std::array<std::array<std::uint8_t, 3>, 6> kPermutations = {
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
@@ -50,7 +50,7 @@ struct GridBox {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     counts[axis] = std::int64_t{box.range[axis].last} - box.range[axis].first;
   }
-  // By which axes have fewer points than others before them: 1 than 0, 2 than 1, 2 than 0.
+  // Indexed by which axes have fewer points than others before them: 1 than 0, 2 than 1, 2 than 0.
   constexpr std::array<std::uint8_t, 8> kOrders = {0, 2, 1, 5, 0, 3, 4, 5};
   const unsigned fewer = (counts[1] < counts[0] ? 1U : 0U) | (counts[2] < counts[1] ? 2U : 0U) |
                          (counts[2] < counts[0] ? 4U : 0U);
@@ -67,7 +67,7 @@ struct SweptLine {
   CornerMask right;  ///< of the last point
   SweepAxes axes;    ///< the same for all lines of a tet
 
-  /// The simplex of all points between: the smallest that contains both ends, by convexity.
+  /// The simplex of all points in between: the smallest that contains both ends, by convexity.
   /// (Appendix A.1, its six rules in one)
   [[nodiscard]] CornerMask inner() const noexcept { return static_cast<CornerMask>(left | right); }
   /// The simplex of the i-th point.
@@ -83,7 +83,7 @@ struct SweptLine {
     z[a[2]] = first + static_cast<std::int32_t>(i);
     return z;
   }
-  /// Which point a grid point on the line is; not below `count` if it is none.
+  /// The index of a grid point on the line; `count` or more if it is not one of the line's points.
   [[nodiscard]] std::uint32_t indexOf(const GridPoint& z) const noexcept {
     return static_cast<std::uint32_t>(z[axes()[2]]) - static_cast<std::uint32_t>(first);
   }

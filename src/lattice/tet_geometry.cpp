@@ -1,3 +1,5 @@
+// Exact predicates on a tet: orientation, holder, casing, exits of turns and lines (Algorithms 4,
+// 5, 7 and 9).
 #include <cmath>
 
 #include <lattice/tet_geometry.hpp>
@@ -29,7 +31,7 @@ int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint
   const LatticePoint w = d - a;
   const RoundedDeterminant determinant(rounded(u), rounded(v), rounded(w));
   if (!determinant.hasCertifiedSign()) {
-    // Coordinates of special places often have few bits, or are the same.
+    // Coordinates in special positions often have few bits, or coincide.
     const std::int64_t bits = u[0] | u[1] | u[2] | v[0] | v[1] | v[2] | w[0] | w[1] | w[2];
     if (determinant.magnitude >= exactBelow(bits)) {
       return orientationDeterminant(a, b, c, d).sign();
@@ -53,7 +55,7 @@ NormalSigns::NormalSigns(const LatticeTet& corners) noexcept {
 CornerMask holder(const NormalSigns& signs, CornerMask generator, Direction d1) noexcept {
   CornerMask simplex = kWholeTet;
   for (int face = 0; face < 4; ++face) {
-    if (contains(generator, face)) continue;  // the face does not contain the generator
+    if (contains(generator, face)) continue;  // the generator is not in this face
     const int side = signs.dot(face, d1);
     if (side < 0) return kNoSimplex;
     if (side == 0) simplex = static_cast<CornerMask>(simplex & faceMask(face));
@@ -87,11 +89,11 @@ int stepSign(const LatticePoint& from, const LatticePoint& to, Direction d) noex
   return s * signOf(d);
 }
 
-/// Whether the plane with normal d3 through the simplex's inner point, oriented as the turn, leaves
-/// the cone of the tet at the simplex through face f. With the face's inward normal a x b, where a
-/// and b are the directions to its other corners, a point r of the face that lies in the plane
-/// moves with velocity d3 x r, and (a x b).(d3 x r) = (a.d3)(b.r) - (a.r)(b.d3) is negative, i.e.
-/// points out of the tet, exactly if a.d3 <= 0 <= b.d3.
+/// Whether the plane with normal d3 through the simplex's inner point, oriented like the turn,
+/// leaves the cone of the tet at the simplex through face f. With the face's inward normal a x b,
+/// where a and b are the directions to its other corners, a point r of the face that lies in the
+/// plane moves with velocity d3 x r, and (a x b).(d3 x r) = (a.d3)(b.r) - (a.r)(b.d3) is negative,
+/// i.e. points out of the tet, exactly if a.d3 <= 0 <= b.d3.
 bool planeLeavesThrough(const LatticeTet& corners, CornerMask simplex, int f,
                         Direction d3) noexcept {
   const std::array<int, 3>& face = kFaceCorners[static_cast<std::size_t>(f)];

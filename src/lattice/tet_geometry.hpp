@@ -29,7 +29,7 @@ inline constexpr CornerMask kNoSimplex = 0;
 inline constexpr CornerMask kWholeTet = 15;
 
 [[nodiscard]] constexpr int dimension(CornerMask mask) noexcept {
-  // A table, as not every machine that we compile for counts bits in one instruction.
+  // A table, as not every target counts bits in one instruction.
   constexpr std::array<std::int8_t, 16> kDimensions = {-1, 0, 0, 1, 0, 1, 1, 2,
                                                        0,  1, 1, 2, 1, 2, 2, 3};
   return kDimensions[mask];
@@ -79,7 +79,7 @@ inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners = {
 /// det(u, v, w) in floating point.
 struct RoundedDeterminant {
   double value = 0;
-  double magnitude = 0;  ///< sum of those of all products
+  double magnitude = 0;  ///< sum of the magnitudes of all products
 
   RoundedDeterminant(const Vec3& u, const Vec3& v, const Vec3& w) noexcept {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -91,7 +91,7 @@ struct RoundedDeterminant {
       magnitude += (std::abs(first) + std::abs(second)) * std::abs(w[axis]);
     }
   }
-  /// Whether the sign is certified, if components carry at most one rounding each.
+  /// Whether the sign is certified, if each component carries at most one rounding.
   [[nodiscard]] bool hasCertifiedSign() const noexcept {
     // Each of the six products of three factors carries three roundings of its factors, two
     // multiplications, and up to three additions: at most 8 roundings of relative size 2^-53, hence
@@ -102,9 +102,9 @@ struct RoundedDeterminant {
   }
 };
 
-/// Sums of products of three multiples of a power of two are exact in floating point if the sum of
-/// magnitudes is below this: no product and no partial sum needs more than 53 bits. (Factors that
-/// need more, and were rounded, are multiplied by zero then.)
+/// A sum of products of three multiples of a power of two is exact in floating point if the sum of
+/// their magnitudes is below this: no product and no partial sum needs more than 53 bits. (Factors
+/// that need more, and were rounded, are then multiplied by zero.)
 /// @param bits  all factors, or-ed
 [[nodiscard]] inline double exactBelow(std::int64_t bits) noexcept {
   // 2^(52 + 3 e) for multiples of 2^e.
@@ -116,8 +116,8 @@ struct RoundedDeterminant {
 [[nodiscard]] int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                               const LatticePoint& d) noexcept;
 
-/// On which side of a face of a positive tet a point lies: 1 on that of the tet, 0 in its plane, -1
-/// beyond it. Exact.
+/// On which side of a face of a positive tet a point lies: 1 on the tet's side, 0 in the face's
+/// plane, -1 beyond it. Exact.
 [[nodiscard]] inline int sideOfFace(const LatticeTet& tet, std::size_t face,
                                     const LatticePoint& point) noexcept {
   const std::array<int, 3>& f = kFaceCorners[face];
@@ -126,7 +126,7 @@ struct RoundedDeterminant {
 }
 
 /// The simplex of a tet whose interior contains a point, or kNoSimplex outside. (Algorithm 3)
-/// @param sideOf  of a face: on which side of it the point lies, as sideOfFace()
+/// @param sideOf  sideOf(face): on which side of it the point lies, as sideOfFace()
 template <class SideOf>
 [[nodiscard]] CornerMask simplexBySides(const SideOf& sideOf) noexcept {
   CornerMask simplex = kNoSimplex;
@@ -139,7 +139,7 @@ template <class SideOf>
   return simplex;
 }
 
-/// The same of a positive tet, exactly.
+/// The same for a positive tet, exactly.
 [[nodiscard]] inline CornerMask simplexOf(const LatticeTet& tet,
                                           const LatticePoint& point) noexcept {
   return simplexBySides([&](std::size_t face) { return sideOfFace(tet, face, point); });
@@ -150,8 +150,8 @@ template <class SideOf>
   return simplexOf(tet, LatticePoint{z[0] * unit, z[1] * unit, z[2] * unit});
 }
 
-/// Signs of the components of the four inward face normals of a tet. They decide exactly how
-/// directions lie to faces, which is all that Holder (A.2) and Casing (A.3) ask.
+/// Signs of the components of a tet's four inward face normals. They decide exactly how directions
+/// lie relative to faces, which is all that Holder (A.2) and Casing (A.3) ask.
 class NormalSigns {
  public:
   NormalSigns() = default;
@@ -191,8 +191,8 @@ inline constexpr int kNoExit = -2;
                              CornerMask simplex, Direction d1, Direction d2) noexcept;
 
 /// Going from grid point z in direction d1, shifted infinitesimally in direction d2: the face
-/// through which the line leaves the tet, or kNoExit if it does not pass through the tet. Must not
-/// go back through face `entered` (-1: none). (Algorithm 9)
+/// through which the line leaves the tet, or kNoExit if the line misses the tet. Never face
+/// `entered` (-1: none). (Algorithm 9)
 [[nodiscard]] int exitOfLine(const LatticeTet& corners, const NormalSigns& signs,
                              const GridPoint& z, std::int64_t unit, Direction d1, Direction d2,
                              int entered) noexcept;

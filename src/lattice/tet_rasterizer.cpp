@@ -1,3 +1,4 @@
+// Rasterization of a tet, with proven error bounds (Section 5.2, Algorithms 2 and 3).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,7 +12,7 @@ namespace {
 
 int shiftOf(std::int64_t unit) { return std::countr_zero(static_cast<std::uint64_t>(unit)); }
 
-/// How far a grid is moved along an axis, in lattice units.
+/// The shift of a grid along an axis, in lattice units.
 std::int64_t moved(HalfGrid grid, std::size_t axis, std::int64_t unit) {
   return ((grid >> axis) & 1) * (unit / 2);
 }
@@ -39,7 +40,7 @@ GridBox TetBounds::gridBox(std::int64_t unit, HalfGrid grid) const noexcept {
   return box;
 }
 
-/// Sets what the lines of all grids have in common.
+/// Computes what the lines of all grids have in common.
 void TetRasterizer::measure() noexcept {
   measured_ = true;
   bounds_ = TetBounds(corners_);
@@ -75,15 +76,15 @@ void TetRasterizer::measure() noexcept {
     }
   }
   // Errors in units of u = 2^-53, with magnitudes, where corners and points of the box are less
-  // than `size` from each other and from the origin: edges, up to 2 size, are known to 4 size;
-  // products of two of them to 20 size^2, and their differences, the gradients, up to 8 size^2, to
-  // 48 size^2. At the first point of a box, three products with distances, each up to 8 size^3 and
-  // known to 72 size^3, make up a value in two additions of at most 24 size^3: known to 264 size^3.
-  // From there to any other point there are three more products, each up to 8 size^3 and known to
-  // 56 size^3, and three additions of at most 48 size^3: below 264 + 168 + 144 < 2^10 size^3. 2^13
-  // covers terms of second order, and conversions of the ends of lines to integers.
+  // than `size` from each other and from the origin: edges, up to 2 size, are off by at most 4
+  // size; products of two of them by 20 size^2, and their differences, the gradients, up to 8
+  // size^2, by 48 size^2. At the first point of a box, three products with distances, each up to 8
+  // size^3 and off by 72 size^3, add up to a value in two additions of at most 24 size^3: off by
+  // 264 size^3. From there to any other point there are three more products, each up to 8 size^3
+  // and off by 56 size^3, and three additions of at most 48 size^3: below 264 + 168 + 144 < 2^10
+  // size^3. 2^13 covers second-order terms, and conversions of the ends of lines to integers.
   error_ = 0x1p-40 * size * size * size;
-  // Without roundings, none of these sums of products exceeds 48 size^3.
+  // Without rounding, none of these sums of products exceeds 48 size^3.
   const double latticeSize = size * static_cast<double>(unit_);
   isExact_ = 48 * latticeSize * latticeSize * latticeSize < exactBelow(bits);
 }
@@ -91,7 +92,7 @@ void TetRasterizer::measure() noexcept {
 bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) const noexcept {
   search.values = {};
   search.errors.fill(error_);
-  ByFace most{};  // of values in the box, from the first point on
+  ByFace most{};  // largest increase of values in the box, from its first point on
   for (std::size_t k = 0; k < 3; ++k) {
     const GridRange& range = box.range[k];
     const double start = static_cast<double>(range.first - origin_[k]) + 0.5 * ((grid >> k) & 1);
@@ -124,7 +125,7 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
   double zeroError = 0;
   for (std::size_t face = 0; face < 4; ++face) {
     const double slope = search.slopes[2][face];
-    // Other zeros are known to an eighth.
+    // Other zeros are accurate to an eighth.
     constexpr double kClearSlope = 16;
     const bool isFlat = !(std::abs(slope) > kClearSlope * search.errors[face]);
     search.isFlat[face] = isFlat;
@@ -135,15 +136,15 @@ bool TetRasterizer::prepare(HalfGrid grid, const GridBox& box, Search& search) c
     search.forHigh[face] = kFar * (toZero > 0 ? 0 : 1);
     zeroError = std::max(zeroError, 2 * search.errors[face] * std::abs(toZero));
   }
-  // The roundings of the zero itself and of its conversion to an integer.
+  // For rounding of the zero itself and of its conversion to an integer.
   search.zeroError = zeroError + 0x1p-48 * (static_cast<double>(search.size[2]) + 16);
   return true;
 }
 
 TetRasterizer::Line TetRasterizer::findLine(const Search& search, const ByFace& values,
                                             std::int32_t row, SweptLine& line) const noexcept {
-  // Beside the box, so that empty lines stay empty, and no integers, lest a limit be mistaken for a
-  // zero near one.
+  // Outside the box, so that empty lines stay empty, and not integers, lest a limit be mistaken for
+  // a zero near one.
   constexpr double kBefore = -1.5;
   const double behind = static_cast<double>(search.size[2]) + 1.5;
   const ByFace here = valuesAfter(values, search.slopes[1], row);
@@ -166,8 +167,8 @@ TetRasterizer::Line TetRasterizer::findLine(const Search& search, const ByFace& 
   if (low - search.zeroError > high + search.zeroError) return Line::Outside;
   low = std::min(low, behind);
   high = std::max(high, kBefore);
-  // Adding 4 makes truncation a floor. If no integer lies within the bound of either zero, the
-  // points strictly between them are all inside the tet, and no others are in it.
+  // Adding 4 turns truncation into floor. If no integer lies within the error bound of either zero,
+  // the points strictly between the zeros are all inside the tet, and no others are in it.
   const auto floorOf = [](double x) { return static_cast<std::int32_t>(x + 4) - 4; };
   const std::int32_t beforeFirst = floorOf(low - search.zeroError);
   const std::int32_t last = floorOf(high + search.zeroError);

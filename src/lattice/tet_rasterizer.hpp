@@ -1,6 +1,6 @@
-// Rasterization of a tet: all grid points of the closed tet, line by line, each with the simplex in
-// whose interior it lies (Section 5.2, Algorithms 2 and 3). Also of the grid moved by one half
-// along some axes: centres of cells, midpoints of hex edges, centres of hex faces.
+// Rasterization of a tet: all grid points of the closed tet, line by line, each with the simplex
+// whose interior contains it (Section 5.2, Algorithms 2 and 3). Also for the grid shifted by one
+// half along some axes: cell centres, midpoints of hex edges, centres of hex faces.
 //
 // On a line of points the plane of every face is an affine function of one integer, so the points
 // inside form the interval between the largest zero of the rising planes and the smallest zero of
@@ -24,7 +24,7 @@ struct TetBounds {
 
   TetBounds() = default;
   explicit TetBounds(const LatticeTet& corners) noexcept;
-  /// @param unit  a power of two, at least 2 unless `grid` is that of vertices
+  /// @param unit  a power of two, at least 2 unless `grid` is the vertex grid
   [[nodiscard]] GridBox gridBox(std::int64_t unit, HalfGrid grid = kVertexGrid) const noexcept;
 };
 
@@ -36,11 +36,11 @@ struct TetBounds {
 class TetRasterizer {
  public:
   /// @param corners  of a positive tet; must outlive this
-  /// @param unit     a power of two, at least 2 unless just vertices are swept
+  /// @param unit     a power of two, at least 2 unless only vertices are swept
   /// @param epsilon  enlargement of the tet in parameter units, not negative. It never changes the
   ///                 result: if it is positive, exact predicates decide at the ends of all lines,
-  ///                 from wherever the enlarged tet begins (Section 5.2.3), and if it is infinite,
-  ///                 on the whole bounding box.
+  ///                 starting where the enlarged tet begins (Section 5.2.3); if it is infinite, on
+  ///                 the whole bounding box.
   /// @param fewPoints  whether points may be compared one by one where there are few
   TetRasterizer(const LatticeTet& corners, std::int64_t unit, double epsilon = 0,
                 bool fewPoints = true) noexcept
@@ -82,30 +82,30 @@ class TetRasterizer {
   }
 
  private:
-  /// A number for each face, by opposite corner.
+  /// One number per face, by opposite corner.
   using ByFace = std::array<double, 4>;
 
-  /// The planes of faces on the lines of one grid: their values are positive inside of the tet.
+  /// The planes of the faces on the lines of one grid; values are positive inside the tet.
   struct Search {
     HalfGrid grid;
     SweepAxes axes;
-    std::array<std::int32_t, 3> first;  ///< point of the box, by sweep axis
-    std::array<std::int32_t, 3> size;   ///< points of the box minus one, by sweep axis
+    std::array<std::int32_t, 3> first;  ///< point of the box, per sweep axis
+    std::array<std::int32_t, 3> size;   ///< points of the box minus one, per sweep axis
     ByFace values;                      ///< at the first point of the box
-    std::array<ByFace, 3> slopes;       ///< by sweep axis
-    ByFace errors;                      ///< more than values may be wrong by anywhere in the box
-    /// So nearly parallel to the lines that zeros would be useless.
+    std::array<ByFace, 3> slopes;       ///< per sweep axis
+    ByFace errors;                      ///< bound of the error of values anywhere in the box
+    /// So nearly parallel to the lines that its zero would be useless.
     std::array<bool, 4> isFlat;
-    bool hasFlat;      ///< any face
+    bool hasFlat;      ///< whether any face is
     ByFace toZero;     ///< -1 / slope along the lines; 0 if flat
     ByFace forLow;     ///< added to zeros: 0 if the plane rises, otherwise far below all others
     ByFace forHigh;    ///< likewise: 0 if it falls, otherwise far above
-    double zeroError;  ///< bound of the error of all zeros
+    double zeroError;  ///< error bound of all zeros
   };
   /// Outside: the whole line certainly misses the tet, not just its points.
   enum class Line : std::uint8_t { Outside, HasNoPoints, HasPoints };
 
-  /// Values some steps farther.
+  /// The values some steps on.
   [[nodiscard]] static ByFace valuesAfter(const ByFace& values, const ByFace& slopes,
                                           std::int32_t steps) noexcept {
     ByFace there;
@@ -120,7 +120,7 @@ class TetRasterizer {
   /// @param values  at the first row
   [[nodiscard]] Line findLine(const Search& search, const ByFace& values, std::int32_t row,
                               SweptLine& line) const noexcept;
-  /// The same by exact predicates, among points `first` to `last`; false if it has no points.
+  /// The same with exact predicates, among points `first` to `last`; false if it has no points.
   /// @param values  at the line's first point in the box
   [[nodiscard]] bool findExactly(const Search& search, const ByFace& values, std::int32_t first,
                                  std::int32_t last, SweptLine& line) const noexcept;
@@ -134,10 +134,10 @@ class TetRasterizer {
   TetBounds bounds_;
   // In grid units relative to a grid point near the tet:
   std::array<std::int32_t, 3> origin_;  ///< that point
-  std::array<ByFace, 3> gradients_;     ///< of the faces' planes, by axis
-  std::array<ByFace, 3> zeros_;         ///< points of the planes, by axis
-  double error_;                        ///< bound of the error of values, see measure()
-  bool isExact_;                        ///< so few digits that values have no error at all
+  std::array<ByFace, 3> gradients_;     ///< of the faces' planes, per axis
+  std::array<ByFace, 3> zeros_;         ///< points of the planes, per axis
+  double error_;                        ///< error bound of values, see measure()
+  bool isExact_;                        ///< so few digits that values are exact
 };
 
 }  // namespace hexhex::lattice

@@ -1,3 +1,4 @@
+// The half diagonals of cells that a triangle may cut (for the atlas engine; not in the paper).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,13 +12,13 @@ namespace hexhex::lattice {
 
 namespace {
 
-// Of values: std::min and std::max, of references, become branches that cannot be predicted.
+// By value: std::min and std::max, which return references, become unpredictable branches.
 constexpr std::int64_t lesser(std::int64_t a, std::int64_t b) noexcept { return a < b ? a : b; }
 constexpr std::int64_t greater(std::int64_t a, std::int64_t b) noexcept { return a < b ? b : a; }
 
-/// Two straight lines through the centre of a cell, and the corners of the triangle by their
-/// weights in the points where its plane meets the lines. With a half diagonal as long as `sum`,
-/// the plane is as far from the centre as the determinant of the triangle's corners says.
+/// Two lines through the centre of a cell, and the weights of the triangle's corners at the points
+/// where its plane meets the lines. In units in which half diagonals are `sum` / 2 long, the plane
+/// is as far from the centre as the determinant of the triangle's corners.
 struct LinePair {
   Pair least;  ///< weight
   Pair most;
@@ -29,8 +30,8 @@ struct LinePair {
         sum(weights[0] + weights[1] + weights[2]) {}
 };
 
-/// One number for each half diagonal on two lines, in their directions and opposite: negative if it
-/// is certified that the triangle does not cut it.
+/// For the half diagonals on two lines, in their directions and the opposite ones: negative if the
+/// triangle certainly does not cut them.
 struct CutSigns {
   Pair ahead;
   Pair behind;
@@ -38,14 +39,14 @@ struct CutSigns {
 
 constexpr Pair broadcast(double x) noexcept { return Pair{x, x}; }
 
-/// @param least  the determinant, which is positive, less by the bound of its error
+/// @param least  the determinant, which is positive, minus its error bound
 CutSigns cutOn(const LinePair& lines, double least, double error) noexcept {
-  const Pair half = lines.sum * broadcast(0.5);  // as long as the half diagonals are
+  const Pair half = lines.sum * broadcast(0.5);  // length of the half diagonals
   return {smaller(lines.least + broadcast(error), half - broadcast(least)),
           smaller(broadcast(error) - lines.most, -half - broadcast(least))};
 }
 
-/// If the plane may contain the centre, and then whole lines.
+/// For planes that may contain the centre, and then whole lines.
 CutSigns cutAtCenter(const LinePair& lines, double error) noexcept {
   const Pair inside = larger(lines.least, -lines.most);
   const Pair both = larger(inside, -magnitudeOf(lines.sum)) + broadcast(error);
@@ -54,7 +55,7 @@ CutSigns cutAtCenter(const LinePair& lines, double error) noexcept {
 
 /// @param up,down  along (1, 1, 1) and (-1, 1, 1), and along (1, 1, -1) and (-1, 1, -1)
 CellCornerSet cornersBehind(const CutSigns& up, const CutSigns& down) noexcept {
-  // Corners 6, 4, 2 and 0 in the first of both numbers, and 7, 5, 3, and 1 in the second.
+  // Corners 6, 4, 2 and 0 in the first lane, and 7, 5, 3 and 1 in the second.
   PairBits notCut = signBits(up.ahead);
   notCut = (notCut << 2) | signBits(down.behind);
   notCut = (notCut << 2) | signBits(down.ahead);
@@ -90,7 +91,7 @@ TriangleCells::TriangleCells(const std::array<LatticePoint, 3>& corners, std::in
 }
 
 CellCornerSet HalfDiagonalCuts::cutIn(const GridPoint& z) const noexcept {
-  // Corners of the triangle relative to the centre: 0 and 1, 1 and 2, and alone.
+  // Corners of the triangle relative to the centre: 0 and 1, 1 and 2 as pairs; 0 and 2 alone.
   std::array<Pair, 3> p01;
   std::array<Pair, 3> p12;
   std::array<double, 3> p0;
@@ -102,7 +103,7 @@ CellCornerSet HalfDiagonalCuts::cutIn(const GridPoint& z) const noexcept {
     p0[k] = p01[k][0];
     p12[k] = Pair{p01[k][1], p2[k]};
   }
-  // Cross products of corners 0 and 1, 1 and 2; and of 2 and 0.
+  // Cross products of corners 0 and 1, 1 and 2 as pairs; of 2 and 0 alone.
   std::array<Pair, 3> first;
   std::array<double, 3> last;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -112,8 +113,8 @@ CellCornerSet HalfDiagonalCuts::cutIn(const GridPoint& z) const noexcept {
     last[k] = p2[i] * p0[j] - p2[j] * p0[i];
   }
   const double determinant = p2[0] * first[0][0] + p2[1] * first[1][0] + p2[2] * first[2][0];
-  // With the triangle turned so that the determinant is positive: weights along the diagonals
-  // (1, 1, 1) and (-1, 1, 1), and along (1, 1, -1) and (-1, 1, -1).
+  // The triangle is turned so that the determinant is positive. Weights along the diagonals (1, 1,
+  // 1) and (-1, 1, 1), and along (1, 1, -1) and (-1, 1, -1).
   const double sign = std::copysign(1.0, determinant);
   const Pair signs = {sign, -sign};
   std::array<Pair, 3> up;

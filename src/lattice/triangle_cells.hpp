@@ -1,4 +1,5 @@
-// The unit cells in which a triangle may cut half diagonals: segments from the centre to a corner.
+// The unit cells in which a triangle may cut half diagonals, the segments from a cell's centre to
+// its corners.
 #pragma once
 
 #include <array>
@@ -15,42 +16,42 @@ class HalfDiagonalCuts {
  public:
   HalfDiagonalCuts() = default;
   /// @param corners  relative to a grid point; not negative, may carry one rounding
-  /// @param size     no coordinate is larger; at least 1
+  /// @param size     at least 1, and no smaller than any coordinate
   HalfDiagonalCuts(const std::array<std::array<double, 3>, 3>& corners, double size) noexcept
       : corners_(corners) {
-    // With u = 2^-53 and s, one more than `size`: relative to the centre of a cell around the
-    // triangle, corners are less than s away and known to 2 u s in each axis. Components of their
-    // products, up to 2 s^2, err by 12 u s^2. The sum of three of them, up to 6 s^2, errs by 46 u
-    // s^2, and the sum of three such sums by 168 u s^2. The determinant errs by 12 u s^3 for the
-    // corner, by 36 u s^3 for the product, and by 16 u s^3 for roundings. 2^-44 is 512 u.
+    // With u = 2^-53 and s = `size` + 1: relative to the centre of a cell around the triangle,
+    // corners are less than s away and off by 2 u s along each axis. Components of their products,
+    // up to 2 s^2, are off by 12 u s^2; the sum of three of them, up to 6 s^2, by 46 u s^2; and the
+    // sum of three such sums by 168 u s^2. The determinant is off by 12 u s^3 for the corner, by 36
+    // u s^3 for the product, and by 16 u s^3 for roundings. 2^-44 is 512 u.
     const double s = size + 1;
     error_ = 0x1p-44 * s * s;
     determinantError_ = error_ * s;
   }
 
-  /// The corners of a cell whose half diagonals, with the centre, may meet the triangle.
-  /// @param z  the cell's smallest corner, relative to the same grid point; not negative, the
-  ///           centre at most `size` + 1
+  /// The corners of a cell whose half diagonals, including the centre, may meet the triangle.
+  /// @param z  the cell's smallest corner, relative to the same grid point; not negative, with the
+  ///           centre at most at `size` + 1
   [[nodiscard]] CellCornerSet cutIn(const GridPoint& z) const noexcept;
 
  private:
   std::array<std::array<double, 3>, 3> corners_;
-  double error_;             ///< bound of the error of weights, and their sums
+  double error_;             ///< error bound of weights, and of their sums
   double determinantError_;  ///< and of the determinant of the triangle's corners
 };
 
-/// Finds cells in the bounding box of a small triangle, and by columns for a larger one. Limits of
-/// the box are exact, so that a triangle in a grid plane cuts nothing. Cells are named by their
-/// smallest corner.
+/// Finds cells: those in the bounding box of a small triangle, column by column for a larger one.
+/// The limits of the box are exact, so that a triangle in a grid plane cuts nothing. Cells are
+/// named by their smallest corner.
 class TriangleCells {
  public:
   /// @param corners  of a triangle that is not degenerate; must outlive this
   /// @param unit     a power of two
   TriangleCells(const std::array<LatticePoint, 3>& corners, std::int64_t unit) noexcept;
 
-  /// Calls visit(GridPoint, CellCornerSet) once for each cell, with at least those of its corners
-  /// whose half diagonals, with the centre but without the corner, meet the triangle. Cells without
-  /// such corners are left out.
+  /// Calls visit(GridPoint, CellCornerSet) once per cell, with at least those of its corners whose
+  /// half diagonals, including the centre but not the corner, meet the triangle. Skips cells
+  /// without such corners.
   template <class Visit>
   void run(const Visit& visit) const {
     if (cells_ == 0) return;
@@ -73,7 +74,7 @@ class TriangleCells {
   }
 
  private:
-  /// Cells of which each takes less than it takes to find columns.
+  /// Up to this many cells, testing each takes less time than finding columns.
   static constexpr std::int64_t kFewCells = 24;
 
   [[nodiscard]] static GridPoint plus(const GridPoint& a, const GridPoint& b) noexcept {
@@ -83,7 +84,7 @@ class TriangleCells {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   }
   [[nodiscard]] CellCornerSet octantsInBox(const GridPoint& z) const noexcept {
-    // By axis: corners with coordinate 0, and with 1.
+    // Per axis: the corners with coordinate 0, and those with 1.
     constexpr std::array<std::array<CellCornerSet, 2>, 3> kSides = {
         {{0x99, 0x66}, {0x33, 0xcc}, {0x0f, 0xf0}}};
     CellCornerSet octants = kAllCellCorners;

@@ -1,3 +1,5 @@
+// Conservative rasterization of a triangle, column by column (for the atlas engine; not in the
+// paper).
 #include <bit>
 #include <limits>
 
@@ -15,7 +17,7 @@ TriangleColumns::TriangleColumns(const std::array<LatticePoint, 3>& corners,
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3;
     const std::size_t j = (k + 2) % 3;
-    // Exact before rounding: the slopes below are as good as doubles get, even of thin triangles.
+    // Exact before rounding: the slopes below are as good as doubles get, even for thin triangles.
     normal[k] = signedToDouble(static_cast<Int128>(a[i]) * b[j] - static_cast<Int128>(a[j]) * b[i]);
   }
   std::uint8_t steepest = 0;
@@ -40,7 +42,7 @@ TriangleColumns::TriangleColumns(const std::array<LatticePoint, 3>& corners,
   plane_[1] = -normal[axes_[0]] / normal[axes_[2]];
   plane_[2] = -normal[axes_[1]] / normal[axes_[2]];
   plane_[0] = p_[0][2] - plane_[1] * p_[0][0] - plane_[2] * p_[0][1];
-  // Coordinates are below `extent` and slopes at most 1; some ten roundings each.
+  // Coordinates are below `extent` and slopes at most 1; about ten roundings each.
   margin_ = 0x1p-46 * extent;
 }
 
@@ -59,7 +61,7 @@ std::array<double, 2> TriangleColumns::strip(std::int32_t u) const noexcept {
     if (p[0] >= left && p[0] <= right) include(p[1]);
     for (const double border : {left, right}) {
       if ((p[0] < border) == (q[0] < border)) continue;
-      // The crossing lies between the ends, however badly the quotient is rounded.
+      // The intersection lies between the ends, however badly the quotient is rounded.
       const double t = std::clamp((border - p[0]) / (q[0] - p[0]), 0.0, 1.0);
       const double slack = margin_ * (1 + std::abs(q[1] - p[1]) / std::abs(q[0] - p[0]));
       const double v = p[1] + t * (q[1] - p[1]);
@@ -71,8 +73,8 @@ std::array<double, 2> TriangleColumns::strip(std::int32_t u) const noexcept {
 }
 
 TriangleColumns::Column TriangleColumns::columnAt(std::int32_t u, std::int32_t v) const noexcept {
-  // Heights in half cells at the centre of the column, and how far they differ from it at those of
-  // the quarters, and there from what they are in the rest of the quarter.
+  // Heights in half cells: at the centre of the column, their differences at the centres of its
+  // quarters, and how much they vary within a quarter.
   const double middle = 2 * (plane_[0] + plane_[1] * (u + 0.5) + plane_[2] * (v + 0.5));
   const double sum = (plane_[1] + plane_[2]) / 2;
   const double difference = (plane_[1] - plane_[2]) / 2;
@@ -97,8 +99,8 @@ TriangleColumns::Column TriangleColumns::columnAt(std::int32_t u, std::int32_t v
     const bool inBox =
         halfU >= first_[0] && halfU <= last_[0] && halfV >= first_[1] && halfV <= last_[1];
     if (count[i] <= 0 || !inBox) continue;
-    // Four bits for each layer of half cells, one of them for this quarter. The plane rises by no
-    // more than two cells in a column, so there are less than 16 layers.
+    // Four bits per layer of half cells, one of them for this quarter. The plane rises by at most
+    // two cells in a column, so there are fewer than 16 layers.
     constexpr std::uint64_t kOnePerLayer = 0x1111'1111'1111'1111;
     const std::uint64_t layers = kOnePerLayer >> (64 - 4 * count[i]);
     column.octants |= layers << (4 * (first[i] - 2 * column.lowest) + static_cast<int>(i));

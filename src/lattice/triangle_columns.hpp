@@ -11,7 +11,7 @@
 namespace hexhex::lattice {
 
 /// The first half cell of a bounding box that begins at `low`. Half cells are open at grid points,
-/// where cells border on each other, but contain the centre planes of cells, where octants do.
+/// where cells meet, but contain the cells' centre planes, where octants meet.
 [[nodiscard]] inline std::int32_t firstHalfCell(std::int64_t low, int shift) noexcept {
   const std::int64_t half = (2 * low) >> shift;
   const bool onPlane = (half << shift) == 2 * low;
@@ -25,20 +25,20 @@ namespace hexhex::lattice {
   return static_cast<std::int32_t>(onPlane && half % 2 == 0 ? half - 1 : half);
 }
 
-/// Conservative rasterization of a triangle that is not degenerate: no cell that it meets is left
-/// out, some that it does not meet may be in. Cells are named by their smallest corner.
+/// Conservative rasterization of a non-degenerate triangle: misses no cell that the triangle meets,
+/// but may visit others. Cells are named by their smallest corner.
 ///
-/// Columns of cells along the axis in which the triangle is steepest are found in the projection
-/// along that axis; in each column the triangle's plane bounds the cells, and in each quarter of a
-/// column the octants of cells. Limits of the bounding box are exact, so that a triangle in a grid
-/// plane meets no cell.
+/// The columns of cells along the axis of the largest component of the triangle's normal are found
+/// in the projection along that axis; in each column the triangle's plane bounds the cells, and in
+/// each quarter of a column the octants of cells. The limits of the bounding box are exact, so that
+/// a triangle in a grid plane meets no cell.
 class TriangleColumns {
  public:
   /// @param unit  a power of two
   TriangleColumns(const std::array<LatticePoint, 3>& corners, std::int64_t unit) noexcept;
 
-  /// Calls visit(GridPoint, CellCornerSet) once for each cell with octants that the triangle may
-  /// meet, named by the corners of the cell.
+  /// Calls visit(GridPoint, CellCornerSet) once per cell with octants that the triangle may meet;
+  /// the octants are named by the cell's corners.
   template <class Visit>
   void run(const Visit& visit) const {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -60,13 +60,13 @@ class TriangleColumns {
   }
 
  private:
-  /// Consecutive cells along the third axis, with their octants that the triangle's plane may meet.
+  /// Consecutive cells along the third axis, with the octants that the triangle's plane may meet.
   struct Column {
     std::int32_t lowest;
     std::uint64_t octants;  ///< those of the lowest cell in the lowest byte
   };
 
-  /// floor(x) within limits that are not negative.
+  /// floor(x), clamped to limits that are not negative.
   [[nodiscard]] static std::int32_t clampedFloor(double x, std::int32_t low,
                                                  std::int32_t high) noexcept {
     if (!(x > low)) return low;
@@ -79,15 +79,15 @@ class TriangleColumns {
     z[axes_[2]] = w + origin_[2];
     return z;
   }
-  /// Range of the second coordinate where the first one is in [u, u + 1].
+  /// Range of the second coordinate where the first is in [u, u + 1].
   [[nodiscard]] std::array<double, 2> strip(std::int32_t u) const noexcept;
   [[nodiscard]] Column columnAt(std::int32_t u, std::int32_t v) const noexcept;
 
-  std::array<std::uint8_t, 3> axes_;    ///< cyclic; the last one is the steepest
-  std::array<std::int32_t, 3> origin_;  ///< grid point near the triangle, by axis
+  std::array<std::uint8_t, 3> axes_;    ///< cyclic; the normal is largest along the last one
+  std::array<std::int32_t, 3> origin_;  ///< grid point near the triangle, per axis
   std::array<std::int32_t, 3> first_;   ///< half cells of the bounding box, relative
   std::array<std::int32_t, 3> last_;
-  std::array<std::array<double, 3>, 3> p_;  ///< corners, by axis, relative
+  std::array<std::array<double, 3>, 3> p_;  ///< corners, per axis, relative
   std::array<double, 3> plane_;             ///< w = plane[0] + plane[1] u + plane[2] v
   double margin_;                           ///< bound of all rounding errors
 };

@@ -1,4 +1,4 @@
-// Integers wider than 64 bits, as much as the predicates need.
+// Integers wider than 64 bits, as far as the predicates need them.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ __extension__ using UInt128 = unsigned __int128;
 
 [[nodiscard]] constexpr int sign(Int128 a) noexcept { return a > 0 ? 1 : (a < 0 ? -1 : 0); }
 
-/// A number that is not negative, rounded twice: to within 2^-52 of its value.
+/// A non-negative number, rounded twice: to within 2^-52 of its value.
 [[nodiscard]] constexpr double toDouble(Int128 value) noexcept {
   return static_cast<double>(static_cast<std::int64_t>(value >> 64)) * 0x1p64 +
          static_cast<double>(static_cast<std::uint64_t>(value));

@@ -1,3 +1,4 @@
+// Vertex extraction (Section 5.2).
 #include <algorithm>
 
 #include <propeller/hex_vertices.hpp>
@@ -8,7 +9,7 @@ namespace {
 
 constexpr std::size_t kHexVerticesGrain = 512;
 
-/// Lists generators, and in which tets they are seen.
+/// Lists generators, and the tets that see them.
 class GeneratorLister {
  public:
   GeneratorLister(const igm::PreparedMap& map, HexVertices& result)
@@ -32,7 +33,7 @@ class GeneratorLister {
   }
 
  private:
-  /// Hex vertices in the interior of a tet come behind those of its boundary.
+  /// Hex vertices in the interior of a tet are numbered after those of its boundary.
   [[nodiscard]] std::uint64_t firstInside(Index tet) const {
     return numbers_.firstOf(tet, lattice::kWholeTet);
   }
@@ -48,7 +49,7 @@ class GeneratorLister {
     result_.incidenceBegin[tet] = static_cast<Index>(std::popcount(boundaryGenerators(tet)));
   }
 
-  /// Those that the tet owns.
+  /// Lists the generators that the tet owns.
   void list(Index tet) {
     Index place = begin_[tet];
     auto vertex = static_cast<Index>(numbers_.begin[tet]);

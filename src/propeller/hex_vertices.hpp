@@ -1,9 +1,9 @@
 // Vertex extraction (Section 5.2): the lattice points of the map's image, and their generators, the
-// simplices of the tet mesh in whose interior they lie.
+// simplices of the tet mesh whose interiors contain them.
 //
 // Enumeration, numbers and look-up are those of src/sweep, which curved meshes use, too; but here
 // epsilon is positive, so that an exact predicate decides at both ends of every line, as in the
-// paper. Nothing is shared with the atlas engine that its tests do not compare with brute force.
+// paper. The tests compare everything shared with the atlas engine with brute force.
 #pragma once
 
 #include <array>
@@ -30,12 +30,12 @@ struct Generator {
 struct GeneratorIncidence {
   Index generator;
   lattice::CornerMask simplex;
-  /// For each direction in the tet's chart the local propeller that leads there inside this closed
+  /// For each direction in the tet's chart, the local propeller that leads there inside this closed
   /// tet, or kNoPropeller. Filled by the local connectivity.
   std::array<std::uint16_t, lattice::kDirections> propeller;
 };
 inline constexpr std::uint16_t kNoPropeller = 0xffff;
-/// Hex edges at one point. There are fewer than twice as many hex corners, which 16 bits number.
+/// Most hex edges at one point. There are fewer than twice as many hex corners: 16 bits suffice.
 inline constexpr std::size_t kMaxPropellers = 0x8000;
 
 struct HexVertices {
@@ -59,8 +59,8 @@ struct HexVertices {
   }
 };
 
-/// Where the map must have a hex vertex and none was found.
-/// @param tet  unknown if only the number of cells tells
+/// Fails because the map must have a hex vertex that was not found.
+/// @param tet  unknown if only the number of cells reveals it
 [[noreturn]] void failForMissingVertex(std::optional<Index> tet);
 
 }  // namespace hexhex::propeller

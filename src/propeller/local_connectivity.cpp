@@ -1,3 +1,4 @@
+// Local connectivity of all generators (Section 5.3, Algorithm 6).
 #include <algorithm>
 #include <cassert>
 #include <span>
@@ -11,7 +12,7 @@ bool linkCorners(const std::vector<Propeller>& propellers, std::vector<Slot>& sl
                  std::vector<HexCorner>& corners) {
   for (std::size_t p = 0; p < propellers.size(); ++p) {
     const Propeller& propeller = propellers[p];
-    // On the boundary there is no corner behind the last blade.
+    // On the boundary, no corner follows the last blade.
     const std::size_t count =
         propeller.closed ? propeller.slotCount : propeller.slotCount - std::size_t{1};
     for (std::size_t i = 0; i < count; ++i) {
@@ -49,7 +50,7 @@ void append(Configurations& to, const StarConnectivity::Result& structure) {
   to.corners.insert(to.corners.end(), structure.corners.begin(), structure.corners.end());
 }
 
-/// Appends those of a block of generators.
+/// Appends the structures of a block of generators.
 void append(Configurations& to, const Configurations& block) {
   if (to.slots.size() + block.slots.size() >= kNone) {  // the longest of these arrays
     throw Error(
@@ -96,7 +97,7 @@ void linkBlades(StarConnectivity::Result& structure) {
   static_cast<void>(linkCorners(propellers, slots, corners));
 }
 
-/// The four directions across d, counter-clockwise.
+/// The four directions perpendicular to d, counter-clockwise.
 std::array<lattice::Direction, 4> around(lattice::Direction d) {
   const auto first = static_cast<lattice::Direction>((d + 2) % lattice::kDirections);
   const lattice::Direction second = lattice::cross(d, first);
@@ -140,7 +141,7 @@ Index constantConfiguration(const igm::PreparedMap& map, const Array<lattice::No
   return kNone;
 }
 
-/// Notes the star's propellers in the incidences of its tets. Each incidence belongs to one
+/// Records the star's propellers in the incidences of its tets. Each incidence belongs to one
 /// generator, so generators can be processed in parallel.
 void publish(const std::vector<StarConnectivity::StarTet>& star, HexVertices& vertices) {
   for (const StarConnectivity::StarTet& entry : star) {
@@ -196,7 +197,7 @@ std::size_t SlotFinder::findPropeller(Index tet, Index generator, lattice::Direc
   const Index configuration = local_.configurationOf[generator];
   if (configuration == 0) return along;
   if (configuration < kConstantConfigurations) {
-    // Propellers of a boundary face: all directions but the one that leads outside.
+    // Propellers of a boundary face: all directions except the one that leads outside.
     const lattice::Direction outward =
         lattice::opposite(static_cast<lattice::Direction>(configuration - 1));
     return along > outward ? along - std::size_t{1} : along;

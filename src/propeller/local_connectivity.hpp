@@ -20,17 +20,17 @@ inline constexpr std::uint16_t kNoCorner = 0xffff;
 
 /// One blade of a propeller, and the hex corner behind it.
 struct Slot {
-  Index tet;                     ///< owner of the casing: there the blade's direction is
-  lattice::Direction direction;  ///< ... this one
+  Index tet;                     ///< owner of the casing
+  lattice::Direction direction;  ///< of the blade, in that tet
   std::uint16_t blade;           ///< the propeller that is the blade
-  std::uint16_t back;            ///< which blade of that one this propeller is
+  std::uint16_t back;            ///< index of this propeller among that one's blades
   std::uint16_t corner;          ///< hex corner between this blade and the next; kNoCorner if none
 };
 
 struct Propeller {
   Index slotBegin;
   std::uint16_t slotCount;       ///< number of blades, counter-clockwise
-  bool closed;                   ///< inside the mesh: the last blade is followed by the first
+  bool closed;                   ///< inside the mesh: the first blade follows the last
   lattice::Direction direction;  ///< in the tet of slot 0, into which that slot's casing leads
 };
 
@@ -41,7 +41,7 @@ struct HexCorner {
 };
 
 /// The structure around all vertices of a generator, or of all generators of a kind whose structure
-/// is constant; for these, `tet` of all slots is kNone and stands for the generator's own tet.
+/// is constant; for the latter, `tet` of all slots is kNone and stands for the generator's own tet.
 struct Configuration {
   Index propellerBegin;
   Index cornerBegin;
@@ -96,7 +96,7 @@ struct SlotName {
 [[nodiscard]] bool linkCorners(const std::vector<Propeller>& propellers, std::vector<Slot>& slots,
                                std::vector<HexCorner>& corners);
 
-/// Extracts propellers, blades and hex corners of all generators, and notes in
+/// Extracts propellers, blades and hex corners of all generators, and records in
 /// `vertices.incidences` which propeller each direction of each tet leads to. (Algorithm 6)
 /// @param signs  normal signs of every tet
 [[nodiscard]] LocalConnectivity extractLocalConnectivity(const igm::PreparedMap& map,

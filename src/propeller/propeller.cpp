@@ -1,3 +1,4 @@
+// Global connectivity (Section 5.4, Algorithm 8), cells, and the engine's stages in sequence.
 #include <algorithm>
 #include <atomic>
 #include <cassert>
@@ -15,8 +16,8 @@ namespace {
 
 constexpr std::size_t kGlobalConnectivityGrain = 64;
 
-/// A hex edge that is traced: in the chart of a tet, from grid point z in direction `along`, beside
-/// it the blade in direction `beside`.
+/// A hex edge being traced: in the chart of a tet, from grid point z in direction `along`, with the
+/// blade in direction `beside` next to it.
 struct Trace {
   Index tet;
   lattice::GridPoint z;
@@ -83,7 +84,7 @@ class Tracer {
         std::memory_order_relaxed);
   }
 
-  /// Goes from tet to tet until the next grid point along the edge is reached, and the tet holds
+  /// Goes from tet to tet until it reaches the next grid point along the edge, in a tet that holds
   /// the blade's quarter plane there.
   Index follow(Trace& at) const {
     int entered = -1;
@@ -117,7 +118,7 @@ class Tracer {
     return true;
   }
 
-  /// Whether the whole tet lies beyond the edge's end, which then must have been overlooked.
+  /// Whether the whole tet lies beyond the edge's end, which must then have been missed.
   [[nodiscard]] bool passed(const Trace& at) const {
     const auto axis = static_cast<std::size_t>(lattice::axisOf(at.along));
     const std::int64_t end = (at.z[axis] + lattice::signOf(at.along)) * exact_.unit;
@@ -319,7 +320,7 @@ HexMesh runPipeline(const igm::PreparedMap& map, std::uint64_t expectedCells, do
     Stage stage(context, "local connectivity");
     signs = computeNormalSigns(map.exact, stage);
     local = extractLocalConnectivity(map, signs, vertices, stage);
-    // A vertex that was overlooked leaves corners behind that make up no whole number of cells.
+    // A missed vertex leaves corners behind that do not make up a whole number of cells.
     if (countCells(vertices, local) != expectedCells) failForMissingVertex({});
   }
   GlobalConnectivity global;

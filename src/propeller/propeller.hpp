@@ -1,6 +1,6 @@
-// The propeller engine, which is the paper's: its stages behind preprocessing, in a row, and the
-// last two of them: each hex edge traced once, from vertex to vertex, and the eight corners of each
-// cell, collected by walking from propeller to opposite (Section 5.4).
+// The propeller engine, which is the paper's: the sequence of its stages after preprocessing, and
+// the last two of them. Each hex edge is traced once, from vertex to vertex, and the eight corners
+// of each cell are collected by walking from propeller to opposite (Section 5.4).
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ struct Opposite {
   std::uint16_t offset;
 };
 
-/// Global propellers of a vertex stand in a row, those of a generator's vertices too.
+/// The global propellers of a vertex are consecutive, and so are those of all vertices of a
+/// generator.
 struct GlobalConnectivity {
   Array<std::uint64_t> begin;      ///< per generator: the first propeller of its first vertex
   Array<std::uint64_t> opposites;  ///< packed: vertex, propeller << 32, offset << 48
@@ -44,7 +45,7 @@ struct GlobalConnectivity {
                                                 const HexVertices& vertices,
                                                 const LocalConnectivity& local, Stage& stage);
 
-/// Number of cells that the hex corners of all vertices make up.
+/// Number of cells that the hex corners of all vertices form.
 [[nodiscard]] std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& local);
 
 /// All cells in canonical order (cell_centers.hpp). Each is entered from its centre at its first

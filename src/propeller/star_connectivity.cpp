@@ -1,3 +1,4 @@
+// Local connectivity of one generator (Sections 5.3.2 to 5.3.4).
 #include <algorithm>
 #include <string>
 
@@ -76,7 +77,7 @@ void StarConnectivity::findPropellers() {
   result_.propellers.resize(holders_.size());
 }
 
-/// Notes a propeller in all tets around its holder, in each with its direction there.
+/// Records a propeller in all tets around its holder, with its direction in each.
 void StarConnectivity::announce(std::uint16_t propeller, Index tet,
                                 lattice::CornerMask holderSimplex, lattice::Direction d) {
   forEachTetAround(topology_, exact_.transitions, tet, holderSimplex,
@@ -158,7 +159,7 @@ StarConnectivity::Quadrant StarConnectivity::canonical(const Quadrant& quadrant)
   return {adjacency::tetOf(mate), rotation(quadrant.first), rotation(quadrant.second)};
 }
 
-/// Enumerates the casings of a propeller counter-clockwise: on the boundary from the first on.
+/// Enumerates the casings of a propeller counter-clockwise; on the boundary, from the first on.
 void StarConnectivity::findCasings(std::size_t propeller) {
   const auto same = [](const Quadrant& a, const Quadrant& b) {
     return a.tet == b.tet && a.second == b.second;

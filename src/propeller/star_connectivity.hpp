@@ -1,6 +1,6 @@
-// Propellers, blades and hex corners of one generator from the tets around it (Sections 5.3.2 to
+// Propellers, blades and hex corners of one generator, from the tets around it (Sections 5.3.2 to
 // 5.3.4). Needs only signs of face normals and of edge vectors, hence comparisons of integers: no
-// determinant.
+// determinants.
 #pragma once
 
 #include <array>

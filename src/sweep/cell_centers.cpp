@@ -1,3 +1,4 @@
+// Sweeps the centres of cells, and numbers cells by owner.
 #include <base/workspaces.hpp>
 #include <sweep/cell_centers.hpp>
 

@@ -1,6 +1,6 @@
-// The canonical numbers of hex cells: by the tet that owns the cell's centre (the smallest of those
-// that contain it), there in the order of the tet's sweep over centres. The corners of a cell are
-// in VTK order with respect to the axes of the owner's chart.
+// The canonical numbers of hex cells: by the tet that owns the cell's centre (the smallest that
+// contains it), then in the order of that tet's sweep over centres. The corners of a cell are in
+// VTK order with respect to the axes of the owner's chart.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ class CenterOwner {
     std::uint32_t first;
     std::uint32_t count;
   };
-  /// The owned centres of one of the tet's lines; they are consecutive, because the owner of a
-  /// simplex owns no less than that of a face of it.
+  /// The owned centres of one of the tet's lines. They are consecutive, because a tet that owns a
+  /// face of one of its simplices also owns the simplex.
   [[nodiscard]] Range owned(const lattice::SweptLine& line) {
     if (line.allInside()) return {0, line.count};
     const bool left = owns(line.left);
@@ -35,7 +35,7 @@ class CenterOwner {
     if (line.count == 1) return {0, left ? 1U : 0U};
     if (line.count > 2 && !owns(line.inner())) return {0, 0};
     if (line.count == 2 && !left) return {1, right ? 1U : 0U};
-    // Otherwise owned centres were not consecutive.
+    // Otherwise the owned centres would not be consecutive.
     assert(!left || line.count == 2 || owns(line.inner()));
     const std::uint32_t first = left ? 0 : 1;
     return {first, line.count - first - (right ? 0U : 1U)};
@@ -74,10 +74,10 @@ void forEachOwnedCenter(const adjacency::TetTopology& topology, Index tet,
 [[nodiscard]] std::uint64_t countOwned(const adjacency::TetTopology& topology, Index tet,
                                        std::span<const lattice::SweptLine> lines);
 
-/// Where the cells of each tet are.
+/// The cells of each tet.
 struct CellCenters {
   Array<std::uint64_t> begin;     ///< per tet (+1): the first cell that it owns
-  std::optional<TetLines> lines;  ///< of centres; swept again when needed if there are none
+  std::optional<TetLines> lines;  ///< of centres; if absent, they are swept again when needed
 
   CellCenters(std::size_t tets, bool keepLines) : begin(tets + 1) {
     begin[tets] = 0;
@@ -85,7 +85,7 @@ struct CellCenters {
   }
   [[nodiscard]] std::uint64_t count() const noexcept { return begin.back(); }
 
-  /// The tet's lines, in `scratch` if they are not stored.
+  /// The tet's lines; uses `scratch` if they are not stored.
   [[nodiscard]] std::span<const lattice::SweptLine> linesOf(
       const igm::ExactMap& map, Index tet, std::vector<lattice::SweptLine>& scratch) const;
 };

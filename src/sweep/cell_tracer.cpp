@@ -1,3 +1,4 @@
+// Follows half diagonals from tet to tet: floating point with proven bounds, then exact predicates.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -9,7 +10,7 @@ namespace hexhex::sweep {
 
 namespace {
 
-/// A face of a tet whose corners are given relative to any point.
+/// A face of a tet, with corners given relative to any point.
 struct Face {
   const lattice::LatticePoint& p;
   const lattice::LatticePoint& q;
@@ -28,7 +29,7 @@ struct Face {
                                                  static_cast<std::size_t>(lattice::axisOf(d)))) *
            lattice::signOf(d);
   }
-  /// Sign of the inward normal's product with a vector of components +1 and -1.
+  /// Sign of the inward normal's scalar product with a vector of components +1 and -1.
   [[nodiscard]] int dot(const std::array<int, 3>& v) const noexcept {
     lattice::Int128 sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += lattice::crossComponent(q - p, r - p, k) * v[k];
@@ -109,7 +110,7 @@ lattice::LatticeTet CellTracer::relativeTet(const Segment& segment) const noexce
   return {relative(segment, 0), relative(segment, 1), relative(segment, 2), relative(segment, 3)};
 }
 
-/// How a corner of the tet looks, from its coordinates relative to the centre.
+/// A corner of the tet as it is seen, from its coordinates relative to the centre.
 CellTracer::Seen CellTracer::seenAs(const Segment& segment,
                                     const std::array<double, 3>& r) noexcept {
   const double x = r[0] * segment.along[0];
@@ -124,12 +125,11 @@ void CellTracer::look(Segment& segment, std::size_t corner) const noexcept {
       segment, {static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
 }
 
-/// Twice the area of the triangle between two seen corners and the segment, with the sign that
-/// tells on which side of the edge the segment passes; errors are below kAreaError times both
-/// sizes.
+/// Twice the signed area of the triangle between two seen corners and the segment: the sign tells
+/// on which side of the edge the segment passes; errors are below kAreaError times both sizes.
 ///
 /// x and y carry a conversion and a subtraction, hence errors below 2 * 2^-53 * size; with the two
-/// products and their difference less than 12 * 2^-53 of the product of sizes.
+/// products and their difference, less than 12 * 2^-53 of the product of sizes.
 constexpr double kAreaError = 0x1p-49;
 
 /// Sign of det(a, b, segment) for two corners a, b relative to the centre: on which side of the
@@ -158,8 +158,8 @@ int CellTracer::exactSide(const Segment& segment, int i, int j) const noexcept {
   return 0;
 }
 
-/// The face through which the segment leaves the tet in which it begins: the one of which it passes
-/// all three edges on the negative side.
+/// The face through which the segment leaves the tet in which it begins: the one that has all three
+/// edges passed on the negative side.
 int CellTracer::exitFromInside(const Segment& segment) const noexcept {
   for (int face = 0; face < 4; ++face) {
     const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
@@ -172,8 +172,8 @@ int CellTracer::exitFromInside(const Segment& segment) const noexcept {
 }
 
 /// The same for a tet that the segment entered: seen along the segment, the corners a, b, c of the
-/// entry stand around the origin, and the origin lies in that one of the triangles between two of
-/// them and the fourth corner e which holds the direction opposite e.
+/// entry face surround the origin. Of the triangles formed by two of them and the fourth corner e,
+/// the origin lies in the one that contains the direction opposite e.
 int CellTracer::exitAfterEntry(const Segment& segment) const noexcept {
   const int e = segment.entered;
   const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(e)];
@@ -181,9 +181,9 @@ int CellTracer::exitAfterEntry(const Segment& segment) const noexcept {
   return side(segment, f[2], e) < 0 ? f[1] : f[0];
 }
 
-/// Whether the segment ends before it reaches its exit face: compares the depth of the corner with
-/// that of the face at the origin, which is the mean of its corners' depths, weighted by the areas
-/// of the triangles opposite them.
+/// Whether the segment ends before it reaches its exit face: compares the corner's depth with the
+/// face's depth at the origin, which is the mean of its corners' depths, weighted by the areas of
+/// the triangles opposite them.
 bool CellTracer::endsBefore(const Segment& segment, int face) const noexcept {
   const std::array<int, 3>& f = lattice::kFaceCorners[static_cast<std::size_t>(face)];
   const Seen& a = segment.seen[static_cast<std::size_t>(f[0])];
@@ -194,7 +194,7 @@ bool CellTracer::endsBefore(const Segment& segment, int face) const noexcept {
   const double atB = c.x * a.y - c.y * a.x;
   const double atC = a.x * b.y - a.y * b.x;
   const double beyond = atA * (a.depth - end) + atB * (b.depth - end) + atC * (c.depth - end);
-  // Each area errs by kAreaError of the product of two sizes, each depth by 4 * 2^-53 of a size.
+  // Areas are off by kAreaError times the product of two sizes, depths by 4 * 2^-53 times a size.
   const double size = a.size + b.size + c.size;
   if (std::abs(beyond) <= 4 * kAreaError * size * size * (size + end)) {
     return endsExactlyBefore(segment, face);
@@ -216,7 +216,7 @@ bool CellTracer::endsExactlyBefore(const Segment& segment, int face) const noexc
   return true;
 }
 
-/// Goes on into the neighbour across a face.
+/// Continues in the neighbour across a face.
 void CellTracer::cross(Segment& segment, int face) const {
   const adjacency::HalfFace halfFace = adjacency::halfFaceOf(segment.tet, face);
   const adjacency::HalfFace mate = topology_.mate[halfFace];
@@ -245,8 +245,8 @@ void CellTracer::cross(Segment& segment, int face) const {
   }
 }
 
-/// The tet among those around the centre into which the segment leads: no face through the centre
-/// may have it outside.
+/// The tet around the centre into which the segment leads: the segment is outside of none of its
+/// faces through the centre.
 CellTracer::Segment CellTracer::startAroundCenter(const Segment& segment) {
   const auto leadsInto = [this](const Segment& candidate) {
     const lattice::LatticeTet tet = relativeTet(candidate);

@@ -1,12 +1,12 @@
-// Traces half diagonals, from the centre of a cell straight to its corners, tet by tet, by exact
+// Traces half diagonals, from the centre of a cell straight to its corners, tet by tet, with exact
 // predicates.
 //
 // Inside the open unit cube of a cell the map is one to one, so the segment can be followed
-// whatever the charts. It does not end at the corner itself but beside it, at corner + e d1 + e^2
-// d2 + e^3 d3 with an infinitesimal e and the directions d1, d2, d3 of the cell's edges at the
-// corner. A segment that is tilted like that meets no edge and no vertex of the tet mesh, so every
-// decision has one answer, and it ends in a tet that holds the beginning of edge d1 and of the
-// square between d1 and d2.
+// whatever the charts. It ends not at the corner itself but beside it, at corner + e d1 + e^2 d2 +
+// e^3 d3, with an infinitesimal e and the directions d1, d2, d3 of the cell's edges at the corner.
+// A segment tilted like that meets no edge and no vertex of the tet mesh, so every decision has one
+// answer, and it ends in a tet that contains the beginning of edge d1 and of the square between d1
+// and d2.
 #pragma once
 
 #include <array>
@@ -37,8 +37,8 @@ class CellTracer {
         half_(map.exact.unit / 2),
         shift_(std::countr_zero(static_cast<std::uint64_t>(map.exact.unit))) {}
 
-  /// Chooses the cell with smallest corner z in the chart of a tet that contains the cell's centre.
-  /// @param generator  the simplex of the tet in whose interior the centre lies
+  /// Selects the cell with smallest corner z in the chart of a tet that contains the cell's centre.
+  /// @param generator  the simplex of the tet whose interior contains the centre
   void enter(Index tet, const lattice::GridPoint& z, lattice::CornerMask generator) noexcept;
 
   /// Traces to one corner of the cell.
@@ -47,8 +47,8 @@ class CellTracer {
                                   const TiltOrder& tilts = {0, 1, 2});
 
  private:
-  /// A corner of a tet seen along a segment: as a point (x, y) of a plane with the segment at its
-  /// origin, at a depth, rounded; relative to the cell's centre, in lattice units.
+  /// A corner of a tet seen along a segment: a point (x, y) of a plane with the segment at its
+  /// origin, and a depth, rounded; relative to the cell's centre, in lattice units.
   struct Seen {
     double x;
     double y;
@@ -59,7 +59,7 @@ class CellTracer {
   /// A segment through a tet: everything in the tet's chart, in lattice units.
   struct Segment {
     Index tet;
-    int entered;  ///< face through which it came, or -1
+    int entered;  ///< face through which it entered, or -1
     lattice::LatticePoint center;
     std::array<int, 3> along;  ///< from the centre to the corner: +1 or -1 in each axis
     std::array<lattice::Direction, 3> tilts;  ///< d1, d2, d3: the corner's edges
@@ -84,7 +84,7 @@ class CellTracer {
 
   const adjacency::TetTopology& topology_;
   const igm::ExactMap& exact_;
-  std::int64_t half_;  ///< of a grid unit, in lattice units
+  std::int64_t half_;  ///< half a grid unit, in lattice units
   int shift_;          ///< the unit's binary logarithm
 
   // The cell:

@@ -1,3 +1,4 @@
+// Counts the vertices and cells that tets own, shared among the processes of a team.
 #include <string>
 
 #include <hexhex/team.hpp>
@@ -10,7 +11,7 @@ namespace hexhex::sweep {
 
 namespace {
 
-/// Cells of some tets are counted, not numbered; no other tet has any vertices or cells.
+/// Cells of some tets are counted, not numbered; the other tets have no vertices or cells.
 ElementCounts countSome(const igm::PreparedMap& map, const ItemRange& range, Stage& stage) {
   const std::size_t tets = map.topology.tetCount();
   ElementCounts counts;
@@ -36,8 +37,8 @@ ElementCounts countSome(const igm::PreparedMap& map, const ItemRange& range, Sta
   return counts;
 }
 
-/// From what each process of a team has counted to what all tets have. Two numbers are sent for a
-/// tet, and one for each of its simplices with vertices.
+/// Combines what each process of a team has counted into the counts of all tets. Sends two numbers
+/// per tet, and one for each of its simplices with vertices.
 ElementCounts gatherCounts(ProcessTeam& team, const ElementCounts& some, const ItemRange& range) {
   constexpr unsigned kByte = 8;
   std::vector<std::uint64_t> mine;

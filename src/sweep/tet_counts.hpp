@@ -1,5 +1,5 @@
-// How many vertices and cells each tet owns, which names all of them: the only thing that the parts
-// of a mesh need to know of each other.
+// How many vertices and cells each tet owns, which numbers all of them: the only thing that the
+// parts of a mesh need to know about each other.
 #pragma once
 
 #include <hexhex/team.hpp>
@@ -15,17 +15,17 @@ struct ElementCounts {
   Array<std::uint64_t> cells;  ///< per tet (+1): the first cell that it owns
 };
 
-/// From the first of many items to behind the last one.
+/// A half-open range of items.
 struct ItemRange {
   std::size_t first;
   std::size_t end;
 };
-/// Those of which a process of a team takes care; all, if there is no team.
+/// The items that a process of a team takes care of; all if there is no team.
 [[nodiscard]] ItemRange shareOf(const ProcessTeam* team, std::size_t items);
 
-/// Sweeps all tets, and keeps nothing but counts.
-/// @param team  if not null, its processes, which all call this, share the work
-/// @throws Error Internal if there are not as many cells as the map's parametric volume
+/// Sweeps all tets, and keeps only counts.
+/// @param team  if not null, its processes, which must all call this, share the work
+/// @throws Error Internal if the number of cells is not the map's parametric volume
 [[nodiscard]] ElementCounts countElements(const igm::PreparedMap& map, std::uint64_t expectedCells,
                                           ProcessTeam* team, Stage& stage);
 

@@ -1,5 +1,5 @@
 // The grid points of every tet as lines: of the lattice (hex vertices), or of the lattice shifted
-// by one half (cell centres). The same lists hold other things of tets.
+// by one half (cell centres). The same lists hold other data of tets.
 #pragma once
 
 #include <algorithm>
@@ -17,35 +17,35 @@
 
 namespace hexhex::sweep {
 
-/// Tets are worked on in blocks of this many.
+/// Tets per block.
 inline constexpr std::size_t kSweepBlock = 256;
 
 /// The items of a block of tets, one tet after the other.
 template <class Item>
 class BlockLists {
  public:
-  /// @param keep  whether to keep the items of all tets, or just those of the last one
+  /// @param keep  whether to keep the items of all tets, or only those of the last
   explicit BlockLists(bool keep) noexcept : keep_(keep) {}
 
-  /// Begins another block.
+  /// Begins a new block.
   void clear() noexcept {
     items_.clear();
     tets_ = 0;
   }
-  /// Gives memory for many items back, as each thread has such a list.
+  /// Frees memory if there were many items, as each thread has such a list.
   void shrink() noexcept {
     constexpr std::size_t kFew = 1024;
     if (items_.capacity() > kFew) items_ = std::vector<Item>();
   }
 
-  /// Begins the next tet. Its items are to be appended to what this returns.
+  /// Begins the next tet. Its items are to be appended to the result.
   [[nodiscard]] std::vector<Item>& next() noexcept {
     assert(tets_ < kSweepBlock);
     if (!keep_) items_.clear();
     begins_[tets_++] = static_cast<Index>(items_.size());
     return items_;
   }
-  /// Those of the last tet.
+  /// The items of the last tet.
   [[nodiscard]] std::span<const Item> last() const noexcept {
     assert(tets_ > 0);
     return std::span(items_).subspan(begins_[tets_ - 1]);
@@ -88,7 +88,7 @@ class TetLists {
     return std::span(blocks_[tet / kSweepBlock])
         .subspan(itemBegin_[place], itemBegin_[place + 1] - itemBegin_[place]);
   }
-  /// Takes the items of a block away, one tet after the other.
+  /// Moves out the items of a block, one tet after the other.
   [[nodiscard]] Array<Item> takeBlock(std::size_t block) noexcept {
     return std::exchange(blocks_[block], {});
   }

@@ -1,3 +1,4 @@
+// Inverts the map in one tet, at grid points.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +9,7 @@ namespace hexhex::sweep {
 
 namespace {
 
-/// The affine form may lose this factor in precision; beyond, weights are computed exactly.
+/// The affine form may lose this factor in precision; beyond that, weights are computed exactly.
 constexpr double kMaxCondition = 0x1p20;
 
 Vec3 toVector(const lattice::LatticePoint& p, double scale) {
@@ -124,7 +125,7 @@ Vec3 TetPositions::insideExactly(const lattice::GridPoint& z) const {
   return combine(weights);
 }
 
-/// Weights from areas in the projection along the axis in which the face is largest.
+/// Weights from areas in the projection along an axis that shows the face largest.
 Vec3 TetPositions::onFace(lattice::CornerMask face, const lattice::GridPoint& z) const {
   const std::array<int, 3>& f =
       lattice::kFaceCorners[static_cast<std::size_t>(lattice::oppositeCorner(face))];

@@ -12,7 +12,7 @@ namespace hexhex::sweep {
 /// The inverse of the map in one tet.
 class TetPositions {
  public:
-  /// @param axes  of the tet's sweep, which finds points
+  /// @param axes  of the sweep that finds the tet's points
   TetPositions(const igm::PreparedMap& map, Index tet, lattice::SweepAxes axes);
 
   /// The preimage of a grid point in the interior of a simplex of the tet: a vertex itself, on the

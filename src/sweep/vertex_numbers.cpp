@@ -1,3 +1,4 @@
+// Numbers hex vertices by owner and generator (Section 5.2).
 #include <cassert>
 #include <numeric>
 
@@ -145,7 +146,7 @@ void TetNumbering::start(Counter& counter, lattice::CornerMask simplex) {
   }
 }
 
-/// Whether the sweep meets the points of an edge from the larger vertex to the smaller.
+/// Whether the sweep visits the points of an edge from the larger vertex to the smaller.
 bool TetNumbering::sweepsBackward(lattice::CornerMask edge) const noexcept {
   const std::size_t a = lattice::firstCorner(edge);
   const std::size_t b = lattice::lastCorner(edge);

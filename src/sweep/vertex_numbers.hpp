@@ -1,5 +1,5 @@
-// The canonical numbers of hex vertices: by owner tet (the smallest around the generator); there by
-// generator, in order of dimension, then corners; there by position: along an edge from its smaller
+// The canonical numbers of hex vertices: by owner tet (the smallest around the generator); then by
+// generator, in order of dimension, then corners; then by position: along an edge from its smaller
 // vertex on, otherwise in the order of the owner's sweep.
 #pragma once
 
@@ -34,7 +34,7 @@ struct VertexNumbers {
   [[nodiscard]] std::uint64_t firstOf(Index owner, lattice::CornerMask simplex) const;
 };
 
-/// What a block of tets owns; collected while it is swept.
+/// What a block of tets owns; collected during the sweep.
 class VertexCounter {
  public:
   VertexCounter(const igm::PreparedMap& map, VertexNumbers& numbers);
@@ -73,7 +73,7 @@ struct SweptVertices {
 };
 
 /// Sees the tets while they are swept for vertices, and may sweep them for other points. (With a
-/// sweep of their own for the midpoints of edges, arcs and an extraction together take 4 to 8 %
+/// separate sweep for the midpoints of edges, arcs and an extraction together take 4 to 8 %
 /// longer.)
 class SweepObserver {
  public:
@@ -86,13 +86,13 @@ class SweepObserver {
 
   /// Tets of a block of kSweepBlock in order, blocks in any order and in parallel.
   virtual void add(std::size_t block, Index tet, lattice::TetRasterizer& rasterizer) = 0;
-  /// At the end.
+  /// Called at the end.
   virtual void take(SweptVertices vertices) = 0;
 };
 
 /// Sweeps all tets for vertices, and numbers these.
-/// @param observer  sees every tet, if there is one; the result is the caller's to hand over
-/// @param epsilon   of TetRasterizer
+/// @param observer  sees every tet, if not null; the caller must hand it the result
+/// @param epsilon   as in TetRasterizer
 [[nodiscard]] SweptVertices sweepVertices(const igm::PreparedMap& map, Stage& stage,
                                           SweepObserver* observer = nullptr, double epsilon = 0);
 
@@ -106,7 +106,7 @@ struct VertexRun {
   std::uint64_t first;  ///< number of the first point
 };
 
-/// Numbers the vertices of one tet: all but those in faces that another tet owns.
+/// Numbers the vertices of one tet, except those in faces that another tet owns.
 class TetNumbering {
  public:
   TetNumbering(const igm::PreparedMap& map, const VertexNumbers& numbers, Index tet,
@@ -129,7 +129,7 @@ class TetNumbering {
     }
   }
 
-  /// Faces with hex vertices that another tet owns: a set of opposite corners. After run().
+  /// Faces with hex vertices that another tet owns: a set of opposite corners. Known after run().
   [[nodiscard]] unsigned foreignFaces() const noexcept { return foreignFaces_; }
 
  private:

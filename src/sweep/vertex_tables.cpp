@@ -1,3 +1,4 @@
+// Tables of the lines of tets, by level and row, to look up hex vertices in.
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -27,7 +28,7 @@ void VertexTables::countLines(const TetLines& lines, Stage& stage) {
   lineBegin_.resize(tets + 1);
   lineBegin_[tets] = 0;
   occupied_.assign((tets + 63) / 64, 0);
-  static_assert(kSweepBlock % 64 == 0);  // blocks have words of their own
+  static_assert(kSweepBlock % 64 == 0);  // blocks share no words
   parallelFor(stage, tets, kSweepBlock, [&](std::size_t t) {
     lineBegin_[t] = lines.of(static_cast<Index>(t)).size();
     if (lineBegin_[t] != 0) occupied_[t / 64] |= std::uint64_t{1} << (t % 64);
@@ -35,7 +36,7 @@ void VertexTables::countLines(const TetLines& lines, Stage& stage) {
   lines_.resize(exclusiveScan(std::span(lineBegin_)));
 }
 
-/// Takes the lines, block by block.
+/// Moves the lines in, block by block.
 void VertexTables::enterLines(TetLines& lines, Stage& stage) {
   parallelBlocks(stage, map_.topology.tetCount(), kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
@@ -68,12 +69,12 @@ void VertexTables::Line::enter(const VertexRun& run) {
     inner = first + (1 - run.offset);
     step = 1;
   } else if (run.offset == 2 && last > 2) {
-    // One by one: the sweep meets the points of an edge against their order.
+    // One by one: the sweep visits the points of an edge in reverse order.
     step = static_cast<std::int32_t>(first) - static_cast<std::int32_t>(inner);
   }
 }
 
-/// To be called when all lines have their numbers.
+/// Call when all lines have their numbers.
 void VertexTables::makeTables(std::uint64_t room, Stage& stage) {
   const std::size_t tets = map_.topology.tetCount();
   boxOf_.resize(tets);
@@ -102,7 +103,7 @@ void VertexTables::makeTables(std::uint64_t room, Stage& stage) {
   });
 }
 
-/// `begin` is kNoTable if the tet gets no table, and otherwise still to be set.
+/// `begin` is kNoTable if the tet gets no table, and otherwise yet to be set.
 VertexTables::Box VertexTables::measureBox(Index tet, std::uint64_t room) const {
   const std::span<const Line> lines = linesOf(tet);
   std::array<std::int32_t, 2> low = {lines.front().swept.level, lines.front().swept.row};
@@ -132,7 +133,7 @@ void VertexTables::fillTable(Index tet, const Box& box) {
     const auto level = static_cast<std::uint64_t>(line.swept.level - box.first[0]);
     const auto row = static_cast<std::uint64_t>(line.swept.row - box.first[1]);
     assert(level < box.size[0] && row < box.size[1]);
-    assert(table[level * box.size[1] + row] == kNone);  // a line for each row
+    assert(table[level * box.size[1] + row] == kNone);  // one line per row
     table[level * box.size[1] + row] = number++;
   }
 }

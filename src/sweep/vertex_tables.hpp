@@ -1,4 +1,4 @@
-// The hex vertices of every closed tet, found again by grid point.
+// Finds the hex vertices of every closed tet by grid point.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ struct VertexDescriptions {
 };
 
 /// Of the lines of a tet's sweep, each with a SweptLine `swept`: the one through a grid point,
-/// which may end before it; nullptr if there is none.
-/// @param hint  which line may be the one: searches in the order of a sweep repeat the one before
+/// which may end before the point; nullptr if there is none.
+/// @param hint  the line to try first: searches in the order of a sweep repeat the one before
 template <class Line>
 [[nodiscard]] const Line* findLine(std::span<const Line> lines, const lattice::GridPoint& z,
                                    std::size_t hint = 0) {
@@ -34,8 +34,8 @@ template <class Line>
   const auto keyOf = [&](const Line& line) { return key(line.swept.level, line.swept.row); };
   const std::int64_t wanted = key(z[axes[0]], z[axes[1]]);
   if (hint < lines.size() && keyOf(lines[hint]) == wanted) return &lines[hint];
-  // std::lower_bound() branches, and where to cannot be predicted: with it, arcs and
-  // patches of s17c_sphere_r10 take 6 % longer.
+  // std::lower_bound() has branches that cannot be predicted: with it, arcs and patches of
+  // s17c_sphere_r10 take 6 % longer.
   const Line* found = lines.data();
   for (std::size_t size = lines.size(); size > 1;) {
     const std::size_t half = size / 2;
@@ -47,15 +47,15 @@ template <class Line>
 
 /// Numbers are those of extract() at the map's scale.
 ///
-/// A tet has a table of the lines of its sweep, by level and row, unless hardly any of them hold
+/// A tet has a table of its sweep's lines, by level and row, unless hardly any of them hold
 /// vertices: then its lines are searched. (Without tables, arcs and an extraction together take 7 %
-/// more time with tets of the size of cells, and up to 70 % with many cells in a tet.)
+/// more time with tets of the size of cells, and up to 70 % with many cells per tet.)
 class VertexTables {
  public:
   static constexpr std::uint64_t kRoomPerLine = 24;
 
-  /// @param room  how many places the table of a tet may have for each of its lines: thin tets
-  ///              across the axes would leave most of theirs empty
+  /// @param room  how many entries a tet's table may have per line: those of thin tets across the
+  ///              axes would be mostly empty
   /// @throws Error TooLarge for more vertices than an Index can number
   VertexTables(const igm::PreparedMap& map, SweptVertices swept, Stage& stage,
                std::uint64_t room = kRoomPerLine);
@@ -66,7 +66,7 @@ class VertexTables {
   [[nodiscard]] const VertexNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] std::uint64_t count() const noexcept { return numbers_.count(); }
 
-  /// Writes position and generator of every vertex.
+  /// Writes the position and generator of every vertex.
   void describe(const VertexDescriptions& to, Stage& stage) const;
 
   /// Whether a closed tet contains any vertices.
@@ -141,7 +141,7 @@ class VertexTables {
   void makeTables(std::uint64_t room, Stage& stage);
   [[nodiscard]] Box measureBox(Index tet, std::uint64_t room) const;
   void fillTable(Index tet, const Box& box);
-  /// The vertex at grid point z of a line, if there is that line.
+  /// The vertex at grid point z of a line, if that line exists.
   [[nodiscard]] Found foundOn(Index tet, const Line* line, const lattice::GridPoint& z) const {
     if (line == nullptr) return {};
     const std::uint32_t i = line->swept.indexOf(z);

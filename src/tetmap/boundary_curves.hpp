@@ -1,4 +1,4 @@
-// Edges that leave no room for what a boundary and curves on it demand of both ends.
+// Edges too tight for what a boundary, and curves on it, demand of both ends.
 #pragma once
 
 #include <algorithm>
@@ -29,15 +29,15 @@ class BoundaryCurves {
   [[nodiscard]] bool hasAllOf(const Tet& tet) const {
     return std::all_of(tet.begin(), tet.end(), [this](Index v) { return has(v); });
   }
-  /// Whether an edge is less free than its middle would be: inside between two vertices of the
-  /// boundary, or on no curve between two vertices of curves.
+  /// Whether an edge's ends are less free than its midpoint would be: an inner edge between two
+  /// vertices of the boundary, or one on no curve between two vertices of curves.
   [[nodiscard]] bool isTight(const VertexPair& edge) const {
     if (!isOuter_[edge[0]] || !isOuter_[edge[1]]) return false;
     if (!std::binary_search(edges_.begin(), edges_.end(), edge)) return true;
     return isOnCurve_[edge[0]] && isOnCurve_[edge[1]] &&
            !std::binary_search(curves_.begin(), curves_.end(), edge);
   }
-  /// All of these, of each tet.
+  /// The tight edges of all tets.
   [[nodiscard]] std::vector<EdgeInTet> tightEdges(const std::vector<Tet>& tets) const {
     std::vector<EdgeInTet> tight;
     for (Index t = 0; t < tets.size(); ++t) {

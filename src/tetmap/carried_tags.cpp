@@ -1,3 +1,4 @@
+// Finds the simplices of a split mesh that are parts of tagged ones.
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +12,7 @@ namespace hexhex::tetmap {
 
 namespace {
 
-/// Tagged parts of tagged edges or triangles.
+/// The tagged parts of tagged edges or triangles.
 /// @tparam Simplex  FeatureEdge or FeatureFace
 template <class Simplex>
 class Carrier {
@@ -34,7 +35,7 @@ class Carrier {
     found_.push_back({sorted(vertices), found->second});
   }
 
-  /// Each once.
+  /// Each part once.
   std::vector<Simplex> take() {
     const auto less = [](const Simplex& a, const Simplex& b) { return a.vertices < b.vertices; };
     std::sort(found_.begin(), found_.end(), less);

@@ -1,4 +1,4 @@
-// Tags of a tet mesh, carried to one that was made of it by splits of edges and tets.
+// Carries tags of a tet mesh over to a mesh made from it by splitting edges and tets.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace hexhex::tetmap {
 
-/// Where vertices that splits have added lie in the mesh that was split first.
+/// Where the vertices added by splits lie in the mesh that was split first.
 class AddedVertices {
  public:
   explicit AddedVertices(std::size_t given) : given_(given) {}
@@ -17,8 +17,8 @@ class AddedVertices {
   void add(std::span<const Index> vertices) { simplices_.push_back(simplexOf(vertices)); }
   [[nodiscard]] bool empty() const noexcept { return simplices_.empty(); }
 
-  /// The corners of the smallest simplex of the given mesh that holds all of some vertices of one
-  /// of its tets: ascending, and kNone behind them.
+  /// The corners of the smallest simplex of the given mesh that contains all these vertices of one
+  /// of its tets: ascending, followed by kNone.
   [[nodiscard]] Tet simplexOf(std::span<const Index> vertices) const;
 
  private:
@@ -26,9 +26,9 @@ class AddedVertices {
   std::vector<Tet> simplices_;
 };
 
-/// Gives the simplices of a map the tags of those which they are parts of.
+/// Gives the simplices of a map the tags of the simplices that they are parts of.
 /// @param features, regions  of the mesh that was split
-/// @param parents  per tet of the map: that of the mesh which it is part of
+/// @param parents  per tet of the map: the tet of that mesh of which it is a part
 void carryTags(FeaturesView features, std::span<const std::int32_t> regions,
                const AddedVertices& added, std::span<const Index> parents, TetMap& map);
 

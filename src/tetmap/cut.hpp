@@ -1,4 +1,4 @@
-// A tet that is cut in two at the middle of an edge, and what becomes of all that is known of it.
+// A tet cut in two at the midpoint of an edge, and what becomes of the data attached to it.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using VertexPair = std::array<Index, 2>;
   return a < b ? VertexPair{a, b} : VertexPair{b, a};
 }
 
-/// An edge that is to be split, and a tet that has it.
+/// An edge to be split, and a tet that has it.
 struct EdgeInTet {
   VertexPair vertices;
   Index tet;
@@ -25,7 +25,7 @@ struct EdgeInTet {
   friend bool operator<(const EdgeInTet& a, const EdgeInTet& b) noexcept {
     return a.vertices < b.vertices;
   }
-  /// The same edge, whatever tets.
+  /// The same edge, whatever the tets.
   friend bool operator==(const EdgeInTet& a, const EdgeInTet& b) noexcept {
     return a.vertices == b.vertices;
   }
@@ -38,8 +38,8 @@ struct EdgeInTet {
           static_cast<std::uint8_t>(adjacency::localCorner(tets[tet], edge[1]))};
 }
 
-/// The first part keeps the tet's number and all corners but b; the second part, which is appended,
-/// all but a. These are the new vertex.
+/// The first part keeps the tet's number and all corners except b; the second part is appended, and
+/// has all except a. The new vertex takes their places.
 struct Cut {
   Index first;
   Index second;
@@ -59,7 +59,7 @@ inline Cut cutTet(std::vector<Tet>& tets, const adjacency::TetEdge& edge, Index 
   return {0.5 * a[0] + 0.5 * b[0], 0.5 * a[1] + 0.5 * b[1], 0.5 * a[2] + 0.5 * b[2]};
 }
 
-/// A value per tet: both parts have it. Empty lists stay so, here and below.
+/// A value per tet: both parts have it. Empty lists stay empty, here and below.
 template <class T>
 void carryTet(const Cut& cut, std::vector<T>& ofTets) {
   if (ofTets.empty()) return;
@@ -74,7 +74,7 @@ void carryCorners(const Cut& cut, const T& middle, std::vector<std::array<T, 4>>
   carryTet(cut, ofTets);
   ofTets[cut.first][cut.b] = ofTets[cut.second][cut.a] = middle;
 }
-/// Points, which lie in the middle at the new vertex.
+/// Points: the new vertex gets the midpoint.
 inline void carryCorners(const Cut& cut, std::vector<TetParameters>& ofTets) {
   if (ofTets.empty()) return;
   const TetParameters& whole = ofTets[cut.first];
@@ -82,7 +82,7 @@ inline void carryCorners(const Cut& cut, std::vector<TetParameters>& ofTets) {
 }
 
 /// A value per half-face.
-/// @param inside  between the two parts, on both sides
+/// @param inside  the value between the two parts, on both sides
 template <class T>
 void carryFaces(const Cut& cut, const T& inside, std::vector<T>& ofHalfFaces) {
   for (std::size_t face = 0; face < 4; ++face) {
@@ -109,7 +109,7 @@ void forEachEdgeOf(const Tet& tet, const Visit& visit) {
   }
 }
 
-/// Sorts a list, and leaves each entry once.
+/// Sorts a list and removes duplicates.
 template <class T>
 void sortUnique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());

@@ -1,6 +1,6 @@
-// Which ways may a vertex of a map move? Everything around it is brought into one chart, its first
-// one. Where only directions are known, axes are fixed (FixedAxes); where translations between
-// charts are, too, as numbers or as unknowns, its position is (PointEquations).
+// How may a vertex of a map move? Everything around it is brought into one chart, its first. Where
+// only directions are known, axes are fixed (FixedAxes); where translations between charts are
+// known too, as numbers or as unknowns, its position is (PointEquations).
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 
 namespace hexhex::tetmap {
 
-/// Axes of the first chart along which the vertex must stay. Rotations lead from there into the
-/// chart that an axis is one of.
+/// Axes of the first chart along which the vertex must not move. Rotations lead from the first
+/// chart into the one of the given axis.
 class FixedAxes {
  public:
-  /// @param planes  across these axes of the first chart
+  /// @param planes  normals of planes, as axes of the first chart
   explicit FixedAxes(lattice::AxisSet planes = 0) noexcept : axes_(planes) {}
 
-  /// Of the boundary, say.
+  /// A plane in which the vertex must stay, such as one of the boundary.
   void addPlane(int axis, lattice::Rotation rotation) noexcept {
     axes_ |= lattice::imageOf(1U << axis, rotation.inverse());
   }
@@ -30,7 +30,7 @@ class FixedAxes {
     axes_ |= lattice::imageOf(lattice::kAllAxes & ~(1U << axis), rotation.inverse());
     ++singularEdges_;
   }
-  /// What charts do around an edge at the vertex: their turn leaves its axis alone.
+  /// The rotation of charts once around an edge at the vertex. It leaves the edge's axis alone.
   void addTurn(lattice::Rotation turn) noexcept {
     for (int axis = 0; axis < 3; ++axis) {
       const lattice::Direction d = lattice::direction(axis, 1);
@@ -41,7 +41,7 @@ class FixedAxes {
   [[nodiscard]] lattice::AxisSet axes() const noexcept {
     return isNode(singularEdges_) ? lattice::kAllAxes : axes_;
   }
-  /// A singular vertex is incident to other than zero or two singular edges. (Section 3.2)
+  /// A node has a number of singular edges other than zero or two. (Section 3.2)
   [[nodiscard]] static constexpr bool isNode(std::size_t singularEdges) noexcept {
     return singularEdges != 0 && singularEdges != 2;
   }
@@ -51,7 +51,7 @@ class FixedAxes {
   std::size_t singularEdges_ = 0;
 };
 
-/// A known number, as what is left in an equation.
+/// A known number as the rest of an equation.
 struct KnownRest {
   std::int64_t value = 0;
 
@@ -75,20 +75,20 @@ class PointEquations {
     std::array<std::int64_t, 3> coefficients{};
     Rest rest;
   };
-  /// By pivot, with coefficients all zero where a coordinate is free; and what remains of equations
+  /// By pivot, with coefficients all zero where a coordinate is free; and the rests of equations
   /// whose coefficients have vanished.
   struct Solution {
     std::array<Equation, 3> coordinates;
     std::vector<Rest> left;
   };
 
-  /// A coordinate of the image R u, and more, is zero.
+  /// A coordinate of the image R u, plus `rest`, is zero.
   void addPlane(lattice::Rotation rotation, std::size_t axis, Rest rest) {
     Equation equation{{}, std::move(rest)};
     addCoordinate(rotation, axis, 1, equation);
     equations_.push_back(std::move(equation));
   }
-  /// A coordinate of two images, and more, is the same.
+  /// A coordinate is the same in two images, up to `rest`.
   void addAgreement(lattice::Rotation one, lattice::Rotation other, std::size_t axis, Rest rest) {
     Equation equation{{}, std::move(rest)};
     addCoordinate(one, axis, 1, equation);
@@ -96,7 +96,7 @@ class PointEquations {
     equations_.push_back(std::move(equation));
   }
 
-  /// In reduced echelon form.
+  /// In reduced row echelon form.
   [[nodiscard]] Solution solve() && {
     Solution solution;
     std::array<std::size_t, 3> columns{};
@@ -127,7 +127,7 @@ class PointEquations {
     }
   }
 
-  /// Puts the first equation with the smallest coefficient to its place; false if there is none.
+  /// Moves the first equation with the smallest coefficient into place; false if there is none.
   bool takePivot(std::size_t column, std::size_t place) {
     std::size_t best = equations_.size();
     const auto size = [&](std::size_t i) { return std::abs(equations_[i].coefficients[column]); };
@@ -139,7 +139,7 @@ class PointEquations {
     return true;
   }
 
-  /// Makes the coefficient of a coordinate zero.
+  /// Eliminates a coordinate.
   static void reduce(Equation& equation, const Equation& pivot, std::size_t column) {
     auto& coefficients = equation.coefficients;
     if (coefficients[column] == 0) return;

@@ -1,4 +1,4 @@
-// Which simplices of an integer-grid map lie in planes of the grid, where meshes have vertices.
+// Which simplices of an integer-grid map lie in grid planes, where meshes have vertices.
 #pragma once
 
 #include <cmath>
@@ -10,10 +10,10 @@
 
 namespace hexhex::tetmap {
 
-/// The number of axes along which some corners of a tet have one whole coordinate: 1 at least for a
-/// triangle with quads in it, 2 for an edge with edges in it.
+/// The number of axes along which the given corners of a tet have the same integer coordinate: at
+/// least 1 for a triangle that contains quads, 2 for an edge that contains hex edges.
 [[nodiscard]] inline int gridPlanes(const TetParameters& u, lattice::CornerMask corners) {
-  constexpr double kRounding = 1e-6;  // of maps that other programs wrote
+  constexpr double kRounding = 1e-6;  // in maps that other programs wrote
   int count = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double plane = NAN;

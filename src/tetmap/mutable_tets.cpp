@@ -1,3 +1,4 @@
+// Splits edges and tets, and finds the parts of what has been split.
 #include <algorithm>
 #include <utility>
 
@@ -22,7 +23,7 @@ void MutableTets::shrink() {
 }
 
 MutableTets::Found MutableTets::find(Index v, Index w, Index tet) const {
-  // The tet itself is the first of its parts; those split off, and their parts, in a tree.
+  // The tet itself is the first of its parts; those split off, and their parts, form a tree.
   std::vector<Index> toLookAt = {tet};
   while (!toLookAt.empty()) {
     const Index t = toLookAt.back();
@@ -81,7 +82,8 @@ std::vector<Cut> MutableTets::splitEdge(std::span<const adjacency::TetEdge> arou
     for (std::size_t face = 0; face < 4; ++face) {
       const adjacency::HalfFace h = 4 * cut.second + static_cast<Index>(face);
       if (mate[h] == kNone || face == cut.b) continue;
-      // The face beyond the new vertex is the second part's alone; those at the edge are split.
+      // The face beyond the new vertex belongs to the second part alone; those at the edge are
+      // split.
       if (face == cut.a) {
         mate[mate[h]] = h;
       } else {

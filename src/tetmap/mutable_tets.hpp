@@ -1,4 +1,4 @@
-// A tet mesh whose edges and tets can be split. What is known of its tets, corners and half-faces
+// A tet mesh whose edges and tets can be split. Data attached to its tets, corners and half-faces
 // is carried along by cut.hpp.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace hexhex::tetmap {
 
-/// Tets that were there before keep their numbers, as one of the parts into which they were split.
+/// Existing tets keep their numbers, as one of the parts into which they are split.
 class MutableTets {
  public:
   MutableTets() = default;
@@ -36,16 +36,16 @@ class MutableTets {
     return {tet, cornerOf(tet, v), cornerOf(tet, w)};
   }
 
-  /// The edge between two vertices, in a part of a tet of which it was once an edge; or the vertex
-  /// that has split it.
+  /// The edge between two vertices, in a part of a tet that once had this edge; or the vertex that
+  /// has split it.
   struct Found {
     std::optional<adjacency::TetEdge> edge;
     Index middle = kNone;
   };
   [[nodiscard]] Found find(Index v, Index w, Index tet) const;
 
-  /// Calls visit(edge) for all parts of what was once an edge of a tet. They must not be split
-  /// meanwhile, but other edges may.
+  /// Calls visit(edge) for all parts of a former edge of a tet. These must not be split meanwhile,
+  /// but other edges may.
   template <class Visit>
   void forEachPart(Index v, Index w, Index tet, const Visit& visit) {
     const Found found = find(v, w, tet);
@@ -57,18 +57,18 @@ class MutableTets {
     }
   }
 
-  /// Splits an edge, and the tets at it, in ascending order; it may not have been split before.
+  /// Splits an edge and the tets at it, in ascending order; it must not have been split before.
   /// @return the cuts; the new vertex is the last one
   std::vector<Cut> splitEdge(const EdgeInTet& at);
   /// Splits an edge.
-  /// @param around  all tets at it, from the same vertex to the same: cut in this order
+  /// @param around  all tets at it, with its vertices in the same order; they are cut in this order
   std::vector<Cut> splitEdge(std::span<const adjacency::TetEdge> around);
-  /// Puts a vertex into a tet, the last one then.
-  /// @return the parts, each with the tet's corners but for that of its place in the list, which
-  ///         is the new vertex; the first keeps the tet's number
+  /// Inserts a vertex into a tet; it becomes the last one.
+  /// @return the parts: in each, the new vertex takes the place of the corner of the same number;
+  ///         the first keeps the tet's number
   std::array<Index, 4> splitTet(Index tet);
 
-  /// Leaves what is asked of a mesh that will not be split again, without room to grow.
+  /// Keeps only what a mesh needs that will not be split again, without room to grow.
   void shrink();
 
   std::vector<Tet> tets;
@@ -77,8 +77,8 @@ class MutableTets {
  private:
   struct Part {
     Index tet;
-    Index next;                 ///< another part, in `parts_`, of the same tet, or kNone
-    Index kept, given, middle;  ///< the edge that was split: its end here, that there, its middle
+    Index next;                 ///< another part of the same tet, in `parts_`, or kNone
+    Index kept, given, middle;  ///< the edge that was split: its end here, that there, its midpoint
   };
   void addPart(Index tet, Part part);
   void join(adjacency::HalfFace a, adjacency::HalfFace b) {
@@ -91,10 +91,10 @@ class MutableTets {
   std::vector<Index> firstPart_;  ///< per tet
 };
 
-/// Splits edges in their middles, the longest first, which keeps tets round.
+/// Splits edges at their midpoints, the longest first, which keeps tets round.
 /// @param mate   as TetTopology has it
-/// @param edges  each once or more
-/// @param carry  carry(edge, middle, cuts), after each of them
+/// @param edges  may occur repeatedly
+/// @param carry  carry(edge, middle, cuts), called after each split
 /// @return `mate` afterwards
 template <class Carry>
 std::vector<adjacency::HalfFace> splitLongestFirst(TetMesh& mesh,

@@ -1,3 +1,4 @@
+// Splits edges of a map, with everything that is known about them.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -9,7 +10,7 @@ namespace hexhex::tetmap {
 
 namespace {
 
-/// Entries that have both vertices of the edge become two: the second half is appended.
+/// Splits entries that have both vertices of the edge: the second half is appended.
 template <class T>
 void splitEntries(const VertexPair& edge, Index middle, std::vector<T>& entries) {
   const std::size_t count = entries.size();
@@ -41,17 +42,17 @@ void splitTet(TetMap& map, const adjacency::TetEdge& edge, Index middle) {
   const Cut cut = cutTet(map.tets, edge, middle);
   carryCorners(cut, map.parameters);
   carryTet(cut, map.regions);
-  // Where nothing is known, the rotation is computed.
+  // Unknown rotations are computed.
   carryFaces(cut, std::int8_t{-1}, map.rotations);
 }
 
-/// An edge that is to be split, and the tets at it.
+/// An edge to be split, and its tets.
 struct Fan {
   VertexPair edge;
   std::vector<Index> tets;
 };
 
-/// Fans that have no tet in common, first come first served.
+/// Fans without common tets, first come, first served.
 std::vector<Fan> disjointFans(const adjacency::TetTopology& topology,
                               std::span<const EdgeInTet> edges) {
   std::vector<Fan> fans;
@@ -71,7 +72,7 @@ std::vector<Fan> disjointFans(const adjacency::TetTopology& topology,
 
 std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
                        std::span<const EdgeInTet> edges) {
-  // All of them first: the topology may see the map's own array, which is going to grow.
+  // All fans first: the topology may view the map's own array, which is about to grow.
   const std::vector<Fan> fans = disjointFans(topology, edges);
   for (const auto& [edge, tets] : fans) {
     const auto middle = static_cast<Index>(map.points.size());

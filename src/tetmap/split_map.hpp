@@ -1,4 +1,4 @@
-// Edges of a map are split with all that is known of it.
+// Splits edges of a map, with everything that is known about it.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace hexhex::tetmap {
 
-/// Puts a vertex in the middle of each edge, in space and in all charts, and cuts the tets at it in
-/// two. The map stays the same function. Edges that share a tet with one before them are left out.
-/// One of the two tets keeps its number, the others, and the vertices, are appended; what is known
-/// about the map (rotations, valences, features, regions) is carried over.
+/// Inserts a vertex at the midpoint of each edge, in space and in all charts, and cuts the tets at
+/// it in two. The map stays the same function. Edges that share a tet with an earlier one are left
+/// out. One half of each tet keeps its number; the other halves, and the vertices, are appended.
+/// What is known about the map (rotations, valences, features, regions) is carried over.
 /// @param topology  of the map; must not be used afterwards
 /// @return the number of edges that were split
 std::size_t splitEdges(TetMap& map, const adjacency::TetTopology& topology,
