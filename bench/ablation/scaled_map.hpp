@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 #include "bench_maps.hpp"
 

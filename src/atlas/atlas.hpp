@@ -16,7 +16,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/switches.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 namespace hexhex::atlas {

@@ -7,7 +7,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <lattice/gauge.hpp>
 
 namespace hexhex::atlas {

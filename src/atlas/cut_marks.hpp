@@ -11,7 +11,7 @@
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/grid_region.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::atlas {
 

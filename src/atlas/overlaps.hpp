@@ -9,7 +9,7 @@
 
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::atlas {
 

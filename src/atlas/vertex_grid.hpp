@@ -12,8 +12,8 @@
 #include <atlas/brick_grid.hpp>
 #include <atlas/charts.hpp>
 #include <atlas/grid_region.hpp>
-#include <igm/prepare.hpp>
-#include <sweep/cell_centers.hpp>
+#include <igm/igm.hpp>
+#include <sweep/cell_numbers.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include <curved/element_numbers.hpp>
-#include <sweep/cell_centers.hpp>
+#include <sweep/cell_numbers.hpp>
 
 namespace hexhex::curved {
 

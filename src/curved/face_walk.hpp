@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include <curved/simplex_star.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::curved {
 

@@ -14,7 +14,7 @@
 #include <hexhex/types.hpp>
 
 #include <curved/simplex_star.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <lattice/tet_geometry.hpp>
 
 namespace hexhex::curved {

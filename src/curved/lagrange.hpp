@@ -5,9 +5,9 @@
 
 #include <hexhex/curved.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <lattice/tet_geometry.hpp>
-#include <sweep/cell_centers.hpp>
+#include <sweep/cell_numbers.hpp>
 
 namespace hexhex::curved {
 

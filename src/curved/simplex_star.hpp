@@ -8,7 +8,7 @@
 #include <adjacency/edge_fan.hpp>
 #include <adjacency/key_table.hpp>
 
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 #include <igm/transitions.hpp>
 #include <lattice/grid_motion.hpp>
 #include <lattice/tet_geometry.hpp>

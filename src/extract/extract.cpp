@@ -11,7 +11,7 @@
 #include <hexhex/stream.hpp>
 
 #include <atlas/atlas.hpp>
-#include <extract/features.hpp>
+#include <extract/mesh_tags.hpp>
 #include <extract/steps.hpp>
 #include <igm/measures.hpp>
 #include <propeller/propeller.hpp>

@@ -10,7 +10,7 @@
 
 #include <hexhex/extractor.hpp>
 
-#include <extract/features.hpp>
+#include <extract/mesh_tags.hpp>
 #include <extract/steps.hpp>
 #include <igm/measures.hpp>
 

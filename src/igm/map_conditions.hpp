@@ -3,7 +3,7 @@
 #pragma once
 
 #include <base/vector3.hpp>
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 
 namespace hexhex::igm {
 

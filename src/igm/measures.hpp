@@ -7,7 +7,7 @@
 
 #include <hexhex/check.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <igm/regular_vertices.hpp>
 
 namespace hexhex::igm {

@@ -9,7 +9,7 @@
 #include <parts/part_region.hpp>
 #include <parts/vertex_set.hpp>
 
-#include <extract/features.hpp>
+#include <extract/mesh_tags.hpp>
 
 namespace hexhex::parts {
 

@@ -7,7 +7,7 @@
 
 #include <hexhex/parts.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <sweep/tet_counts.hpp>
 
 namespace hexhex::parts {

@@ -12,7 +12,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <sweep/vertex_tables.hpp>
 
 namespace hexhex::propeller {

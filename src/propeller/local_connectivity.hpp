@@ -11,7 +11,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <propeller/hex_vertices.hpp>
 
 namespace hexhex::propeller {

@@ -9,7 +9,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <propeller/local_connectivity.hpp>
 
 namespace hexhex::propeller {

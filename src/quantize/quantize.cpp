@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <quantize/canonical_order.hpp>
+#include <quantize/sorted_tets.hpp>
 #include <quantize/complex/wall_mesh.hpp>
 #include <quantize/quantized_map.hpp>
 #include <quantize/seamless/integer_factor.hpp>

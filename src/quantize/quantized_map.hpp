@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <quantize/search.hpp>
+#include <quantize/integer_search.hpp>
 
 #include <hexhex/quantize.hpp>
 

@@ -8,7 +8,7 @@
 
 #include <igm/defects.hpp>
 #include <igm/input.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::repairs {
 

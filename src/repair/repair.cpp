@@ -18,7 +18,7 @@
 #include <base/short_number.hpp>
 #include <base/vector3.hpp>
 #include <igm/measures.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <repair/diagnosis.hpp>
 #include <repair/patch.hpp>
 #include <repair/patch_charts.hpp>

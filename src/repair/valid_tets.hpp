@@ -7,9 +7,9 @@
 #include <hexhex/types.hpp>
 
 #include <base/disjoint_sets.hpp>
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 #include <igm/input.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::repairs {
 

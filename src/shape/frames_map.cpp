@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 #include <shape/frames_field.hpp>
 #include <shape/frames_map.hpp>
 #include <shape/frames_matching.hpp>

@@ -8,7 +8,7 @@
 #include <quantize/seamless/integer_form.hpp>
 #include <quantize/seamless/seamless_conditions.hpp>
 #include <shape/frames_space.hpp>
-#include <untangle/energy.hpp>
+#include <untangle/foldover_energy.hpp>
 
 #include <base/vector3.hpp>
 #include <lattice/tet_geometry.hpp>

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <shape/frames_tets.hpp>
-#include <tetmap/mutable_tets.hpp>
+#include <tetmap/tetmap.hpp>
 
 #include <hexhex/error.hpp>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <shape/expansion.hpp>
+#include <shape/label_expansion.hpp>
 #include <shape/label_check.hpp>
 
 #include <base/random.hpp>

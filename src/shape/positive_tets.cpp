@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 #include <shape/positive_tets.hpp>
 
 #include <base/stage.hpp>

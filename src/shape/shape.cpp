@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <quantize/quantized_map.hpp>
-#include <shape/features.hpp>
+#include <shape/sharp_edges.hpp>
 #include <shape/frames_map.hpp>
 #include <shape/polycube_map.hpp>
 #include <shape/positive_tets.hpp>

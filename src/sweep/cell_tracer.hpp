@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::sweep {
 

@@ -4,7 +4,7 @@
 #include <hexhex/team.hpp>
 
 #include <base/workspaces.hpp>
-#include <sweep/cell_centers.hpp>
+#include <sweep/cell_numbers.hpp>
 #include <sweep/tet_counts.hpp>
 
 namespace hexhex::sweep {

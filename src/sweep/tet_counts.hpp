@@ -5,7 +5,7 @@
 #include <hexhex/team.hpp>
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 namespace hexhex::sweep {

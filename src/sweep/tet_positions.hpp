@@ -4,7 +4,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <lattice/tet_rasterizer.hpp>
 
 namespace hexhex::sweep {

@@ -9,7 +9,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <sweep/tet_lines.hpp>
 
 namespace hexhex::sweep {

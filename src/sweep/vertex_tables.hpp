@@ -10,7 +10,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <sweep/vertex_numbers.hpp>
 
 namespace hexhex::sweep {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <untangle/energy.hpp>
+#include <untangle/foldover_energy.hpp>
 
 namespace hexhex::untangle {
 

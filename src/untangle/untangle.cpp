@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <Eigen/LU>
-#include <untangle/energy.hpp>
+#include <untangle/foldover_energy.hpp>
 #include <untangle/laplacian.hpp>
 #include <untangle/multigrid.hpp>
 #include <untangle/untangle.hpp>

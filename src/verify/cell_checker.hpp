@@ -18,7 +18,7 @@
 #include <verify/lattice_places.hpp>
 
 #include <lattice/cell_corners.hpp>
-#include <sweep/cell_centers.hpp>
+#include <sweep/cell_numbers.hpp>
 
 namespace hexhex::verification {
 

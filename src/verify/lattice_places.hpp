@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <base/parallel.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <lattice/tet_geometry.hpp>
 #include <sweep/vertex_numbers.hpp>
 

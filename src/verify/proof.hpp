@@ -22,7 +22,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/parts.hpp>
 
-#include <sweep/cell_centers.hpp>
+#include <sweep/cell_numbers.hpp>
 #include <sweep/tet_counts.hpp>
 
 namespace hexhex::verification {

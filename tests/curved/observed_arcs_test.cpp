@@ -13,7 +13,7 @@
 #include <curved/element_numbers.hpp>
 #include <igm/defects.hpp>
 #include <igm/measures.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 #include "curved/curved_maps.hpp"
 #include "curved/same_arcs.hpp"

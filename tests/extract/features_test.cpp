@@ -10,7 +10,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/io.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 #include "extract/support.hpp"
 

@@ -13,6 +13,7 @@
 
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -134,6 +135,7 @@ TEST(Limits, TetsThatCannotBeNumbered) {
 
 /// 12 unit lengths of singular edges each.
 TEST(Limits, AMillionComponents) {
+  HEXHEX_LARGE_TEST();
   const auto count = static_cast<std::size_t>(cases(1 << 20));
   const TetMap map = separateCubes(count);
   const HexMesh mesh = extract(map);

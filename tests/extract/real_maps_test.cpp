@@ -58,6 +58,7 @@ class RealMaps : public ::testing::TestWithParam<RealMap> {};
 TEST_P(RealMaps, ExtractAndVerify) {
   const std::filesystem::path file = dataFolder() / (std::string(GetParam().name) + ".hexex");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: no real maps here";
+  if (std::string_view(GetParam().name).ends_with("_r100")) HEXHEX_LARGE_TEST();
   const TetMap map = readMap(file);
   const std::string name = GetParam().name;
   for (const int scale : {1, 2, 3, 16}) {

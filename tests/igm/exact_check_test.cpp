@@ -8,7 +8,7 @@
 #include <hexhex/check.hpp>
 
 #include "extract/support.hpp"
-#include "igm/prepare.hpp"
+#include "igm/igm.hpp"
 #include "support/damaged_maps.hpp"
 #include "support/exact_findings.hpp"
 

@@ -11,7 +11,7 @@
 
 #include <base/parallel.hpp>
 #include <igm/defects.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 
 namespace hexhex::test {
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <base/vector3.hpp>
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 #include <igm/regular_vertices.hpp>
 
 #include "map_samples.hpp"

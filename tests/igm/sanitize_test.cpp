@@ -9,7 +9,7 @@
 
 #include <hexhex/check.hpp>
 
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 
 #include "map_samples.hpp"
 

@@ -13,6 +13,7 @@
 
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -123,6 +124,7 @@ TEST(ImproveCurved, MendsDistortedBoxes) {
 }
 
 TEST(ImproveCurved, MendsSamplesOfAllKinds) {
+  HEXHEX_LARGE_TEST();
   int bad = 0;
   int mended = 0;
   for (const SampleKindName& kind : sampleKinds()) {

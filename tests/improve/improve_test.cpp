@@ -26,6 +26,7 @@
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
 #include "support/sampled_distance.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -200,6 +201,7 @@ TEST(Improve, StaysInsideSharpWedgesAndNeedles) {
 }
 
 TEST(Improve, KeepsTaggedVerticesOfATorusOnItsSurface) {
+  HEXHEX_LARGE_TEST();
   SampleOptions options;
   options.cells = 3;
   options.jitter = 0.6;
@@ -258,6 +260,7 @@ TEST(Improve, KeepsTaggedQuadsInsideWhereTheyAre) {
 
 /// Blocks are regions here, so there are faces between them, which are moved off the grid.
 TEST(Improve, MeasuresTheBoundaryAndWhatIsInsideByThemselves) {
+  HEXHEX_LARGE_TEST();
   for (const SampleKind kind : {SampleKind::Sphere, SampleKind::Shell, SampleKind::Torus}) {
     SCOPED_TRACE(static_cast<int>(kind));
     const TetMap map = generateSample(kind, {.cells = 2, .jitter = 0.3, .features = true}).map;
@@ -276,6 +279,7 @@ TEST(Improve, MeasuresTheBoundaryAndWhatIsInsideByThemselves) {
 }
 
 TEST(Improve, MendsSamplesOfAllKinds) {
+  HEXHEX_LARGE_TEST();
   int bad = 0;
   int mended = 0;
   for (const SampleKindName& kind : sampleKinds()) {
@@ -371,6 +375,7 @@ TEST(Improve, LeavesGoodCellsGoodWhereOthersCannotBe) {
 
 /// 48 cells at a flat corner that nothing mends: 826 others became worse for them.
 TEST(Improve, LeavesAMeshAsGoodAsItWasWhereNothingMendsIt) {
+  HEXHEX_LARGE_TEST();
   const std::filesystem::path file = dataFolder() / "hexes" / "hexbox_CAD10.mesh";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "without public meshes";
   Context context(2);
@@ -470,6 +475,7 @@ HexMesh crumpledBall(const HexMesh& ball, std::size_t count, double share, std::
 /// surface is left by the slack in untangling and in raising. While all of them
 /// were held, one of these meshes was mended; while they were let go as a last resort, four.
 TEST(Improve, MendsCrumpledBalls) {
+  HEXHEX_LARGE_TEST();
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 3}).map;
   const HexMesh ball = extracted(map, 3);
   const double coarse = sampledDistance(ball, map).largest();

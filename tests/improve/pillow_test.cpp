@@ -19,6 +19,7 @@
 #include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 using hexhex::testing::identityMap;
@@ -69,6 +70,7 @@ TEST(ImprovePillow, VerticesSlideAcrossBordersOfLabelsOnASmoothSurface) {
 }
 
 TEST(ImprovePillow, RaisesTheMinimumOfSmoothBodies) {
+  HEXHEX_LARGE_TEST();
   for (const Vec3& axes : {Vec3{1, 1, 1}, Vec3{1, 1.5, 0.7}}) {
     const TetMap map = pillows::ellipsoid(8, axes);
     const HexMesh mesh = extracted(map, 1);
@@ -142,6 +144,7 @@ TEST(ImprovePillow, LeavesAlignedBlocksAlone) {
 
 /// Whatever the body, `auto` gives up nothing.
 TEST(ImprovePillow, AutoIsNeverWorse) {
+  HEXHEX_LARGE_TEST();
   for (const SampleKind kind : {SampleKind::Box, SampleKind::Torus, SampleKind::Sphere,
                                 SampleKind::Cylinder, SampleKind::Star}) {
     for (const double jitter : {0.3, 0.9}) {

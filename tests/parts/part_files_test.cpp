@@ -13,6 +13,7 @@
 #include <hexhex/samples.hpp>
 
 #include "support/damaged_maps.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex {
 namespace {
@@ -118,6 +119,7 @@ TEST_F(PartFiles, AppearWhenAllAreWrittenOrNotAtAll) {
 }
 
 TEST_F(PartFiles, OfManyMapsAreWritten) {
+  HEXHEX_LARGE_TEST();
   std::mt19937_64 random(3);
   for (const PartFormat& format : partFormats()) {
     for (int i = 0; i < 2; ++i) {

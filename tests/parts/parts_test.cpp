@@ -50,6 +50,7 @@ TEST(Parts, MakeUpMeshesOfLargeTets) {
 }
 
 TEST(Parts, MakeUpTheMeshIfThereAreHundreds) {
+  HEXHEX_LARGE_TEST();
   SampleOptions options;
   options.charts = ChartStyle::Random;
   options.cells = 8;

@@ -16,6 +16,7 @@
 #include "quantize/bend/edge_turns.hpp"
 #include "quantize/bend_problem_file.hpp"
 #include "quantize/bend_problems.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -252,6 +253,7 @@ TetMap realMap(const std::string& name) {
 }
 
 TEST(BendRealMaps, FindsTheWayFromHighToLowDensity) {
+  HEXHEX_LARGE_TEST();
   for (const auto& [target, reference] : {std::pair("s17c_sphere_r0.1", "s17c_sphere_r100"),
                                           {"fandisk_r0.01", "fandisk_r100"},
                                           {"fanpart_r0.1", "fanpart_r10"},
@@ -284,6 +286,7 @@ BendProblem difference(const TetMap& fine, const TetMap& coarse, int times) {
 }
 
 TEST(BendRealMaps, FindsRoomWhereThereIsLittle) {
+  HEXHEX_LARGE_TEST();
   const TetMap fine = realMap("s17c_sphere_r100");
   if (fine.tets.empty()) GTEST_SKIP() << "no real maps";
   const BentMap result = bent(difference(fine, realMap("s17c_sphere_r0.1"), 9));

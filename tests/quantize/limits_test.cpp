@@ -17,6 +17,7 @@
 #include "lattice/random.hpp"
 #include "support/error_of.hpp"
 #include "support/scaled_map.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test::limits {
 
@@ -72,6 +73,7 @@ TEST(QuantizeLimits, FarChartsTolerateNoMore) {
 
 /// Conditions without end.
 TEST(QuantizeLimits, NothingAtRandomIsSeamless) {
+  HEXHEX_LARGE_TEST();
   TetMap map = generateSample(SampleKind::Sphere, {.refine = 8}).map;
   ASSERT_GT(map.tets.size(), 40'000U);
   LatticeRandom random(7);

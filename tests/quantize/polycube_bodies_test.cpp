@@ -13,6 +13,7 @@
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -296,6 +297,7 @@ TEST(PolycubeLabels, NeedTetsThatAreNotInsideOut) {
 
 /// Labels of others, where they are.
 TEST(PolycubeRealLabels, AreBent) {
+  HEXHEX_LARGE_TEST();
   const char* chosen = std::getenv("HEXHEX_DATA");
   const auto folder =
       std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "labels";

@@ -18,6 +18,7 @@
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -211,6 +212,7 @@ TEST(PolycubesFromAfar, AreShearedWithDetours) {
 }
 
 TEST(PolycubesFromAfar, MayHaveFiftyThousandTets) {
+  HEXHEX_LARGE_TEST();
   expectPolycube(block({1, 1, 1}), 20, [&](const Vec3& p) { return turned(ballOf(p), 0.7); });
 }
 

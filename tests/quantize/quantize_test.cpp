@@ -26,6 +26,7 @@
 #include "quantize/real_maps.hpp"
 #include "support/error_of.hpp"
 #include "support/scaled_map.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -204,6 +205,7 @@ TEST(Quantize, KeepsCurvesWithSeveralFullTurns) {
 }
 
 TEST(Quantize, TakesTetsThatSeveralWallsCross) {
+  HEXHEX_LARGE_TEST();
   // Few and badly shaped tets: walls of parallel planes cross the same edges.
   for (const SampleKindName& kind : sampleKinds()) {
     for (const double jitter : {0.8, 1.0}) {

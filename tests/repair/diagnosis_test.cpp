@@ -8,7 +8,7 @@
 
 #include <mesh/grid_meshes.hpp>
 
-#include "igm/prepare.hpp"
+#include "igm/igm.hpp"
 #include "repair/valid_tets.hpp"
 #include "support/error_of.hpp"
 

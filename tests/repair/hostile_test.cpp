@@ -9,7 +9,7 @@
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
-#include "igm/prepare.hpp"
+#include "igm/igm.hpp"
 #include "repair/same_connectivity.hpp"
 #include "support/error_of.hpp"
 #include "support/joined_maps.hpp"

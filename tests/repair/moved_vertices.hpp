@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "igm/prepare.hpp"
+#include "igm/igm.hpp"
 #include "igm/vertex_star.hpp"
 
 namespace hexhex::test {

@@ -12,6 +12,7 @@
 #include "extract/support.hpp"
 #include "repair/cell_flood.hpp"
 #include "repair/same_connectivity.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -81,6 +82,7 @@ TEST(Partial, IsTheWholeMeshOfAValidMap) {
 }
 
 TEST(Partial, LeavesHolesAtDefects) {
+  HEXHEX_LARGE_TEST();
   SampleOptions options;
   options.cells = 6;
   options.refine = 3;

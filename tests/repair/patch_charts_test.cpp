@@ -8,7 +8,7 @@
 
 #include <hexhex/hexhex.hpp>
 
-#include "igm/prepare.hpp"
+#include "igm/igm.hpp"
 #include "repair/valid_tets.hpp"
 
 namespace hexhex::test {

@@ -10,7 +10,7 @@
 
 #include <mesh/grid_meshes.hpp>
 
-#include "igm/prepare.hpp"
+#include "igm/igm.hpp"
 
 namespace hexhex::test {
 

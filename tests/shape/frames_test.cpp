@@ -18,6 +18,7 @@
 
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 
@@ -220,6 +221,7 @@ TEST(FramesMap, KeepsABoxAsItIs) {
 }
 
 TEST(FramesMap, HasFourCurvesInACylinder) {
+  HEXHEX_LARGE_TEST();
   const TetMesh cylinder = boxOf({2, 2, 2}, 4, [](const Vec3& p) {
     const auto disc = onDisc(p[0] - 1, p[1] - 1);
     return Vec3{disc[0], disc[1], p[2]};

@@ -17,6 +17,7 @@
 
 #include "io/io_test_support.hpp"
 #include "support/labelled_bodies.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test::part_tags {
 namespace {
@@ -322,6 +323,7 @@ TEST(PartTags, OfShellsOfAnAbaqusFileAreTheirSets) {
 }
 
 TEST(PartTags, OfRegionsAreThoseOfCellsCentres) {
+  HEXHEX_LARGE_TEST();
   const TetMesh ball = ballInTwo();
   for (const ShapeMethod method : {ShapeMethod::Polycube, ShapeMethod::Frames}) {
     const MeshedPart part = meshed(ball, 800, method);

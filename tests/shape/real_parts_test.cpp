@@ -35,6 +35,7 @@ std::vector<std::filesystem::path> realParts() {
 }
 
 TEST(RealParts, EndInCertifiedMeshes) {
+  HEXHEX_LARGE_TEST();
   const auto files = realParts();
   if (files.empty()) GTEST_SKIP() << "no shapes in " << HEXHEX_DATA_DIR;
   std::size_t valid = 0;

@@ -18,6 +18,7 @@
 #include "quantize/real_maps.hpp"
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
+#include <support/effort.hpp>
 
 namespace hexhex::test {
 namespace {
@@ -91,6 +92,7 @@ TEST(Shapes, HaveTheFacesThatOneCanCount) {
 }
 
 TEST(Shapes, AreBalls) {
+  HEXHEX_LARGE_TEST();
   const TetMesh ball = box()
                            .labelled(4,
                                      [](const Vec3& p) {
@@ -102,6 +104,7 @@ TEST(Shapes, AreBalls) {
 }
 
 TEST(Shapes, AreCylinders) {
+  HEXHEX_LARGE_TEST();
   const TetMesh cylinder = box()
                                .labelled(4,
                                          [](const Vec3& p) {
@@ -113,6 +116,7 @@ TEST(Shapes, AreCylinders) {
 }
 
 TEST(Shapes, AreTori) {
+  HEXHEX_LARGE_TEST();
   const TetMesh torus =
       ring()
           .labelled(
@@ -220,6 +224,7 @@ TEST(Shapes, CanBeCancelled) {
 
 /// Faces of a tetrahedron are oblique in each polycube; along frames they are not.
 TEST(Shapes, TakeTheBetterOfBothWays) {
+  HEXHEX_LARGE_TEST();
   const TetMap sample = generateSample(SampleKind::Tetrahedron).map;
   const TetMesh tets = {sample.points, sample.tets};
   const MeshedPart polycube = meshed(tets, 500);
@@ -238,6 +243,7 @@ TEST(Shapes, TakeTheBetterOfBothWays) {
 
 /// Those of samples are bodies of several kinds, some with many tets in a point.
 TEST(Shapes, AreThoseOfSamples) {
+  HEXHEX_LARGE_TEST();
   for (const SampleKindName& kind : sampleKinds()) {
     SCOPED_TRACE(kind.name);
     const TetMap sample = generateSample(kind.kind).map;

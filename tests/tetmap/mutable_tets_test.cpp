@@ -4,7 +4,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <tetmap/mutable_tets.hpp>
+#include <tetmap/tetmap.hpp>
 
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>

@@ -4,7 +4,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <untangle/energy.hpp>
+#include <untangle/foldover_energy.hpp>
 #include <untangle/laplacian.hpp>
 #include <untangle/multigrid.hpp>
 

@@ -5,7 +5,7 @@
 #include <quantize/bend/bend_split.hpp>
 #include <quantize/bend/edge_turns.hpp>
 #include <tetmap/freedom.hpp>
-#include <tetmap/mutable_tets.hpp>
+#include <tetmap/tetmap.hpp>
 
 #include <base/vector3.hpp>
 

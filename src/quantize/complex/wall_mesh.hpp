@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <quantize/seamless/seamless_map.hpp>
-#include <tetmap/mutable_tets.hpp>
+#include <tetmap/tetmap.hpp>
 
 #include <hexhex/error.hpp>
 

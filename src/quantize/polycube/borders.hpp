@@ -16,7 +16,7 @@
 
 #include <quantize/complex/wall_mesh.hpp>
 #include <quantize/polycube/boundary_sides.hpp>
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 
 namespace hexhex::quantization {
 

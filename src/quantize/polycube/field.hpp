@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 
 #include <base/stage.hpp>
 

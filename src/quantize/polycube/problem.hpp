@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 #include <quantize/polycube/borders.hpp>
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 #include <untangle/problem.hpp>
 
 namespace hexhex::quantization {

@@ -2,7 +2,7 @@
 
 #include <quantize/polycube/tets.hpp>
 #include <tetmap/boundary_curves.hpp>
-#include <tetmap/mutable_tets.hpp>
+#include <tetmap/tetmap.hpp>
 
 #include <base/vector3.hpp>
 

@@ -1,7 +1,7 @@
 // The tets of a polycube, split where labels leave them no room.
 #pragma once
 
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 #include <tetmap/carried_tags.hpp>
 
 namespace hexhex::quantization {

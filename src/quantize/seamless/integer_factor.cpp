@@ -8,7 +8,7 @@
 #include <hexhex/extract.hpp>
 
 #include <base/vector3.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <igm/transition_fit.hpp>
 
 namespace hexhex::quantization {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <base/sorted.hpp>
-#include <extract/features.hpp>
-#include <sweep/cell_centers.hpp>
+#include <extract/mesh_tags.hpp>
+#include <sweep/cell_numbers.hpp>
 #include <sweep/cell_tracer.hpp>
 
 namespace hexhex::extraction {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <shape/features.hpp>
+#include <shape/sharp_edges.hpp>
 #include <shape/surface.hpp>
 
 #include <hexhex/quantize.hpp>

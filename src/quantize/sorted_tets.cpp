@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include <quantize/canonical_order.hpp>
+#include <quantize/sorted_tets.hpp>
 
 namespace hexhex::quantization {
 

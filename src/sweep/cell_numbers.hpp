@@ -10,7 +10,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <lattice/cell_corners.hpp>
 #include <sweep/tet_lines.hpp>
 

@@ -5,7 +5,7 @@
 
 #include <pipeline/best_way.hpp>
 #include <pipeline/groups.hpp>
-#include <quantize/most_cells.hpp>
+#include <quantize/cell_limit.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/extractor.hpp>

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <untangle/energy.hpp>
+#include <untangle/foldover_energy.hpp>
 
 #include <base/parallel.hpp>
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tetmap/mutable_tets.hpp>
+#include <tetmap/tetmap.hpp>
 
 #include <hexhex/error.hpp>
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <utility>
 
-#include <shape/expansion.hpp>
+#include <shape/label_expansion.hpp>
 
 namespace hexhex::shape {
 

@@ -12,8 +12,8 @@
 #include <quantize/bend/bend_problem.hpp>
 #include <quantize/bend/edge_turns.hpp>
 #include <quantize/integers/block_structure.hpp>
-#include <quantize/most_cells.hpp>
-#include <quantize/search.hpp>
+#include <quantize/cell_limit.hpp>
+#include <quantize/integer_search.hpp>
 
 #include <base/vector3.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <igm/defects.hpp>
 #include <igm/input.hpp>
-#include <igm/prepare.hpp>
+#include <igm/igm.hpp>
 #include <igm/regular_vertices.hpp>
 #include <igm/unfold_charts.hpp>
 

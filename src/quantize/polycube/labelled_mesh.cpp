@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <quantize/polycube/labels.hpp>
+#include <quantize/polycube/labelled_mesh.hpp>
 
 #include <base/vector3.hpp>
 #include <igm/defects.hpp>

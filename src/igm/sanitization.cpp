@@ -7,7 +7,7 @@
 
 #include <base/lanes.hpp>
 #include <base/vector3.hpp>
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 #include <igm/map_conditions.hpp>
 #include <igm/measures.hpp>
 

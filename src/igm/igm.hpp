@@ -8,7 +8,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/switches.hpp>
-#include <igm/exact_map.hpp>
+#include <igm/sanitization.hpp>
 #include <igm/input.hpp>
 #include <igm/singularities.hpp>
 
