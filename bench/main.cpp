@@ -1,4 +1,4 @@
-// Benchmarks of the engines through the public face. See docs/performance.md.
+// Benchmarks of the engines through the public face. See docs/results/performance.md.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks.hpp"

@@ -1,5 +1,5 @@
 # WebAssembly, by Debian's emscripten (preset `wasm`): single-threaded, as pages of files cannot ask
-# browsers for threads. To be included before targets are made. docs/browser.md
+# browsers for threads. To be included before targets are made. docs/user/browser.md
 #
 # Headers of the system's packages work here, too, but not its libraries: zlib is compiled from the
 # sources in an npm package.

@@ -88,7 +88,7 @@ optional_packages=(libhdf5-dev libeigen3-dev python3-venv)
 # ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)
-# ... and solvers that docs/solvers has pages of.
+# ... and solvers that docs/user/solvers has pages of.
 solver_packages=(calculix-ccx python3-getfem)
 # What builds the ParaView plugin (its CMake files look for the three libraries), and what tests it:
 # Debian's ParaView draws with X only.

@@ -48,7 +48,7 @@ int run() {
       "written with --format NAME. --tets: its tets are read for --tets and --polycube, and by "
       "`hexhex\n"
       "map` and `hexhex mesh`; map, mesh: these fill the surface with tets.\n"
-      "\n--for SOLVER writes what a solver reads (docs/solvers):\n\n");
+      "\n--for SOLVER writes what a solver reads (docs/user/solvers):\n\n");
   fmt::print("{:<12} {:<14} {:<12} {:<10} {}\n", "solver", "program", "format", "extension",
              "of higher order");
   for (const SolverFormat& solver : solverFormats()) {

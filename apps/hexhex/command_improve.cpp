@@ -186,7 +186,7 @@ Command addImprove(CLI::App& app) {
       "Cells that are not positive come first, then those below --target, then all. Vertices on "
       "the\n"
       "surface slide on it. A mesh of which cells stay that are not positive is written, with a\n"
-      "warning; --report lists them. docs/improve.md explains what happens.\n\nExample:\n"
+      "warning; --report lists them. docs/user/improve.md explains what happens.\n\nExample:\n"
       "  hexhex improve mesh.vtu --map map.hexex -o better.vtu\n"
       "  hexhex extract map.hexex -o better.vtu --improve     in one go");
   return {parser, [arguments] { return run(*arguments); }};

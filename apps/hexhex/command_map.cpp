@@ -78,7 +78,7 @@ Command addMap(CLI::App& app) {
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "Exit code 1: no map was found, or the part is no solid; nothing is written.\n"
-      "docs/making-maps.md explains what happens.\n\n"
+      "docs/user/making-maps.md explains what happens.\n\n"
       "Example:\n"
       "  hexhex map part.stl -o seamless.hexex\n"
       "  hexhex quantize seamless.hexex -o integer.hexex --cells 50000\n"

@@ -173,7 +173,7 @@ Command addMesh(CLI::App& app) {
   parser->footer(
       "map, quantize, extract, verify and improve in one go. A mesh of which a cell is not\n"
       "certified to be positive everywhere is not written. Exit code 1: no map was found, or no\n"
-      "such mesh. docs/making-maps.md explains what happens.\n\n"
+      "such mesh. docs/user/making-maps.md explains what happens.\n\n"
       "Example:\n"
       "  hexhex mesh part.stl -o mesh.vtu --cells 50000 --view mesh.html");
   return {parser, [arguments] { return run(*arguments); }};

@@ -34,7 +34,8 @@ void printQuantized(const QuantizeReport& report) {
   printLine(
       "integers",
       "by " + report.integersBy +
-          (isRounded ? "; the library HiGHS finds better ones (docs/quantize.md, 'HiGHS')" : ""));
+          (isRounded ? "; the library HiGHS finds better ones (docs/user/quantize.md, 'HiGHS')"
+                     : ""));
   printLine("moved to be seamless", fmt::format("at most {:.3g}", report.displacement));
   printLine("scaled Jacobian",
             fmt::format("{:.3f} (worst) and {:.3f} (median) of the map; {:.3f} and {:.3f} before",
@@ -89,7 +90,7 @@ Command addQuantize(CLI::App& app) {
       "One of --cells, --scale and --edge-length says how fine the mesh is to be. Exit code 1: "
       "the\n"
       "map is not seamless, or cannot be bent onto so few cells (--densify); nothing is written.\n"
-      "docs/quantize.md explains what happens.\n\n"
+      "docs/user/quantize.md explains what happens.\n\n"
       "Example:\n"
       "  hexhex quantize seamless.hexex -o integer.hexex --cells 50000\n"
       "  hexhex extract integer.hexex -o mesh.vtu\n"

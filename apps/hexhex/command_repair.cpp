@@ -75,7 +75,7 @@ Command addRepair(CLI::App& app) {
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "A valid map is written as it is. Exit code 1: the map cannot be repaired; the message says\n"
-      "why, and nothing is written. docs/defects.md explains what can be repaired and how.\n\n"
+      "why, and nothing is written. docs/user/defects.md explains what can be repaired and how.\n\n"
       "Example:\n"
       "  hexhex generate sphere --defects 10 --defect-kind singular -o broken.hexex\n"
       "  hexhex repair broken.hexex -o repaired.hexex");

@@ -1,5 +1,5 @@
-// What `hexhex extract` says of a mesh, for people and for machines. docs/report.md explains every
-// key of the JSON.
+// What `hexhex extract` says of a mesh, for people and for machines. docs/user/report.md explains
+// every key of the JSON.
 #pragma once
 
 #include <array>
@@ -83,7 +83,7 @@ void printSummary(const ExtractionRecord& record);
 void printPartial(const PartialMesh& partial);
 
 /// The report of a partial extraction, with all holes, as JSON text that ends with a line break;
-/// docs/report.md explains the keys.
+/// docs/user/report.md explains the keys.
 /// @param problem  why there is no whole mesh
 [[nodiscard]] std::string partialReportAsJson(const PartialMesh& partial, const Error& problem,
                                               int scale);

@@ -1,4 +1,4 @@
-// Reports as JSON, for programs. docs/report.md explains the keys.
+// Reports as JSON, for programs. docs/user/report.md explains the keys.
 #pragma once
 
 #include <array>

@@ -25,7 +25,7 @@ void printExpectation(const Expectation& expected);
 /// One line per region, on the standard output.
 void printRegions(const RepairReport& report);
 
-/// docs/report.md explains the keys; null if nothing was changed.
+/// docs/user/report.md explains the keys; null if nothing was changed.
 [[nodiscard]] nlohmann::ordered_json repairAsJson(const RepairReport& report);
 
 }  // namespace hexhex::command

@@ -21,7 +21,7 @@ void addShapeOptions(CLI::App& parser, ShapeOptions& options);
 void printFill(const FilledPart& part);
 void printShape(const ShapeReport& report);
 
-// docs/report.md explains the keys.
+// docs/user/report.md explains the keys.
 [[nodiscard]] Json filledAsJson(const std::string& file, const FilledPart& part);
 
 }  // namespace hexhex::command

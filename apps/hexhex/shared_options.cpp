@@ -96,7 +96,7 @@ void addMapOptions(CLI::App& parser, MapSource& source) {
                       "... or labels 0 to 5 (+x -x +y -y +z -z) of its boundary:\n"
                       "a polycube's seamless map is made of them. Text with four\n"
                       "per tet, or one per triangle of --surface; or .vtu, .vtk\n"
-                      "with triangles (docs/quantize.md); auto: they are found")
+                      "with triangles (docs/user/quantize.md); auto: they are found")
           ->option_text("FILE");
   polycube->needs(tets)->excludes(flags);
   flags->needs(tets);

@@ -1,5 +1,5 @@
-// Comparisons of alternatives inside the library. See docs/performance.md,
-// docs/ablation.md.
+// Comparisons of alternatives inside the library. See docs/results/performance.md,
+// docs/results/ablation.md.
 #include <benchmark/benchmark.h>
 
 #include "ablation/benchmarks.hpp"

@@ -1,5 +1,5 @@
 // What each special path gains: whole extractions with it and without it, in turn, on the maps of
-// the evaluation. An entry of kEntries is all that a new one takes. (docs/ablation.md)
+// the evaluation. An entry of kEntries is all that a new one takes. (docs/results/ablation.md)
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -1,1 +1,1 @@
-"""Runs all benchmarks, draws the plots and writes the tables of docs/performance.md."""
+"""Runs all benchmarks, draws the plots and writes the tables of docs/results/performance.md."""

@@ -1,4 +1,4 @@
-"""Rewrites the generated parts of docs/performance.md and docs/ablation.md: what stands between
+"""Rewrites the generated parts of docs/results/performance.md and docs/results/ablation.md: what stands between
 `<!-- begin:NAME -->` and `<!-- end -->`."""
 
 import re

@@ -1,4 +1,4 @@
-"""All plots of docs/performance.md."""
+"""All plots of docs/results/performance.md."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The tables of docs/performance.md and docs/ablation.md. Each function returns "" if there are no
+"""The tables of docs/results/performance.md and docs/results/ablation.md. Each function returns "" if there are no
 figures for it."""
 
 from collections.abc import Callable, Iterable

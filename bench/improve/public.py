@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `hexhex improve` makes of meshes of others, and of maps of real models: the table of docs/improve.md.
+"""What `hexhex improve` makes of meshes of others, and of maps of real models: the table of docs/user/improve.md.
 
     PYTHONPATH=bench bench/improve/public.py HEXHEX [DATA] [--only WORD] [--docs FOLDER]
 

@@ -1,5 +1,5 @@
 // What each of many processes takes to make its part of a mesh: all parts, one after the other with
-// one thread, and the mesh in one piece beside them. (docs/scaling.md)
+// one thread, and the mesh in one piece beside them. (docs/results/scaling.md)
 //
 //   hexhex_part_times MAP SCALE PARTS...
 //

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `hexhex mesh` makes of random parts (bench/shape/solids.py): the tables of docs/any-part.md.
+"""What `hexhex mesh` makes of random parts (bench/shape/solids.py): the tables of docs/results/any-part.md.
 
     PYTHONPATH=bench:bench/improve bench/shape/drawn.py HEXHEX --seeds 0:50 [--folder build/drawn] [--seconds 60] [--docs docs]
 

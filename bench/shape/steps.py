@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How long `hexhex mesh` takes by step, of parts with more and more tets.
 
-    bench/shape/steps.py HEXHEX [--tets 5000 20000 80000 200000] [--threads 2] [--cells 20000] [--write docs/making-maps.md]
+    bench/shape/steps.py HEXHEX [--tets 5000 20000 80000 200000] [--threads 2] [--cells 20000] [--write docs/user/making-maps.md]
 
 A row per part, method and size: tets, seconds on the clock and of the processors, memory, and what share of the time each
 step took. The parts are balls and bodies with two handles: the tets of `hexhex generate`, without their maps. --write puts

@@ -1,6 +1,6 @@
 // Which handles are alive, of what kind they are, and who uses them: so that a handle that is
-// freed, of another kind, or in use elsewhere is an error and no crash. docs/reliability.md says
-// what remains.
+// freed, of another kind, or in use elsewhere is an error and no crash.
+// docs/developer/reliability.md says what remains.
 #pragma once
 
 #include <cstddef>

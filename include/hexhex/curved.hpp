@@ -163,8 +163,8 @@ struct LagrangeMesh {
 [[nodiscard]] Certificate certify(const LagrangeMesh& mesh, Context& context);
 
 /// Writes the arcs of a mesh. `.vtu` and `.vtp` (VTK XML, binary appended): hex vertices and inner
-/// points, and a line per segment with the number of its hex edge; docs/curved.md describes the
-/// arrays. `.ovmb` (OpenVolumeMesh, polyhedral, without faces and cells): the same, with the
+/// points, and a line per segment with the number of its hex edge; docs/user/curved.md describes
+/// the arrays. `.ovmb` (OpenVolumeMesh, polyhedral, without faces and cells): the same, with the
 /// property names common in the field. The file appears complete or not at all.
 /// @throws Error FileUnsupported, FileWrite; TooLarge for files that cannot number the elements
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
@@ -192,7 +192,7 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 
 /// Writes Lagrange cells: `.vtu` (VTK_LAGRANGE_HEXAHEDRON in the node order of VTK 9), `.msh` (Gmsh
 /// 4.1), `.mesh` (MFEM, with its nodes as a discontinuous grid function). Tags, regions and
-/// boundary groups are written as for straight meshes: docs/features.md lists what each format
+/// boundary groups are written as for straight meshes: docs/user/features.md lists what each format
 /// stores.
 /// @param options  format, patchAngle; scaledJacobians: as returned by scaledJacobians() for these
 ///                 cells; empty: computed

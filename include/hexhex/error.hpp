@@ -10,7 +10,7 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
-/// Error codes. Their names are stable; docs/errors.md explains each of them.
+/// Error codes. Their names are stable; docs/user/errors.md explains each of them.
 enum class ErrorCode {
   InvalidArgument,     ///< an option or array is out of range
   FileNotFound,        ///< the file cannot be opened for reading

@@ -1,5 +1,5 @@
 // Meshes in parts over MPI, one part per process. Belongs to a separate library, the component
-// hexhex::mpi. MPI must be initialized with at least MPI_THREAD_FUNNELED. (docs/parts.md)
+// hexhex::mpi. MPI must be initialized with at least MPI_THREAD_FUNNELED. (docs/user/parts.md)
 #pragma once
 
 #include <filesystem>

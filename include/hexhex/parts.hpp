@@ -1,5 +1,5 @@
 // Meshes in parts, for distributed programs: each part has its own cells, their vertices with
-// global numbers, and what it shares with its neighbours. (docs/parts.md)
+// global numbers, and what it shares with its neighbours. (docs/user/parts.md)
 #pragma once
 
 #include <cstdint>
@@ -170,9 +170,10 @@ class PartSurvey final : public PartSink {
   std::uint64_t borders_ = 0;    ///< sum in which the entries of both neighbours cancel out
 };
 
-/// Opens files for the parts of a mesh; docs/parts.md lists the files of each format. The complete
-/// files appear when end() returns; a sink destroyed earlier leaves nothing behind. Files with the
-/// same names are replaced; additional files from earlier runs with more parts are deleted.
+/// Opens files for the parts of a mesh; docs/user/parts.md lists the files of each format. The
+/// complete files appear when end() returns; a sink destroyed earlier leaves nothing behind. Files
+/// with the same names are replaced; additional files from earlier runs with more parts are
+/// deleted.
 /// @param options  only the format and the patch angle are used
 /// @param context  must outlive the sink
 /// @param team     if not null, each process of the team opens a sink in ProcessTeam::run(), and

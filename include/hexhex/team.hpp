@@ -1,5 +1,5 @@
 // Processes that make one mesh together, one part each, on one machine or on many. A derived class
-// implements their communication; <hexhex/mpi.hpp> provides one for MPI. (docs/parts.md)
+// implements their communication; <hexhex/mpi.hpp> provides one for MPI. (docs/user/parts.md)
 #pragma once
 
 #include <cstddef>

@@ -49,8 +49,8 @@ struct VerifyOptions {
 ///
 /// A mesh in canonical order is proven correct one lattice point at a time, by code that shares the
 /// prepared map with extraction, but none of its decisions. Any other mesh is compared with one
-/// that was proven correct (docs/verification.md). Vertices at the same position are distinguished
-/// by their cells.
+/// that was proven correct (docs/developer/verification.md). Vertices at the same position are
+/// distinguished by their cells.
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,
                                   const VerifyOptions& options, Context& context);
 [[nodiscard]] VerifyReport verify(const TetMapView& map, const HexMesh& mesh,

@@ -1,4 +1,4 @@
-// The stages of the atlas engine, for whole meshes and for pieces (docs/atlas.md).
+// The stages of the atlas engine, for whole meshes and for pieces (docs/developer/atlas.md).
 #include <array>
 #include <atomic>
 #include <cassert>

@@ -1,5 +1,5 @@
 // The atlas engine: most cells are read off the charts of an atlas of the map; corners behind a cut
-// of the atlas are resolved one by one (docs/atlas.md).
+// of the atlas are resolved one by one (docs/developer/atlas.md).
 //
 // Why this is correct: consider a cell whose centre lies in a tet of chart C, such that no face
 // that is not glued in C meets the cell's open cube. The part of the mesh around the centre that

@@ -1,4 +1,4 @@
-// Reads cells off the vertex grid, and resolves corners behind cuts (docs/atlas.md).
+// Reads cells off the vertex grid, and resolves corners behind cuts (docs/developer/atlas.md).
 #include <algorithm>
 #include <bit>
 #include <cassert>

@@ -5,7 +5,7 @@
 //    all those recorded at the cell's image on the other side have its inverse, the half diagonal
 //    ends in one of these two charts; if only one of them shows a vertex there, or both show the
 //    same, that is it. Without this step whole extractions take up to 27 % longer (s17c_sphere_r10;
-//    5 to 12 % on most maps; switch lookAcrossCuts, docs/ablation.md).
+//    5 to 12 % on most maps; switch lookAcrossCuts, docs/results/ablation.md).
 // 2. Trace. Where several cuts meet, or the two charts show different vertices, the half diagonal
 //    is followed exactly, tet by tet. (Walking to all such corners of a cell at once, in floating
 //    point, gained nothing.)

@@ -1,4 +1,4 @@
-// Glues tets into charts (docs/atlas.md).
+// Glues tets into charts (docs/developer/atlas.md).
 #include <array>
 #include <utility>
 #include <vector>

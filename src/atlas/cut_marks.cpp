@@ -1,4 +1,4 @@
-// Marks the half diagonals that cut faces may meet (docs/atlas.md).
+// Marks the half diagonals that cut faces may meet (docs/developer/atlas.md).
 #include <algorithm>
 #include <array>
 #include <cassert>

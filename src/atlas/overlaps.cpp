@@ -1,4 +1,4 @@
-// Finds contested points, and moves their tets to further charts (docs/atlas.md).
+// Finds contested points, and moves their tets to further charts (docs/developer/atlas.md).
 #include <atomic>
 #include <cassert>
 

@@ -1,4 +1,4 @@
-// Enters the vertices of all tets into the grid (docs/atlas.md).
+// Enters the vertices of all tets into the grid (docs/developer/atlas.md).
 #include <algorithm>
 #include <cassert>
 

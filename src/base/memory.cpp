@@ -16,7 +16,7 @@ namespace hexhex {
 namespace {
 
 /// From this size on, arrays get huge pages of their own: without them, extractions take 11 %
-/// longer in the geometric mean, up to 28 % (docs/ablation.md).
+/// longer in the geometric mean, up to 28 % (docs/results/ablation.md).
 constexpr std::size_t kLarge = 2 * kHugePage;
 /// From this size on, arrays share huge pages.
 constexpr std::size_t kMedium = std::size_t{1} << 15;

@@ -28,8 +28,8 @@ void unmapHugePages(char* memory, std::size_t bytes) noexcept;
 
 /// An array of less than a few huge pages would pay a page fault for each page of its own. So such
 /// arrays share slabs of huge pages, and memory that one stage returns serves the next: without
-/// this, an extraction of s17c_sphere_r10 takes 7.5 % longer (docs/ablation.md). Empty slabs return
-/// to the system. Thread-safe.
+/// this, an extraction of s17c_sphere_r10 takes 7.5 % longer (docs/results/ablation.md). Empty
+/// slabs return to the system. Thread-safe.
 class PagePool {
  public:
   static constexpr std::size_t kPage = 4096;

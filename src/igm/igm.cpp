@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <igm/defects.hpp>
-#include <igm/input.hpp>
 #include <igm/igm.hpp>
+#include <igm/input.hpp>
 #include <igm/regular_vertices.hpp>
 #include <igm/unfold_charts.hpp>
 

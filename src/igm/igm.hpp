@@ -8,8 +8,8 @@
 #include <hexhex/types.hpp>
 
 #include <base/switches.hpp>
-#include <igm/sanitization.hpp>
 #include <igm/input.hpp>
+#include <igm/sanitization.hpp>
 #include <igm/singularities.hpp>
 
 namespace hexhex::igm {

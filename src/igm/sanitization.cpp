@@ -7,9 +7,9 @@
 
 #include <base/lanes.hpp>
 #include <base/vector3.hpp>
-#include <igm/sanitization.hpp>
 #include <igm/map_conditions.hpp>
 #include <igm/measures.hpp>
+#include <igm/sanitization.hpp>
 
 namespace hexhex::igm {
 

@@ -3,7 +3,7 @@
 // decide.
 //
 // A special case of TetRasterizer. With lines alone, whole extractions of maps with 0.1 cells per
-// tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/ablation.md).
+// tet take 7 % (sphere_blocks_low) to 12 % (s17c_sphere_r0.1) longer (docs/results/ablation.md).
 #pragma once
 
 #include <array>

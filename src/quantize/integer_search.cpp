@@ -11,9 +11,9 @@
 
 #include <quantize/bend/bend_problem.hpp>
 #include <quantize/bend/edge_turns.hpp>
-#include <quantize/integers/block_structure.hpp>
 #include <quantize/cell_limit.hpp>
 #include <quantize/integer_search.hpp>
+#include <quantize/integers/block_structure.hpp>
 
 #include <base/vector3.hpp>
 

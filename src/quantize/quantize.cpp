@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include <quantize/sorted_tets.hpp>
 #include <quantize/complex/wall_mesh.hpp>
 #include <quantize/quantized_map.hpp>
 #include <quantize/seamless/integer_factor.hpp>
+#include <quantize/sorted_tets.hpp>
 #endif
 
 #if defined(HEXHEX_HAS_QUANTIZE)

@@ -7,8 +7,8 @@
 #include <adjacency/tet_topology.hpp>
 
 #include <igm/defects.hpp>
-#include <igm/input.hpp>
 #include <igm/igm.hpp>
+#include <igm/input.hpp>
 
 namespace hexhex::repairs {
 

@@ -17,8 +17,8 @@
 
 #include <base/short_number.hpp>
 #include <base/vector3.hpp>
-#include <igm/measures.hpp>
 #include <igm/igm.hpp>
+#include <igm/measures.hpp>
 #include <repair/diagnosis.hpp>
 #include <repair/patch.hpp>
 #include <repair/patch_charts.hpp>

@@ -7,9 +7,9 @@
 #include <hexhex/types.hpp>
 
 #include <base/disjoint_sets.hpp>
-#include <igm/sanitization.hpp>
-#include <igm/input.hpp>
 #include <igm/igm.hpp>
+#include <igm/input.hpp>
+#include <igm/sanitization.hpp>
 
 namespace hexhex::repairs {
 

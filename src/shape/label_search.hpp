@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include <shape/label_expansion.hpp>
 #include <shape/label_check.hpp>
+#include <shape/label_expansion.hpp>
 
 #include <base/random.hpp>
 #include <base/stage.hpp>

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include <quantize/quantized_map.hpp>
-#include <shape/sharp_edges.hpp>
 #include <shape/frames_map.hpp>
 #include <shape/polycube_map.hpp>
 #include <shape/positive_tets.hpp>
+#include <shape/sharp_edges.hpp>
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>

@@ -13,7 +13,8 @@
 // proportional to the number of elements. The solver stops when flipped elements vanish so slowly,
 // over the last 8 penalties (16 in patient mode), that some would be left after 150 penalties.
 // (Newton's method with a semidefinite approximation of the Hessian finds the same maps, but takes
-// 1.5 times as long over those of docs/quantize.md, and three times as long over the hardest one.)
+// 1.5 times as long over those of docs/user/quantize.md, and three times as long over the hardest
+// one.)
 //
 // If flips remain, flatElements() lists the elements that no unknowns can make positive.
 #pragma once

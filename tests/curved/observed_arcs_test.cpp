@@ -12,8 +12,8 @@
 #include <curved/arcs.hpp>
 #include <curved/element_numbers.hpp>
 #include <igm/defects.hpp>
-#include <igm/measures.hpp>
 #include <igm/igm.hpp>
+#include <igm/measures.hpp>
 
 #include "curved/curved_maps.hpp"
 #include "curved/same_arcs.hpp"

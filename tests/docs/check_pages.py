@@ -54,13 +54,13 @@ def python_names():
 
 def threads_of_c():
     """What the table of threads lacks, names twice, or names in vain."""
-    section = re.search(r"(?ms)^## Threads$(.*?)^## ", text("docs/api-c.md"))[1]
+    section = re.search(r"(?ms)^## Threads$(.*?)^## ", text("docs/user/api-c.md"))[1]
     said = re.findall(r"`(hexhex_\w+)`", "\n".join(re.findall(r"(?m)^\| (`.*?) \|", section)))
     functions = set(c_functions())
-    return ([f"docs/api-c.md says nothing of {name} and threads" for name in functions - set(said)] +
-            [f"docs/api-c.md says something of {name} and threads, which is no function"
+    return ([f"docs/user/api-c.md says nothing of {name} and threads" for name in functions - set(said)] +
+            [f"docs/user/api-c.md says something of {name} and threads, which is no function"
              for name in set(said) - functions] +
-            [f"docs/api-c.md says twice what {name} does in threads" for name in set(said)
+            [f"docs/user/api-c.md says twice what {name} does in threads" for name in set(said)
              if said.count(name) > 1])
 
 
@@ -80,7 +80,7 @@ def cells_of(row):
 
 
 def pages():
-    return [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *ROOT.glob("*/*/README.md")]
+    return [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *ROOT.glob("*/*/README.md")]
 
 
 def anchors(page):
@@ -132,9 +132,9 @@ def broken_tables():
 
 def main():
     missing = threads_of_c() + misused_in_c() + broken_tables() + broken_links()
-    contents = (("docs/errors.md", error_codes(), None), ("docs/troubleshooting.md", error_codes(), None),
-             ("docs/api-c.md", c_functions(), "c"), ("docs/api-cpp.md", cpp_functions(), "cpp"),
-             ("docs/api-python.md", python_names(), "python"))
+    contents = (("docs/user/errors.md", error_codes(), None), ("docs/user/troubleshooting.md", error_codes(), None),
+             ("docs/user/api-c.md", c_functions(), "c"), ("docs/user/api-cpp.md", cpp_functions(), "cpp"),
+             ("docs/user/api-python.md", python_names(), "python"))
     for page, names, language in contents:
         if len(names) < 10:
             missing.append(f"{page}: nothing found to look for")

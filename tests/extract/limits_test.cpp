@@ -5,6 +5,7 @@
 #include <span>
 
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/check.hpp>
 #include <hexhex/partial.hpp>
@@ -13,7 +14,6 @@
 
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

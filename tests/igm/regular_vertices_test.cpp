@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <base/vector3.hpp>
-#include <igm/sanitization.hpp>
 #include <igm/regular_vertices.hpp>
+#include <igm/sanitization.hpp>
 
 #include "map_samples.hpp"
 

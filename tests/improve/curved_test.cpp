@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/improve.hpp>
@@ -13,7 +14,6 @@
 
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

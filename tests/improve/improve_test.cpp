@@ -12,6 +12,7 @@
 
 #include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
@@ -26,7 +27,6 @@
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
 #include "support/sampled_distance.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

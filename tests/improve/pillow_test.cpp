@@ -7,6 +7,7 @@
 
 #include <adjacency/hex_topology.hpp>
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/extract.hpp>
@@ -19,7 +20,6 @@
 #include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
 #include "support/error_of.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 using hexhex::testing::identityMap;

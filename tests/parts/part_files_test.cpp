@@ -8,12 +8,12 @@
 #endif
 
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/parts.hpp>
 #include <hexhex/samples.hpp>
 
 #include "support/damaged_maps.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex {
 namespace {

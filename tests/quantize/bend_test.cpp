@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -16,7 +17,6 @@
 #include "quantize/bend/edge_turns.hpp"
 #include "quantize/bend_problem_file.hpp"
 #include "quantize/bend_problems.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

@@ -1,5 +1,5 @@
-// Quantization of maps and with options at the ends of what numbers can hold; docs/limits.md lists
-// them.
+// Quantization of maps and with options at the ends of what numbers can hold; docs/user/limits.md
+// lists them.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <quantize/seamless/integer_form.hpp>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -17,7 +18,6 @@
 #include "lattice/random.hpp"
 #include "support/error_of.hpp"
 #include "support/scaled_map.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test::limits {
 

@@ -7,13 +7,13 @@
 #include <gtest/gtest.h>
 #include <quantize/bend/bend.hpp>
 #include <quantize/polycube/borders.hpp>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
 #include "extract/support.hpp"
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

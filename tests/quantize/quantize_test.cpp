@@ -17,6 +17,7 @@
 #include <quantize/quantized_map.hpp>
 #include <quantize/seamless/seamless_map.hpp>
 #include <rapidcheck/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -26,7 +27,6 @@
 #include "quantize/real_maps.hpp"
 #include "support/error_of.hpp"
 #include "support/scaled_map.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -12,7 +13,6 @@
 #include "extract/support.hpp"
 #include "repair/cell_flood.hpp"
 #include "repair/same_connectivity.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

@@ -13,12 +13,12 @@
 #include <shape/frames_rematch.hpp>
 #include <shape/frames_tensor.hpp>
 #include <shape/frames_tets.hpp>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 

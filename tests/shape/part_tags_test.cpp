@@ -12,12 +12,12 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
 #include "io/io_test_support.hpp"
 #include "support/labelled_bodies.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test::part_tags {
 namespace {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <shape/polycube_map.hpp>
 #include <shape/positive_tets.hpp>
+#include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
 
@@ -18,7 +19,6 @@
 #include "quantize/real_maps.hpp"
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
-#include <support/effort.hpp>
 
 namespace hexhex::test {
 namespace {

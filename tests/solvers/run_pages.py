@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the pages of docs/solvers: their commands, then their snippet of Python, where the solver is installed.
+"""Runs the pages of docs/user/solvers: their commands, then their snippet of Python, where the solver is installed.
 
     run_pages.py PATH-OF-HEXHEX
 
@@ -19,7 +19,7 @@ import tempfile
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "parts"))
 from common import python_with  # noqa: E402
 
-PAGES = pathlib.Path(__file__).resolve().parents[2] / "docs" / "solvers"
+PAGES = pathlib.Path(__file__).resolve().parents[2] / "docs" / "user" / "solvers"
 # Page: what it needs, how exact its numbers are, and options of more runs.
 NEEDS = {"scikit-fem": "skfem", "ngsolve": "ngsolve", "mfem": "mfem", "getfem": "getfem", "calculix": None,
          "dealii": None, "openfoam": None}

@@ -4,7 +4,7 @@
  *
  * - Functions that can fail return a hexhex_status and take a hexhex_error* as their last argument,
  *   which may be NULL. It receives the code, a message and the place. Errors are stored nowhere
- *   else: there is no global state. docs/errors.md explains each code.
+ *   else: there is no global state. docs/user/errors.md explains each code.
  * - Functions return results through out parameters, which they set only on success. Handles are
  *   opaque; each hexhex_..._create or similar has a matching hexhex_..._destroy, and destroying
  *   NULL is allowed.
@@ -16,11 +16,11 @@
  *   is ever printed.
  * - Threads: functions may run concurrently as long as no two of them use the same handle, unless
  *   both only read it (parameters that are pointers to const). hexhex_context_cancel() and
- *   hexhex_context_cancelled() may be called at any time. docs/api-c.md has the details for each
+ *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details for each
  *   function.
  * - Handles that are NULL, destroyed, of the wrong kind, or in use elsewhere yield
  *   HEXHEX_INVALID_ARGUMENT; functions without a status return 0 or NULL, or do nothing.
- *   docs/reliability.md lists what cannot be detected.
+ *   docs/developer/reliability.md lists what cannot be detected.
  * - Enumerations are checked: values outside their range yield HEXHEX_INVALID_ARGUMENT.
  *
  * The corners of a hexahedron are in the order of VTK_HEXAHEDRON: 0 1 2 3 around one face, 4 5 6 7
@@ -89,7 +89,7 @@ typedef enum hexhex_status HEXHEX_AS_INT {
   HEXHEX_NOT_MESHABLE = 25
 } hexhex_status;
 
-/** Name of a status as in docs/errors.md, e.g. "FlippedTet"; "Ok"; "Unknown". Never NULL. */
+/** Name of a status as in docs/user/errors.md, e.g. "FlippedTet"; "Ok"; "Unknown". Never NULL. */
 HEXHEX_API const char* hexhex_status_name(hexhex_status status);
 
 /** Kinds of places: see hexhex_place. */
@@ -175,7 +175,7 @@ typedef struct hexhex_edge_valence {
 /** Tagged vertices, edges and triangles of tet meshes, and quads of hex meshes, such as sharp
  * curves and named surfaces. Vertices of edges and triangles are in any order, those of quads in
  * cyclic order. <hexhex/extract.hpp> explains how tags of tets are transferred, and
- * docs/features.md tells more. */
+ * docs/user/features.md tells more. */
 typedef struct hexhex_feature_vertex {
   uint32_t vertex;
   int32_t tag;

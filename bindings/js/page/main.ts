@@ -9,7 +9,7 @@ import { Session, TaskError } from "./session";
 
 ColorManagement.enabled = false;
 
-/** Their .vtu has 1.9 GB, and Chromium holds no file beyond 2 GB; memory ends later: docs/browser.md. */
+/** Their .vtu has 1.9 GB, and Chromium holds no file beyond 2 GB; memory ends later: docs/user/browser.md. */
 const kMostCells = 25e6;
 const kDownloads = [".vtu", ".mesh", ".msh", ".vtk", ".ovm"];
 /** Beside the plain samples: what else the page can do. */

@@ -1,4 +1,4 @@
-// What goes in and what comes out. Keys of reports are those of the command's JSON: docs/report.md.
+// What goes in and what comes out. Keys of reports are those of the command's JSON: docs/user/report.md.
 
 /** Called with a stage's name and its finished share in [0, 1], some hundred times in all. */
 export type Progress = (stage: string, share: number) => void;
@@ -13,7 +13,7 @@ export interface Place {
   second: number;
 }
 
-/** What the library throws: what is wrong, where, and what to do. docs/errors.md has the codes. */
+/** What the library throws: what is wrong, where, and what to do. docs/user/errors.md has the codes. */
 export class HexhexError extends Error {
   override readonly name = "HexhexError";
   constructor(
@@ -188,7 +188,7 @@ export interface SurfaceDistance {
   hausdorff: number;
 }
 
-/** docs/report.md explains the keys of these. */
+/** docs/user/report.md explains the keys of these. */
 export interface ShapeReport {
   method: "frames" | "polycube";
   rotation: number[][];

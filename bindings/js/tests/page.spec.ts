@@ -109,7 +109,7 @@ test("a good map becomes the mesh that the command makes", async ({ page }) => {
   const frame = await meshView(page);
   await expect(frame.locator("#all-cells")).toHaveText("3,584");
   await expect(frame.locator("#verification")).toContainText("sphere.hexex");
-  // As docs/browser.md shows it.
+  // As docs/user/browser.md shows it.
   await page.screenshot({ path: `${process.env.HEXHEX_PAGE_PICTURES ?? "test-results"}/browser.png` });
   for (const extension of [".vtu", ".mesh", ".msh", ".vtk", ".ovm"]) {
     hexhex("extract", "sphere.hexex", "--scale", "2", "-o", `sphere-2${extension}`, "--quiet");

@@ -335,7 +335,7 @@ def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "cu
                   verify: bool = False, scale: int = 1, threads: int | None = None,
                   repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                   progress: Progress | None = None) -> list[MeshPart]:
-    """Extracts the mesh of extract() in parts, for distributed programs. docs/parts.md describes
+    """Extracts the mesh of extract() in parts, for distributed programs. docs/user/parts.md describes
     the contents of a part.
 
     Args:
@@ -369,7 +369,7 @@ def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
                           format: str | None = None, threads: int | None = None,
                           repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                           progress: Progress | None = None) -> dict[str, Any]:
-    """Extracts the same parts to files; docs/parts.md lists the formats. Keeps only one part at a
+    """Extracts the same parts to files; docs/user/parts.md lists the formats. Keeps only one part at a
     time in memory. Returns the balance of the parts and the size of their interfaces.
 
     Raises:
@@ -572,7 +572,7 @@ def repair(map: Map, *, tolerance: float = 1e-2, scale: int = 1, round: bool = F
            refine: bool = True, threads: int | None = None,
            progress: Progress | None = None) -> tuple[Map, RepairReport]:
     """Returns a valid map that is identical, bit for bit, where the given map was valid.
-    docs/defects.md explains what can be repaired, and how.
+    docs/user/defects.md explains what can be repaired, and how.
 
     Args:
         scale: upper bound for later scaling of the map.
@@ -856,7 +856,7 @@ def generate(kind: str, *, cells: int = 4, refine: int = 2, valence: int = 5,
         valence: number of hexahedra around the inner edge of a "star", 3 to 12.
         charts: "aligned", "blocks" (a random chart per block), "random" (one per tet) or
             "scattered" (one for one tet in eight).
-        jitter, on_lattice, noise, offset, seed: see docs/command.md.
+        jitter, on_lattice, noise, offset, seed: see docs/user/command.md.
         features: tag corners, curves and surfaces, and number the blocks as regions.
         defects: minimum number of flipped or flat tets.
         defect_kind: "interior", "singular", "boundary" or "sliver".
@@ -1056,7 +1056,7 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
           map_array: str = "igm", map: Map | None = None,
           scaled_jacobians: npt.ArrayLike | None = None, threads: int | None = None,
           progress: Progress | None = None) -> None:
-    """Writes a map, a mesh, or its curved parts; docs/formats.md lists the formats. The file
+    """Writes a map, a mesh, or its curved parts; docs/user/formats.md lists the formats. The file
     appears complete or not at all.
 
     Args:

@@ -26,7 +26,7 @@ def main(arguments: list[str]) -> str | None:
             page = pathlib.Path(tempfile.mkdtemp(prefix="hexhex-")) / f"{file.stem}.html"
             hexhex.write(mesh, page)
         elif not page.exists():
-            return ("This package was built without the page hexhex.html (docs/browser.md). "
+            return ("This package was built without the page hexhex.html (docs/user/browser.md). "
                     "`python -m hexhex FILE` shows a mesh.")
     except hexhex.HexhexError as error:
         return str(error)

@@ -14,7 +14,7 @@ class HexhexError(Exception):
     """Base class of all errors of the library.
 
     Attributes:
-        code: what went wrong, e.g. ``"FlippedTet"``: docs/errors.md explains each code.
+        code: what went wrong, e.g. ``"FlippedTet"``: docs/user/errors.md explains each code.
         place: where, e.g. ``"tet 12"``; empty if the error has no place.
         index: number of the tet, vertex, cell, or line of a file; 0 without a place.
         second: the second number of a place (an edge's other vertex, a face's opposite corner).

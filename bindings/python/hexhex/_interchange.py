@@ -1,5 +1,5 @@
 """Conversion of meshes and maps from and to VTK, PyVista and meshio, which are imported on first
-use. Arrays have the same names as in .vtu files (docs/formats.md)."""
+use. Arrays have the same names as in .vtu files (docs/user/formats.md)."""
 
 from __future__ import annotations
 

@@ -299,7 +299,7 @@ class RepairedRegion:
 
 @dataclasses.dataclass(frozen=True)
 class RepairReport:
-    """Report of a repair; see docs/defects.md."""
+    """Report of a repair; see docs/user/defects.md."""
 
     changed: bool  #: False for a valid map
     bad_tets: int
@@ -914,7 +914,7 @@ class FileFormat:
 class Defect:
     """A violated condition of a map."""
 
-    code: str  #: as in docs/errors.md
+    code: str  #: as in docs/user/errors.md
     sentence: str  #: what is wrong and what to do
     count: int  #: number of all occurrences
     worst: list[tuple[str, int, int, float]]  #: place, its two numbers, and the amount; worst first

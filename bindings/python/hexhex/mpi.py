@@ -2,7 +2,7 @@
 
 All processes of a communicator must call each function together, with the same arguments except for
 the map, which only the first process needs to have. An error in one process is raised in all of
-them. docs/parts.md describes the contents of a part.
+them. docs/user/parts.md describes the contents of a part.
 
     mpirun -n 4 python solver.py
 """
@@ -54,7 +54,7 @@ def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *,
                           format: str | None = None, threads: int | None = 1,
                           repair: bool = False, round: bool = False, tolerance: float = 1e-2,
                           progress: Progress | None = None) -> dict[str, Any]:
-    """Extracts the same parts to files that all processes write together; docs/parts.md lists the
+    """Extracts the same parts to files that all processes write together; docs/user/parts.md lists the
     formats. Returns the result of hexhex.extract_parts_to_file() in all processes.
 
     Raises:

@@ -80,7 +80,7 @@ std::string CellCounts::instead() const {
   if (all.empty()) return {};
   const bool onlyTets = all.size() == 1 && all.front().name == "tetrahedra";
   return "; it holds " + text() +
-         (onlyTets ? ", of which `hexhex mesh` makes hexahedra (docs/making-maps.md)" : "");
+         (onlyTets ? ", of which `hexhex mesh` makes hexahedra (docs/user/making-maps.md)" : "");
 }
 
 std::string CellCounts::adviceOnCurved() const {

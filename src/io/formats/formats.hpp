@@ -52,7 +52,7 @@ using WritePiecewise = void(const PiecewiseLinearMesh& mesh, const TetMapView* m
 // takes positions.
 using OpenSink = std::unique_ptr<MeshSink>(const std::filesystem::path& file, Context& context);
 using ReadPieces = void(MeshSink& sink, const Input& input, Context& context);
-// Meshes in parts. (docs/parts.md)
+// Meshes in parts. (docs/user/parts.md)
 using OpenPartSink = std::unique_ptr<PartSink>(const std::filesystem::path& file,
                                                const WriteOptions& options, Context& context,
                                                ProcessTeam* team);

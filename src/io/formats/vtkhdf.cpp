@@ -128,7 +128,7 @@ class VtkHdfWriter {
   void writeGroup(const char* name, VtkSection section) {
     const HdfObject group = file_.group(grid_.id(), name);
     for (const VtkArray& array : data_.arrays()) {
-      if (array.type == kVtkString) continue;  // names stay behind: docs/formats.md
+      if (array.type == kVtkString) continue;  // names stay behind: docs/user/formats.md
       if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
     }
   }
