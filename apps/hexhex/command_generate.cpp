@@ -12,11 +12,11 @@
 #include <hexhex/samples.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "long_run.hpp"
 #include "map_text.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
-#include "suggestions.hpp"
 
 namespace hexhex::command {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "command.hpp"
-#include "suggestions.hpp"
+#include "expected_words.hpp"
 
 namespace hexhex::command {
 namespace {

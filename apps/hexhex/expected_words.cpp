@@ -1,10 +1,10 @@
+#include "expected_words.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include <fmt/core.h>
-
-#include "suggestions.hpp"
 
 namespace hexhex::command {
 namespace {

@@ -8,11 +8,11 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
+#include "expected_words.hpp"
 #include "extract_stream.hpp"
 #include "improve_options.hpp"
 #include "output.hpp"
 #include "quantize_options.hpp"
-#include "suggestions.hpp"
 #include "view_page.hpp"
 
 namespace hexhex::command {

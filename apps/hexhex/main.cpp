@@ -18,9 +18,9 @@
 #include <hexhex/version.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
-#include "suggestions.hpp"
 
 namespace hexhex::command {
 namespace {

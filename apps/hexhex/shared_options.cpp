@@ -14,7 +14,7 @@
 #include <hexhex/quantize.hpp>
 #include <hexhex/shape.hpp>
 
-#include "suggestions.hpp"
+#include "expected_words.hpp"
 
 namespace hexhex::command {
 
