@@ -17,9 +17,10 @@ namespace {
 /// Where more cells are below the target, moving all at once takes too long: a minute and more.
 constexpr std::size_t kMostLowAtOnce = 5'000;
 
-/// Boundary quads that are farther from the surface, in diagonals, become smaller: twice as far is
-/// what people call another shape.
-constexpr double kFarChord = 2.5e-3;
+/// A mesh that is farther from the surface, in diagonals, is what people call another shape: its
+/// boundary quads become smaller where they are far, until it is half as far.
+constexpr double kOtherShape = 5e-3;
+constexpr double kFarChord = kOtherShape / 2;
 /// Rounds of that, at most, and in a row without a nearer mesh.
 constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
@@ -212,6 +213,7 @@ class Moving {
 
   /// Makes quads smaller where the surface bends most, as long as that brings the mesh nearer.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
+    if (best.largest.hausdorff() <= kOtherShape) return best;
     Array<Vec3> points = subject_.mesh.points;
     Array<Index> simplices = places_.simplex;
     BoundaryDistance now = best;
