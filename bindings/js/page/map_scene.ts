@@ -16,6 +16,9 @@ import type { MapShape } from "./messages";
 const kBad = 0xd81b60;
 /** Half the sides of the box of the scene. */
 const kHalf: [number, number, number] = [0.5, 0.5, 0.5];
+/** The corners of that box, four numbers each. */
+const kCorners = new Float32Array([-1, 1].flatMap((z) => [-1, 1].flatMap((y) =>
+  [-1, 1].flatMap((x) => [x * kHalf[0], y * kHalf[1], z * kHalf[2], 1]))));
 /** The radius of what is shown around a place, in that scene. */
 const kAround = 0.15;
 
@@ -68,7 +71,7 @@ export class MapScene {
   private objects: Object3D[] = [];
 
   constructor(canvas: HTMLCanvasElement) {
-    this.viewport = new Viewport(canvas, kHalf, () => undefined);
+    this.viewport = new Viewport(canvas, kHalf, kCorners, () => undefined);
     const applyTheme = () =>
       this.viewport.setBackground(getComputedStyle(document.documentElement).getPropertyValue("--back").trim());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", applyTheme);
