@@ -51,7 +51,9 @@ function togglePanel(): void {
 }
 
 function showShortcuts(): void {
-  element<HTMLDialogElement>("shortcuts").showModal();
+  const dialog = element<HTMLDialogElement>("shortcuts");
+  dialog.showModal();
+  dialog.scrollTop = 0; // the focus goes to the button at its end
 }
 
 function listShortcuts(): void {
