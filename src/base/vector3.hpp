@@ -104,6 +104,10 @@ using IntegerVector = std::array<std::int64_t, 3>;
 
 [[nodiscard]] inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
+/// Unit normals turn by more than an angle, in radians, if their cosine is below this. At the angle
+/// itself they do not, however they are rounded: 1e-12 of a cosine is about a microradian.
+[[nodiscard]] inline double leastCosine(double angle) noexcept { return std::cos(angle) - 1e-12; }
+
 /// The mean of points.
 [[nodiscard]] inline Vec3 centreOf(std::span<const Vec3> points) noexcept {
   Vec3 sum{};

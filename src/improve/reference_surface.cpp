@@ -119,7 +119,7 @@ void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
   std::sort(segments_.begin(), segments_.end());
   segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
   const std::vector<std::array<Index, 2>> given = segments_;
-  const double limit = std::cos(parts.angle * std::numbers::pi / 180);
+  const double limit = leastCosine(parts.angle * std::numbers::pi / 180);
   DisjointSets sets(triangles_.size());
   DisjointSets setsWithCreases(triangles_.size());
   std::vector<std::array<Index, 2>> creases;
@@ -155,7 +155,7 @@ void ReferenceSurface::findCorners(const SurfaceParts& parts) {
   corners_ = parts.corners;
   taggedCorners_ = parts.corners;
   std::sort(taggedCorners_.begin(), taggedCorners_.end());
-  const double limit = std::cos(parts.angle * std::numbers::pi / 180);
+  const double limit = leastCosine(parts.angle * std::numbers::pi / 180);
   for (std::size_t v = 0; v < points_.size(); ++v) {
     const std::span<const Index> at = segmentsAt_(v);
     if (at.empty()) continue;

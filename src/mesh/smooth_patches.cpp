@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <compare>
 #include <numbers>
 #include <string>
@@ -25,10 +24,6 @@ namespace {
 
 /// Quads or vertices per block: some tenths of a millisecond.
 constexpr std::size_t kSmoothPatchesGrain = 4096;
-
-/// Normals of flat neighbours differ by rounding; 1e-12 of a cosine is an angle of about a
-/// microradian, far above rounding and far below any intended angle.
-constexpr double kCosineError = 1e-12;
 
 /// An edge as seen from a quad, or a seam. Its smaller vertex is known from the context.
 struct EdgeSide {
@@ -85,7 +80,7 @@ SmoothPatches findSmoothPatches(std::span<const Vec3> points, std::span<const Qu
     throw Error(ErrorCode::TooLarge, "The mesh has " + std::to_string(quads.size()) +
                                          " boundary quads, more than 32-bit indices can number.");
   }
-  const double limit = std::cos(angle * std::numbers::pi / 180) - kCosineError;
+  const double limit = leastCosine(angle * std::numbers::pi / 180);
   const Array<Vec3> normals = normalsOf(points, quads, stage);
   const adjacency::VertexLists<EdgeSide, std::uint64_t> sides =
       listSides(points.size(), quads, seams, stage);

@@ -98,6 +98,7 @@ void FrameTets::buildTopology(Stage& stage) {
 
 void FrameTets::findFeatures(double angle, Stage& stage) {
   stage.context().throwIfCancelled();
+  const double limit = leastCosine(angle);
   std::vector<std::pair<VertexPair, HalfFace>> sides;
   forEachBoundaryEdge(topology_,
                       [&](const VertexPair& edge, HalfFace h) { sides.emplace_back(edge, h); });
@@ -105,7 +106,7 @@ void FrameTets::findFeatures(double angle, Stage& stage) {
   for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
     const Eigen::Vector3d here = normal(sides[i].second).normalized();
     const Eigen::Vector3d there = normal(sides[i + 1].second).normalized();
-    if (here.dot(there) < std::cos(angle)) features_.push_back(sides[i].first);
+    if (here.dot(there) < limit) features_.push_back(sides[i].first);
   }
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include <shape/sharp_edges.hpp>
@@ -9,6 +8,7 @@
 #include <hexhex/quantize.hpp>
 
 #include <base/sorted.hpp>
+#include <base/vector3.hpp>
 
 namespace hexhex::shape {
 
@@ -82,12 +82,13 @@ FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned, Stage
   const auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
   if (!topology) throw Error(ErrorCode::Internal, "A polycube's map is no manifold.");
   const Surface surface = surfaceOf(*topology, map.points);
+  const double limit = leastCosine(angle);
   FoundFeatures features;
   for (Side side = 0; side < surface.tails.size(); ++side) {
     if (side > surface.twins[side]) continue;
     const Index here = Surface::triangleOf(side);
     const Index beyond = surface.beyond(side);
-    if (dot(surface.normals[here], surface.normals[beyond]) > std::cos(angle)) continue;
+    if (dot(surface.normals[here], surface.normals[beyond]) >= limit) continue;
     ++features.count;
     if (!areAligned &&
         axisInMap(map, surface.faces[here]) == axisInMap(map, surface.faces[beyond])) {

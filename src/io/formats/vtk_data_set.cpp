@@ -142,7 +142,9 @@ void addTagsOf(VtkDataSet& data, const AnyFeatures& features, std::string_view f
 
 void VtkDataSet::addTexts(std::string_view name, std::span<const TagName> names) {
   std::string all;
-  for (const TagName& known : names) all += known.name.c_str() + std::string(1, '\0');
+  for (const TagName& known : names) {
+    all.append(known.name, 0, known.name.find('\0')).push_back('\0');
+  }
   const std::uint64_t bytes = all.size();
   arrays_.insert(arrays_.begin(),
                  {VtkSection::FieldData, name, kVtkString, 1, names.size(), bytes,
