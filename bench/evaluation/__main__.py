@@ -25,7 +25,7 @@ def main() -> None:
         measure.run(arguments.build, arguments.out, arguments.quick, only)
     runs = results.read_folder(arguments.out)
     about = json.loads((arguments.out / "machine.json").read_text(encoding="utf-8"))
-    for path in plots.draw_all(runs, arguments.docs / "images"):
+    for path in plots.draw_all(runs, arguments.docs.parent / "images"):
         print(f"  {path}")
     missing = document.rewrite(arguments.docs, runs, about)
     print(f"  {arguments.docs / 'performance.md'}, {arguments.docs / 'ablation.md'}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `hexhex mesh` makes of random parts (bench/shape/solids.py): the tables of docs/results/any-part.md.
 
-    PYTHONPATH=bench:bench/improve bench/shape/drawn.py HEXHEX --seeds 0:50 [--folder build/drawn] [--seconds 60] [--docs docs]
+    PYTHONPATH=bench:bench/improve bench/shape/drawn.py HEXHEX --seeds 0:50 [--folder build/drawn] [--seconds 60] [--docs docs/results]
 
 Draws the part of each seed, fills it with tets of two sizes, and asks for about as many cells as tets of that size
 usually want. A mesh that the command writes is judged by bench/shape/judge.py, which shares nothing with it. FOLDER/results.jsonl
