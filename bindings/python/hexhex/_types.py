@@ -625,7 +625,7 @@ class BaseComplex:
         boundary) and ``irregular_vertices``. Raises ImportError without pyvista.
 
         >>> parts = hexhex.extract(hexhex.generate("sphere")).base_complex().to_pyvista()
-        >>> parts["singular_curves"].n_cells, parts["sheets"]["sheet"].max()
+        >>> parts["singular_curves"].n_cells, int(parts["sheets"]["sheet"].max())
         (20, 15)
         """
         return _interchange.complex_to_pyvista(self)

@@ -232,7 +232,8 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
   // Files of version 1.0, which meshio takes: VTK 9 turns the edges of their Lagrange cells round.
   // Order 2 has a type that more programs know, whose nodes stand as VTK 9 has those of others.
   const bool hasOwnType = mesh.order == 2;
-  const std::uint8_t type = hasOwnType ? kQuadratic.back().vtkType : kVtkLagrangeHexahedron;
+  const auto type =
+      static_cast<std::uint8_t>(hasOwnType ? kQuadratic.back().vtkType : kVtkLagrangeHexahedron);
   const std::vector<std::uint32_t> order =
       vtkNodeOrder(mesh.order, hasOwnType ? VtkEdges::Around : VtkEdges::RowByRow);
   const PointPiece nodes = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
