@@ -89,7 +89,7 @@ optional_packages=(libhdf5-dev libeigen3-dev python3-venv)
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)
 # ... and solvers that docs/user/solvers has pages of.
-solver_packages=(calculix-ccx python3-getfem)
+solver_packages=(calculix-ccx python3-getfem python3-dolfinx python3-gmsh)
 # What builds the ParaView plugin (its CMake files look for the three libraries), and what tests it:
 # Debian's ParaView draws with X only.
 paraview_packages=(paraview-dev python3-paraview libopenmpi-dev liblz4-dev libdouble-conversion-dev

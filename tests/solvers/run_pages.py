@@ -21,7 +21,7 @@ from common import python_with  # noqa: E402
 
 PAGES = pathlib.Path(__file__).resolve().parents[2] / "docs" / "user" / "solvers"
 # Page: what it needs, how exact its numbers are, and options of more runs.
-NEEDS = {"scikit-fem": "skfem", "ngsolve": "ngsolve", "mfem": "mfem", "getfem": "getfem", "calculix": None,
+NEEDS = {"scikit-fem": "skfem", "ngsolve": "ngsolve", "mfem": "mfem", "getfem": "getfem", "dolfinx": "dolfinx", "calculix": None,
          "dealii": None, "openfoam": None}
 # What else tells that a solver is installed.
 SIGNS = {"calculix": lambda: shutil.which("ccx"), "openfoam": lambda: shutil.which("checkMesh"),
