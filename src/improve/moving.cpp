@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -26,6 +27,8 @@ constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
 /// By less than that, a mesh is no nearer: right angles are given for it.
 constexpr double kNearer = 0.99;
+/// And if less than that is left of what scaled Jacobians add up to, it is not worth it.
+constexpr double kKept = 0.98;
 
 /// The least scaled Jacobian that is to be kept: what was, or the target if the mesh is pulled onto
 /// a surface, where good cells become less good.
@@ -211,19 +214,26 @@ class Moving {
     sweeps.raiseWorst(options_.target, 0);
   }
 
-  /// Makes quads smaller where the surface bends most, as long as that brings the mesh nearer.
+  /// Makes quads smaller where the surface bends most, as long as that brings the mesh nearer. The
+  /// least scaled Jacobian stays, and nearly all of the mean.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
     if (best.largest.hausdorff() <= kOtherShape) return best;
     Array<Vec3> points = subject_.mesh.points;
     Array<Index> simplices = places_.simplex;
     BoundaryDistance now = best;
+    const auto sum = [&] {
+      const Array<double>& all = sweeps.qualities();
+      return std::accumulate(all.begin(), all.end(), 0.0);
+    };
+    const double enough = kKept * sum();
+    floor = std::max(floor, 1 - sweeps.standing(options_.target).depth);
     int stalls = 0;
     for (int i = 0; i < kMostSpreads && stalls < kSpreadStalls; ++i) {
       if (now.largest.hausdorff() <= kFarChord) break;
       sweeps.spread(boundary_.quads, now.ofQuads, kFarChord / 2, floor);
       now = distance();
       ++stalls;
-      if (now.largest.hausdorff() > kNearer * best.largest.hausdorff()) continue;
+      if (now.largest.hausdorff() > kNearer * best.largest.hausdorff() || sum() < enough) continue;
       stalls = 0;
       best = now;
       points = subject_.mesh.points;
