@@ -102,7 +102,8 @@ void warnOfImprovement(const ImproveReport& report) {
   if (report.addedCells == 0 && report.after.quality.mean < mean - 1e-6) {
     printWarning(fmt::format(
         "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
-        "--target unless beside mended ones, so that those below it are better.",
+        "--target unless beside mended ones, so that those below it are better or the surface is "
+        "nearer.",
         mean, report.after.quality.mean));
   }
   if (report.notPositive.empty()) return;
@@ -180,8 +181,8 @@ void printImprovement(const ImproveReport& report) {
                           report.farCellsBefore));
   }
   if (report.offSurface > 0) {
-    printLine("off the surface", fmt::format("{} vertices, where nothing else made cells positive",
-                                             report.offSurface));
+    printLine("off the surface",
+              fmt::format("{} vertices, where cells could not be good on it", report.offSurface));
   }
   if (report.offCreases > 0) {
     printLine("off creases", fmt::format("{} vertices, where nothing else made cells positive",

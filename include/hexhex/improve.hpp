@@ -101,9 +101,10 @@ struct ImproveReport {
   std::uint64_t boundaryVertices = 0;  ///< vertices fixed only by ImproveOptions::fixBoundary
   std::uint64_t pairedVertices = 0;    ///< vertices fixed only because of `cannotBePositive`
   std::uint64_t movedVertices = 0;
-  double largestMove = 0;        ///< in diagonals
-  double meanMove = 0;           ///< mean over the moved vertices
-  std::uint64_t offSurface = 0;  ///< vertices that used the slack
+  double largestMove = 0;  ///< in diagonals
+  double meanMove = 0;     ///< mean over the moved vertices
+  std::uint64_t offSurface =
+      0;  ///< vertices off the surface: by the slack, or where cells could not be good on it
   double seconds = 0;
   /// Vertices that left creases because nothing else made cells positive. A crease is an untagged
   /// curve with surface on both sides.

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
+#include <adjacency/vertex_lists.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/improve.hpp>
@@ -21,7 +23,7 @@ namespace {
 
 constexpr std::size_t kGivenSurfaceGrain = 1024;
 /// A curve or corner of the mesh is one of the surface within so many mean lengths of its edges:
-/// nearer than the next vertex.
+/// nearer than the next vertex, as long as edges are about as long.
 constexpr double kReach = 0.5;
 
 ReferenceSurface surfaceOf(const TriangleMesh& given, double angle, Stage& stage) {
@@ -61,8 +63,24 @@ std::vector<double> edgeLengths(const Array<Vec3>& points, std::span<const Quad>
       }
     }
   }
-  for (std::size_t v = 0; v < points.size(); ++v) lengths[v] /= std::max(1.0, counts[v]);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (counts[v] == 0) continue;
+    lengths[v] = std::max(lengths[v] / counts[v], std::numeric_limits<double>::min());
+  }
   return lengths;
+}
+
+/// The other ends of each vertex's edges on the boundary.
+adjacency::VertexLists<Index> besideOnBoundary(std::size_t points, std::span<const Quad> quads,
+                                               Stage& stage) {
+  std::vector<std::array<Index, 2>> edges;
+  edges.reserve(4 * quads.size());
+  for (const Quad& quad : quads) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      edges.push_back(adjacency::ascending(quad[i], quad[(i + 1) % 4]));
+    }
+  }
+  return adjacency::verticesBeside(std::move(edges), points, stage);
 }
 
 void requireNear(std::span<const double> distances, std::span<const double> lengths) {
@@ -89,11 +107,12 @@ void requireNear(std::span<const double> distances, std::span<const double> leng
 class Belonging {
  public:
   Belonging(const HexMesh& mesh, VertexPlaces& places, ReferenceSurface surface,
-            std::vector<double> lengths)
+            std::vector<double> lengths, adjacency::VertexLists<Index> beside)
       : mesh_(mesh),
         places_(places),
         surface_(std::move(surface)),
         lengths_(std::move(lengths)),
+        beside_(std::move(beside)),
         triangles_(treeOf(surface_)) {}
 
   /// @return what the places are on now
@@ -137,7 +156,9 @@ class Belonging {
       if (!isOnLine(own, v)) continue;
       const TriangleTree::Nearest nearest = tree.nearest(mesh_.points[v]);
       if (nearest.distance > kReach * lengths_[v]) continue;
-      enter(v, Freedom::OnCurve, static_cast<Index>(nearest.triangle));
+      const auto segment = static_cast<Index>(nearest.triangle);
+      if (isTaken(own, v, nearestOf(surface_.segment(segment), mesh_.points[v]))) continue;
+      enter(v, Freedom::OnCurve, segment);
     }
   }
 
@@ -162,6 +183,15 @@ class Belonging {
     }
   }
 
+  /// Whether a neighbour is at a place on a curve already, as where the first row of thin cells
+  /// along it ends at a line of the mesh, too.
+  [[nodiscard]] bool isTaken(const Array<Freedom>& own, std::size_t v, const Vec3& place) const {
+    const double distance = length(minus(mesh_.points[v], place));
+    return std::any_of(beside_(v).begin(), beside_(v).end(), [&](Index other) {
+      return isOnLine(own, other) && length(minus(mesh_.points[other], place)) < kReach * distance;
+    });
+  }
+
   [[nodiscard]] bool isOnLine(const Array<Freedom>& own, std::size_t v) const {
     return lengths_[v] > 0 && (own[v] == Freedom::OnCurve || own[v] == Freedom::Fixed);
   }
@@ -170,6 +200,7 @@ class Belonging {
   VertexPlaces& places_;
   ReferenceSurface surface_;
   std::vector<double> lengths_;
+  adjacency::VertexLists<Index> beside_;
   TriangleTree triangles_;
 };
 
@@ -178,11 +209,15 @@ class Belonging {
 VertexPlaces placesOnSurface(const HexMesh& mesh, const TriangleMesh& surface,
                              std::span<const std::uint8_t> isAtBad, double angle, Stage& stage) {
   VertexPlaces places = placesOnMesh(mesh, isAtBad, angle, stage);
-  std::vector<double> lengths =
-      edgeLengths(mesh.points, adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage)));
-  Belonging belonging(mesh, places, surfaceOf(surface, angle, stage), std::move(lengths));
+  const Array<Quad> quads = adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage));
+  Belonging belonging(mesh, places, surfaceOf(surface, angle, stage),
+                      edgeLengths(mesh.points, quads),
+                      besideOnBoundary(mesh.points.size(), quads, stage));
   places.surface = belonging.find(stage);
-  places.tagged = 0;
+  places.tagged = 0;  // those of tagged faces inside: corners of the surface have a simplex
+  for (std::size_t v = 0; v < places.freedom.size(); ++v) {
+    if (places.freedom[v] == Freedom::Fixed && places.simplex[v] == kNone) ++places.tagged;
+  }
   places.isGiven = true;
   return places;
 }

@@ -287,6 +287,7 @@ auto onItself(const ImproveOptions& options) {
 auto onGiven(const TriangleMesh& surface, const ImproveOptions& options) {
   return [&surface, &options](const HexMesh& mesh, std::span<const std::uint8_t> isAtBad,
                               Stage& stage) {
+    requirePositions(surface.points, "the surface", stage);
     return placesOnSurface(mesh, surface, isAtBad, options.featureAngle, stage);
   };
 }

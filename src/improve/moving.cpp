@@ -164,7 +164,8 @@ class Moving {
         after = distance();
       }
     }
-    return curved_ ? after : spread(sweeps, floor, after);
+    const bool canSpread = !curved_ && options_.passes > 0 && !options_.fixBoundary;
+    return canSpread ? spread(sweeps, floor, after) : after;
   }
 
   /// Puts back what moved together with some cells.

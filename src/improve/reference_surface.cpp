@@ -14,6 +14,14 @@ namespace {
 
 constexpr std::size_t kReferenceSurfaceGrain = 4096;
 
+/// Whether a triangle passes its edge from the first of two vertices to the second.
+bool passesForwards(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (triangle[i] == edge[0] && triangle[(i + 1) % 3] == edge[1]) return true;
+  }
+  return false;
+}
+
 template <std::size_t n>
 adjacency::VertexLists<Index> listAt(std::size_t points,
                                      const std::vector<std::array<Index, n>>& simplices,
@@ -109,7 +117,11 @@ bool ReferenceSurface::isCurve(const std::array<Index, 2>& vertices, std::span<c
   if (parts.triangles[a].tag != parts.triangles[b].tag) return true;
   if (parts.sharp) return std::binary_search(parts.sharp->begin(), parts.sharp->end(), vertices);
   if (!parts.groups.empty() && parts.groups[a] == parts.groups[b]) return false;
-  return cosineBetween(normalOf(triangle(a)), normalOf(triangle(b))) < limit;
+  // Triangles inside, and those of a surface that was given, may face either way.
+  const bool isTurned =
+      passesForwards(triangles_[a], vertices) == passesForwards(triangles_[b], vertices);
+  const Vec3 normal = normalOf(triangle(b));
+  return cosineBetween(normalOf(triangle(a)), isTurned ? times(-1, normal) : normal) < limit;
 }
 
 void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {

@@ -124,7 +124,8 @@ class BoundaryTagger {
           const std::array<Vec3, 4> at = {mesh_.points[quad[0]], mesh_.points[quad[1]],
                                           mesh_.points[quad[2]], mesh_.points[quad[3]]};
           const std::size_t nearest = tree->second.nearest(centreOf(at)).triangle;
-          mesh_.features.quads.push_back({quad, interfaces.at(regions)[nearest].tag});
+          const std::int32_t tag = interfaces.at(regions)[nearest].tag;
+          if (tag != 0) mesh_.features.quads.push_back({quad, tag});
         });
   }
 
@@ -193,6 +194,7 @@ class BoundaryTagger {
     return {std::min(a, b), std::max(a, b)};
   }
 
+  /// All triangles between two regions of which some have a tag.
   [[nodiscard]] std::map<Regions, std::vector<FeatureFace>> taggedInterfaces() const {
     std::map<Regions, std::vector<FeatureFace>> list;
     const Tags<FeatureFace> tags(map_.features.faces);
@@ -204,9 +206,12 @@ class BoundaryTagger {
       const Regions regions = between(map_.regions[tet], map_.regions[adjacency::tetOf(mate)]);
       if (regions[0] == regions[1]) continue;
       const auto vertices = adjacency::faceVertices(map_.tets[tet], h % 4);
-      const std::int32_t tag = tags.of(vertices);
-      if (tag != 0) list[regions].push_back({vertices, tag});
+      list[regions].push_back({vertices, tags.of(vertices)});
     }
+    std::erase_if(list, [](const auto& entry) {
+      return std::all_of(entry.second.begin(), entry.second.end(),
+                         [](const FeatureFace& triangle) { return triangle.tag == 0; });
+    });
     return list;
   }
 
