@@ -94,7 +94,7 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
   LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
   arguments.names.apply(mesh, writing.patchAngle, context);
   writeLagrangeMesh(mesh, arguments.output, writing, context);
-  if (arguments.patchAngle.isGiven) {
+  if (arguments.patchAngle.isGiven && !arguments.names.isGiven()) {
     arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
   }
   return fmt::format("a mesh of {} of order {}, {} nodes", counted(mesh.cellCount(), "cell"),
@@ -116,6 +116,11 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
                   arguments.input.description() +
                       " holds a map, but --reorient turns cells of hexahedral meshes.");
     }
+    if (arguments.names.isGiven()) {
+      throw Error(ErrorCode::InvalidArgument,
+                  arguments.input.description() +
+                      " holds a map, but --names and --split-tags take hexahedral meshes.");
+    }
     writeMap(*map, arguments.output, writing, context);
     arguments.patchAngle.warnIfGiven("a map has no quads");
     return fmt::format("a map of {}, {}", counted(map->tets.size(), "tet"),
@@ -130,7 +135,9 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
       arguments.reorient ? fmt::format(", of which {} turned", reorient(mesh, context)) : "";
   arguments.names.apply(mesh, writing.patchAngle, context);
   writeHexMesh(mesh, arguments.output, writing, context);
-  arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
+  if (!arguments.names.isGiven()) {
+    arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
+  }
   return fmt::format("a mesh of {}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
                      mesh.points.size());
 }
@@ -145,10 +152,17 @@ std::string convertInPieces(const ConvertArguments& arguments, std::vector<CellC
 }
 
 int run(const ConvertArguments& arguments) {
-  requireAllDifferent(arguments.input.files(), {arguments.output});
+  std::vector<std::filesystem::path> inputs = arguments.input.files();
+  inputs.emplace_back(arguments.names.file());
+  requireAllDifferent(inputs, {arguments.output});
   if (arguments.stream && arguments.input.isPair()) {
     throw Error(ErrorCode::InvalidArgument,
                 "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
+  }
+  if (arguments.stream && arguments.names.isGiven()) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--names and --split-tags take a whole mesh in memory. Leave them out, or --stream.");
   }
   if (arguments.stream && arguments.reorient) {
     throw Error(ErrorCode::InvalidArgument,

@@ -333,7 +333,7 @@ int extractMesh(const ExtractArguments& arguments) {
   if (arguments.stream || arguments.parts.parts) {
     arguments.patchAngle.warnIfGiven(
         "smooth patches are those of a mesh that is whole; leave out --stream and --parts");
-  } else if (record.boundary) {
+  } else if (record.boundary && !arguments.names.isGiven()) {
     arguments.patchAngle.warnIfUseless(*record.boundary, arguments.output,
                                        arguments.choice.options());
   }

@@ -86,7 +86,9 @@ ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRu
   writing.patchAngle = arguments.patchAngle.degrees;
   arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
-  arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
+  if (!arguments.names.isGiven()) {
+    arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
+  }
   writeComparison(arguments, mesh, pointsBefore(before, report), report, longRun);
   return report;
 }
@@ -102,7 +104,7 @@ ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun)
   writing.patchAngle = arguments.patchAngle.degrees;
   arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
-  if (arguments.patchAngle.isGiven) {
+  if (arguments.patchAngle.isGiven && !arguments.names.isGiven()) {
     arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
   }
   writeComparison(arguments, mesh, before, report, longRun);
@@ -120,7 +122,7 @@ bool requireFormats(const ImproveArguments& arguments, Context& context) {
 }
 
 int run(const ImproveArguments& arguments) {
-  requireAllDifferent({arguments.mesh, arguments.map, arguments.surface},
+  requireAllDifferent({arguments.mesh, arguments.map, arguments.surface, arguments.names.file()},
                       {arguments.output, arguments.report, arguments.page});
   LongRun longRun(arguments.run, {{"readHexMesh", 1},
                                   {"readLagrangeMesh", 1},

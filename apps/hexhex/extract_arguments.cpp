@@ -210,8 +210,10 @@ void requireOutputs(const ExtractArguments& arguments) {
         "--names and --split-tags take a whole mesh in memory. Leave them out, or --stream, "
         "--parts and --partial; `hexhex convert` has them, too.");
   }
-  requireAllDifferent(arguments.input.files(), {arguments.output, arguments.report, arguments.arcs,
-                                                arguments.patches, arguments.page});
+  std::vector<std::filesystem::path> inputs = arguments.input.files();
+  inputs.emplace_back(arguments.names.file());
+  requireAllDifferent(inputs, {arguments.output, arguments.report, arguments.arcs,
+                               arguments.patches, arguments.page});
   requireCurvedOutputs(arguments);
   requirePartialOutputs(arguments);
   requireImprovable(arguments);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <set>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -18,10 +21,31 @@
 namespace hexhex::command {
 namespace {
 
-std::int32_t lastTag(const HexMesh& mesh) {
-  std::int32_t last = 0;
-  for (const FeatureQuad& quad : mesh.features.quads) last = std::max(last, quad.tag);
-  return last;
+/// Tags that no quad has.
+class FreeTags {
+ public:
+  explicit FreeTags(const HexMesh& mesh) {
+    for (const FeatureQuad& quad : mesh.features.quads) last_ = std::max(last_, quad.tag);
+  }
+  /// @throws Error TooLarge
+  [[nodiscard]] std::int32_t next() {
+    if (last_ < std::numeric_limits<std::int32_t>::max()) return ++last_;
+    throw Error(ErrorCode::TooLarge,
+                "A group of quads has the largest tag that there can be, so that there is none for "
+                "new groups. Give it a smaller one.");
+  }
+
+ private:
+  std::int32_t last_ = 0;
+};
+
+/// Names of tags that no quad has would become those of new groups.
+void dropUnused(HexFeatures& features) {
+  std::set<std::int32_t> used;
+  for (const FeatureQuad& quad : features.quads) used.insert(quad.tag);
+  std::erase_if(features.names, [&used](const TagName& known) {
+    return known.dimension == 2 && !used.contains(known.tag);
+  });
 }
 
 Quad sorted(Quad vertices) {
@@ -35,7 +59,7 @@ void splitTags(HexMesh& mesh, double angle, Context& context) {
   for (const FeatureQuad& quad : boundaryPatches(mesh, angle, context)) {
     patchOf.emplace(sorted(quad.vertices), quad.tag);
   }
-  std::int32_t last = lastTag(mesh);
+  FreeTags free(mesh);
   std::map<Quad, std::int32_t> newTags;
   for (const NamedPatch& group : namedPatches(mesh, angle, context)) {
     if (group.tag == 0) continue;
@@ -44,7 +68,7 @@ void splitTags(HexMesh& mesh, double angle, Context& context) {
     if (tags.size() == 1) continue;
     std::size_t number = 0;
     for (auto& [patch, tag] : tags) {
-      tag = ++last;
+      tag = free.next();
       mesh.features.names.push_back({2, tag, fmt::format("{}_{}", group.name, ++number)});
     }
     for (const Quad& quad : group.quads) {
@@ -59,10 +83,10 @@ void splitTags(HexMesh& mesh, double angle, Context& context) {
 
 /// Tags the quads of patches that have no tag, with numbers behind the tags that there are.
 void tagPatches(HexMesh& mesh, std::vector<NamedPatch>& patches) {
-  std::int32_t last = lastTag(mesh);
+  FreeTags free(mesh);
   for (NamedPatch& patch : patches) {
     if (patch.tag != 0) continue;
-    patch.tag = ++last;
+    patch.tag = free.next();
     for (const Quad& quad : patch.quads) mesh.features.quads.push_back({quad, patch.tag});
     mesh.features.names.push_back({2, patch.tag, patch.name});
   }
@@ -72,13 +96,17 @@ void tagPatches(HexMesh& mesh, std::vector<NamedPatch>& patches) {
 
 void PatchNames::read(const std::filesystem::path& file) {
   file_ = file.string();
-  std::ifstream lines(file);
-  if (!lines) {
+  const auto failToRead = [this] {
     throw Error(ErrorCode::FileNotFound,
                 file_ + ": cannot be read: " + std::generic_category().message(errno) + ".");
-  }
+  };
+  std::ifstream lines(file);
+  if (!lines) failToRead();
+  static_cast<void>(lines.peek());
+  if (lines.bad()) failToRead();  // a folder
   std::string line;
   for (std::uint64_t number = 1; std::getline(lines, line); ++number) {
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     std::istringstream words(line.substr(0, line.find('#')));
     std::string from;
     std::string to;
@@ -95,7 +123,12 @@ void PatchNames::read(const std::filesystem::path& file) {
 }
 
 void PatchNames::apply(HexMesh& mesh, double angle, Context& context) const {
-  if (split) splitTags(mesh, angle, context);
+  if (!isGiven()) return;
+  dropUnused(mesh.features);
+  if (split) {
+    splitTags(mesh, angle, context);
+    dropUnused(mesh.features);  // those of groups that were divided
+  }
   if (names_.empty()) return;
   std::vector<NamedPatch> patches = namedPatches(mesh, angle, context);
   std::string known;
@@ -116,6 +149,32 @@ void PatchNames::apply(HexMesh& mesh, double angle, Context& context) const {
       return each.dimension == 2 && each.tag == patch.tag;
     });
     given.push_back({2, patch.tag, found->second});
+  }
+  requireOwnNames(mesh, patches, angle, context);
+}
+
+/// @param patches  with the names that they had
+void PatchNames::requireOwnNames(const HexMesh& mesh, const std::vector<NamedPatch>& patches,
+                                 double angle, Context& context) const {
+  std::map<std::int32_t, std::string> named;
+  for (const NamedPatch& patch : namedPatches(mesh, angle, context)) {
+    named.emplace(patch.tag, patch.name);
+  }
+  std::set<std::string> all;
+  for (const NamedPatch& patch : patches) {
+    const std::string& now = named.at(patch.tag);
+    const auto found = names_.find(patch.name);
+    // Where a name is another group's, too, the second group is called by its tag.
+    const std::string byTag =
+        fmt::format("surface_{}{}", patch.tag < 0 ? "m" : "", std::abs(std::int64_t{patch.tag}));
+    const bool isWanted =
+        found == names_.end() ? now == patch.name : now != byTag || found->second == byTag;
+    if (isWanted && all.insert(now).second) continue;
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{}: the name \"{}\" is that of another group, too; capital letters and "
+                    "all behind the first 31 do not count. Give each group its own.",
+                    file_, found == names_.end() ? patch.name : found->second));
   }
 }
 

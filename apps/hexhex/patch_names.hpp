@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include <hexhex/curved.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex::command {
@@ -29,9 +31,14 @@ class PatchNames {
   void apply(HexMesh& mesh, double angle, Context& context) const;
   void apply(LagrangeMesh& mesh, double angle, Context& context) const;
 
+  /// The file of names; empty: none.
+  [[nodiscard]] const std::string& file() const noexcept { return file_; }
   [[nodiscard]] bool isGiven() const noexcept { return split || !names_.empty(); }
 
  private:
+  void requireOwnNames(const HexMesh& mesh, const std::vector<NamedPatch>& patches, double angle,
+                       Context& context) const;
+
   std::string file_;
   std::map<std::string, std::string> names_;
 };

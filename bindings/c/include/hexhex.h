@@ -438,7 +438,7 @@ HEXHEX_API int hexhex_generator_kind(uint8_t corners);
 /** Creates a mesh with copies of the arrays, e.g. to write or verify it. */
 HEXHEX_API hexhex_status hexhex_mesh_copy(const hexhex_mesh_arrays* arrays, hexhex_mesh** mesh,
                                           hexhex_error* error);
-/** Reads a mesh from a file: .mesh, .meshb, .vtu, .vtk, .msh, .ovm, .ovmb. */
+/** Reads a mesh from a file: see readHexMesh() in <hexhex/io.hpp>. */
 HEXHEX_API hexhex_status hexhex_mesh_read(const char* file, const hexhex_read_options* options,
                                           hexhex_context* context, hexhex_mesh** mesh,
                                           hexhex_error* error);

@@ -771,7 +771,7 @@ void writeQuadraticExodus(const LagrangeMesh& mesh, const std::filesystem::path&
   const MeshGroups groups(straight, options.patchAngle, stage);
   GroupNodes nodes;
   withThreads(context.threads(),
-              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
+              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, {}, stage); });
   ExodusFile(straight, groups, stage, false, &mesh, std::move(nodes.edges))
       .write(target, context.threads(), kMostExodusBytes);
   target.commit();

@@ -187,8 +187,11 @@ LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileNam
   };
   readVtkCells(source, wanted, makeRoom, &numbers, stage);
   source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
-  if (wanted.corners < mesh.nodesPerCell()) completeCells(mesh, wanted.corners, fileName);
-  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  if (wanted.corners < mesh.nodesPerCell()) {
+    completeCells(mesh, wanted.corners, fileName);  // nodes without generators
+  } else {
+    readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  }
   mesh.regions = readVtkRegions(source, numbers);
   mesh.features = readVtkHexFeatures(source);
   fromVtkOrder(mesh, stage, isLagrange ? source.uprightEdges : VtkEdges::Around);

@@ -147,7 +147,7 @@ void VtkDataSet::addTexts(std::string_view name, std::span<const TagName> names)
   }
   const std::uint64_t bytes = all.size();
   arrays_.insert(arrays_.begin(),
-                 {VtkSection::FieldData, name, kVtkString, 1, names.size(), bytes,
+                 {VtkSection::FieldData, name, typeName<std::uint8_t>(), 1, bytes, bytes,
                   [own = std::move(all)](const VtkBytes& out) { out(own.data(), own.size()); }});
 }
 

@@ -663,8 +663,11 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
 
 /// Names of tags.
 std::vector<TagName> readNames(const VtkSource& source) {
-  const VtkSourceArray* const texts =
-      source.find(VtkSection::FieldData, kVtkTagNames, 1, VtkNumbers::Others);
+  const VtkSourceArray* texts =
+      source.find(VtkSection::FieldData, kVtkTagNames, 1, VtkNumbers::Integers);
+  if (texts == nullptr) {  // VTK's texts
+    texts = source.find(VtkSection::FieldData, kVtkTagNames, 1, VtkNumbers::Others);
+  }
   const VtkSourceArray* const tags =
       source.find(VtkSection::FieldData, kVtkNamedTags, 2, VtkNumbers::Integers);
   std::vector<TagName> names;
@@ -675,15 +678,16 @@ std::vector<TagName> readNames(const VtkSource& source) {
     source.copy(column, 0, numbers.size(), numbers.data());
     return numbers;
   };
+  const std::vector<std::int64_t> numbers = numbersOf(*tags);
   std::string name;
   for (const std::int64_t character : numbersOf(*texts)) {
+    if (2 * names.size() > numbers.size()) break;  // more names than tags
     if (character != 0) {
       name += static_cast<char>(character);
     } else {
       names.push_back({0, 0, std::exchange(name, {})});
     }
   }
-  const std::vector<std::int64_t> numbers = numbersOf(*tags);
   bool isGood = name.empty() && numbers.size() == 2 * names.size();
   for (std::size_t i = 0; isGood && i < names.size(); ++i) {
     isGood = numbers[2 * i] >= 0 && numbers[2 * i] <= 3 &&

@@ -128,7 +128,8 @@ class VtkHdfWriter {
   void writeGroup(const char* name, VtkSection section) {
     const HdfObject group = file_.group(grid_.id(), name);
     for (const VtkArray& array : data_.arrays()) {
-      if (array.type == kVtkString) continue;  // names stay behind: docs/user/formats.md
+      // Names stay behind: docs/user/formats.md
+      if (array.name == kVtkTagNames || array.name == kVtkNamedTags) continue;
       if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
     }
   }
@@ -413,7 +414,12 @@ class VtkHdfSource final : public VtkSource {
 
 class VtkHdfReader {
  public:
-  explicit VtkHdfReader(const Input& input) : input_(input), file_(HdfReader::open(input)) {
+  explicit VtkHdfReader(const Input& input) : input_(input) {
+    if (firstBytes(input) != kHdfMark) {
+      fail(ErrorCode::FileSyntax,
+           "the file does not begin as HDF5 files do. Is its extension right?");
+    }
+    file_ = HdfReader::open(input);
     const std::vector<std::string> top = file_->members("/");
     if (std::find(top.begin(), top.end(), "VTKHDF") == top.end()) {
       fail(ErrorCode::FileSyntax, "the file has no group VTKHDF.");

@@ -297,7 +297,10 @@ class VtuFile final : public VtkSource {
       if (tag.closing) continue;
       if (tag.name == "VTKFile") readFileTag(tag);
       if (tag.name == "Piece") readPieceTag(tag);
-      if (tag.name == "DataArray" && section != nullptr) readArrayTag(tag, *section);
+      // VTK writes arrays of texts as Array.
+      const bool isTexts =
+          tag.name == "Array" && section != nullptr && *section == VtkSection::FieldData;
+      if ((tag.name == "DataArray" || isTexts) && section != nullptr) readArrayTag(tag, *section);
       if (tag.name == "AppendedData") {
         readAppendedTag(tag);
         break;  // binary data, no more tags
