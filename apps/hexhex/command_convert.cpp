@@ -94,9 +94,7 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
   LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
   arguments.names.apply(mesh, writing.patchAngle, context);
   writeLagrangeMesh(mesh, arguments.output, writing, context);
-  if (arguments.patchAngle.isGiven && !arguments.names.isGiven()) {
-    arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
-  }
+  arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
   return fmt::format("a mesh of {} of order {}, {} nodes", counted(mesh.cellCount(), "cell"),
                      mesh.order, mesh.points.size());
 }
@@ -135,9 +133,7 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
       arguments.reorient ? fmt::format(", of which {} turned", reorient(mesh, context)) : "";
   arguments.names.apply(mesh, writing.patchAngle, context);
   writeHexMesh(mesh, arguments.output, writing, context);
-  if (!arguments.names.isGiven()) {
-    arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
-  }
+  arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
   return fmt::format("a mesh of {}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
                      mesh.points.size());
 }

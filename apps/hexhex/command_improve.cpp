@@ -86,9 +86,7 @@ ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRu
   writing.patchAngle = arguments.patchAngle.degrees;
   arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
-  if (!arguments.names.isGiven()) {
-    arguments.patchAngle.warnIfUseless(mesh, arguments.output, writing, context);
-  }
+  arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
   writeComparison(arguments, mesh, pointsBefore(before, report), report, longRun);
   return report;
 }
@@ -104,9 +102,7 @@ ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun)
   writing.patchAngle = arguments.patchAngle.degrees;
   arguments.names.apply(mesh, writing.patchAngle, context);
   longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
-  if (arguments.patchAngle.isGiven && !arguments.names.isGiven()) {
-    arguments.patchAngle.warnIfUseless(straightMesh(mesh), arguments.output, writing, context);
-  }
+  arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
   writeComparison(arguments, mesh, before, report, longRun);
   return report;
 }

@@ -185,6 +185,17 @@ void PatchNames::apply(LagrangeMesh& mesh, double angle, Context& context) const
   mesh.features = std::move(straight.features);
 }
 
+void PatchNames::warnOfAngle(const PatchAngle& angle, const HexMesh& mesh, const std::string& file,
+                             const WriteOptions& options, Context& context) const {
+  if (!isGiven()) angle.warnIfUseless(mesh, file, options, context);
+}
+void PatchNames::warnOfAngle(const PatchAngle& angle, const LagrangeMesh& mesh,
+                             const std::string& file, const WriteOptions& options,
+                             Context& context) const {
+  if (!angle.isGiven || isGiven()) return;
+  angle.warnIfUseless(straightMesh(mesh), file, options, context);
+}
+
 void addPatchNames(CLI::App& parser, PatchNames& names) {
   parser.add_flag("--split-tags", names.split,
                   "Divide tagged groups of boundary quads into smooth patches\n"

@@ -12,6 +12,8 @@
 #include <hexhex/patches.hpp>
 #include <hexhex/types.hpp>
 
+#include "shared_options.hpp"
+
 namespace hexhex::command {
 
 /// What each group of boundary quads shall be called, by the name that it has.
@@ -30,6 +32,12 @@ class PatchNames {
   /// @throws Error InvalidArgument for a group that there is not, naming those that there are
   void apply(HexMesh& mesh, double angle, Context& context) const;
   void apply(LagrangeMesh& mesh, double angle, Context& context) const;
+
+  /// Warns of a --patch-angle that does nothing. Names and divided groups need it.
+  void warnOfAngle(const PatchAngle& angle, const HexMesh& mesh, const std::string& file,
+                   const WriteOptions& options, Context& context) const;
+  void warnOfAngle(const PatchAngle& angle, const LagrangeMesh& mesh, const std::string& file,
+                   const WriteOptions& options, Context& context) const;
 
   /// The file of names; empty: none.
   [[nodiscard]] const std::string& file() const noexcept { return file_; }

@@ -35,39 +35,17 @@ ReferenceSurface surfaceOf(const TriangleMesh& given, double angle, Stage& stage
   parts.points.assign(given.points.begin(), given.points.end());
   for (const std::array<Index, 3>& vertices : given.triangles) {
     for (const Index v : vertices) {
-      if (v >= given.points.size() || !isFinite(given.points[v])) {
-        throw Error(v < given.points.size() ? ErrorCode::NotFinite : ErrorCode::InvalidArgument,
-                    "Triangle " + std::to_string(parts.triangles.size()) +
-                        " of the surface names vertex " + std::to_string(v) +
-                        ", which does not exist or is at no finite position. Correct the surface.",
-                    Place{PlaceKind::Vertex, v, 0});
-      }
+      if (v < given.points.size()) continue;
+      throw Error(ErrorCode::InvalidArgument,
+                  "Triangle " + std::to_string(parts.triangles.size()) +
+                      " of the surface names vertex " + std::to_string(v) +
+                      ", which does not exist. Correct the surface.",
+                  Place{PlaceKind::Vertex, v, 0});
     }
     parts.triangles.push_back({vertices, 0});
   }
   parts.boundaryTriangles = parts.triangles.size();
   return {std::move(parts), stage};
-}
-
-/// Per vertex: the mean length of its edges on the boundary, or 0 inside.
-std::vector<double> edgeLengths(const Array<Vec3>& points, std::span<const Quad> quads) {
-  std::vector<double> lengths(points.size(), 0);
-  std::vector<double> counts(points.size(), 0);
-  for (const Quad& quad : quads) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Index next = quad[(i + 1) % 4];
-      const double edge = length(minus(points[quad[i]], points[next]));
-      for (const Index v : {quad[i], next}) {
-        lengths[v] += edge;
-        ++counts[v];
-      }
-    }
-  }
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (counts[v] == 0) continue;
-    lengths[v] = std::max(lengths[v] / counts[v], std::numeric_limits<double>::min());
-  }
-  return lengths;
 }
 
 /// The other ends of each vertex's edges on the boundary.
@@ -81,6 +59,20 @@ adjacency::VertexLists<Index> besideOnBoundary(std::size_t points, std::span<con
     }
   }
   return adjacency::verticesBeside(std::move(edges), points, stage);
+}
+
+/// Per vertex: the mean length of its edges on the boundary, or 0 inside.
+std::vector<double> edgeLengths(const Array<Vec3>& points,
+                                const adjacency::VertexLists<Index>& beside) {
+  std::vector<double> lengths(points.size(), 0);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const std::span<const Index> others = beside(v);
+    if (others.empty()) continue;
+    for (const Index other : others) lengths[v] += length(minus(points[v], points[other]));
+    lengths[v] = std::max(lengths[v] / static_cast<double>(others.size()),
+                          std::numeric_limits<double>::min());
+  }
+  return lengths;
 }
 
 void requireNear(std::span<const double> distances, std::span<const double> lengths) {
@@ -107,12 +99,12 @@ void requireNear(std::span<const double> distances, std::span<const double> leng
 class Belonging {
  public:
   Belonging(const HexMesh& mesh, VertexPlaces& places, ReferenceSurface surface,
-            std::vector<double> lengths, adjacency::VertexLists<Index> beside)
+            adjacency::VertexLists<Index> beside)
       : mesh_(mesh),
         places_(places),
         surface_(std::move(surface)),
-        lengths_(std::move(lengths)),
         beside_(std::move(beside)),
+        lengths_(edgeLengths(mesh.points, beside_)),
         triangles_(treeOf(surface_)) {}
 
   /// @return what the places are on now
@@ -199,8 +191,8 @@ class Belonging {
   const HexMesh& mesh_;
   VertexPlaces& places_;
   ReferenceSurface surface_;
-  std::vector<double> lengths_;
   adjacency::VertexLists<Index> beside_;
+  std::vector<double> lengths_;
   TriangleTree triangles_;
 };
 
@@ -211,7 +203,6 @@ VertexPlaces placesOnSurface(const HexMesh& mesh, const TriangleMesh& surface,
   VertexPlaces places = placesOnMesh(mesh, isAtBad, angle, stage);
   const Array<Quad> quads = adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage));
   Belonging belonging(mesh, places, surfaceOf(surface, angle, stage),
-                      edgeLengths(mesh.points, quads),
                       besideOnBoundary(mesh.points.size(), quads, stage));
   places.surface = belonging.find(stage);
   places.tagged = 0;  // those of tagged faces inside: corners of the surface have a simplex

@@ -367,10 +367,6 @@ class CgnsPartSink final : public PartSink {
   std::vector<std::map<std::uint32_t, std::vector<std::int32_t>>> shared_;  ///< by neighbour
 };
 
-}  // namespace
-
-namespace {
-
 /// @param curved  null: cells are straight
 void writeBase(OutputFile& target, const HexMesh& mesh, const MeshGroups& groups, Stage& stage,
                const QuadraticNodes* curved = nullptr) {

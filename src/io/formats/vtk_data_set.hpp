@@ -53,7 +53,6 @@ inline constexpr std::string_view kVtkEdgeTags = "feature_edges";
 inline constexpr std::string_view kVtkTriangleTags = "feature_triangles";
 inline constexpr std::string_view kVtkQuadTags = "feature_quads";
 inline constexpr std::string_view kVtkRegions = "region";
-inline constexpr std::string_view kVtkString = "String";  ///< what VTK calls texts
 /// Of tags that have one, and in the same order their dimensions and tags.
 inline constexpr std::string_view kVtkTagNames = "tag_names";
 inline constexpr std::string_view kVtkNamedTags = "named_tags";

@@ -208,7 +208,7 @@ constexpr std::array<std::pair<std::string_view, VtkSection>, 5> kSections = {
      {"Cells", VtkSection::Cells}}};
 
 constexpr std::array<std::pair<std::string_view, VtkScalar>, 11> kScalars = {
-    {{kVtkString, std::uint8_t{}},
+    {{"String", std::uint8_t{}},
      {"Int8", std::int8_t{}},
      {"UInt8", std::uint8_t{}},
      {"Int16", std::int16_t{}},
