@@ -21,9 +21,8 @@ Command addView(CLI::App& app) {
           "order; or a map, whose mesh is\nextracted")
       ->required()
       ->option_text("FILE REQUIRED");
-  CLI::Option* const output =
-      parser->add_option("-o,--output", arguments->page, "The page [the mesh's name with .html]")
-          ->option_text("FILE");
+  parser->add_option("-o,--output", arguments->page, "The page [the mesh's name with .html]")
+      ->option_text("FILE");
   parser
       ->add_option("--map", arguments->map,
                    "The map that the mesh came from: the page tells\nwhether they agree")
@@ -41,22 +40,12 @@ Command addView(CLI::App& app) {
   addCurvedNodes(*parser, arguments->curvedNodes, order);
   addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
   addTolerance(*parser, arguments->options.tolerance);
-  CLI::Option* const serve =
-      parser
-          ->add_flag("--serve", arguments->serve,
-                     "Serve the page to browsers of this machine only, until\nCtrl-C, instead of "
-                     "writing it: for very large meshes")
-          ->excludes(output);
-  parser->add_option("--port", arguments->port, "Port of --serve; 0 = any free one")
-      ->check(wholeNumberFrom(0))
-      ->check(CLI::Range(0, 65535))
-      ->needs(serve)
-      ->option_text("INTEGER [0]");
+  parser->add_flag("--open", arguments->open, "Open the page in the default browser");
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
       "Examples:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2\n"
-      "  hexhex view sphere.hexex --order 3\n"
+      "  hexhex view sphere.hexex --order 3 --open\n"
       "  hexhex view seamless.hexex --quantize --cells 5000");
   return {parser, [arguments] { return view(*arguments); }};
 }
