@@ -1,7 +1,7 @@
 // Readers against arbitrary bytes, with libFuzzer: whatever a file holds, a reader returns a mesh
 // or throws Error, soon, and without asking for much more memory than the file takes.
 //
-//     read_fuzz --reader=vtu tests/fuzz/corpus/vtu -runs=100000
+//     read_fuzz --reader=vtu build/fuzz/corpus/vtu -runs=100000
 //
 // Sanitizers find what is read or computed wrongly; meshes that come back are checked here.
 #include <algorithm>
