@@ -56,12 +56,10 @@ VerifyReport compare(const TetMapView& map, const Subject& subject, const Verify
 
 /// The mesh of a map.
 Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& context) {
-  if (!arguments.map.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                arguments.mesh +
-                    " is a map itself, and its mesh is compared with it anyway. Leave "
-                    "out --map.");
-  }
+  refuseIf(!arguments.map.empty(),
+           arguments.mesh +
+               " is a map itself, and its mesh is compared with it anyway. Leave "
+               "out --map.");
   if (arguments.quantize) map = quantize(map, arguments.quantizeOptions, context).map;
   ExtractOptions options;
   options.scale = arguments.options.scale;
@@ -96,12 +94,10 @@ Subject readSubject(const ViewArguments& arguments, Context& context) {
     }
     subject.mesh = std::move(std::get<HexMesh>(content));
   }
-  if (arguments.order > 1 || arguments.quantize) {
-    throw Error(ErrorCode::InvalidArgument,
-                arguments.mesh +
-                    " is a mesh, whose cells are what they are. Leave out --order and --quantize, "
-                    "or name the map.");
-  }
+  refuseIf(arguments.order > 1 || arguments.quantize,
+           arguments.mesh +
+               " is a mesh, whose cells are what they are. Leave out --order and --quantize, "
+               "or name the map.");
   if (!arguments.map.empty()) {
     subject.map = arguments.map;
     subject.verification =
