@@ -15,6 +15,7 @@
 #include <hexhex/shape.hpp>
 
 #include "expected_words.hpp"
+#include "output.hpp"
 
 namespace hexhex::command {
 

@@ -10,6 +10,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex::command {
