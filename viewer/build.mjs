@@ -1,7 +1,6 @@
 // Bundles the page: node build.mjs OUTPUT.cpp
 //
-// The output is C++: the page in pieces, cut at the places where the program puts title, data and
-// permissions in.
+// The output is C++: the page in pieces, cut at the places where the program puts title and data in.
 import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
 import { build } from "esbuild";
@@ -47,9 +46,9 @@ function hashOf(tag) {
 
 const pieces = filled
   .replace(/@(STYLE|SCRIPT)_HASH@/g, (_, name) => hashOf(name.toLowerCase()))
-  .split(/@(CONNECT|TITLE|INFO|DATA)@/);
+  .split(/@(TITLE|INFO|DATA)@/);
 const names = pieces.filter((_, i) => i % 2 === 1);
-if (names.join() !== "CONNECT,TITLE,INFO,DATA") throw new Error(`unexpected places: ${names}`);
+if (names.join() !== "TITLE,INFO,DATA") throw new Error(`unexpected places: ${names}`);
 
 /** A C++ literal. Compilers may limit the length of one, so it comes as several. */
 function literal(text) {

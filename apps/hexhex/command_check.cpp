@@ -80,12 +80,12 @@ int run(const CheckArguments& arguments) {
 Command addCheck(CLI::App& app) {
   const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* const parser =
-      app.add_subcommand("check", "Tell what a map is, and every condition that it violates");
+      app.add_subcommand("check", "Say what kind of map it is, and which conditions it violates");
   addMapSource(*parser, arguments->input);
   addTolerance(*parser, arguments->options.tolerance);
-  addScale(*parser, arguments->options.scale, "Tell what to expect at this scale");
-  parser->add_flag("--json", arguments->json, "Print JSON instead of text");
-  addRunOptions(*parser, arguments->run, "Print no text: the exit code tells");
+  addScale(*parser, arguments->options.scale, "Print what to expect at this scale");
+  addJson(*parser, arguments->json);
+  addRunOptions(*parser, arguments->run, "Print no text: the exit code is the answer");
   parser->footer(
       "Exit code 0: the map is valid; 1: it is not.\n\nExample:\n"
       "  hexhex check sphere.hexex");

@@ -13,6 +13,7 @@
 #include <hexhex/structure.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
 #include "patch_names.hpp"
@@ -50,7 +51,7 @@ void requireFor(const ConvertArguments& arguments, const char* content, const F&
     require(arguments.output, arguments.choice.options());
   } catch (const Error& error) {
     if (error.code() != ErrorCode::FileUnsupported) throw;
-    throw Error(error.code(), fmt::format("{} holds {}, which cannot be written so. {}",
+    throw Error(error.code(), fmt::format("{} holds {}, which this output cannot. {}",
                                           arguments.input.description(), content, error.what()));
   }
 }
@@ -84,11 +85,9 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
              [](const std::filesystem::path& file, const WriteOptions& options) {
                requireLagrangeFormat(file, options.format);
              });
-  if (arguments.reorient) {
-    throw Error(ErrorCode::InvalidArgument,
-                arguments.input.description() +
-                    " holds cells of higher order, but --reorient turns straight cells.");
-  }
+  refuseIf(arguments.reorient,
+           arguments.input.description() +
+               " holds cells of higher order, but --reorient is for straight cells.");
   WriteOptions writing = arguments.choice.options();
   writing.patchAngle = arguments.patchAngle.degrees;
   LagrangeMesh mesh = readLagrangeMesh(arguments.input.file, context);
@@ -109,16 +108,11 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
   writing.patchAngle = arguments.patchAngle.degrees;
   if (const auto* const map = std::get_if<TetMap>(&content)) {
     requireFor(arguments, "a map", requireMapFormat);
-    if (arguments.reorient) {
-      throw Error(ErrorCode::InvalidArgument,
-                  arguments.input.description() +
-                      " holds a map, but --reorient turns cells of hexahedral meshes.");
-    }
-    if (arguments.names.isGiven()) {
-      throw Error(ErrorCode::InvalidArgument,
-                  arguments.input.description() +
-                      " holds a map, but --names and --split-tags take hexahedral meshes.");
-    }
+    refuseIf(arguments.reorient, arguments.input.description() +
+                                     " holds a map, but --reorient is for hexahedral meshes.");
+    refuseIf(arguments.names.isGiven(),
+             arguments.input.description() +
+                 " holds a map, but --names and --split-tags are for hexahedral meshes.");
     writeMap(*map, arguments.output, writing, context);
     arguments.patchAngle.warnIfGiven("a map has no quads");
     return fmt::format("a map of {}, {}", counted(map->tets.size(), "tet"),
@@ -130,7 +124,7 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
                requireHexMeshFormat(file, options);
              });
   const std::string turned =
-      arguments.reorient ? fmt::format(", of which {} turned", reorient(mesh, context)) : "";
+      arguments.reorient ? fmt::format(", {} of them reoriented", reorient(mesh, context)) : "";
   arguments.names.apply(mesh, writing.patchAngle, context);
   writeHexMesh(mesh, arguments.output, writing, context);
   arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
@@ -151,20 +145,13 @@ int run(const ConvertArguments& arguments) {
   std::vector<std::filesystem::path> inputs = arguments.input.files();
   inputs.emplace_back(arguments.names.file());
   requireAllDifferent(inputs, {arguments.output});
-  if (arguments.stream && arguments.input.isPair()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
-  }
-  if (arguments.stream && arguments.names.isGiven()) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--names and --split-tags take a whole mesh in memory. Leave them out, or --stream.");
-  }
-  if (arguments.stream && arguments.reorient) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--reorient compares neighbouring cells, which --stream does not keep in memory. "
-                "Leave out one of them.");
-  }
+  refuseIf(arguments.stream && arguments.input.isPair(),
+           "--stream converts hexahedral meshes, but --tets and --polycube are a map.");
+  refuseIf(arguments.stream && arguments.names.isGiven(),
+           "--names and --split-tags need the whole mesh in memory. Leave them out, or --stream.");
+  refuseIf(arguments.stream && arguments.reorient,
+           "--reorient compares neighbouring cells, which --stream does not keep in memory. "
+           "Leave out one of them.");
   requireAnyFormat(arguments);
   const std::vector<WorkStep> whole = {{"readMapPair", 1},       {"readMapOrHexMesh", 1},
                                        {"findCellFaults", 0.3},  {"readLagrangeMesh", 1},
@@ -193,15 +180,11 @@ Command addConvert(CLI::App& app) {
   const auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* const parser =
       app.add_subcommand("convert", "Write a map or a hexahedral mesh in another format");
-  addMapSourceBefore(*parser, arguments->input, "INPUT", arguments->output, "OUTPUT",
-                     "The file to write");
+  addMapSourceBefore(*parser, arguments->input, "INPUT", "The map or the hexahedral mesh",
+                     arguments->output, "OUTPUT", "The file to write");
   addKeepWalls(*parser, arguments->input);
   addMeshChoice(*parser, arguments->choice, arguments->output);
-  parser
-      ->add_option("--input-format", arguments->input.format,
-                   "Read this format, whatever the extension")
-      ->check(formatName())
-      ->option_text("NAME");
+  addInputFormat(*parser, arguments->input);
   addHexesOnly(*parser, arguments->hexesOnly);
   addPatchAngle(*parser, arguments->patchAngle);
   addPatchNames(*parser, arguments->names);
@@ -211,12 +194,12 @@ Command addConvert(CLI::App& app) {
                        extensionsThat(&FileFormat::streams) +
                        ";\nwithout boundary quads and quality");
   parser->add_flag("--reorient", arguments->reorient,
-                   "Turn cells round that list their corners mirrored, so that\n"
+                   "Reorient cells that list their corners mirrored, so that\n"
                    "neighbours agree and the volume is positive");
   addRunOptions(*parser, arguments->run);
   parser->footer(
-      "Maps become maps, and hexahedral meshes become hexahedral meshes: the input's content "
-      "decides.\n`hexhex formats` lists the formats.\n\nExamples:\n"
+      "A map is written as a map, and a hexahedral mesh as a hexahedral mesh.\n`hexhex formats` "
+      "lists the formats.\n\nExamples:\n"
       "  hexhex convert sphere.vtu sphere.msh\n"
       "  hexhex convert --tets ball.mesh --polycube cube.mesh ball.hexex");
   return {parser, [arguments] { return run(*arguments); }};

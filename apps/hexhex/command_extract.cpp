@@ -109,10 +109,10 @@ void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Ar
 /// Lists the boundary where that is hardly noticed or asked for: it takes 0.7 of 6 s for six
 /// million cells.
 /// @param mesh  straight or curved
-void noteBoundary(const ExtractArguments& arguments, const auto& mesh, std::size_t cells,
-                  LongRun& longRun, ExtractionRecord& record) {
+void noteBoundary(const ExtractArguments& arguments, const auto& mesh, LongRun& longRun,
+                  ExtractionRecord& record) {
   constexpr std::size_t kFew = 100'000;
-  if (cells > kFew && !arguments.patchAngle.isGiven) return;
+  if (record.certificate->validity.size() > kFew && !arguments.patchAngle.isGiven) return;
   if (arguments.run.quiet && arguments.report.empty()) return;
   record.boundary = longRun.part("quality", [&] {
     const double angle = arguments.patchAngle.degrees;
@@ -122,6 +122,22 @@ void noteBoundary(const ExtractArguments& arguments, const auto& mesh, std::size
       return namedPatches(mesh, angle, longRun.context());
     }
   });
+}
+
+/// Improves, examines and writes a verified mesh, straight or curved.
+void finishMesh(const ExtractArguments& arguments, const TetMap& map, auto& mesh, LongRun& longRun,
+                ExtractionRecord& record) {
+  Context& context = longRun.context();
+  const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
+  WriteOptions writing = arguments.choice.options();
+  writing.scaledJacobians = record.certificate->scaledJacobians;
+  writing.patchAngle = arguments.patchAngle.degrees;
+  longRun.part("writing",
+               [&] { writeNamed(arguments.names, mesh, arguments.output, writing, context); });
+  noteBoundary(arguments, mesh, longRun, record);
+  writeMeshPage(arguments, mesh, before, longRun, record);
+  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
+                 mesh.features.quads.size()};
 }
 
 /// Extracts, verifies and writes a mesh in memory.
@@ -146,16 +162,7 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
     });
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
-  const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
-  WriteOptions writing = arguments.choice.options();
-  writing.scaledJacobians = record.certificate->scaledJacobians;
-  writing.patchAngle = arguments.patchAngle.degrees;
-  arguments.names.apply(mesh, writing.patchAngle, context);
-  longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
-  noteBoundary(arguments, mesh, mesh.cells.size(), longRun, record);
-  writeMeshPage(arguments, mesh, before, longRun, record);
-  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
-                 mesh.features.quads.size()};
+  finishMesh(arguments, map, mesh, longRun, record);
   record.vertices = mesh.points.size();
   record.cells = mesh.cells.size();
 }
@@ -171,16 +178,7 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
   });
   verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
   extractor.reset();
-  const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
-  WriteOptions options = arguments.choice.options();
-  options.scaledJacobians = record.certificate->scaledJacobians;
-  options.patchAngle = arguments.patchAngle.degrees;
-  arguments.names.apply(mesh, options.patchAngle, context);
-  longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, options, context); });
-  noteBoundary(arguments, mesh, mesh.cellCount(), longRun, record);
-  writeMeshPage(arguments, mesh, before, longRun, record);
-  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
-                 mesh.features.quads.size()};
+  finishMesh(arguments, map, mesh, longRun, record);
   record.vertices = mesh.vertexCount;
   record.cells = mesh.cellCount();
   record.nodes = mesh.points.size();

@@ -43,11 +43,11 @@ int run() {
              notes(format));
   }
   fmt::print(
-      "\nOf several formats with one extension, the first is what a file name means; the others "
-      "are\n"
-      "written with --format NAME. --tets: its tets are read for --tets and --polycube, and by "
-      "`hexhex\n"
-      "map` and `hexhex mesh`; map, mesh: these fill the surface with tets.\n"
+      "\nWhere several formats have one extension, a file name means the first; --format NAME "
+      "writes the\n"
+      "others. --tets: tets are read for --tets and --polycube, and by `hexhex map` and `hexhex "
+      "mesh`; map,\n"
+      "mesh: these fill the surface with tets.\n"
       "\n--for SOLVER writes what a solver reads (docs/user/solvers):\n\n");
   fmt::print("{:<12} {:<14} {:<12} {:<10} {}\n", "solver", "program", "format", "extension",
              "of higher order");

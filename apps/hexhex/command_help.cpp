@@ -35,9 +35,9 @@ Command addHelp(CLI::App& app) {
   std::vector<std::string> names = {"help"};
   for (const CLI::App* parser : app.get_subcommands({})) names.push_back(parser->get_name());
   CLI::App* const parser = app.add_subcommand("help", "Explain a subcommand and its options");
-  parser->add_option("SUBCOMMAND", arguments->subcommand, "Which one [all of them, in short]")
-      ->check(oneOf(names))
-      ->option_text("NAME");
+  addValue(*parser, "SUBCOMMAND", arguments->subcommand, "NAME",
+           "Which one [all of them, in short]")
+      ->check(oneOf(names));
   return {parser, [&app, arguments] { return run(app, *arguments); }};
 }
 

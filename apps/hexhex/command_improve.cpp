@@ -1,6 +1,7 @@
 // `hexhex improve`: a mesh whose cells are positive, and better.
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -10,6 +11,7 @@
 #include <hexhex/io.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "improve_options.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
@@ -36,24 +38,6 @@ struct ImproveArguments {
   bool hexesOnly = false;
 };
 
-/// Positions that a page is to show, taken before they change.
-Array<Vec3> pointsForPage(const ImproveArguments& arguments, const Array<Vec3>& points) {
-  return arguments.page.empty() ? Array<Vec3>() : points;
-}
-
-/// @param mesh    straight or curved
-/// @param before  its points before
-void writeComparison(const ImproveArguments& arguments, const auto& mesh, const Array<Vec3>& before,
-                     const ImproveReport& report, LongRun& longRun) {
-  if (arguments.page.empty()) return;
-  ViewOptions options;
-  options.scaledJacobians = report.after.scaledJacobians;
-  options.pointsBefore = before;
-  longRun.part("page", [&] {
-    writePage(mesh, arguments.page, arguments.output, options, longRun.context());
-  });
-}
-
 /// @param mesh  straight or curved
 ImproveReport improveMesh(const ImproveArguments& arguments, auto& mesh, LongRun& longRun) {
   Context& context = longRun.context();
@@ -71,40 +55,34 @@ ImproveReport improveMesh(const ImproveArguments& arguments, auto& mesh, LongRun
                       [&] { return improve(mesh, map, arguments.options, context); });
 }
 
-ImproveReport improveStraight(const ImproveArguments& arguments, LongRun& longRun) {
+/// Improves and writes a mesh, and a page that shows it before and after.
+/// @param mesh  straight or curved
+ImproveReport improveAndWrite(const ImproveArguments& arguments, auto mesh, LongRun& longRun) {
   Context& context = longRun.context();
-  std::vector<CellCount> counts;
-  HexMesh mesh = longRun.part("reading", [&] {
-    return readHexMesh(arguments.mesh, {.hexesOnly = arguments.hexesOnly, .cellCounts = &counts},
-                       context);
-  });
-  if (arguments.hexesOnly) warnOfOtherCells(counts);
-  const Array<Vec3> before = pointsForPage(arguments, mesh.points);
+  Array<Vec3> before = arguments.page.empty() ? Array<Vec3>() : mesh.points;
   ImproveReport report = improveMesh(arguments, mesh, longRun);
+  before = pointsBefore(std::move(before), report);
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = report.after.scaledJacobians;
   writing.patchAngle = arguments.patchAngle.degrees;
-  arguments.names.apply(mesh, writing.patchAngle, context);
-  longRun.part("writing", [&] { writeHexMesh(mesh, arguments.output, writing, context); });
+  longRun.part("writing",
+               [&] { writeNamed(arguments.names, mesh, arguments.output, writing, context); });
   arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
-  writeComparison(arguments, mesh, pointsBefore(before, report), report, longRun);
+  if (arguments.page.empty()) return report;
+  ViewOptions options;
+  options.scaledJacobians = report.after.scaledJacobians;
+  options.pointsBefore = before;
+  longRun.part("page",
+               [&] { writePage(mesh, arguments.page, arguments.output, options, context); });
   return report;
 }
 
-ImproveReport improveCurved(const ImproveArguments& arguments, LongRun& longRun) {
-  Context& context = longRun.context();
-  LagrangeMesh mesh =
-      longRun.part("reading", [&] { return readLagrangeMesh(arguments.mesh, context); });
-  const Array<Vec3> before = pointsForPage(arguments, mesh.points);
-  ImproveReport report = improveMesh(arguments, mesh, longRun);
-  WriteOptions writing = arguments.choice.options();
-  writing.scaledJacobians = report.after.scaledJacobians;
-  writing.patchAngle = arguments.patchAngle.degrees;
-  arguments.names.apply(mesh, writing.patchAngle, context);
-  longRun.part("writing", [&] { writeLagrangeMesh(mesh, arguments.output, writing, context); });
-  arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
-  writeComparison(arguments, mesh, before, report, longRun);
-  return report;
+HexMesh readStraight(const ImproveArguments& arguments, Context& context) {
+  std::vector<CellCount> counts;
+  HexMesh mesh = readHexMesh(arguments.mesh,
+                             {.hexesOnly = arguments.hexesOnly, .cellCounts = &counts}, context);
+  if (arguments.hexesOnly) warnOfOtherCells(counts);
+  return mesh;
 }
 
 /// @return whether the mesh is curved
@@ -132,7 +110,14 @@ int run(const ImproveArguments& arguments) {
   requireWritable(arguments.output);
   requirePage(arguments.page);
   Report reportFile(arguments.report);
-  const ImproveReport report = (isCurved ? improveCurved : improveStraight)(arguments, longRun);
+  Context& context = longRun.context();
+  const auto reading = [&](const auto& read) { return longRun.part("reading", read); };
+  const ImproveReport report =
+      isCurved ? improveAndWrite(arguments,
+                                 reading([&] { return readLagrangeMesh(arguments.mesh, context); }),
+                                 longRun)
+               : improveAndWrite(
+                     arguments, reading([&] { return readStraight(arguments, context); }), longRun);
   longRun.finish();
   if (reportFile.isWanted()) reportFile.write(jsonText(improvementAsJson(report)));
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
@@ -148,27 +133,23 @@ Command addImprove(CLI::App& app) {
   const auto arguments = std::make_shared<ImproveArguments>();
   CLI::App* const parser =
       app.add_subcommand("improve", "Make all cells of a mesh positive, and better");
-  parser->add_option("MESH", arguments->mesh, "The mesh, in any format that is read")
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addValue(*parser, "MESH", arguments->mesh, "FILE REQUIRED",
+           "The mesh, in any format that is read")
+      ->required();
   addMeshOutput(*parser, arguments->output);
-  CLI::Option* const map =
-      parser
-          ->add_option("--map", arguments->map,
-                       "The map that the mesh was extracted from: its surface\n"
-                       "is the one to stay on. MESH is .vtu, .ovm or .ovmb, which\n"
-                       "tell where vertices lie. Else: the boundary of the mesh")
-          ->option_text("FILE");
-  parser
-      ->add_option("--surface", arguments->surface,
-                   "The surface that the boundary of the mesh approximates:\n"
-                   "triangles (" +
-                       extensionsThat(&FileFormat::readsSurfaces) +
-                       ")\n"
-                       "or tets, whose boundary it is. Vertices are pulled onto it;\n"
-                       "edges beyond --feature-angle are kept")
-      ->excludes(map)
-      ->option_text("FILE");
+  CLI::Option* const map = addValue(*parser, "--map", arguments->map, "FILE",
+                                    "The map that the mesh was extracted from, whose surface\n"
+                                    "vertices stay on; MESH is then .vtu, .ovm or .ovmb, which\n"
+                                    "say where vertices lie. Otherwise they stay on the boundary\n"
+                                    "of the mesh");
+  addValue(*parser, "--surface", arguments->surface, "FILE",
+           "The surface that the boundary of the mesh approximates,\n"
+           "triangles (" +
+               extensionsThat(&FileFormat::readsSurfaces) +
+               ")\n"
+               "or the boundary of tets. Vertices are pulled onto it; edges\n"
+               "beyond --feature-angle are kept")
+      ->excludes(map);
   addImproveOptions(*parser, arguments->options);
   addHexesOnly(*parser, arguments->hexesOnly);
   addMeshChoice(*parser, arguments->choice, arguments->output);
@@ -183,7 +164,7 @@ Command addImprove(CLI::App& app) {
   parser->footer(
       "Cells that are not positive come first, then those below --target, then all. Vertices on "
       "the\n"
-      "surface slide on it. A mesh of which cells stay that are not positive is written, with a\n"
+      "surface slide on it. If cells remain that are not positive, the mesh is written with a\n"
       "warning; --report lists them. docs/user/improve.md explains what happens.\n\nExample:\n"
       "  hexhex improve mesh.vtu --map map.hexex -o better.vtu\n"
       "  hexhex extract map.hexex -o better.vtu --improve     in one go");

@@ -20,6 +20,7 @@
 #include <hexhex/survey.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -127,10 +128,8 @@ FileContent readFile(const InfoArguments& arguments, Context& context) {
 
 FileContent read(const InfoArguments& arguments, Context& context) {
   const MapSource& source = arguments.source;
-  if (arguments.pieces && source.isPair()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
-  }
+  refuseIf(arguments.pieces && source.isPair(),
+           "--pieces reads hexahedral meshes, but --tets and --polycube are a map.");
   if (source.isPair()) return contentOf(readMap(source, context));
   return readFile(arguments, context);
 }
@@ -158,9 +157,9 @@ void printFaults(const CellFaults& faults, std::uint64_t cells) {
   }
   constexpr const char* kHow = "`hexhex convert --reorient`";
   if (!faults.mirrored.empty() && faults.mirrored.size() == cells) {
-    printLine("orientation", fmt::format("the mesh is mirrored; {} turns it round", kHow));
+    printLine("orientation", fmt::format("the mesh is mirrored; {} reorients it", kHow));
   } else if (!faults.mirrored.empty()) {
-    printLine("orientation", fmt::format("{} mirrored{}; {} turns such cells round",
+    printLine("orientation", fmt::format("{} mirrored{}; {} reorients such cells",
                                          counted(faults.mirrored.size(), "cell"),
                                          firstOf(faults.mirrored.front()), kHow));
   }
@@ -265,21 +264,17 @@ int run(const InfoArguments& arguments) {
 
 Command addInfo(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* const parser = app.add_subcommand("info", "Tell what a file holds");
+  CLI::App* const parser = app.add_subcommand("info", "Describe what a file holds");
   addMapSource(*parser, arguments->source, "FILE",
                "A map or a hexahedral mesh; `hexhex formats` lists the\nformats");
-  parser
-      ->add_option("--input-format", arguments->source.format,
-                   "Read this format, whatever the extension")
-      ->check(formatName())
-      ->option_text("NAME");
+  addInputFormat(*parser, arguments->source);
   CLI::Option* const angle = addPatchAngle(*parser, arguments->patchAngle);
   parser
       ->add_flag("--pieces", arguments->pieces,
                  "Read a mesh piece by piece, which needs hardly any\n"
                  "memory for .vtu; with checksums instead of quality and\npatches")
       ->excludes(angle);
-  parser->add_flag("--json", arguments->json, "Print JSON instead of text");
+  addJson(*parser, arguments->json);
   parser->footer("Example:\n  hexhex info sphere.vtu");
   return {parser, [arguments] { return run(*arguments); }};
 }

@@ -7,6 +7,7 @@
 #include <hexhex/shape.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -43,9 +44,7 @@ int run(const MapArguments& arguments) {
   if (reportFile.isWanted()) {
     Json json = shapeAsJson(result.report);
     json["part"] = filledAsJson(arguments.part, part);
-    for (const StageTime& stage : context.stageTimes()) {
-      json["seconds"][stage.stage] = stage.seconds;
-    }
+    json["seconds"] = secondsAsJson(context.stageTimes());
     reportFile.write(jsonText(json));
   }
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
@@ -61,23 +60,17 @@ Command addMap(CLI::App& app) {
   const auto arguments = std::make_shared<MapArguments>();
   CLI::App* const parser = app.add_subcommand("map", "Make a seamless map of a part that has none");
   addPart(*parser, arguments->part, arguments->fill);
-  parser
-      ->add_option("-o,--output", arguments->output,
-                   "The map to write, " + extensionsThat(&FileFormat::writesMaps))
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMapOutput(*parser, arguments->output);
   addOutputChoice(*parser, arguments->choice);
   addShapeOptions(*parser, arguments->options);
-  parser
-      ->add_option("--feature-angle", arguments->options.featureAngle,
-                   "Edges where the surface turns by more than that, in\n"
-                   "degrees, get a tag where they are edges of the map")
-      ->check(CLI::Range(0.0, 180.0))
-      ->option_text("ANGLE [40]");
+  addValue(*parser, "--feature-angle", arguments->options.featureAngle, "ANGLE [40]",
+           "Tag edges where the surface turns by more than this, in\n"
+           "degrees, if they are edges of the map")
+      ->check(CLI::Range(0.0, 180.0));
   addReport(*parser, arguments->report, "Write in JSON what was made, and how long each step took");
   addRunOptions(*parser, arguments->run);
   parser->footer(
-      "Exit code 1: no map was found, or the part is no solid; nothing is written.\n"
+      "Exit code 1: no map was found, or the part is not a solid; nothing is written.\n"
       "docs/user/making-maps.md explains what happens.\n\n"
       "Example:\n"
       "  hexhex map part.stl -o seamless.hexex\n"

@@ -13,6 +13,7 @@
 #include <hexhex/mesh.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "extract_report.hpp"
 #include "improve_options.hpp"
 #include "json.hpp"
@@ -67,18 +68,13 @@ void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& l
 
 Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, const FilledPart& filled,
                   Context& context) {
-  Json seconds = Json::object();
-  for (const StageTime& stage : context.stageTimes()) seconds[stage.stage] = 0.0;
-  for (const StageTime& stage : context.stageTimes()) {
-    seconds[stage.stage] = seconds[stage.stage].get<double>() + stage.seconds;
-  }
   Json json = {{"part", filledAsJson(arguments.part, filled)},
                {"mesh",
                 {{"file", arguments.output},
                  {"cells", part.mesh.cells.size()},
                  {"vertices", part.mesh.points.size()}}}};
   json.update(partAsJson(part));
-  json["seconds"] = std::move(seconds);
+  json["seconds"] = secondsAsJson(context.stageTimes());
   json["peak_memory_bytes"] = peakMemory();
   return json;
 }
@@ -96,10 +92,11 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Fil
                                 part.quantization.cellsWanted));
   printImprovement(part.improvement);
   if (part.tagsReleased) {
-    printLine("sharp edges", "vertices left some, as cells were not positive otherwise");
+    printLine("sharp edges", "vertices left some of them: otherwise, cells would not be positive");
   }
   if (part.missingCurves > 0) {
-    printLine("tagged curves", "no edges run along " + counted(part.missingCurves, "piece"));
+    printLine("tagged curves",
+              "no edges of the mesh follow " + counted(part.missingCurves, "piece"));
   }
   printLine("time", run.partsAsText());
 }
@@ -140,16 +137,10 @@ int run(const MeshArguments& arguments) {
 }
 
 void addOutputs(CLI::App& parser, MeshArguments& arguments) {
-  parser
-      .add_option("-o,--output", arguments.output,
-                  "The mesh to write; `hexhex formats` lists the formats")
-      ->required()
-      ->option_text("FILE REQUIRED");
+  addMeshOutput(parser, arguments.output);
   addMeshChoice(parser, arguments.choice, arguments.output);
-  parser
-      .add_option("--keep-map", arguments.map,
-                  "Write the integer-grid map, too, for `extract` and `verify`")
-      ->option_text("FILE");
+  addValue(parser, "--keep-map", arguments.map, "FILE",
+           "Write the integer-grid map, too, for `extract` and `verify`");
   addReport(parser, arguments.report,
             "Write in JSON: labels, map, quality, distances, and how\nlong each step took");
   addPage(parser, arguments.page, "Write a page that shows the mesh in any browser");
@@ -171,9 +162,9 @@ Command addMesh(CLI::App& app) {
   addImproveOptions(*parser, arguments->options.improve);
   addRunOptions(*parser, arguments->run);
   parser->footer(
-      "map, quantize, extract, verify and improve in one go. A mesh of which a cell is not\n"
-      "certified to be positive everywhere is not written. Exit code 1: no map was found, or no\n"
-      "such mesh. docs/user/making-maps.md explains what happens.\n\n"
+      "Runs map, quantize, extract, verify and improve in one go. The mesh is written only if all\n"
+      "its cells are certified positive. Exit code 1: no map, or no such mesh, was found.\n"
+      "docs/user/making-maps.md explains what happens.\n\n"
       "Example:\n"
       "  hexhex mesh part.stl -o mesh.vtu --cells 50000 --view mesh.html");
   return {parser, [arguments] { return run(*arguments); }};

@@ -9,6 +9,7 @@
 #include <hexhex/quantize.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -58,12 +59,11 @@ int run(const QuantizeArguments& arguments) {
   longRun.finish();
   if (reportFile.isWanted()) {
     Json json = quantizeAsJson(result.report);
-    for (const StageTime& stage : context.stageTimes())
-      json["seconds"][stage.stage] = stage.seconds;
+    json["seconds"] = secondsAsJson(context.stageTimes());
     reportFile.write(jsonText(json));
   }
   if (arguments.run.quiet || reportFile.isOnOutput()) return kSuccess;
-  fmt::print("{} -> {}\n", arguments.input.description(), arguments.output);
+  printFiles(arguments.input.description(), arguments.output);
   printQuantized(result.report);
   return kSuccess;
 }
@@ -73,21 +73,19 @@ int run(const QuantizeArguments& arguments) {
 Command addQuantize(CLI::App& app) {
   const auto arguments = std::make_shared<QuantizeArguments>();
   CLI::App* const parser =
-      app.add_subcommand("quantize", "Make a seamless map an integer-grid map");
+      app.add_subcommand("quantize", "Turn a seamless map into an integer-grid map");
   addMapSource(*parser, arguments->input);
   addKeepWalls(*parser, arguments->input);
   addMapOutput(*parser, arguments->output);
   addOutputChoice(*parser, arguments->choice);
   addQuantizeOptions(*parser, arguments->options, "--scale");
-  parser
-      ->add_option("--tolerance", arguments->options.tolerance,
-                   "The map may be so far from a seamless one, as a share of\nits size")
-      ->check(CLI::Range(0.0, 0.01))
-      ->option_text("NUMBER [1e-5]");
+  addValue(*parser, "--tolerance", arguments->options.tolerance, "NUMBER [1e-5]",
+           "How far the map may be from a seamless one, as a share of\nits size")
+      ->check(CLI::Range(0.0, 0.01));
   addReport(*parser, arguments->report, "Write in JSON what was made, and how long each step took");
   addRunOptions(*parser, arguments->run);
   parser->footer(
-      "One of --cells, --scale and --edge-length says how fine the mesh is to be. Exit code 1: "
+      "One of --cells, --scale and --edge-length sets the resolution of the mesh. Exit code 1: "
       "the\n"
       "map is not seamless, or cannot be bent onto so few cells (--densify); nothing is written.\n"
       "docs/user/quantize.md explains what happens.\n\n"

@@ -66,11 +66,12 @@ Command addRepair(CLI::App& app) {
   addMapOutput(*parser, arguments->output);
   addOutputChoice(*parser, arguments->choice);
   addTolerance(*parser, arguments->options.tolerance);
-  addScale(*parser, arguments->options.scale, "The largest scale that the map is going to have");
+  addScale(*parser, arguments->options.scale,
+           "The largest scale at which the map will be extracted");
   addRound(*parser, arguments->options.round);
   parser->add_flag("--no-refine", arguments->noRefine,
-                   "Never split edges of the tet mesh, not even where\n"
-                   "moving parameters cannot work");
+                   "Never split edges of the tet mesh, even where moving\n"
+                   "parameters is not enough");
   addReport(*parser, arguments->report, "Write in JSON what was moved, where, and by how much");
   addRunOptions(*parser, arguments->run);
   parser->footer(

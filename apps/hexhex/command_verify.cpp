@@ -13,6 +13,7 @@
 #include <hexhex/verify.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "output.hpp"
@@ -111,17 +112,16 @@ Command addVerify(CLI::App& app) {
   arguments->options.countElements = true;
   CLI::App* const parser =
       app.add_subcommand("verify", "Compare a hexahedral mesh with the map that it came from");
-  addMapSourceBefore(*parser, arguments->map, "MAP", arguments->mesh, "MESH",
+  addMapSourceBefore(*parser, arguments->map, "MAP", mapDescription(), arguments->mesh, "MESH",
                      "The mesh, in any format that is read");
   addScale(*parser, arguments->options.scale, "The scale that the mesh was extracted with");
   addTolerance(*parser, arguments->options.tolerance);
-  parser
-      ->add_option("--digits", arguments->options.digits,
-                   "Significant digits of the mesh's coordinates\n"
-                   "(default: 7 if all are single-precision numbers, otherwise 17)")
+  addValue(*parser, "--digits", arguments->options.digits, "INTEGER",
+           "Significant digits of the mesh's coordinates, 1 to 17;\n"
+           "by default 7 if all are single-precision numbers, else 17")
       ->check(CLI::Range(1, 17));
-  parser->add_flag("--json", arguments->json, "Print JSON instead of text");
-  addRunOptions(*parser, arguments->run, "Print nothing but errors: the exit code tells");
+  addJson(*parser, arguments->json);
+  addRunOptions(*parser, arguments->run, "Print nothing but errors: the exit code is the answer");
   parser->footer(
       "Exit code 0: they agree; 4: they do not.\n\nExample:\n"
       "  hexhex verify sphere.hexex sphere.vtu --scale 2");

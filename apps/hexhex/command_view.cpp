@@ -4,6 +4,7 @@
 #include <hexhex/curved.hpp>
 
 #include "command.hpp"
+#include "expected_words.hpp"
 #include "quantize_options.hpp"
 #include "shared_options.hpp"
 #include "view_page.hpp"
@@ -14,49 +15,31 @@ Command addView(CLI::App& app) {
   const auto arguments = std::make_shared<ViewArguments>();
   CLI::App* const parser =
       app.add_subcommand("view", "Write a page that shows a mesh in any browser");
-  parser
-      ->add_option(
-          "MESH", arguments->mesh,
-          "The mesh, in any format that `hexhex info` reads, .vtu also\nwith cells of higher "
-          "order; or a map, whose mesh is\nextracted")
-      ->required()
-      ->option_text("FILE REQUIRED");
-  CLI::Option* const output =
-      parser->add_option("-o,--output", arguments->page, "The page [the mesh's name with .html]")
-          ->option_text("FILE");
-  parser
-      ->add_option("--map", arguments->map,
-                   "The map that the mesh came from: the page tells\nwhether they agree")
-      ->option_text("FILE");
+  addValue(*parser, "MESH", arguments->mesh, "FILE REQUIRED",
+           "The mesh, in any format that `hexhex info` reads, .vtu also\nwith cells of higher "
+           "order; or a map, whose mesh is\nextracted")
+      ->required();
+  addValue(*parser, "-o,--output", arguments->page, "FILE",
+           "The page [the mesh's name with .html]");
+  addValue(*parser, "--map", arguments->map, "FILE",
+           "The map that the mesh came from: the page says whether\nthey agree");
   addHexesOnly(*parser, arguments->hexesOnly);
   addScale(*parser, arguments->options.scale,
-           "The scale that the mesh was extracted with, or shall be");
+           "The scale that the mesh was extracted with, or is to be");
   CLI::Option* const order =
-      parser
-          ->add_option("--order", arguments->order,
-                       "Order of the cells that are extracted: curved from 2 on,\nup to 9")
+      addValue(*parser, "--order", arguments->order, "INTEGER [1]",
+               "Order of the cells that are extracted: curved from 2 on,\nup to 9")
           ->check(wholeNumberFrom(1))
-          ->check(CLI::Range(1, kMaxOrder))
-          ->option_text("INTEGER [1]");
+          ->check(CLI::Range(1, kMaxOrder));
   addCurvedNodes(*parser, arguments->curvedNodes, order);
   addQuantization(*parser, arguments->quantize, arguments->quantizeOptions);
   addTolerance(*parser, arguments->options.tolerance);
-  CLI::Option* const serve =
-      parser
-          ->add_flag("--serve", arguments->serve,
-                     "Serve the page to browsers of this machine only, until\nCtrl-C, instead of "
-                     "writing it: for very large meshes")
-          ->excludes(output);
-  parser->add_option("--port", arguments->port, "Port of --serve; 0 = any free one")
-      ->check(wholeNumberFrom(0))
-      ->check(CLI::Range(0, 65535))
-      ->needs(serve)
-      ->option_text("INTEGER [0]");
+  parser->add_flag("--open", arguments->open, "Open the page in the default browser");
   addRunOptions(*parser, arguments->run);
   parser->footer(
       "Exit code 4: the mesh does not agree with the map; the page is written and says so.\n\n"
       "Examples:\n  hexhex view sphere.vtu --map sphere.hexex --scale 2\n"
-      "  hexhex view sphere.hexex --order 3\n"
+      "  hexhex view sphere.hexex --order 3 --open\n"
       "  hexhex view seamless.hexex --quantize --cells 5000");
   return {parser, [arguments] { return view(*arguments); }};
 }

@@ -63,6 +63,19 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string wrapped(std::string text) {
+  constexpr std::size_t kWidth = 62;
+  std::size_t begin = 0;
+  while (text.size() - begin > kWidth) {
+    std::size_t end = text.find('\n', begin);
+    if (end - begin > kWidth) end = text.rfind(' ', begin + kWidth);
+    if (end == std::string::npos || end < begin) break;
+    text[end] = '\n';
+    begin = end + 1;
+  }
+  return text;
+}
+
 CLI::Validator oneOf(std::vector<std::string> words) {
   const auto check = [words = std::move(words)](const std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return {};
@@ -84,7 +97,7 @@ std::string unexpectedAsText(const CLI::App& app) {
     const CLI::App& parser = given.empty() ? app : *given.front();
     return fmt::format("There is no option {}.{}", name, suggestionFor(name, optionNames(parser)));
   }
-  if (!given.empty()) return fmt::format("Nothing is expected to be \"{}\".", rest.front());
+  if (!given.empty()) return fmt::format("Unexpected argument \"{}\".", rest.front());
   std::vector<std::string> names;
   for (const CLI::App* parser : app.get_subcommands({})) names.push_back(parser->get_name());
   return fmt::format("There is no subcommand \"{}\".{}", rest.front(),

@@ -20,16 +20,12 @@ namespace {
 
 void requireCurvedOutputs(const ExtractArguments& arguments) {
   const bool piecewise = !arguments.arcs.empty() || !arguments.patches.empty();
-  if (arguments.stream && (piecewise || arguments.order > 1)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Curved meshes are made as a whole. Leave out --stream, or --arcs, --patches and "
-                "--order.");
-  }
-  if (piecewise && arguments.order > 1) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
-                "--patches.");
-  }
+  refuseIf(arguments.stream && (piecewise || arguments.order > 1),
+           "Curved meshes are made as a whole. Leave out --stream, or --arcs, --patches and "
+           "--order.");
+  refuseIf(piecewise && arguments.order > 1,
+           "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
+           "--patches.");
   if (arguments.order > 1 && !arguments.parts.parts) {
     arguments.choice.requireForCurved(arguments.output, arguments.order);
   }
@@ -45,16 +41,12 @@ void requireCurvedOutputs(const ExtractArguments& arguments) {
 
 /// Parts are straight cells of a valid map.
 void requirePartsOutputs(const ExtractArguments& arguments) {
-  if (arguments.options.engine != Engine::Atlas || arguments.order > 1 || arguments.partial ||
-      !arguments.arcs.empty() || !arguments.patches.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--parts makes straight cells with the engine atlas, of valid maps. Leave out "
-                "--parts, or --engine, --order, --arcs, --patches and --partial.");
-  }
-  if (arguments.choice.compress) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Files of parts are not compressed. Leave out --parts or --compress.");
-  }
+  refuseIf(arguments.options.engine != Engine::Atlas || arguments.order > 1 || arguments.partial ||
+               !arguments.arcs.empty() || !arguments.patches.empty(),
+           "--parts makes straight cells with the engine atlas, of valid maps. Leave out "
+           "--parts, or --engine, --order, --arcs, --patches and --partial.");
+  refuseIf(arguments.choice.compress,
+           "Files of parts are not compressed. Leave out --parts or --compress.");
   requirePartFormat(arguments.output, arguments.choice.options(), arguments.team != nullptr);
 }
 
@@ -66,15 +58,11 @@ void requireImprovable(const ExtractArguments& arguments) {
                 "--improve needs the whole mesh in memory. Leave it out, or --stream, "
                 "--parts and --partial; `hexhex improve` takes a file.");
   }
-  if (arguments.order > 3 || !arguments.arcs.empty() || !arguments.patches.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--improve moves nodes of cells up to order 3, away from the map that arcs and "
-                "patches follow. Leave out --improve, or --arcs and --patches, or lower --order.");
-  }
-  if (arguments.order > 1 && arguments.improveOptions.pillow != PillowMode::Never) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--pillow adds straight cells. Leave out --pillow or --order.");
-  }
+  refuseIf(arguments.order > 3 || !arguments.arcs.empty() || !arguments.patches.empty(),
+           "--improve moves nodes of cells up to order 3, away from the map that arcs and "
+           "patches follow. Leave out --improve, or --arcs and --patches, or lower --order.");
+  refuseIf(arguments.order > 1 && arguments.improveOptions.pillow != PillowMode::Never,
+           "--pillow adds straight cells. Leave out --pillow or --order.");
 }
 
 /// A page shows a mesh that is whole and valid.
@@ -82,7 +70,7 @@ void requirePageOutput(const ExtractArguments& arguments) {
   if (arguments.page.empty()) return;
   if (arguments.stream || arguments.partial || arguments.parts.parts) {
     throw Error(ErrorCode::InvalidArgument,
-                "--view shows a whole mesh that was in memory. Leave it out, or --stream, --parts "
+                "--view needs the whole mesh in memory. Leave it out, or --stream, --parts "
                 "and --partial; `hexhex view` takes a file.");
   }
   requirePage(arguments.page);
@@ -91,36 +79,30 @@ void requirePageOutput(const ExtractArguments& arguments) {
 /// What is left of a map beyond repair is a straight mesh in memory.
 void requirePartialOutputs(const ExtractArguments& arguments) {
   if (!arguments.partial) return;
-  if (arguments.stream) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
-  }
-  if (arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--partial writes straight cells only: beside holes, there is no map for curved "
-                "ones to follow. Leave out --partial, or --order, --arcs and --patches.");
-  }
+  refuseIf(arguments.stream,
+           "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
+  refuseIf(arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty(),
+           "--partial writes straight cells only: beside holes, there is no map for curved "
+           "ones to follow. Leave out --partial, or --order, --arcs and --patches.");
 }
 
 /// What happens to maps that are not valid.
 void addRepairOptions(CLI::App& parser, ExtractArguments& arguments) {
-  addChoice<RepairMode>(parser, "--repair", arguments.options.repair,
+  addChoice<RepairMode>(parser, "--repair", arguments.options.repair, "MODE [auto]",
                         {{"auto", RepairMode::Auto}, {"off", RepairMode::Off}},
                         "auto: repair flipped and flat tets of the map first, with a\n"
-                        "notice; off: they are an error. Valid maps pay nothing")
-      ->option_text("MODE [auto]");
+                        "notice; off: they are an error. Costs valid maps nothing");
   addRound(parser, arguments.options.round);
   parser.add_flag("--partial", arguments.partial,
-                  "Write what can be extracted of a map beyond repair, cells\n"
-                  "at holes as region 1, and list the holes; exit code 1");
+                  "Write what can be extracted from a map beyond repair, with\n"
+                  "cells at holes as region 1, and list the holes; exit code 1");
 }
 
 /// After the extraction.
 void addImprovement(CLI::App& parser, ExtractArguments& arguments) {
   CLI::Option* const flag =
       parser.add_flag("--improve", arguments.improve,
-                      "Move vertices after the verification: all cells become\n"
+                      "After the verification, move vertices to make all cells\n"
                       "positive, and better (`hexhex improve --help`)");
   for (CLI::Option* const option : addImproveOptions(parser, arguments.improveOptions)) {
     option->needs(flag);
@@ -129,45 +111,36 @@ void addImprovement(CLI::App& parser, ExtractArguments& arguments) {
 
 /// Options that change how a mesh is made, but not the mesh.
 void addMethod(CLI::App& parser, ExtractArguments& arguments) {
-  addChoice<Engine>(parser, "--engine", arguments.options.engine,
+  addChoice<Engine>(parser, "--engine", arguments.options.engine, "ENGINE [atlas]",
                     {{"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}},
                     "atlas: reads most cells off large charts of the map;\n"
                     "propeller: the algorithm of the paper, slower. Both give\n"
-                    "the same mesh, bit for bit")
-      ->option_text("ENGINE [atlas]");
-  parser
-      .add_option("--epsilon", arguments.options.epsilon,
-                  "Enlargement of tets while the propeller engine searches\n"
-                  "lattice points, in parameter units; inf is legal. Never\n"
-                  "changes the result, only the time")
-      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()))
-      ->option_text("NUMBER [1e-6]");
+                    "the same mesh, bit for bit");
+  addValue(parser, "--epsilon", arguments.options.epsilon, "NUMBER [1e-6]",
+           "How much the propeller engine enlarges tets to search for\n"
+           "lattice points, in parameter units; may be inf. Changes the\n"
+           "time, never the result")
+      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()));
   parser.add_flag("--stream", arguments.stream,
-                  "Write the mesh piece by piece, for meshes larger than the\nmemory: " +
+                  "Write the mesh piece by piece, for meshes larger than the\nmemory, as " +
                       extensionsThat(&FileFormat::streams) +
-                      ".\nNothing that takes the whole mesh: no scaled Jacobians,\n"
-                      "no boundary quads; verified when the file is read back");
+                      ".\nWithout what needs the whole mesh: scaled Jacobians and\n"
+                      "boundary quads; verified by reading the file back");
   addPartsOptions(parser, arguments.parts);
 }
 
 /// Meshes that follow the map more closely.
 void addCurved(CLI::App& parser, ExtractArguments& arguments) {
   CLI::Option* const order =
-      parser
-          .add_option("--order", arguments.order,
-                      "Write cells of this order, curved as the surface is: .vtu,\n"
-                      ".msh, .mesh (MFEM); order 2 also .inp, .exo, .cgns")
-          ->check(CLI::Range(1, kMaxOrder))
-          ->option_text("P [1]");
+      addValue(parser, "--order", arguments.order, "P [1]",
+               "Write cells of this order, which follow the curved surface,\n"
+               "as .vtu, .msh, .mesh (MFEM); order 2 also .inp, .exo, .cgns")
+          ->check(CLI::Range(1, kMaxOrder));
   addCurvedNodes(parser, arguments.options.curvedNodes, order);
-  parser
-      .add_option("--arcs", arguments.arcs,
-                  "Also write hex edges as polylines through the tets,\n.vtu, .vtp or .ovmb")
-      ->option_text("FILE");
-  parser
-      .add_option("--patches", arguments.patches,
-                  "Also write hex faces as polygons, tet by tet: .vtu, .vtp\nor .ovmb")
-      ->option_text("FILE");
+  addValue(parser, "--arcs", arguments.arcs, "FILE",
+           "Also write hex edges as polylines through the tets,\n.vtu, .vtp or .ovmb");
+  addValue(parser, "--patches", arguments.patches, "FILE",
+           "Also write hex faces as polygons, tet by tet: .vtu, .vtp\nor .ovmb");
 }
 
 }  // namespace
@@ -179,7 +152,7 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   addMeshOutput(parser, arguments.output);
   addMeshChoice(parser, arguments.choice, arguments.output);
   addScale(parser, arguments.options.scale,
-           "Multiply all parameters by this integer: its cube as\nmany cells");
+           "Multiply all parameters by this integer, and the number of\ncells by its cube");
   addCurved(parser, arguments);
   addMethod(parser, arguments);
   addTolerance(parser, arguments.options.tolerance);
@@ -191,12 +164,13 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
   parser.add_flag("--no-verify", arguments.noVerify, "Write the mesh without verifying it");
   addReport(parser, arguments.report,
             "Write a report in JSON: times, counts, quality,\nverification");
-  addPage(parser, arguments.page,
-          "Also write a page that shows the mesh in any browser; with\n--improve before and after");
+  addPage(
+      parser, arguments.page,
+      "Also write a page that shows the mesh in any browser; with\n--improve, before and after");
   addRunOptions(parser, arguments.run);
   parser.footer(
       "The mesh is verified against the map before it is written; with --stream, the file is read\n"
-      "again before it gets its name: it must hold what was extracted, and as many cells and\n"
+      "back before it gets its name: it must hold what was extracted, and as many cells and\n"
       "vertices as follow from the map. Parts are verified one by one. The same input gives the\n"
       "same bytes with any number of threads.\n\nExample:\n"
       "  hexhex extract sphere.hexex -o sphere.vtu --scale 2 --report sphere.json");
@@ -207,8 +181,8 @@ void requireOutputs(const ExtractArguments& arguments) {
       (arguments.stream || arguments.partial || arguments.parts.parts)) {
     throw Error(
         ErrorCode::InvalidArgument,
-        "--names and --split-tags take a whole mesh in memory. Leave them out, or --stream, "
-        "--parts and --partial; `hexhex convert` has them, too.");
+        "--names and --split-tags need the whole mesh in memory. Leave them out, or --stream, "
+        "--parts and --partial; `hexhex convert` takes a file.");
   }
   std::vector<std::filesystem::path> inputs = arguments.input.files();
   inputs.emplace_back(arguments.names.file());
@@ -218,10 +192,8 @@ void requireOutputs(const ExtractArguments& arguments) {
   requirePartialOutputs(arguments);
   requireImprovable(arguments);
   requirePageOutput(arguments);
-  if (!arguments.parts.parts && arguments.parts.isOfParts()) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
-  }
+  refuseIf(!arguments.parts.parts && arguments.parts.isOfParts(),
+           "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
   if (arguments.parts.parts) {
     requirePartsOutputs(arguments);
   } else if (arguments.order == 1) {

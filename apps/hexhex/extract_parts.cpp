@@ -1,11 +1,11 @@
 #include "extract_parts.hpp"
 
-#include <map>
 #include <memory>
 #include <string>
 
 #include <fmt/core.h>
 
+#include "expected_words.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
 
@@ -17,31 +17,24 @@ void addPartsOptions(CLI::App& parser, PartsChoice& choice) {
     if (format.extension.empty()) continue;
     extensions += (extensions.empty() ? "" : ", ") + std::string(format.extension);
   }
-  parser
-      .add_option("--parts", choice.parts,
-                  "Write the mesh in so many parts, for solvers on many\nmachines, a file for "
-                  "each or all in one: " +
-                      extensions)
-      ->check(CLI::Range(1U, kMaxParts))
-      ->option_text("N");
-  parser
-      .add_option("--ghosts", choice.options.ghostLayers,
-                  "Layers of cells of other parts around each part")
-      ->check(CLI::Range(0U, kMaxGhostLayers))
-      ->option_text("LAYERS [0]");
-  parser
-      .add_option(
-          "--partition", choice.options.method,
-          "Who cuts the mesh: curve, into halves of halves along a\ncurve; scotch or metis, "
-          "if that library is on this machine")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PartitionMethod>{{"curve", PartitionMethod::Curve},
-                                                 {"scotch", PartitionMethod::Scotch},
-                                                 {"metis", PartitionMethod::Metis}}))
-      ->option_text("METHOD [curve]");
-  parser.add_flag("--mpi", choice.mpi,
-                  "Make one part in each process of an MPI. Several ones that\nmpirun starts do "
-                  "that anyway");
+  addValue(parser, "--parts", choice.parts, "N",
+           "Write the mesh in this many parts, for distributed solvers,\none file each or all in "
+           "one: " +
+               extensions)
+      ->check(CLI::Range(1U, kMaxParts));
+  addValue(parser, "--ghosts", choice.options.ghostLayers, "LAYERS [0]",
+           "Layers of cells of other parts around each part")
+      ->check(CLI::Range(0U, kMaxGhostLayers));
+  addChoice<PartitionMethod>(
+      parser, "--partition", choice.options.method, "METHOD [curve]",
+      {{"curve", PartitionMethod::Curve},
+       {"scotch", PartitionMethod::Scotch},
+       {"metis", PartitionMethod::Metis}},
+      "How to divide the mesh: curve (recursive bisection);\nscotch or metis, if that library "
+      "is installed");
+  parser.add_flag(
+      "--mpi", choice.mpi,
+      "Make one part in each MPI process, as several processes\nstarted by mpirun do anyway");
 }
 
 void printParts(const PartsRecord& record) {

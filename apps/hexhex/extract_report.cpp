@@ -52,13 +52,6 @@ Json stagesAsJson(const std::vector<StageTime>& stages) {
   return list;
 }
 
-/// {"reading": 0.01, "extraction": 3.85, ...}
-Json partsAsJson(const std::vector<StageTime>& parts) {
-  Json json = Json::object();
-  for (const StageTime& part : parts) json[part.stage] = part.seconds;
-  return json;
-}
-
 Json byKind(const std::array<std::uint64_t, 4>& counts) {
   return {{"vertex", counts[0]}, {"edge", counts[1]}, {"face", counts[2]}, {"cell", counts[3]}};
 }
@@ -134,7 +127,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
       {"input", fileAsJson(record.input)},
       {"output", fileAsJson(record.output)},
       {"extract_seconds", statistics.seconds},
-      {"seconds", partsAsJson(record.parts)},
+      {"seconds", secondsAsJson(record.parts)},
       {"cells", record.cells},
       {"vertices", record.vertices},
       {"tets", record.tets},
@@ -326,7 +319,7 @@ std::string partialReportAsJson(const PartialMesh& partial, const Error& problem
                        {"invalid_tets", partial.invalidTets},
                        {"missing_cells", partial.missingCells},
                        {"holes", std::move(holes)}};
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonText(report);
 }
 
 }  // namespace hexhex::command

@@ -183,10 +183,11 @@ StreamedMesh extractStreamed(const TetMapView& map, const std::filesystem::path&
         return readAndProve(pending.path(), writing.format, extractedMap(map, statistics), proof,
                             result.written, context);
       });
-      requirePassed(*result.verification,
-                    "The file, as it was read back, does not hold the mesh that was extracted, or "
-                    "not the one of the map, and was removed",
-                    "Please look after the disk, and if it is sound report this with the map.");
+      requirePassed(
+          *result.verification,
+          "The file, when read back, did not hold the mesh that was extracted, or not the "
+          "one of the map, and was removed",
+          "Please check the disk; if it is sound, report this with the map.");
     }
     context.throwIfCancelled();
   } catch (const Error& error) {

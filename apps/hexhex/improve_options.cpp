@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "expected_words.hpp"
 #include "extract_report.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
@@ -12,41 +13,36 @@
 namespace hexhex::command {
 
 std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& options) {
-  return {parser
-              .add_option("--target", options.target,
-                          "Improve cells whose scaled Jacobian is below that until\n"
-                          "none is, or nothing helps any more; 0: only untangle")
-              ->check(CLI::Range(0.0, 1.0))
-              ->option_text("NUMBER [0.3]"),
-          parser.add_option("--passes", options.passes, "Then smooth the whole mesh so many times")
-              ->check(CLI::Range(0, 1000))
-              ->option_text("N [2]"),
-          parser.add_flag("--fix-boundary", options.fixBoundary,
-                          "Leave vertices on the surface where they are"),
-          parser
-              .add_option("--feature-angle", options.featureAngle,
-                          "Vertices stay on edges of the surface where it turns by\n"
-                          "more than that, in degrees, and on tagged edges")
-              ->check(CLI::Range(0.0, 180.0))
-              ->option_text("ANGLE [40]"),
-          parser
-              .add_option("--slack", options.slack,
-                          "Where nothing else helps, vertices without tags may leave\n"
-                          "the surface by so many diagonals of its bounding box")
-              ->check(CLI::Range(0.0, 0.1))
-              ->option_text("NUMBER [1e-3]"),
-          addChoice<PillowMode>(parser, "--pillow", options.pillow,
-                                {{"auto", PillowMode::Auto},
-                                 {"always", PillowMode::Always},
-                                 {"never", PillowMode::Never}},
-                                "Add a layer of cells under the boundary. auto: if fewer\n"
-                                "cells stay that are not positive, or the minimum rises by\n"
-                                "0.02 at least")
-              ->option_text(options.pillow == PillowMode::Never ? "MODE [never]" : "MODE [auto]"),
-          parser.add_flag("--snap-curves,!--no-snap-curves", options.snapCurves,
-                          "Where edges of the mesh do not follow sharp and tagged\n"
-                          "edges of the object, lay some onto them, with a pillow, if\n"
-                          "the mesh is better so by minimum, distance and curves")};
+  return {
+      addValue(parser, "--target", options.target, "NUMBER [0.3]",
+               "Improve cells whose scaled Jacobian is below this until\n"
+               "none are left, or nothing helps; 0: only untangle")
+          ->check(CLI::Range(0.0, 1.0)),
+      addValue(parser, "--passes", options.passes, "N [2]",
+               "Then smooth the whole mesh this many times")
+          ->check(CLI::Range(0, 1000)),
+      parser.add_flag("--fix-boundary", options.fixBoundary, "Do not move vertices on the surface"),
+      addValue(parser, "--feature-angle", options.featureAngle, "ANGLE [40]",
+               "Keep vertices on edges where the surface turns by more\n"
+               "than this, in degrees, and on tagged edges")
+          ->check(CLI::Range(0.0, 180.0)),
+      addValue(parser, "--slack", options.slack, "NUMBER [1e-3]",
+               "Where nothing else helps, let vertices without tags leave\n"
+               "the surface by up to this share of the diagonal of its\n"
+               "bounding box")
+          ->check(CLI::Range(0.0, 0.1)),
+      addChoice<PillowMode>(parser, "--pillow", options.pillow,
+                            options.pillow == PillowMode::Never ? "MODE [never]" : "MODE [auto]",
+                            {{"auto", PillowMode::Auto},
+                             {"always", PillowMode::Always},
+                             {"never", PillowMode::Never}},
+                            "Add a layer of cells under the boundary. auto: if that\n"
+                            "leaves fewer cells that are not positive, or raises the\n"
+                            "minimum by at least 0.02"),
+      parser.add_flag("--snap-curves,!--no-snap-curves", options.snapCurves,
+                      "Where edges of the mesh do not follow sharp and tagged\n"
+                      "edges of the object, move some onto them, with a pillow,\n"
+                      "if that improves minimum, distance and curves")};
 }
 
 namespace {
@@ -95,32 +91,34 @@ void warnOfImprovement(const ImproveReport& report) {
   const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
   if (report.distanceAfter.hausdorff() > limit) {
     printWarning(
-        "The mesh came farther from the surface where cells could not be good nearer to it; "
+        "The mesh is farther from the surface than before, where cells could not be good nearer to "
+        "it; "
         "--report lists what is far from it.");
   }
   const double mean = report.before.quality.mean;
   if (report.addedCells == 0 && report.after.quality.mean < mean - 1e-6) {
     printWarning(fmt::format(
-        "The mean scaled Jacobian fell from {:.4g} to {:.4g}: cells became worse, though not below "
-        "--target unless beside mended ones, so that those below it are better or the surface is "
-        "nearer.",
+        "The mean scaled Jacobian fell from {:.4g} to {:.4g}: some cells got worse so that those "
+        "below "
+        "--target could improve, or the mesh could come nearer to the surface. Only cells beside "
+        "untangled ones fell below --target.",
         mean, report.after.quality.mean));
   }
   if (report.notPositive.empty()) return;
   printWarning(refutationAsText(report.after));
   if (!report.cannotBePositive.empty()) {
     printWarning(fmt::format(
-        "{} cannot be mended: each shares two faces that meet at an edge with another cell, such "
-        "as cell {}, and one of such two is not positive wherever vertices are. Merge them, or "
-        "mesh that place anew.",
+        "{} cannot be made positive: each shares two faces that meet at an edge with another cell, "
+        "such as cell {}, and wherever the vertices are, one of the two is not positive. Merge "
+        "them, or mesh that place again.",
         counted(report.cannotBePositive.size(), "cell"), report.cannotBePositive.front()));
     if (report.cannotBePositive.size() == report.notPositive.size()) return;
   }
   if (report.vertices[2] + report.vertices[3] > 0) {
     printWarning(
-        "Vertices stay on curves and at corners. Where these are no features of the object, "
-        "--feature-angle 180 leaves out those that are found by angle, and --slack lets vertices "
-        "come farther from the surface.");
+        "Vertices were kept on curves and at corners. Where these are not features of the object, "
+        "--feature-angle 180 ignores those found by angle, and a larger --slack lets vertices "
+        "leave the surface farther.");
   }
 }
 
@@ -136,9 +134,9 @@ Array<Vec3> pointsBefore(Array<Vec3> points, const ImproveReport& report) {
 void printImprovement(const ImproveReport& report) {
   const std::uint64_t bad = report.before.refuted + report.before.undecided;
   const std::uint64_t left = report.notPositive.size();
-  printLine("mended", bad == 0 ? "all cells were positive"
-                               : fmt::format("{} of {} that were not positive", bad - left,
-                                             counted(bad, "cell")));
+  printLine("untangled", bad == 0 ? "all cells were positive"
+                                  : fmt::format("{} of {} that were not positive", bad - left,
+                                                counted(bad, "cell")));
   printLine("scaled Jacobian before",
             fmt::format("at least {:.4g}, {:.4g} on average", report.before.quality.minimum,
                         report.before.quality.mean));
@@ -167,8 +165,8 @@ void printImprovement(const ImproveReport& report) {
                                     100 * report.curvesFollowed, report.curveLength));
   }
   if (report.snappedCurves > 0) {
-    printLine("snapped",
-              counted(report.snappedCurves, "piece") + " of curves, onto which edges were laid");
+    printLine("snapped", counted(report.snappedCurves, "piece") +
+                             " of curves, onto which edges of the mesh were moved");
   }
   if (report.innerDistanceBefore > 0 || report.innerDistanceAfter > 0) {
     printLine("faces inside", fmt::format("at most {:.2g} of the diagonal off; before {:.2g}",

@@ -269,6 +269,12 @@ Json partAsJson(const MeshedPart& part) {
           {"missing_curves", part.missingCurves}};
 }
 
+Json secondsAsJson(std::span<const StageTime> stages) {
+  Json json = Json::object();
+  for (const StageTime& stage : stages) json[stage.stage] = stage.seconds;
+  return json;
+}
+
 const char* kindName(const SeamlessReport& report) noexcept {
   if (report.integerFactor > 0) return "integer up to a scale";
   switch (report.kind) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hexhex/check.hpp>
+#include <hexhex/context.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/mesh.hpp>
 #include <hexhex/patches.hpp>
@@ -36,6 +37,8 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json quantizeAsJson(const QuantizeReport& report);
 [[nodiscard]] Json improvementAsJson(const ImproveReport& report);
 [[nodiscard]] Json shapeAsJson(const ShapeReport& report);
+/// {"reading": 0.01, "extraction": 3.85, ...}
+[[nodiscard]] Json secondsAsJson(std::span<const StageTime> stages);
 /// The reports of a part, without its files and times.
 [[nodiscard]] Json partAsJson(const MeshedPart& part);
 

@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "expected_words.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
 
@@ -33,7 +34,7 @@ std::string_view sentenceOf(const Error& error) noexcept {
   const int signal = signalThatCame;
   if (error.code() != ErrorCode::Cancelled || signal == 0) return error.what();
   if (signal == SIGINT) return "Interrupted.";
-  return signal == SIGTERM ? "Terminated." : "Its terminal was closed.";
+  return signal == SIGTERM ? "Terminated." : "The terminal was closed.";
 }
 
 CancelOnSignal::CancelOnSignal(Context& context) {
@@ -120,10 +121,9 @@ void ProgressDisplay::showBar(std::string_view stage, double share) {
 }
 
 void addRunOptions(CLI::App& parser, RunOptions& options, const std::string& quiet) {
-  parser.add_option("--threads", options.threads, "Number of threads; 0 = all cores")
-      ->check(wholeNumberFrom(0))
-      ->option_text("INTEGER [0]");
-  parser.add_flag("--verbose", options.verbose, "Print a line per stage instead of a bar");
+  addValue(parser, "--threads", options.threads, "INTEGER [0]", "Number of threads; 0 = all cores")
+      ->check(wholeNumberFrom(0));
+  parser.add_flag("--verbose", options.verbose, "Print a line per stage instead of a progress bar");
   parser.add_flag("--quiet", options.quiet, quiet);
 }
 

@@ -80,11 +80,11 @@ void reserveMemory() {
 
 /// Says so without any memory.
 int failForMemory() noexcept {
-  static_cast<void>(std::fputs(
-      "hexhex: error: The memory of this machine does not suffice, or it refuses threads "
-      "or locks; nothing was written. Try a smaller scale, or one thread. "
-      "[OutOfMemory]\n",
-      stderr));
+  static_cast<void>(
+      std::fputs("hexhex: error: This machine is out of memory, or refuses threads or locks; "
+                 "nothing was written. Try a smaller scale, or one thread. "
+                 "[OutOfMemory]\n",
+                 stderr));
   return kFailure;
 }
 

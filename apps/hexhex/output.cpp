@@ -136,6 +136,10 @@ std::string refutationAsText(const Certificate& certificate) {
       bad.position[1], bad.position[2]);
 }
 
+void refuseIf(bool isRefused, const std::string& sentence) {
+  if (isRefused) throw Error(ErrorCode::InvalidArgument, sentence);
+}
+
 void requireAllDifferent(std::vector<std::filesystem::path> files,
                          std::initializer_list<std::string> outputs) {
   for (const std::string& output : outputs) {

@@ -73,6 +73,9 @@ void printPatches(std::span<const NamedPatch> patches);
 /// Which cells are not positive, and where: a sentence.
 [[nodiscard]] std::string refutationAsText(const Certificate& certificate);
 
+/// Throws InvalidArgument for options that do not go together.
+void refuseIf(bool isRefused, const std::string& sentence);
+
 /// Throws InvalidArgument if an output and one more file, of those that are read or written, have
 /// names that mean one file, or would once both are written. Names may be empty.
 void requireAllDifferent(std::vector<std::filesystem::path> files,

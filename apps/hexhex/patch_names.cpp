@@ -31,8 +31,8 @@ class FreeTags {
   [[nodiscard]] std::int32_t next() {
     if (last_ < std::numeric_limits<std::int32_t>::max()) return ++last_;
     throw Error(ErrorCode::TooLarge,
-                "A group of quads has the largest tag that there can be, so that there is none for "
-                "new groups. Give it a smaller one.");
+                "A group of quads has the largest possible tag, which leaves none for new groups. "
+                "Give it a smaller one.");
   }
 
  private:
@@ -172,8 +172,8 @@ void PatchNames::requireOwnNames(const HexMesh& mesh, const std::vector<NamedPat
     if (isWanted && all.insert(now).second) continue;
     throw Error(
         ErrorCode::InvalidArgument,
-        fmt::format("{}: the name \"{}\" is that of another group, too; capital letters and "
-                    "all behind the first 31 do not count. Give each group its own.",
+        fmt::format("{}: the name \"{}\" is also that of another group; case, and characters "
+                    "after the 31st, do not count. Give each group its own.",
                     file_, found == names_.end() ? patch.name : found->second));
   }
 }
@@ -196,6 +196,17 @@ void PatchNames::warnOfAngle(const PatchAngle& angle, const LagrangeMesh& mesh,
   angle.warnIfUseless(straightMesh(mesh), file, options, context);
 }
 
+void writeNamed(const PatchNames& names, HexMesh& mesh, const std::string& file,
+                const WriteOptions& options, Context& context) {
+  names.apply(mesh, options.patchAngle, context);
+  writeHexMesh(mesh, file, options, context);
+}
+void writeNamed(const PatchNames& names, LagrangeMesh& mesh, const std::string& file,
+                const WriteOptions& options, Context& context) {
+  names.apply(mesh, options.patchAngle, context);
+  writeLagrangeMesh(mesh, file, options, context);
+}
+
 void addPatchNames(CLI::App& parser, PatchNames& names) {
   parser.add_flag("--split-tags", names.split,
                   "Divide tagged groups of boundary quads into smooth patches\n"
@@ -211,7 +222,7 @@ void addPatchNames(CLI::App& parser, PatchNames& names) {
             }
           },
           "Rename groups of boundary quads: a file with two words\non each line, such as "
-          "\"patch_1 inlet\"; the viewer saves it")
+          "\"patch_1 inlet\"; the viewer saves one")
       ->option_text("FILE");
 }
 

@@ -51,6 +51,12 @@ class PatchNames {
   std::map<std::string, std::string> names_;
 };
 
+/// Names groups and writes a mesh, straight or curved.
+void writeNamed(const PatchNames& names, HexMesh& mesh, const std::string& file,
+                const WriteOptions& options, Context& context);
+void writeNamed(const PatchNames& names, LagrangeMesh& mesh, const std::string& file,
+                const WriteOptions& options, Context& context);
+
 /// Adds both.
 void addPatchNames(CLI::App& parser, PatchNames& names);
 

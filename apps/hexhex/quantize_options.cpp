@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "expected_words.hpp"
 #include "output.hpp"
 
 namespace hexhex::command {
@@ -22,14 +23,12 @@ std::string whyNotPositive(const std::string& text) {
 }  // namespace
 
 std::array<CLI::Option*, 2> addDensity(CLI::App& parser, QuantizeOptions& options) {
-  CLI::Option* const cells = parser.add_option("--cells", options.cells, "About so many hexahedra")
-                                 ->check(whyNotPositive)
-                                 ->option_text("NUMBER");
-  CLI::Option* const edge = parser
-                                .add_option("--edge-length", options.edgeLength,
-                                            "Hexahedra with edges of about this length in space")
-                                ->check(whyNotPositive)
-                                ->option_text("LENGTH");
+  CLI::Option* const cells =
+      addValue(parser, "--cells", options.cells, "NUMBER", "Approximate number of hexahedra")
+          ->check(whyNotPositive);
+  CLI::Option* const edge = addValue(parser, "--edge-length", options.edgeLength, "LENGTH",
+                                     "Approximate length of the edges of hexahedra in space")
+                                ->check(whyNotPositive);
   cells->excludes(edge);
   return {cells, edge};
 }
@@ -37,25 +36,22 @@ std::array<CLI::Option*, 2> addDensity(CLI::App& parser, QuantizeOptions& option
 std::array<CLI::Option*, 4> addQuantizeOptions(CLI::App& parser, QuantizeOptions& options,
                                                const std::string& scaleName) {
   const auto [cells, edge] = addDensity(parser, options);
-  CLI::Option* const scale =
-      parser
-          .add_option(scaleName, options.scale,
-                      "Multiply the seamless map's parameters by about so much")
-          ->check(whyNotPositive)
-          ->option_text("NUMBER");
+  CLI::Option* const scale = addValue(parser, scaleName, options.scale, "NUMBER",
+                                      "Multiply the seamless map's parameters by about this")
+                                 ->check(whyNotPositive);
   scale->excludes(cells)->excludes(edge);
   CLI::Option* const densify =
       parser.add_flag("--densify", options.densify,
-                      "If the map cannot be bent onto so few cells: take the\n"
-                      "next density that works, and say which");
+                      "If the map cannot be bent onto so few cells, use the next\n"
+                      "density that works, and report it");
   return {cells, scale, edge, densify};
 }
 
 void addQuantization(CLI::App& parser, bool& quantize, QuantizeOptions& options) {
   CLI::Option* const flag =
       parser.add_flag("--quantize", quantize,
-                      "The map is seamless: make it an integer-grid map first, with\n"
-                      "--cells, --map-scale or --edge-length (`hexhex quantize --help`)");
+                      "The map is seamless: make it an integer-grid map first;\n"
+                      "needs --cells, --map-scale or --edge-length\n(`hexhex quantize --help`)");
   for (CLI::Option* const option : addQuantizeOptions(parser, options, "--map-scale")) {
     option->needs(flag);
   }

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "expected_words.hpp"
 #include "output.hpp"
 #include "shared_options.hpp"
 
@@ -26,47 +27,36 @@ void printLabels(const ShapeReport& report) {
 }  // namespace
 
 void addPart(CLI::App& parser, std::string& part, FillOptions& options) {
-  static const std::map<std::string, Mesher> kMeshers = {{"auto", Mesher::Auto},
-                                                         {"tetwild", Mesher::TetWild},
-                                                         {"netgen", Mesher::Netgen},
-                                                         {"gmsh", Mesher::Gmsh},
-                                                         {"tetgen", Mesher::TetGen}};
-  parser
-      .add_option("PART", part,
-                  "A mesh of tets, " + extensionsThat(&FileFormat::readsTets) +
-                      "; or a closed surface, " + extensionsThat(&FileFormat::readsSurfaces) +
-                      ", or .step, which a mesher fills with tets")
-      ->required()
-      ->option_text("FILE REQUIRED");
-  parser
-      .add_option("--mesher", options.mesher,
-                  "What fills a surface or STEP file: tetwild (pip install\n"
-                  "pytetwild), netgen (netgen-mesher), gmsh, tetgen; auto: the\n"
-                  "first that is installed. HEXHEX_PYTHON names the Python")
-      ->transform(CLI::CheckedTransformer(kMeshers).description(""))
-      ->option_text("NAME [auto]");
-  parser
-      .add_option("--tet-size", options.tetSize,
-                  "Length of the edges of these tets; by default as long as\n"
-                  "those of the cells, with 3,000 to 20,000 tets, about")
-      ->check(CLI::PositiveNumber)
-      ->option_text("LENGTH");
+  addValue(parser, "PART", part, "FILE REQUIRED",
+           "A mesh of tets (" + extensionsThat(&FileFormat::readsTets) +
+               "); or a closed surface (" + extensionsThat(&FileFormat::readsSurfaces) +
+               ") or a .step file, which a mesher fills with tets")
+      ->required();
+  addChoice<Mesher>(parser, "--mesher", options.mesher, "NAME [auto]",
+                    {{"auto", Mesher::Auto},
+                     {"tetwild", Mesher::TetWild},
+                     {"netgen", Mesher::Netgen},
+                     {"gmsh", Mesher::Gmsh},
+                     {"tetgen", Mesher::TetGen}},
+                    "What fills a surface or STEP file: tetwild (pip install\n"
+                    "pytetwild), netgen (netgen-mesher), gmsh, tetgen; auto: the\n"
+                    "first that is installed. HEXHEX_PYTHON names the Python");
+  addValue(parser, "--tet-size", options.tetSize, "LENGTH",
+           "Length of the edges of these tets; by default that of the\n"
+           "cells, within about 3,000 to 20,000 tets")
+      ->check(CLI::PositiveNumber);
 }
 
 void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
   std::map<std::string, ShapeMethod> methods;
   for (const auto& [name, kind] : kShapeMethods) methods.emplace(name, kind);
-  parser
-      .add_option("--method", options.method,
-                  "How to make a map: frames (along a smooth field: good\n"
-                  "cells, where there is a map), polycube (the part becomes\n"
-                  "one of axis-aligned boxes), auto: what fits best")
-      ->transform(CLI::CheckedTransformer(methods).description(""))
-      ->option_text("NAME [auto]");
-  parser
-      .add_option("--seed", options.seed,
-                  "Of random decisions: another one may find a map where\nthis one does not")
-      ->option_text("INTEGER [1]");
+  addChoice(parser, "--method", options.method, "NAME [auto]", methods,
+            "How to make the map: frames (along a smooth frame field:\n"
+            "good cells, but not every field has a map), polycube\n"
+            "(deforms the part into axis-aligned boxes), or auto: what\n"
+            "fits best");
+  addValue(parser, "--seed", options.seed, "INTEGER [1]",
+           "Seed of random decisions: another one may find a map where\nthis one does not");
 }
 
 void printFill(const FilledPart& part) {

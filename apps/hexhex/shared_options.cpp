@@ -15,6 +15,7 @@
 #include <hexhex/shape.hpp>
 
 #include "expected_words.hpp"
+#include "output.hpp"
 
 namespace hexhex::command {
 
@@ -80,40 +81,28 @@ void addKeepWalls(CLI::App& parser, MapSource& source) {
 namespace {
 
 void addMapOptions(CLI::App& parser, MapSource& source) {
-  CLI::Option* const tets = parser
-                                .add_option("--tets", source.tets,
-                                            "Instead of MAP: a tet mesh,\n" +
-                                                extensionsThat(&FileFormat::readsTets) + " ...")
-                                ->option_text("FILE");
-  CLI::Option* const polycube =
-      parser
-          .add_option("--polycube", source.polycube,
-                      "... and the same tets with the parameters as vertices")
-          ->option_text("FILE");
+  CLI::Option* const tets =
+      addValue(parser, "--tets", source.tets, "FILE",
+               "Instead of MAP: a tet mesh,\n" + extensionsThat(&FileFormat::readsTets) + " ...");
+  CLI::Option* const polycube = addValue(parser, "--polycube", source.polycube, "FILE",
+                                         "... and the same tets with the parameters as vertices");
   CLI::Option* const flags =
-      parser
-          .add_option("--flags", source.flags,
-                      "... or labels 0 to 5 (+x -x +y -y +z -z) of its boundary:\n"
-                      "a polycube's seamless map is made of them. Text with four\n"
-                      "per tet, or one per triangle of --surface; or .vtu, .vtk\n"
-                      "with triangles (docs/user/quantize.md); auto: they are found")
-          ->option_text("FILE");
+      addValue(parser, "--flags", source.flags, "FILE",
+               "... or labels 0 to 5 (+x -x +y -y +z -z) of its boundary,\n"
+               "from which a polycube's seamless map is made. Text with four\n"
+               "per tet, or one per triangle of --surface; or .vtu, .vtk\n"
+               "with triangles (docs/user/quantize.md); auto: finds labels");
   polycube->needs(tets)->excludes(flags);
   flags->needs(tets);
-  parser
-      .add_option("--surface", source.surface, "The .obj file whose triangles the labels belong to")
-      ->needs(flags)
-      ->option_text("FILE");
-  parser
-      .add_option("--flags-array", source.flagsArray,
-                  "The cell array of .vtu and .vtk files that holds the labels")
-      ->needs(flags)
-      ->option_text("NAME [flags]");
-  parser
-      .add_option("--map-array", source.mapArray,
-                  "The array of .vtu and .vtk files that holds the map:\n"
-                  "12 numbers per cell, or 3 per point")
-      ->option_text("NAME [igm]");
+  addValue(parser, "--surface", source.surface, "FILE",
+           "The .obj file whose triangles the labels belong to")
+      ->needs(flags);
+  addValue(parser, "--flags-array", source.flagsArray, "NAME [flags]",
+           "The cell array of .vtu and .vtk files that holds the labels")
+      ->needs(flags);
+  addValue(parser, "--map-array", source.mapArray, "NAME [igm]",
+           "The array of .vtu and .vtk files that holds the map:\n"
+           "12 numbers per cell, or 3 per point");
 }
 
 void requireMesh(const std::filesystem::path& file, const WriteOptions& options) {
@@ -143,23 +132,23 @@ void requireOneSource(const MapSource& source, const std::string& argument) {
   // functions.
   if (source.isPair() && source.keepWalls) throw CLI::ExcludesError("--keep-walls", "--tets");
   if (source.file.empty() || !source.isPair()) return;
-  throw CLI::ValidationError(argument, "cannot be given beside --tets");
+  throw CLI::ValidationError(argument, "cannot be combined with --tets");
 }
 
 }  // namespace
 
 void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument,
                   const std::string& description) {
-  parser.add_option(argument, source.file, description)->option_text("FILE");
+  addValue(parser, argument, source.file, "FILE", description);
   addMapOptions(parser, source);
   parser.parse_complete_callback([&source, argument] { requireOneSource(source, argument); });
 }
 
 void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& argument,
-                        std::string& other, const std::string& otherArgument,
-                        const std::string& otherDescription) {
-  parser.add_option(argument, source.file, mapDescription())->option_text("FILE");
-  parser.add_option(otherArgument, other, otherDescription)->option_text("FILE REQUIRED");
+                        const std::string& description, std::string& other,
+                        const std::string& otherArgument, const std::string& otherDescription) {
+  addValue(parser, argument, source.file, "FILE", description);
+  addValue(parser, otherArgument, other, "FILE REQUIRED", otherDescription);
   addMapOptions(parser, source);
   parser.parse_complete_callback([&source, &other, argument, otherArgument] {
     if (source.isPair() && other.empty()) std::swap(source.file, other);
@@ -185,7 +174,7 @@ TetMap readMap(const MapSource& source, Context& context) {
 namespace {
 
 void addOutput(CLI::App& parser, std::string& file, const std::string& description) {
-  parser.add_option("-o,--output", file, description)->required()->option_text("FILE REQUIRED");
+  addValue(parser, "-o,--output", file, "FILE REQUIRED", description)->required();
 }
 
 }  // namespace
@@ -207,10 +196,7 @@ WriteOptions OutputChoice::options() const {
 }
 
 void OutputChoice::requireForCurved(const std::string& output, int order) const {
-  if (compress) {
-    throw Error(ErrorCode::InvalidArgument,
-                "Files of meshes of higher order are not compressed. Leave out --compress.");
-  }
+  refuseIf(compress, "Files of meshes of higher order are not compressed. Leave out --compress.");
   requireLagrangeFormat(output, options().format, order);
 }
 
@@ -226,13 +212,17 @@ CLI::Validator formatName() {
   return CLI::Validator(check, "");
 }
 
+void addInputFormat(CLI::App& parser, MapSource& source) {
+  addValue(parser, "--input-format", source.format, "NAME",
+           "Read this format, whatever the extension")
+      ->check(formatName());
+}
+
 CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice) {
   CLI::Option* const format =
-      parser
-          .add_option("--format", choice.format,
-                      "Write this format, whatever the extension;\n`hexhex formats` lists them")
-          ->check(formatName())
-          ->option_text("NAME");
+      addValue(parser, "--format", choice.format, "NAME",
+               "Write this format, whatever the extension;\n`hexhex formats` lists them")
+          ->check(formatName());
   parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
   return format;
 }
@@ -268,13 +258,11 @@ void requireExtension(const SolverFormat& solver, std::string& output) {
 void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output) {
   // Asked for by its name, CLI11 would end the program where memory does not suffice.
   CLI::Option* const format = addOutputChoice(parser, choice);
-  parser
-      .add_option("--for", choice.solver,
-                  "Write what this solver reads (calculix, dealii, mfem, ...:\n"
-                  "`hexhex formats` lists them); gives FILE its extension")
+  addValue(parser, "--for", choice.solver, "SOLVER",
+           "Write what this solver reads (calculix, dealii, mfem, ...:\n"
+           "`hexhex formats` lists them); gives FILE its extension")
       ->check(oneOf(solverNames()))
-      ->excludes(format)
-      ->option_text("SOLVER");
+      ->excludes(format);
   parser.final_callback([&choice, &output] {
     if (!choice.solver.empty()) requireExtension(*findSolver(choice.solver), output);
   });
@@ -284,7 +272,7 @@ void addHexesOnly(CLI::App& parser, bool& hexesOnly) {
   parser.add_flag(
       "--hexes-only", hexesOnly,
       "Leave out cells of other types (tets, prisms, pyramids,\ncurved ones), which are "
-      "an error otherwise; their vertices\nstay");
+      "otherwise an error; their vertices\nare kept");
 }
 
 void warnOfOtherCells(const std::vector<CellCount>& counts) {
@@ -293,7 +281,7 @@ void warnOfOtherCells(const std::vector<CellCount>& counts) {
     if (each.name == "hexahedra") continue;
     others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", each.name, each.count);
   }
-  if (!others.empty()) printWarning("Left out, for --hexes-only: " + others + ".");
+  if (!others.empty()) printWarning("Left out because of --hexes-only: " + others + ".");
 }
 
 void PatchAngle::warnIfGiven(std::string_view why) const {
@@ -304,12 +292,12 @@ void PatchAngle::warnIfUseless(std::span<const NamedPatch> patches, const std::s
                                const WriteOptions& options) const {
   const auto tagged = [](const NamedPatch& patch) { return patch.tag != 0; };
   if (std::any_of(patches.begin(), patches.end(), tagged)) {
-    warnIfGiven("quads of the boundary are tagged, and groups are those of tags");
+    warnIfGiven("quads of the boundary are tagged, and tags define the groups");
   } else if (!writesPatches(file, options)) {
     warnIfGiven(file + " holds no groups of quads without tags; .msh, .inp and .exo do");
   } else if (degrees > 0 && patches.size() == 1) {
     warnIfGiven(fmt::format(
-        "no edge at which the boundary turns by more than {:.6g} degrees divides it", degrees));
+        "no edges at which the boundary turns by more than {:.6g} degrees divide it", degrees));
   }
 }
 
@@ -332,12 +320,15 @@ CLI::Option* addPatchAngle(CLI::App& parser, PatchAngle& angle) {
 }
 
 void addReport(CLI::App& parser, std::string& file, const std::string& description) {
-  parser.add_option("--report", file, description + "; - for the standard output")
-      ->option_text("FILE");
+  addValue(parser, "--report", file, "FILE", description + "; - = standard output");
 }
 
 void addPage(CLI::App& parser, std::string& page, const std::string& description) {
-  parser.add_option("--view", page, description)->option_text("FILE");
+  addValue(parser, "--view", page, "FILE", description);
+}
+
+void addJson(CLI::App& parser, bool& json) {
+  parser.add_flag("--json", json, "Print JSON instead of text");
 }
 
 void addQuiet(CLI::App& parser, bool& quiet, const std::string& description) {
@@ -345,29 +336,24 @@ void addQuiet(CLI::App& parser, bool& quiet, const std::string& description) {
 }
 
 void addScale(CLI::App& parser, int& scale, const std::string& description) {
-  parser.add_option("--scale", scale, description)
-      ->check(wholeNumberFrom(1))
-      ->option_text("INTEGER [1]");
+  addValue(parser, "--scale", scale, "INTEGER [1]", description)->check(wholeNumberFrom(1));
 }
 
 void addCurvedNodes(CLI::App& parser, CurvedNodes& nodes, CLI::Option* order) {
-  addChoice<CurvedNodes>(parser, "--curved", nodes,
+  addChoice<CurvedNodes>(parser, "--curved", nodes, "MODE [blended]",
                          {{"blended", CurvedNodes::Blended}, {"exact", CurvedNodes::Exact}},
                          "blended: nodes on the surface and on tagged edges and quads\n"
-                         "are where the map has them, others between these; cells are\n"
+                         "are where the map puts them, others in between; cells are\n"
                          "positive wherever straight ones are, if need be off the\n"
-                         "surface (counted). exact: all nodes are where the map has\n"
+                         "surface (reported). exact: all nodes are where the map puts\n"
                          "them, and cells may fold over")
-      ->needs(order)
-      ->option_text("MODE [blended]");
+      ->needs(order);
 }
 
 void addTolerance(CLI::App& parser, double& tolerance) {
-  parser
-      .add_option("--tolerance", tolerance,
-                  "How far the map may be from fulfilling its\n"
-                  "integer conditions, in parameter units; below 0.25")
-      ->option_text("NUMBER [0.01]");
+  addValue(parser, "--tolerance", tolerance, "NUMBER [0.01]",
+           "How far the map may be from meeting its integer\n"
+           "conditions, in parameter units; below 0.25");
 }
 
 void addRound(CLI::App& parser, bool& round) {

@@ -10,6 +10,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/patches.hpp>
 #include <hexhex/types.hpp>
 
 namespace hexhex::command {
@@ -40,6 +41,9 @@ struct MapSource {
 /// ".mesh, .vtu or .vtk": the extensions of the formats that can do this.
 [[nodiscard]] std::string extensionsThat(bool FileFormat::*can);
 
+/// Adds --input-format.
+void addInputFormat(CLI::App& parser, MapSource& source);
+
 /// Adds --keep-walls; addMapSource() sees to it that --tets is not given beside it.
 void addKeepWalls(CLI::App& parser, MapSource& source);
 
@@ -54,8 +58,8 @@ void addMapSource(CLI::App& parser, MapSource& source, const std::string& argume
 /// argument is that other one.
 /// @param argument, otherArgument  their names
 void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& argument,
-                        std::string& other, const std::string& otherArgument,
-                        const std::string& otherDescription);
+                        const std::string& description, std::string& other,
+                        const std::string& otherArgument, const std::string& otherDescription);
 
 /// @throws Error  as readMap(), readMapPair(), readFlags() and mapFromFlags()
 [[nodiscard]] TetMap readMap(const MapSource& source, Context& context);
@@ -113,6 +117,8 @@ CLI::Option* addPatchAngle(CLI::App& parser, PatchAngle& angle);
 void addReport(CLI::App& parser, std::string& file, const std::string& description);
 /// Adds --view. @param description  of what the page shows
 void addPage(CLI::App& parser, std::string& page, const std::string& description);
+/// Adds --json.
+void addJson(CLI::App& parser, bool& json);
 void addQuiet(CLI::App& parser, bool& quiet,
               const std::string& description = "Print nothing but errors");
 

@@ -72,7 +72,7 @@ StartedTeam::StartedTeam() {
 }
 StartedTeam::~StartedTeam() { end_(); }
 #else
-StartedTeam::StartedTeam() { refuse("this build of it knows no MPI."); }
+StartedTeam::StartedTeam() { refuse("this build has no support for MPI."); }
 StartedTeam::~StartedTeam() = default;
 #endif
 

@@ -1,12 +1,17 @@
 #include "view_page.hpp"
 
-#include <cstdio>
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <spawn.h>
 #include <string>
+#include <system_error>
+#include <unistd.h>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
@@ -18,8 +23,11 @@
 #include "long_run.hpp"
 #include "map_text.hpp"
 #include "output.hpp"
-#include "serve_page.hpp"
 #include "shared_options.hpp"
+
+#ifdef __APPLE__
+extern "C" char** environ;  // its headers lack it
+#endif
 
 namespace hexhex::command {
 namespace {
@@ -48,12 +56,10 @@ VerifyReport compare(const TetMapView& map, const Subject& subject, const Verify
 
 /// The mesh of a map.
 Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& context) {
-  if (!arguments.map.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                arguments.mesh +
-                    " is a map itself, and its mesh is compared with it anyway. Leave "
-                    "out --map.");
-  }
+  refuseIf(!arguments.map.empty(),
+           arguments.mesh +
+               " is a map itself, and its mesh is compared with it anyway. Leave "
+               "out --map.");
   if (arguments.quantize) map = quantize(map, arguments.quantizeOptions, context).map;
   ExtractOptions options;
   options.scale = arguments.options.scale;
@@ -88,12 +94,10 @@ Subject readSubject(const ViewArguments& arguments, Context& context) {
     }
     subject.mesh = std::move(std::get<HexMesh>(content));
   }
-  if (arguments.order > 1 || arguments.quantize) {
-    throw Error(ErrorCode::InvalidArgument,
-                arguments.mesh +
-                    " is a mesh, whose cells are what they are. Leave out --order and --quantize, "
-                    "or name the map.");
-  }
+  refuseIf(arguments.order > 1 || arguments.quantize,
+           arguments.mesh +
+               " is a mesh, whose cells are what they are. Leave out --order and --quantize, "
+               "or name the map.");
   if (!arguments.map.empty()) {
     subject.map = arguments.map;
     subject.verification =
@@ -126,7 +130,34 @@ void printWarnings(const Subject& subject) {
                "; the page lists the checks that failed.");
 }
 
-int writeOwnPage(const ViewArguments& arguments, LongRun& longRun) {
+#ifdef __APPLE__
+constexpr const char* kOpener = "open";
+#else
+constexpr const char* kOpener = "xdg-open";
+#endif
+
+/// Does not wait for the browser.
+void openInBrowser(const std::filesystem::path& page) {
+  std::string program = kOpener;
+  std::string file = std::filesystem::absolute(page).string();  // no option, whatever its name
+  const std::array<char*, 3> words = {program.data(), file.data(), nullptr};
+  pid_t process = 0;
+  const int problem = ::posix_spawnp(&process, kOpener, nullptr, nullptr, words.data(), environ);
+  if (problem == 0) return;
+  printWarning(fmt::format("The page is written, but {} cannot be started to open it: {}.", kOpener,
+                           std::generic_category().message(problem)));
+}
+
+}  // namespace
+
+int view(const ViewArguments& arguments) {
+  LongRun longRun(arguments.run, {{"readLagrangeMesh", 2},
+                                  {"readMapOrHexMesh", 2},
+                                  {"extract", 4},
+                                  {"extractLagrange", 4},
+                                  {"readMap", 0.05},
+                                  {"verify", 2.5},
+                                  {"writeViewPage", 10}});
   Context& context = longRun.context();
   const std::filesystem::path page = pageOf(arguments);
   requireAllDifferent({arguments.mesh, arguments.map}, {page.string()});
@@ -143,49 +174,10 @@ int writeOwnPage(const ViewArguments& arguments, LongRun& longRun) {
     std::error_code unknown;  // the size of a pipe
     const std::uintmax_t bytes = std::filesystem::file_size(page, unknown);
     if (!unknown) printLine("page", bytesAsText(bytes));
-    printLine("to see it", "open the page in a browser; no network is needed");
+    if (!arguments.open) printLine("to see it", "open the page in any browser, or add --open");
   }
+  if (arguments.open) openInBrowser(page);
   return subject.agrees() ? kSuccess : kFailure;
-}
-
-/// Serves until Ctrl-C, which is no failure here.
-int serve(const ViewArguments& arguments, LongRun& longRun) {
-  Context& context = longRun.context();
-  Subject subject = readSubject(arguments, context);
-  const ServedPage page = std::visit(
-      [&](const auto& mesh) {
-        return makeServedPage(mesh, kMeshUrl, optionsOf(arguments, subject), context);
-      },
-      subject.mesh);
-  longRun.finish();
-  printWarnings(subject);
-  const bool agrees = subject.agrees();
-  subject = {};  // the page has all of it
-  const auto announce = [&arguments](const std::string& address) {
-    // The address is what --serve is for, so --quiet does not silence it.
-    if (arguments.run.quiet) {
-      fmt::print("{}\n", address);
-    } else {
-      fmt::print("{} is at {} until you press Ctrl-C.\n", printable(arguments.mesh), address);
-    }
-    std::fflush(stdout);
-  };
-  servePage(page, arguments.port, announce, context);
-  return agrees ? kSuccess : kFailure;
-}
-
-}  // namespace
-
-int view(const ViewArguments& arguments) {
-  LongRun longRun(arguments.run, {{"readLagrangeMesh", 2},
-                                  {"readMapOrHexMesh", 2},
-                                  {"extract", 4},
-                                  {"extractLagrange", 4},
-                                  {"readMap", 0.05},
-                                  {"verify", 2.5},
-                                  {"makeServedPage", 10},
-                                  {"writeViewPage", 10}});
-  return arguments.serve ? serve(arguments, longRun) : writeOwnPage(arguments, longRun);
 }
 
 void requirePage(const std::string& page) {

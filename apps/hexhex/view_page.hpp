@@ -23,13 +23,12 @@ struct ViewArguments {
   CurvedNodes curvedNodes = CurvedNodes::Blended;
   bool quantize = false;
   QuantizeOptions quantizeOptions;
-  bool serve = false;
-  int port = 0;  ///< 0: any free one
+  bool open = false;  ///< in the default browser
   RunOptions run;
   bool hexesOnly = false;
 };
 
-/// Writes or serves the page; returns the exit code.
+/// Writes the page; returns the exit code.
 /// @throws Error  FileUnsupported if the command was built without the viewer
 int view(const ViewArguments& arguments);
 

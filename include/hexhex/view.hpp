@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
 
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
@@ -49,17 +48,5 @@ void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
 ///         InvalidArgument for nodes that do not match the order
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
-
-/// A page that loads its mesh separately, for programs that serve it.
-struct ServedPage {
-  std::string html;               ///< requests `dataUrl` from the same server, and nothing else
-  std::vector<std::string> data;  ///< chunks whose concatenation is the content of `dataUrl`
-};
-
-/// Creates the page in two parts. @throws Error as writeViewPage(), except FileWrite
-[[nodiscard]] ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
-                                        const ViewOptions& options, Context& context);
-[[nodiscard]] ServedPage makeServedPage(const LagrangeMesh& mesh, const std::string& dataUrl,
-                                        const ViewOptions& options, Context& context);
 
 }  // namespace hexhex

@@ -7,10 +7,9 @@ namespace hexhex::view {
 
 /// The fixed parts of the page, each before an insertion, in this order.
 struct PageTemplate {
-  std::string_view beforeConnect;  ///< sources of data in the syntax of a Content-Security-Policy
-  std::string_view beforeTitle;    ///< text, escaped for HTML
-  std::string_view beforeInfo;     ///< JSON without '<'
-  std::string_view beforeData;     ///< script elements with the mesh
+  std::string_view beforeTitle;  ///< text, escaped for HTML
+  std::string_view beforeInfo;   ///< JSON without '<'
+  std::string_view beforeData;   ///< script elements with the mesh
   std::string_view end;
 };
 

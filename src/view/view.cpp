@@ -299,13 +299,9 @@ std::string scriptText(const nlohmann::json& value) {
 }
 
 /// Everything before the mesh.
-/// @param connect  what the page may connect to
-std::string pageHead(const PageContent& content, const ViewOptions& options,
-                     std::string_view connect) {
+std::string pageHead(const PageContent& content, const ViewOptions& options) {
   const PageTemplate& page = *pageTemplate();
-  std::string head(page.beforeConnect);
-  head += connect;
-  head += page.beforeTitle;
+  std::string head(page.beforeTitle);
   head += escaped(options.title);
   head += page.beforeInfo;
   head += scriptText(content.info);
@@ -323,7 +319,7 @@ void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOp
   io::OutputFile output(file);  // first, so that an unwritable folder is noticed immediately
   const PageContent content = makeContent(mesh, options, context);
   const Stage stage(context, "write page");
-  output.write(pageHead(content, options, "'none'"));
+  output.write(pageHead(content, options));
   for (const PackedTable& table : content.tables) {
     for (std::size_t chunk = 0; chunk < table.chunks.size(); ++chunk) {
       context.throwIfCancelled();
@@ -334,22 +330,6 @@ void writePage(const Mesh& mesh, const std::filesystem::path& file, const ViewOp
   output.write(pageTemplate()->end);
   output.commit();
   steps.finish();
-}
-
-template <class Mesh>
-ServedPage makePage(const Mesh& mesh, const std::string& dataUrl, const ViewOptions& options,
-                    Context& context) {
-  WorkSteps steps(context, "makeServedPage", kPageSteps);
-  PageContent content = makeContent(mesh, options, context);
-  content.info["data"] = dataUrl;
-  ServedPage served;
-  served.html = pageHead(content, options, "'self'");
-  served.html += pageTemplate()->end;
-  for (PackedTable& table : content.tables) {
-    for (std::string& chunk : table.chunks) served.data.push_back(std::move(chunk));
-  }
-  steps.finish();
-  return served;
 }
 
 }  // namespace
@@ -366,16 +346,6 @@ void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context) {
   view::writePage(mesh, file, options, context);
-}
-
-ServedPage makeServedPage(const HexMesh& mesh, const std::string& dataUrl,
-                          const ViewOptions& options, Context& context) {
-  return view::makePage(mesh, dataUrl, options, context);
-}
-
-ServedPage makeServedPage(const LagrangeMesh& mesh, const std::string& dataUrl,
-                          const ViewOptions& options, Context& context) {
-  return view::makePage(mesh, dataUrl, options, context);
 }
 
 }  // namespace hexhex

@@ -14,6 +14,7 @@
 
 #include "map_samples.hpp"
 #include "support/error_of.hpp"
+#include "support/joined_maps.hpp"
 
 namespace hexhex::igm {
 namespace {
@@ -166,23 +167,10 @@ TEST(Check, TellsTheGenusOfEachBoundaryComponent) {
   }
 }
 
-/// Two maps side by side.
-TetMap joined(const TetMap& a, const TetMap& b) {
-  TetMap map = a;
-  const auto first = static_cast<Index>(a.points.size());
-  map.points.insert(map.points.end(), b.points.begin(), b.points.end());
-  for (Tet tet : b.tets) {
-    for (Index& vertex : tet) vertex += first;
-    map.tets.push_back(tet);
-  }
-  map.parameters.insert(map.parameters.end(), b.parameters.begin(), b.parameters.end());
-  return map;
-}
-
 TEST(Check, AddsUpComponents) {
   const Sample torus = generateSample(SampleKind::Torus);
   const Sample shell = generateSample(SampleKind::Shell);
-  const CheckReport report = check(joined(torus.map, shell.map));
+  const CheckReport report = check(test::joined(torus.map, shell.map));
   ASSERT_TRUE(report.valid());
   EXPECT_EQ(report.boundaryGenus, (std::vector<std::int64_t>{1, 0, 0}));
   EXPECT_EQ(report.expected.components, 2U);

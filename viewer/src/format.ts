@@ -67,8 +67,6 @@ export interface MeshInfo {
   hasGenerators: boolean;
   verification: { map: string; passed: boolean; items: CheckItem[] } | null;
   tables: TableInfo[];
-  /** Where the chunks are if they are not in the page. */
-  data?: string;
 }
 
 /** Scaled Jacobians are stored in 16 bits: 0 stands for -1, kQualitySteps for 1. */

@@ -94,31 +94,6 @@ async function agreed(info: MeshInfo): Promise<void> {
   await new Promise((resolve) => button.addEventListener("click", resolve, { once: true }));
 }
 
-async function sendServed(info: MeshInfo, url: string, worker: MeshWorker): Promise<void> {
-  const response = await fetch(url);
-  if (!response.ok || !response.body) throw new Error(`${url}: ${response.status}`);
-  const reader = response.body.getReader();
-  let rest = new Uint8Array(0);
-  for (const table of info.tables) {
-    for (const [chunk, size] of table.chunkBytes.entries()) {
-      const bytes = new Uint8Array(size);
-      let filled = 0;
-      while (filled < size) {
-        if (rest.length === 0) {
-          const { done, value } = await reader.read();
-          if (done) throw new Error("The server has sent too little.");
-          rest = value;
-        }
-        const part = rest.subarray(0, size - filled);
-        bytes.set(part, filled);
-        filled += part.length;
-        rest = rest.subarray(part.length);
-      }
-      worker.send({ kind: "chunk", table: table.name, chunk, data: bytes.buffer }, [bytes.buffer]);
-    }
-  }
-}
-
 function sendEmbedded(info: MeshInfo, worker: MeshWorker): void {
   for (const table of info.tables) {
     for (let chunk = 0; chunk < table.chunkBytes.length; ++chunk) {
@@ -132,7 +107,6 @@ function sendEmbedded(info: MeshInfo, worker: MeshWorker): void {
 export async function load(info: MeshInfo, worker: MeshWorker): Promise<void> {
   await agreed(info);
   worker.send({ kind: "begin", info });
-  if (info.data) await sendServed(info, info.data, worker);
-  else sendEmbedded(info, worker);
+  sendEmbedded(info, worker);
   worker.send({ kind: "end" });
 }

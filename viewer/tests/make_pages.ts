@@ -1,5 +1,5 @@
 // Makes the pages that the tests look at, with the command under test.
-import { type ChildProcess, execFileSync, spawn } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
@@ -12,19 +12,6 @@ export function hexhex(...args: string[]): string {
   const command = process.env.HEXHEX_COMMAND;
   if (!command) throw new Error("HEXHEX_COMMAND shall name the hexhex command");
   return execFileSync(command, args, { cwd: kPages, encoding: "utf8" });
-}
-
-/** `hexhex view --serve`: the process, and the page's address. */
-export async function serve(mesh: string): Promise<{ server: ChildProcess; address: string }> {
-  const server = spawn(process.env.HEXHEX_COMMAND!, ["view", mesh, "--serve", "--quiet"], {
-    cwd: kPages,
-    stdio: ["ignore", "pipe", "inherit"],
-  });
-  const line = await new Promise<string>((resolve, reject) => {
-    server.stdout!.setEncoding("utf8").once("data", resolve);
-    server.once("exit", (code) => reject(new Error(`hexhex view has ended with ${code}`)));
-  });
-  return { server, address: line.trim() };
 }
 
 /** Turns a cell of a MEDIT mesh inside out: its first two corners change places. */

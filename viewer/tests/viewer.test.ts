@@ -1,6 +1,6 @@
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
-import { hexhex, kHostileName, kPages, serve } from "./make_pages";
+import { hexhex, kHostileName, kPages } from "./make_pages";
 import { colourInTheMiddle, coloursOnCanvas, complaintsOf, expect, kept, lookAtCanvas, open, pixelsOfPng, press, quads, settle, shotOfCanvas, sizeOfPng, test } from "./page";
 
 const kPictures = process.env.HEXHEX_VIEWER_PICTURES ?? join(kPages, "../pictures");
@@ -501,29 +501,6 @@ test("runs nothing and asks nobody, even if HTML got into it", async ({ page }) 
     expect(text).toMatch(/Content Security Policy|^request: https:\/\/example.org\/a\.(png|css|js)$/);
   }
   complaintsOf(page).length = 0;
-});
-
-test("is served, with the mesh beside it", async ({ page }) => {
-  const { server, address } = await serve("sphere.vtu");
-  try {
-    await page.goto(address);
-    await settle(page);
-    expect([await kept(page), await quads(page)]).toEqual([kSphereCells, 6 * kSide ** 2]);
-    expect(complaintsOf(page)).toEqual([`request: ${address}mesh`]);
-    complaintsOf(page).length = 0;
-    // Another page of this machine, under another address, gets nothing.
-    const other = await serve("box.mesh");
-    try {
-      await page.goto(other.address);
-      const taken = await page.evaluate((url) => fetch(url, { mode: "no-cors" }).then(String, String), address);
-      expect(taken).toContain("TypeError");
-    } finally {
-      other.server.kill("SIGINT");
-    }
-    complaintsOf(page).length = 0;
-  } finally {
-    server.kill("SIGINT");
-  }
 });
 
 test("lists the keys, and is dark on request", async ({ page }) => {

@@ -7,8 +7,8 @@ import type { Filter, Visible } from "./visible";
 
 export type ToWorker =
   | { kind: "begin"; info: MeshInfo }
-  /** The next chunk of a table, in base64 or as bytes. */
-  | { kind: "chunk"; table: string; chunk: number; data: string | ArrayBuffer }
+  /** The next chunk of a table, in base64. */
+  | { kind: "chunk"; table: string; chunk: number; data: string }
   | { kind: "end" }
   | ({ kind: "show" } & Wanted);
 

@@ -46,9 +46,9 @@ function takeTable(name: string): Uint32Array<ArrayBuffer> {
   return table;
 }
 
-async function decode(name: string, chunk: number, data: string | ArrayBuffer): Promise<void> {
+async function decode(name: string, chunk: number, data: string): Promise<void> {
   const table = tableInfo(name)!;
-  const packed = typeof data === "string" ? decodeBase64(data) : new Uint8Array(data);
+  const packed = decodeBase64(data);
   if (packed.length !== table.chunkBytes[chunk]) throw new Error("The page is incomplete.");
   const first = chunk * table.rowsPerChunk;
   const rows = Math.min(table.rowsPerChunk, table.rows - first);
