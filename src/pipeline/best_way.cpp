@@ -31,7 +31,7 @@ std::string_view nameOf(ShapeMethod method) {
   return method == ShapeMethod::Frames ? "frames" : "polycube";
 }
 
-/// Of one way: its mesh, why there is none, or what ends the search.
+/// Outcome of one way: its mesh, the reason why there is none, or the error that ends the search.
 struct Outcome {
   std::optional<MeshedPart> part;
   std::optional<Error> refusal;
@@ -89,7 +89,8 @@ std::string whyKept(const WayReport& kept, const WayReport& other, bool otherIsN
               first.place().kind == PlaceKind::None ? second.place() : first.place());
 }
 
-/// Both ways, each with a context of its own, whose progress and cancellation are the caller's.
+/// Runs both ways, each with its own context, which passes progress to the caller and cancellation
+/// from there.
 class BothWays {
  public:
   BothWays(const Way& way, Context& context)
@@ -136,7 +137,7 @@ class BothWays {
   }
 
   MeshedPart better() {
-    // Whatever the other way came to in the meantime: with one thread, it would not have begun.
+    // The other way's outcome is dropped, as one thread would not have begun it.
     if (isGoodEnough(outcomes_[0])) {
       outcomes_[1] = {};
       outcomes_[1].isNeeded = false;
@@ -147,7 +148,7 @@ class BothWays {
     if (!outcomes_[0].part && !outcomes_[1].part) failBoth(outcomes_);
     std::array<WayReport, 2> reports;
     for (std::size_t i = 0; i < kWays.size(); ++i) reports[i] = reportOf(kWays[i], outcomes_[i]);
-    // Of two that are not certified, frames': they are nearer to it.
+    // If neither is certified, keep frames, which are usually nearer to it.
     const bool isFirst = outcomes_[0].part && reports[0].merit > reports[1].merit;
     const std::size_t kept = isFirst || !outcomes_[1].part ? 0 : 1;
     MeshedPart part = std::move(*outcomes_[kept].part);
@@ -184,6 +185,19 @@ bool isOfTheWay(ErrorCode code, bool hasMap) noexcept {
       return hasMap;
     default:
       return false;
+  }
+}
+
+MeshedPart firstMesh(const std::function<MeshedPart(std::uint64_t)>& meshOfMap,
+                     std::uint64_t mostMaps) {
+  std::optional<Refusal> first;
+  for (std::uint64_t map = 0;; ++map) {
+    try {
+      return meshOfMap(map);
+    } catch (const Refusal& refusal) {
+      if (!first) first = refusal;
+      if (!refusal.hasMap() || map + 1 == mostMaps) throw Refusal(*first);
+    }
   }
 }
 

@@ -1,11 +1,13 @@
 // From tets alone to a hexahedral mesh: the stages of the library one after the other.
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include <pipeline/best_way.hpp>
 #include <pipeline/groups.hpp>
 #include <quantize/cell_limit.hpp>
+#include <shape/polycube_map.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/extractor.hpp>
@@ -18,6 +20,9 @@ namespace hexhex {
 
 namespace pipeline {
 namespace {
+
+/// Polycubes that are tried if the first one has a map but no mesh; each takes as long as the first.
+constexpr std::uint64_t kMostPolycubes = 2;
 
 /// Both ways at once take 6 kB per tet.
 constexpr std::size_t kMostTetsAtOnce = 200'000;
@@ -82,8 +87,8 @@ void meshOf(MeshedPart& part, const TetMap& seamless, const MeshOptions& options
   });
 }
 
-/// @throws Refusal  if another way may lead to a mesh
-MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
+/// @throws Refusal  if another map or way may lead to a mesh
+MeshedPart meshBy(const ShapeOptions& shape, const TetMesh& tets, const MeshOptions& options,
                   Context& context) {
   constexpr std::array<WorkStep, 8> kSteps = {{{"mapFromTets", 20},
                                                {"quantize", 10},
@@ -97,18 +102,28 @@ MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& op
     MeshedPart part;
     bool hasMap = false;
     try {
-      ShapeOptions shape = options.shape;
-      shape.method = method;
-      ShapedMap seamless = mapFromTets(tets, shape, context);
+      const ShapedMap seamless = mapFromTets(tets, shape, context);
       hasMap = true;
       part.shape = seamless.report;
       meshOf(part, seamless.map, options, context);
     } catch (const Error& error) {
-      if (isOfTheWay(error.code(), hasMap)) throw Refusal(error);
+      if (isOfTheWay(error.code(), hasMap)) throw Refusal(error, hasMap);
       throw;
     }
     return part;
   });
+}
+
+/// Frames have one map, polycubes one for each seed that labels are found with.
+MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
+                  Context& context) {
+  ShapeOptions shape = options.shape;
+  shape.method = method;
+  const auto meshOfMap = [&](std::uint64_t map) {
+    shape.seed = options.shape.seed + map * shape::kMostAttempts;
+    return meshBy(shape, tets, options, context);
+  };
+  return firstMesh(meshOfMap, method == ShapeMethod::Polycube ? kMostPolycubes : 1);
 }
 
 }  // namespace

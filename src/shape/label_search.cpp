@@ -10,7 +10,7 @@ namespace {
 
 /// Once labels are valid, the rest is shape: borders become shorter, triangles face their labels.
 constexpr std::uint64_t kMovesIfValid = 300;
-/// Then it goes on from the best that was found.
+/// After so many moves, the search returns to the best labels so far.
 constexpr std::uint64_t kMovesUntilReturn = 400;
 constexpr std::size_t kLargestDisk = 3000;
 /// Of disks, in mean edges.
@@ -52,7 +52,7 @@ CheckedLabels LabelSearch::improve(const Labels& start, std::uint64_t mostMoves,
     if (verdict.energy >= current.verdict.energy + allowed) continue;
     current.labels = std::move(labels);
     current.verdict = std::move(verdict);
-    // What is valid is better than what is not, however little that lacks.
+    // Valid labels beat invalid ones, whatever their energy.
     const bool gains = isValid(current.verdict) == isValid(best.verdict)
                            ? current.verdict.energy < best.verdict.energy
                            : isValid(current.verdict);
@@ -104,7 +104,7 @@ Index LabelSearch::drawPlace(const Labels& labels, const Verdict& verdict) {
   return near[random_.below(near.size())];
 }
 
-/// The nearer to the normal, the likelier; but any.
+/// Any label; those near to the normal are more likely.
 lattice::Direction LabelSearch::drawLabel(Index triangle) {
   const auto weight = [&](lattice::Direction label) {
     return std::max(0.03, 0.35 + cosine(surface_.normals[triangle], label));

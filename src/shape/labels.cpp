@@ -11,17 +11,18 @@ namespace hexhex::shape {
 
 namespace {
 
-/// From labels that follow the surface to those of few large faces.
+/// From labels that follow the surface closely to a few large charts.
 constexpr std::array<Compactness, 4> kStarts = {{{1, 0}, {3, 0}, {8, 1}, {20, 1}}};
 constexpr int kSweeps = 3;
-/// Searches beside each other, from the best starts; and once more if all fail.
+/// Concurrent searches per round, from the best labels so far. A later round runs only if no labels
+/// are valid.
 constexpr std::size_t kLabelSearches = 2;
 constexpr int kLabelRounds = 2;
-/// Of a search.
+/// Moves of a search.
 constexpr double kFewestMoves = 400;
 constexpr double kMostMoves = 1500;
-/// A move takes as long per triangle as a step of the solver for a part of a tet; all searches
-/// together, as long as a part of what is left.
+/// Time of a move per triangle, in steps of the solver per tet; and the share of the work left that
+/// all searches together may take.
 constexpr double kWorkOfMove = 0.5;
 constexpr double kShareOfMoves = 0.5;
 
@@ -37,7 +38,7 @@ Labels nearestLabels(const Surface& surface) {
   return labels;
 }
 
-/// The better first: a valid one, then the one with less energy.
+/// Valid labels come first, then those with less energy; duplicates go.
 void sortByMerit(std::vector<CheckedLabels>& all) {
   const auto isBetter = [](const CheckedLabels& a, const CheckedLabels& b) {
     const bool isValid = a.verdict.report.isValid();

@@ -9,10 +9,11 @@
 
 namespace hexhex::shape {
 
-/// The best that are found: valid ones, if there are any, that deform the object the least.
+/// The best labels found: valid if possible, with the least deformation of the object.
 ///
-/// From cuts of the whole boundary with several degrees of compactness, the best go on by changes
-/// in small places, each with random numbers of its own: the same for any number of threads.
+/// Cuts the whole boundary with several degrees of compactness, then improves the best results by
+/// local changes. Each search has its own random numbers, so that the result is the same for any
+/// number of threads.
 /// @param[in,out] workLeft  as of quantization::mapFromLabels()
 [[nodiscard]] CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs,
                                      std::uint64_t seed, double& workLeft, Stage& stage);

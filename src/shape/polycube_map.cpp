@@ -19,9 +19,7 @@
 namespace hexhex::shape {
 namespace {
 
-/// Labels of which a map is tried, one after the other, until so much is spent on all together,
-/// about twenty seconds.
-constexpr std::uint64_t kMostAttempts = 6;
+/// No more labels are tried once so much is spent on all together, about twenty seconds.
 constexpr double kMostWork = 4e7;
 /// At least so many steps of the solver, however many tets there are.
 constexpr double kStepsOfAll = 300;
@@ -36,7 +34,7 @@ std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std
   return flags;
 }
 
-/// "2 charts with fewer than four corners, 1 turning point"
+/// "2 too few corners around charts, 1 points where borders turn back", say.
 std::string faultsOf(const LabelReport& report) {
   std::string text;
   const auto add = [&](std::uint64_t count, const char* what) {
@@ -52,7 +50,7 @@ std::string faultsOf(const LabelReport& report) {
   return text;
 }
 
-/// @param isSpent  whether no more labels were tried because of what all of it may cost
+/// @param isSpent  whether the bound of the work ended the search
 [[noreturn]] void fail(const Error& problem, const PositiveTets& tets, const LabelReport& report,
                        bool isSpent) {
   const std::string labels = report.isValid()
@@ -97,11 +95,12 @@ TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, doubl
   LabelCosts costs(surface);
   std::optional<Error> problem;
   LabelReport best;
-  // Most labels without a map lack it at a corner or two, near to where tets stay flipped.
+  // Most labels without a map fail at one or two corners, near to where tets stay flipped.
   for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
     const CheckedLabels found = label(surface, costs, seed + attempt, workLeft, context);
-    // What is not valid may still be good enough, but not beside what is and was not.
-    if (problem && !found.verdict.report.isValid()) continue;
+    const bool isValid = found.verdict.report.isValid();
+    // Labels that are not valid may have a map, but hardly where valid ones had none.
+    if (problem && best.isValid() && !isValid) continue;
     report.labels = found.verdict.report;
     report.labelMoves = found.moves;
     try {
@@ -114,7 +113,7 @@ TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, doubl
         throw;
       }
       costs.avoidCornersAt(pointAt(tets.mesh(), error.place()));
-      if (problem) continue;
+      if (problem && (best.isValid() || !isValid)) continue;
       problem = error;
       best = found.verdict.report;
     }

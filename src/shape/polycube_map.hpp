@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include <shape/positive_tets.hpp>
 #include <shape/surface.hpp>
@@ -9,6 +10,9 @@
 #include <hexhex/shape.hpp>
 
 namespace hexhex::shape {
+
+/// Labels of which a map is tried, one after the other, each with a seed of its own.
+inline constexpr std::uint64_t kMostAttempts = 6;
 
 /// What may be spent on a part of so many tets: see quantization::mapFromLabels().
 [[nodiscard]] double workFor(std::size_t tets);

@@ -134,6 +134,35 @@ TEST(BestWay, IsTheOtherOneWhereOneRefuses) {
   }
 }
 
+/// Maps without a mesh are followed by others; the first of their reasons counts.
+TEST(BestWay, TriesOtherMapsWhereOneHasNoMesh) {
+  const auto mapWithMesh = [](std::uint64_t firstWithMesh, std::uint64_t mostMaps, bool hasMap) {
+    return pipeline::firstMesh(
+               [&](std::uint64_t map) -> MeshedPart {
+                 if (map < firstWithMesh) {
+                   throw Refusal(
+                       {ErrorCode::FlippedTet, "There is no mesh of map " + std::to_string(map)},
+                       hasMap);
+                 }
+                 MeshedPart part;
+                 part.shape.labelMoves = map;
+                 return part;
+               },
+               mostMaps)
+        .shape.labelMoves;
+  };
+  EXPECT_EQ(mapWithMesh(0, 3, true), 0U);
+  EXPECT_EQ(mapWithMesh(2, 3, true), 2U);
+  const auto reasonOf = [&](std::uint64_t mostMaps, bool hasMap) {
+    return std::string(
+        errorOf([&] { static_cast<void>(mapWithMesh(mostMaps, mostMaps, hasMap)); }).what());
+  };
+  EXPECT_EQ(reasonOf(3, true), "There is no mesh of map 0");
+  EXPECT_EQ(reasonOf(1, true), "There is no mesh of map 0");
+  // Without a map, nothing is known about others.
+  EXPECT_THROW(static_cast<void>(mapWithMesh(1, 3, false)), Refusal);
+}
+
 TEST(BestWay, SaysBothReasonsIfThereIsNone) {
   Context context;
   const Error error = errorOf([&] {
