@@ -13,6 +13,7 @@
 
 #include <base/stage.hpp>
 #include <curved/lagrange_quality.hpp>
+#include <improve/lagrange_kernels.hpp>
 #include <improve/vertex_energy.hpp>
 #include <mesh/cell_validity.hpp>
 
@@ -45,13 +46,8 @@ class CurvedCells {
 
   /// One per thread.
   struct Scratch {
+    curved::LagrangeScratch columns;
     std::vector<Vec3> nodes;
-    curved::LagrangeColumns::Values values;
-    mesh::Bezier<double> determinants;
-    mesh::Bezier<Vec3> normals;
-    std::vector<double> numbers;
-    std::vector<EnergyTerm> terms;
-    std::vector<EnergyTerm> found;  ///< of all cells around a node
   };
 
   /// @param mesh  of an order up to kMaxOrder; outlives this
@@ -61,27 +57,41 @@ class CurvedCells {
   [[nodiscard]] adjacency::VertexCells cellsAroundNodes(Stage& stage) const;
   [[nodiscard]] Hex cornersOf(std::size_t cell) const;
 
-  /// @param points  of nodes; those of the mesh itself are not looked at
-  /// @param least   a cell with a smaller scaled Jacobian need not be certified
-  [[nodiscard]] CellState stateOf(const Array<Vec3>& points, std::size_t cell, double least,
-                                  Scratch& scratch) const;
+  /// The states of one to four cells. If one of them has a scaled Jacobian that is less than it
+  /// must be, none is certified.
+  /// @param points   of nodes; those of the mesh itself are not looked at
+  /// @param leastOf  of (cell): what its scaled Jacobian must be
+  template <class LeastOf>
+  [[nodiscard]] std::array<CellState, curved::kCellLanes> statesOf(const Array<Vec3>& points,
+                                                                   std::span<const Index> cells,
+                                                                   const LeastOf& leastOf,
+                                                                   Scratch& scratch) const {
+    std::array<CellState, curved::kCellLanes> states = qualitiesOf(points, cells, scratch);
+    bool areGood = true;
+    for (std::size_t i = 0; i < cells.size(); ++i) areGood &= states[i].scaled >= leastOf(cells[i]);
+    if (areGood) certify(points, cells, states, scratch);
+    return states;
+  }
 
-  /// The terms of a cell as a function of one of its nodes: at (3 p)^3 places, or with the Bezier
-  /// coefficients of the determinant instead of its values there.
-  void addTerms(const Array<Vec3>& points, std::size_t cell, Index moving, const IdealBox& box,
-                bool bezier, Scratch& scratch, std::vector<EnergyTerm>& terms) const;
+  /// Adds what cells contribute as functions of one of their nodes: at (2 p)^3 places or, with the
+  /// Bezier coefficients of the determinant instead of its values there, at (3 p)^3.
+  void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
+                const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                EnergyTerms& terms) const;
 
  private:
+  using States = std::array<CellState, curved::kCellLanes>;
   [[nodiscard]] std::span<const Index> nodesOf(std::size_t cell) const;
-  void take(const Array<Vec3>& points, std::size_t cell, Scratch& scratch) const;
-  void toBezier(Scratch& scratch) const;
-  /// Whether all Bezier coefficients of the determinant are, up to rounding: a proof follows in the
-  /// end, and takes five times as long.
-  [[nodiscard]] bool hasPositiveCoefficients(Scratch& scratch) const;
+  [[nodiscard]] curved::LagrangeCells lanesOf(const Array<Vec3>& points,
+                                              std::span<const Index> cells) const;
+  [[nodiscard]] States qualitiesOf(const Array<Vec3>& points, std::span<const Index> cells,
+                                   Scratch& scratch) const;
+  void certify(const Array<Vec3>& points, std::span<const Index> cells, States& states,
+               Scratch& scratch) const;
 
   const LagrangeMesh& mesh_;
-  curved::LagrangeColumns columns_;
-  mesh::Matrix<double> toBezier_;  ///< of the determinant, along an axis
+  LagrangeGrid grid_;
+  LagrangeGrid bezierGrid_;
   curved::LagrangeQuality quality_;
   mesh::CellValidity validity_;
 };
