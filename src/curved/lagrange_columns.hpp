@@ -61,24 +61,23 @@ struct LagrangeCells {
 /// Of the functions below. One per thread.
 using LagrangeScratch = std::vector<CellVector>;
 
-/// A row of a matrix times values that are so far apart.
+/// A row of a matrix with n columns times values that are so far apart.
 [[gnu::always_inline]] inline mesh::LaneVector<CellNumber> combined(
-    const mesh::Matrix<double>& matrix, std::size_t row, const CellVector* values,
+    std::size_t n, const mesh::Matrix<double>& matrix, std::size_t row, const CellVector* values,
     std::size_t stride) noexcept {
-  const double* const factors = &matrix.entries[row * matrix.columns];
+  const double* const factors = &matrix.entries[row * n];
   mesh::LaneVector<CellNumber> sum{};
-  for (std::size_t i = 0; i < matrix.columns; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < 3; ++k) sum[k] += factors[i] * values[i * stride].at[k];
   }
   return sum;
 }
 
-/// Calls visit(rows along u, v and w, x_u, x_v, x_w) for all places, the first axis fastest.
+/// @param n  nodes along an axis
 template <class Visit>
-[[gnu::always_inline]] inline void forColumns(const LagrangeColumns& grid,
+[[gnu::always_inline]] inline void forColumns(std::size_t n, const LagrangeColumns& grid,
                                               const LagrangeCells& cells, LagrangeScratch& scratch,
                                               const Visit& visit) {
-  const std::size_t n = grid.value.columns;
   const std::size_t m = grid.value.rows;
   const std::size_t nodeCount = n * n * n;
   scratch.resize(nodeCount + 2 * n * n + 3 * n);
@@ -96,29 +95,39 @@ template <class Visit>
   }
   for (std::size_t w = 0; w < m; ++w) {
     for (std::size_t i = 0; i < n * n; ++i) {
-      layer[i].at = combined(grid.value, w, nodes + i, n * n);
-      layerW[i].at = combined(grid.derivative, w, nodes + i, n * n);
+      layer[i].at = combined(n, grid.value, w, nodes + i, n * n);
+      layerW[i].at = combined(n, grid.derivative, w, nodes + i, n * n);
     }
     for (std::size_t v = 0; v < m; ++v) {
       for (std::size_t i = 0; i < n; ++i) {
-        line[i].at = combined(grid.value, v, layer + i, n);
-        lineV[i].at = combined(grid.derivative, v, layer + i, n);
-        lineW[i].at = combined(grid.value, v, layerW + i, n);
+        line[i].at = combined(n, grid.value, v, layer + i, n);
+        lineV[i].at = combined(n, grid.derivative, v, layer + i, n);
+        lineW[i].at = combined(n, grid.value, v, layerW + i, n);
       }
       for (std::size_t u = 0; u < m; ++u) {
-        visit(std::array<std::size_t, 3>{u, v, w}, combined(grid.derivative, u, line, 1),
-              combined(grid.value, u, lineV, 1), combined(grid.value, u, lineW, 1));
+        visit(std::array<std::size_t, 3>{u, v, w}, combined(n, grid.derivative, u, line, 1),
+              combined(n, grid.value, u, lineV, 1), combined(n, grid.value, u, lineW, 1));
       }
     }
   }
 }
 
-/// Multiplies numbers at places by a matrix along all three axes, in place.
-/// @param numberAt  of (place): a reference
+/// Calls visit(rows along u, v and w, x_u, x_v, x_w) for all places, the first axis fastest.
+template <class Visit>
+[[gnu::always_inline]] inline void forColumns(const LagrangeColumns& grid,
+                                              const LagrangeCells& cells, LagrangeScratch& scratch,
+                                              const Visit& visit) {
+  // Constants make loops straight lines, which takes half the time.
+  const std::size_t n = grid.value.columns;
+  if (n == 3) return forColumns(3, grid, cells, scratch, visit);
+  if (n == 4) return forColumns(4, grid, cells, scratch, visit);
+  return forColumns(n, grid, cells, scratch, visit);
+}
+
+/// @param m  rows and columns
 template <class NumberAt>
-[[gnu::always_inline]] inline void convert(const mesh::Matrix<double>& matrix,
+[[gnu::always_inline]] inline void convert(std::size_t m, const mesh::Matrix<double>& matrix,
                                            const NumberAt& numberAt) noexcept {
-  const std::size_t m = matrix.rows;
   struct alignas(CellVector) Line {
     std::array<CellNumber, 3 * kMaxOrder> numbers;
   } line;
@@ -135,6 +144,15 @@ template <class NumberAt>
       }
     }
   }
+}
+
+/// Multiplies numbers at places by a matrix along all three axes, in place.
+/// @param numberAt  of (place): a reference
+template <class NumberAt>
+[[gnu::always_inline]] inline void convert(const mesh::Matrix<double>& matrix,
+                                           const NumberAt& numberAt) noexcept {
+  if (matrix.rows == 6) return convert(6, matrix, numberAt);  // as above, for order 2
+  return convert(matrix.rows, matrix, numberAt);
 }
 
 #if defined(__GNUC__)
