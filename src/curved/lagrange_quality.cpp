@@ -7,8 +7,8 @@
 
 #include <hexhex/curved.hpp>
 
-#include <base/parallel.hpp>
 #include <base/lanes.hpp>
+#include <base/parallel.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/lagrange_quality.hpp>
 #include <mesh/certificates.hpp>
@@ -63,8 +63,8 @@ using Smallest = std::array<double, kCellLanes>;
                                          LagrangeScratch& scratch, Smallest& smallest) {
   forColumns(grid, cells, scratch,
              [&](const auto& /*rows*/, const auto& u, const auto& v, const auto& w) {
-               const CellNumber scaled = mesh::dot(u, mesh::cross(v, w)) /
-                                         (lengthOf(u) * lengthOf(v) * lengthOf(w));
+               const CellNumber scaled =
+                   mesh::dot(u, mesh::cross(v, w)) / (lengthOf(u) * lengthOf(v) * lengthOf(w));
                for (std::size_t i = 0; i < kCellLanes; ++i) {
                  smallest[i] = std::min(smallest[i], std::isfinite(scaled[i]) ? scaled[i] : 0.0);
                }
@@ -81,7 +81,7 @@ using Smallest = std::array<double, kCellLanes>;
 }
 #endif
 void lowerBy(const LagrangeColumns& grid, const LagrangeCells& cells, LagrangeScratch& scratch,
-                Smallest& smallest) {
+             Smallest& smallest) {
 #if defined(HEXHEX_WIDE_QUALITY)
   static const bool isWide = __builtin_cpu_supports("avx2") != 0;
   if (isWide) return lowerWide(grid, cells, scratch, smallest);
@@ -163,10 +163,9 @@ Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
   return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
     Array<double> result(mesh.cellCount());
     withThreads(context.threads(), [&] {
-      curved::forCells(mesh, stage,
-                       [&](std::size_t cell, double scaled, std::size_t /*block*/) {
-                         result[cell] = scaled;
-                       });
+      curved::forCells(mesh, stage, [&](std::size_t cell, double scaled, std::size_t /*block*/) {
+        result[cell] = scaled;
+      });
     });
     return result;
   });
@@ -183,15 +182,14 @@ Certificate certify(const LagrangeMesh& mesh, Context& context) {
     const mesh::CellValidity cells(mesh.order);
     withThreads(context.threads(), [&] {
       std::vector<mesh::BlockFindings> blocks(blockCount(n, curved::kLagrangeQualityGrain));
-      curved::forCells(mesh, stage,
-                       [&](std::size_t cell, double scaled, std::size_t block) {
-                         std::vector<Vec3> nodes;
-                         curved::nodesOf(mesh, cell, nodes);
-                         const CellCertificate known = cells.examine(nodes);
-                         certificate.scaledJacobians[cell] = scaled;
-                         certificate.validity[cell] = known.validity;
-                         blocks[block].add(cell, scaled, known);
-                       });
+      curved::forCells(mesh, stage, [&](std::size_t cell, double scaled, std::size_t block) {
+        std::vector<Vec3> nodes;
+        curved::nodesOf(mesh, cell, nodes);
+        const CellCertificate known = cells.examine(nodes);
+        certificate.scaledJacobians[cell] = scaled;
+        certificate.validity[cell] = known.validity;
+        blocks[block].add(cell, scaled, known);
+      });
       mesh::BlockFindings::finish(
           blocks, cells,
           [&](std::uint64_t cell, std::vector<Vec3>& nodes) { curved::nodesOf(mesh, cell, nodes); },

@@ -16,7 +16,7 @@ const LagrangeKernels& widestKernels() noexcept {
   return widest;
 }
 
-/// Equidistant places, so many along an axis.
+/// @param places  equidistant, along each axis
 LagrangeGrid gridOf(int order, int places) {
   return {curved::LagrangeColumns(order, curved::equidistant(places - 1))};
 }
@@ -61,8 +61,7 @@ curved::LagrangeCells CurvedCells::lanesOf(const Array<Vec3>& points,
 }
 
 CurvedCells::States CurvedCells::qualitiesOf(const Array<Vec3>& points,
-                                             std::span<const Index> cells,
-                                             Scratch& scratch) const {
+                                             std::span<const Index> cells, Scratch& scratch) const {
   const auto scaled = quality_.smallest(lanesOf(points, cells), scratch.columns);
   States states;
   for (std::size_t i = 0; i < states.size(); ++i) states[i] = {scaled[i], false};
@@ -71,12 +70,12 @@ CurvedCells::States CurvedCells::qualitiesOf(const Array<Vec3>& points,
 
 void CurvedCells::certify(const Array<Vec3>& points, std::span<const Index> cells, States& states,
                           Scratch& scratch) const {
-  constexpr double kSafe = 1e-9;  // far more than rounding makes of sums of some hundred terms
+  constexpr double kSafe = 1e-9;  // far beyond the rounding errors of sums of some hundred terms
   const auto shares =
       widestKernels().leastShares(bezierGrid_, lanesOf(points, cells), scratch.columns);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (states[i].scaled <= 0) continue;
-    // A proof follows in the end, and takes longer.
+    // A proof follows at the end; it takes longer.
     states[i].certified = shares[i] > kSafe;
     if (states[i].certified) continue;
     scratch.nodes.clear();
@@ -105,7 +104,7 @@ void CurvedCells::addTerms(const Array<Vec3>& points, std::span<const Index> cel
 
 namespace {
 
-/// Features by their vertices, each of which is found at the cells that have it.
+/// Finds features by their vertices.
 template <std::size_t n, class Feature>
 class FeatureFinder {
  public:
@@ -118,7 +117,7 @@ class FeatureFinder {
   }
   [[nodiscard]] bool empty() const { return entries_.empty(); }
 
-  /// The first time that vertices are asked for, the tags of all features between them.
+  /// The tags of all features between vertices; none when called with them again.
   [[nodiscard]] std::vector<std::int32_t> take(const std::array<Index, n>& vertices) {
     const std::array<Index, n> key = sorted(vertices);
     auto entry = std::lower_bound(
@@ -141,7 +140,7 @@ class FeatureFinder {
   std::vector<Entry> entries_;
 };
 
-/// The nodes of one cell by their places.
+/// The nodes of a cell by their grid coordinates.
 class NodeGrid {
  public:
   NodeGrid(const LagrangeMesh& mesh, std::size_t cell)
@@ -152,7 +151,7 @@ class NodeGrid {
     return nodes_[place[0] + n * (place[1] + n * place[2])];
   }
   [[nodiscard]] Index corner(std::size_t c) const { return at(between(c, c, 0, c, 0)); }
-  /// From corner a so far towards corners b and c.
+  /// From corner a, s steps towards corner b and t towards corner c.
   [[nodiscard]] lattice::GridPoint between(std::size_t a, std::size_t b, int s, std::size_t c,
                                            int t) const {
     lattice::GridPoint place{};

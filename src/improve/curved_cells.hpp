@@ -1,4 +1,4 @@
-// Cells as lists of points: of straight cells corners, of others all nodes.
+// Cells as lists of points: corners of straight cells, all nodes of curved ones.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 namespace hexhex::improvement {
 
 struct CellPoints {
-  std::span<const Index> all;  ///< those of cell 0, of cell 1, and so on
+  std::span<const Index> all;  ///< of cell 0, of cell 1, and so on
   std::size_t perCell = 8;
   const adjacency::VertexCells& around;  ///< the cells at each point
   std::size_t pointCount = 0;
@@ -31,10 +31,10 @@ struct CellPoints {
   }
 };
 
-// Cells of order 2 or 3, whose nodes move one by one as vertices of straight cells do: moving a
-// node changes the Jacobian matrix at any place by a matrix of rank one, too.
+// Cells of order 2 or 3. Their nodes move one by one, like vertices of straight cells: moving a
+// node changes the Jacobian matrix at any place by a matrix of rank one.
 
-/// What a cell, or the worst of some, is like.
+/// The quality of a cell.
 struct CellState {
   double scaled = 1;  ///< scaled Jacobian
   bool certified = true;
@@ -57,10 +57,10 @@ class CurvedCells {
   [[nodiscard]] adjacency::VertexCells cellsAroundNodes(Stage& stage) const;
   [[nodiscard]] Hex cornersOf(std::size_t cell) const;
 
-  /// The states of one to four cells. If one of them has a scaled Jacobian that is less than it
-  /// must be, none is certified.
-  /// @param points   of nodes; those of the mesh itself are not looked at
-  /// @param leastOf  of (cell): what its scaled Jacobian must be
+  /// The states of one to four cells. If the scaled Jacobian of any is less than required, none is
+  /// certified.
+  /// @param points   of nodes, instead of those of the mesh
+  /// @param leastOf  of (cell): the scaled Jacobian required
   template <class LeastOf>
   [[nodiscard]] std::array<CellState, curved::kCellLanes> statesOf(const Array<Vec3>& points,
                                                                    std::span<const Index> cells,
@@ -73,8 +73,8 @@ class CurvedCells {
     return states;
   }
 
-  /// Adds what cells contribute as functions of one of their nodes: at (2 p)^3 places or, with the
-  /// Bezier coefficients of the determinant instead of its values there, at (3 p)^3.
+  /// Adds the terms of cells as functions of one of their nodes: at (2 p)^3 places or, with Bezier
+  /// coefficients of the determinant instead of its values, at (3 p)^3.
   void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
                 const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
                 EnergyTerms& terms) const;
@@ -96,8 +96,8 @@ class CurvedCells {
   mesh::CellValidity validity_;
 };
 
-/// Straight cells between neighbouring nodes, p^3 per cell, with the generators and tags of all
-/// nodes: their boundary is what has to be near the surface.
+/// Straight cells between adjacent nodes, p^3 per cell, with the generators and tags of all nodes.
+/// Their boundary is compared with the surface.
 [[nodiscard]] HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage);
 
 }  // namespace hexhex::improvement

@@ -62,29 +62,28 @@ HEXHEX_INLINE void termsOf(const LagrangeGrid& grid, const MovingNode& moving,
     cells.weight[lane] = lane < moving.count ? 1 : 0;
   }
   TermLanes* next = terms;
-  curved::forColumns(
-      grid.columns, moving.cells, scratch,
-      [&](const auto& row, const Vector& xu, const Vector& xv, const Vector& xw) {
-        const Vector u = scaled(cells.scale[0], xu);
-        const Vector v = scaled(cells.scale[1], xv);
-        const Vector w = scaled(cells.scale[2], xw);
-        const Number& a = along[0].value[row[0]];
-        const Number& b = along[1].value[row[1]];
-        const Number& c = along[2].value[row[2]];
-        // The derivatives of the columns by the node are these times the identity.
-        const Number byU = cells.scale[0] * along[0].derivative[row[0]] * b * c;
-        const Number byV = cells.scale[1] * along[1].derivative[row[1]] * a * c;
-        const Number byW = cells.scale[2] * along[2].derivative[row[2]] * a * b;
-        const Vector vw = mesh::cross(v, w);
-        TermLanes& term = *next++;
-        term.square = mesh::dot(u, u) + mesh::dot(v, v) + mesh::dot(w, w);
-        term.slope = scaled(byU, u) + scaled(byV, v) + scaled(byW, w);
-        term.growth = byU * byU + byV * byV + byW * byW;
-        term.determinant = mesh::dot(u, vw);
-        term.normal =
-            scaled(byU, vw) + scaled(byV, mesh::cross(w, u)) + scaled(byW, mesh::cross(u, v));
-        term.weight = cells.weight;
-      });
+  curved::forColumns(grid.columns, moving.cells, scratch,
+                     [&](const auto& row, const Vector& xu, const Vector& xv, const Vector& xw) {
+                       const Vector u = scaled(cells.scale[0], xu);
+                       const Vector v = scaled(cells.scale[1], xv);
+                       const Vector w = scaled(cells.scale[2], xw);
+                       const Number& a = along[0].value[row[0]];
+                       const Number& b = along[1].value[row[1]];
+                       const Number& c = along[2].value[row[2]];
+                       // The derivatives of the columns by the node are these times the identity.
+                       const Number byU = cells.scale[0] * along[0].derivative[row[0]] * b * c;
+                       const Number byV = cells.scale[1] * along[1].derivative[row[1]] * a * c;
+                       const Number byW = cells.scale[2] * along[2].derivative[row[2]] * a * b;
+                       const Vector vw = mesh::cross(v, w);
+                       TermLanes& term = *next++;
+                       term.square = mesh::dot(u, u) + mesh::dot(v, v) + mesh::dot(w, w);
+                       term.slope = scaled(byU, u) + scaled(byV, v) + scaled(byW, w);
+                       term.growth = byU * byU + byV * byV + byW * byW;
+                       term.determinant = mesh::dot(u, vw);
+                       term.normal = scaled(byU, vw) + scaled(byV, mesh::cross(w, u)) +
+                                     scaled(byW, mesh::cross(u, v));
+                       term.weight = cells.weight;
+                     });
   if (grid.toBezier.rows == 0) return;
   const auto atEach = [&](const auto& numberOf) {
     curved::convert(grid.toBezier,

@@ -12,26 +12,26 @@
 
 namespace hexhex::improvement {
 
-/// Places of a cell, and how numbers there become Bezier coefficients.
+/// Places in a cell, and the conversion from values there to Bezier coefficients.
 struct LagrangeGrid {
   curved::LagrangeColumns columns;
-  mesh::Matrix<double> toBezier = {};  ///< along an axis; empty: they stay what they are
+  mesh::Matrix<double> toBezier = {};  ///< along an axis; empty: no conversion
 };
 
 /// Cells around a node that moves.
 struct MovingNode {
   curved::LagrangeCells cells;
   std::size_t count;                                 ///< of cells
-  std::array<std::size_t, curved::kCellLanes> node;  ///< which it is of each
+  std::array<std::size_t, curved::kCellLanes> node;  ///< its index among the nodes of each
   std::array<Vec3, curved::kCellLanes> scale;        ///< inverse lengths of the ideal boxes
 };
 
 struct LagrangeKernels {
-  /// A term per place. In place of determinants there, they may have the Bezier coefficients.
+  /// A term per place, with the determinant there or, with a conversion, a Bezier coefficient.
   void (*terms)(const LagrangeGrid& grid, const MovingNode& moving,
                 curved::LagrangeScratch& scratch, TermLanes* terms);
-  /// Per cell: the least Bezier coefficient of the determinant as a share of the largest, or 0 if
-  /// that is not positive.
+  /// Per cell: the least Bezier coefficient of the determinant divided by the largest, or 0 if the
+  /// largest is not positive.
   std::array<double, curved::kCellLanes> (*leastShares)(const LagrangeGrid& grid,
                                                         const curved::LagrangeCells& cells,
                                                         curved::LagrangeScratch& scratch);

@@ -16,8 +16,8 @@
  *   is ever printed.
  * - Threads: functions may run concurrently as long as no two of them use the same handle, unless
  *   both only read it (parameters that are pointers to const). hexhex_context_cancel() and
- *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details for each
- *   function.
+ *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details for
+ * each function.
  * - Handles that are NULL, destroyed, of the wrong kind, or in use elsewhere yield
  *   HEXHEX_INVALID_ARGUMENT; functions without a status return 0 or NULL, or do nothing.
  *   docs/developer/reliability.md lists what cannot be detected.
@@ -1191,7 +1191,8 @@ typedef struct hexhex_improve_options {
   hexhex_pillow_mode pillow; /**< straight cells only */
   int snap_curves; /**< 1: snap mesh edges to curves that none follows; straight cells only */
   /** File of the surface that the mesh approximates, onto which its boundary is pulled: .stl, .obj,
-   * .ply, .off or tets; see readSurfaceOf() in <hexhex/fill.hpp>. NULL: none. Only without a map. */
+   * .ply, .off or tets; see readSurfaceOf() in <hexhex/fill.hpp>. NULL: none. Only without a map.
+   */
   const char* surface;
 } hexhex_improve_options;
 #define HEXHEX_IMPROVE_OPTIONS_INIT \
@@ -1240,8 +1241,8 @@ typedef struct hexhex_improve_report {
   uint64_t off_creases; /**< vertices that left creases because nothing else made cells positive */
   uint64_t added_cells; /**< cells of a pillow; they come last in the mesh */
   double curve_length;  /**< total length of the object's sharp and tagged edges */
-  double curves_followed;  /**< share of that length that mesh edges follow */
-  uint64_t snapped_curves; /**< curve segments to which edges were snapped */
+  double curves_followed;      /**< share of that length that mesh edges follow */
+  uint64_t snapped_curves;     /**< curve segments to which edges were snapped */
   uint64_t cannot_be_positive; /**< cells that share two faces with another, so that one is not */
   uint64_t paired_vertices;    /**< vertices fixed only because of these cells */
   /** The cell with the least scaled Jacobian at the end, and what limits it. */
@@ -1249,7 +1250,7 @@ typedef struct hexhex_improve_report {
   hexhex_cell_holder worst_held_by;
   int worst_tagged;      /**< 1: the curve or corner has a tag */
   uint32_t worst_vertex; /**< at the worst corner of that cell */
-  double worst_angle; /**< between the two boundary faces there, in degrees; 0 without two */
+  double worst_angle;    /**< between the two boundary faces there, in degrees; 0 without two */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
