@@ -41,15 +41,28 @@ void writeReport(const ImproveReport& r, hexhex_improve_report* out) {
       .added_cells = r.addedCells,
       .curve_length = r.curveLength,
       .curves_followed = r.curvesFollowed,
-      .snapped_curves = r.snappedCurves};
+      .snapped_curves = r.snappedCurves,
+      .cannot_be_positive = r.cannotBePositive.size(),
+      .paired_vertices = r.pairedVertices,
+      .worst_cell = r.worst.cell,
+      .worst_held_by = static_cast<hexhex_cell_holder>(r.worst.holder),
+      .worst_tagged = r.worst.isTagged ? 1 : 0,
+      .worst_vertex = r.worst.vertex,
+      .worst_angle = r.worst.angle};
   writeStruct(result, *out, "report");
 }
 
-ImproveOptions improveOptions(const hexhex_improve_options* options) {
+ImproveOptions improveOptions(const hexhex_improve_options* options, const char** surface) {
   const hexhex_improve_options o = readStruct(options, HEXHEX_IMPROVE_OPTIONS_INIT, "options");
   if (o.pillow < HEXHEX_PILLOW_NEVER || o.pillow > HEXHEX_PILLOW_ALWAYS) {
     throw Error(ErrorCode::InvalidArgument, "There is no such mode of pillows.");
   }
+  if (o.surface != nullptr && surface == nullptr) {
+    throw Error(ErrorCode::InvalidArgument,
+                "Options of improvement name a surface, but that of a map or of tets is the one to "
+                "keep. Leave out one of the two.");
+  }
+  if (surface != nullptr) *surface = o.surface;
   return {.target = o.target,
           .passes = o.passes,
           .fixBoundary = o.fix_boundary != 0,
@@ -74,14 +87,18 @@ hexhex_status improveMesh(Handle* mesh, const hexhex_map* map,
     const Used used(mesh, "mesh");
     std::optional<Used<const hexhex_map>> given;
     if (map != nullptr) given.emplace(map, "map");
-    const hexhex::ImproveOptions chosen = improveOptions(options);
+    const char* surface = nullptr;
+    const hexhex::ImproveOptions chosen = improveOptions(options, given ? nullptr : &surface);
     requireStruct(report, "report");
     ContextOrDefault working(context);
     auto& improved = meshOf(*used);
-    const hexhex::ImproveReport made =
-        given ? hexhex::improve(improved, (*given)->view, chosen, *working)
-              : hexhex::improve(improved, chosen, *working);
-    writeReport(made, report);
+    const auto improve = [&] {
+      if (given) return hexhex::improve(improved, (*given)->view, chosen, *working);
+      if (surface == nullptr) return hexhex::improve(improved, chosen, *working);
+      const hexhex::TriangleMesh onto = hexhex::readSurfaceOf(surface, *working);
+      return hexhex::improve(improved, onto, chosen, *working);
+    };
+    writeReport(improve(), report);
   });
 }
 

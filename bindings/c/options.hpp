@@ -19,7 +19,9 @@ namespace hexhex::c {
 
 /// @param options  not null
 [[nodiscard]] QuantizeOptions quantizeOptions(const hexhex_quantize_options* options);
-[[nodiscard]] ImproveOptions improveOptions(const hexhex_improve_options* options);
+/// @param[out] surface  that the options name, or null: they must not name one
+[[nodiscard]] ImproveOptions improveOptions(const hexhex_improve_options* options,
+                                            const char** surface = nullptr);
 
 /// @param out  may be null
 void writeReport(const QuantizeReport& report, hexhex_quantize_report* out);

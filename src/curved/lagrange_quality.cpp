@@ -7,12 +7,16 @@
 
 #include <hexhex/curved.hpp>
 
+#include <base/lanes.hpp>
 #include <base/parallel.hpp>
-#include <base/vector3.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/lagrange_quality.hpp>
 #include <mesh/certificates.hpp>
 #include <mesh/lagrange_check.hpp>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
 
 namespace hexhex::curved {
 
@@ -48,30 +52,59 @@ std::vector<double> gaussPoints(int n) {
   return places;
 }
 
-/// The smallest scaled determinant.
-double smallestOf(const LagrangeColumns::Values& values) {
-  double smallest = 1;
-  for (std::size_t q = 0; q < values.columns[0].values.size(); ++q) {
-    const Vec3& a = values.columns[0].values[q];
-    const Vec3& b = values.columns[1].values[q];
-    const Vec3& c = values.columns[2].values[q];
-    const double scaled = tripleProduct(a, b, c) / (length(a) * length(b) * length(c));
-    smallest = std::min(smallest, std::isfinite(scaled) ? scaled : 0.0);
-  }
-  return std::clamp(smallest, -1.0, 1.0);
+using Smallest = std::array<double, kCellLanes>;
+
+[[gnu::always_inline]] inline CellNumber lengthOf(const mesh::LaneVector<CellNumber>& a) noexcept {
+  return rootOf<CellNumber>(mesh::dot(a, a));
 }
 
-/// Calls use(cell, its nodes, its scaled Jacobian, block) for all cells.
+/// Lowers numbers to the smallest scaled determinants on a grid.
+[[gnu::always_inline]] inline void lower(const LagrangeColumns& grid, const LagrangeCells& cells,
+                                         LagrangeScratch& scratch, Smallest& smallest) {
+  forColumns(grid, cells, scratch,
+             [&](const auto& /*rows*/, const auto& u, const auto& v, const auto& w) {
+               const CellNumber scaled =
+                   mesh::dot(u, mesh::cross(v, w)) / (lengthOf(u) * lengthOf(v) * lengthOf(w));
+               for (std::size_t i = 0; i < kCellLanes; ++i) {
+                 smallest[i] = std::min(smallest[i], std::isfinite(scaled[i]) ? scaled[i] : 0.0);
+               }
+             });
+}
+
+// Windows aligns stacks too little for wide registers.
+#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
+#define HEXHEX_WIDE_QUALITY 1
+[[gnu::target("avx2"), gnu::flatten]] void lowerWide(const LagrangeColumns& grid,
+                                                     const LagrangeCells& cells,
+                                                     LagrangeScratch& scratch, Smallest& smallest) {
+  lower(grid, cells, scratch, smallest);
+}
+#endif
+void lowerBy(const LagrangeColumns& grid, const LagrangeCells& cells, LagrangeScratch& scratch,
+             Smallest& smallest) {
+#if defined(HEXHEX_WIDE_QUALITY)
+  static const bool isWide = __builtin_cpu_supports("avx2") != 0;
+  if (isWide) return lowerWide(grid, cells, scratch, smallest);
+#endif
+  lower(grid, cells, scratch, smallest);
+}
+
+/// Calls use(cell, its scaled Jacobian, block) for all cells.
 template <class Use>
 void forCells(const LagrangeMesh& mesh, Stage& stage, const Use& use) {
   const LagrangeQuality quality(mesh.order);
   parallelBlocks(stage, mesh.cellCount(), kLagrangeQualityGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   LagrangeColumns::Values values;
-                   std::vector<Vec3> points;
-                   for (std::size_t c = begin; c < end; ++c) {
-                     nodesOf(mesh, c, points);
-                     use(c, points, quality.smallest(points, values), block);
+                   LagrangeScratch scratch;
+                   for (std::size_t first = begin; first < end; first += kCellLanes) {
+                     const std::size_t count = std::min(kCellLanes, end - first);
+                     const Smallest scaled = quality.smallest(
+                         {mesh.points.data(), count,
+                          [&](std::size_t i) {
+                            return mesh.nodes.data() + (first + i) * mesh.nodesPerCell();
+                          }},
+                         scratch);
+                     for (std::size_t i = 0; i < count; ++i) use(first + i, scaled[i], block);
                    }
                  });
 }
@@ -108,26 +141,17 @@ LagrangeColumns::LagrangeColumns(int order, const std::vector<double>& places)
   }
 }
 
-void LagrangeColumns::evaluate(const std::vector<Vec3>& nodes, Values& result) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    mesh::Bezier<Vec3>& column = result.columns[axis];
-    column.size.fill(value.columns);
-    column.values = nodes;
-    for (std::size_t a = 0; a < 3; ++a) {
-      mesh::apply(a == axis ? derivative : value, a, column, result.scratch);
-    }
-  }
-}
-
 LagrangeQuality::LagrangeQuality(int order)
     : atNodes_(order, equidistant(order)), atGauss_(order, gaussPoints(order + 1)) {}
 
-double LagrangeQuality::smallest(const std::vector<Vec3>& nodes,
-                                 LagrangeColumns::Values& values) const {
-  atNodes_.evaluate(nodes, values);
-  const double least = smallestOf(values);
-  atGauss_.evaluate(nodes, values);
-  return std::min(least, smallestOf(values));
+std::array<double, kCellLanes> LagrangeQuality::smallest(const LagrangeCells& cells,
+                                                         LagrangeScratch& scratch) const {
+  Smallest smallest;
+  smallest.fill(1);
+  lowerBy(atNodes_, cells, scratch, smallest);
+  lowerBy(atGauss_, cells, scratch, smallest);
+  for (double& scaled : smallest) scaled = std::max(scaled, -1.0);
+  return smallest;
 }
 
 }  // namespace hexhex::curved
@@ -139,10 +163,9 @@ Array<double> scaledJacobians(const LagrangeMesh& mesh, Context& context) {
   return inStage(context, "scaledJacobians", "quality", [&](Stage& stage) {
     Array<double> result(mesh.cellCount());
     withThreads(context.threads(), [&] {
-      curved::forCells(mesh, stage,
-                       [&](std::size_t cell, const auto&, double scaled, std::size_t /*block*/) {
-                         result[cell] = scaled;
-                       });
+      curved::forCells(mesh, stage, [&](std::size_t cell, double scaled, std::size_t /*block*/) {
+        result[cell] = scaled;
+      });
     });
     return result;
   });
@@ -159,13 +182,14 @@ Certificate certify(const LagrangeMesh& mesh, Context& context) {
     const mesh::CellValidity cells(mesh.order);
     withThreads(context.threads(), [&] {
       std::vector<mesh::BlockFindings> blocks(blockCount(n, curved::kLagrangeQualityGrain));
-      curved::forCells(mesh, stage,
-                       [&](std::size_t cell, const auto& nodes, double scaled, std::size_t block) {
-                         const CellCertificate known = cells.examine(nodes);
-                         certificate.scaledJacobians[cell] = scaled;
-                         certificate.validity[cell] = known.validity;
-                         blocks[block].add(cell, scaled, known);
-                       });
+      curved::forCells(mesh, stage, [&](std::size_t cell, double scaled, std::size_t block) {
+        std::vector<Vec3> nodes;
+        curved::nodesOf(mesh, cell, nodes);
+        const CellCertificate known = cells.examine(nodes);
+        certificate.scaledJacobians[cell] = scaled;
+        certificate.validity[cell] = known.validity;
+        blocks[block].add(cell, scaled, known);
+      });
       mesh::BlockFindings::finish(
           blocks, cells,
           [&](std::uint64_t cell, std::vector<Vec3>& nodes) { curved::nodesOf(mesh, cell, nodes); },

@@ -2,7 +2,6 @@
 
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
-#include <base/vector3.hpp>
 #include <curved/lagrange.hpp>
 #include <improve/curved_cells.hpp>
 
@@ -12,17 +11,26 @@ namespace {
 
 constexpr std::size_t kCurvedCellsGrain = 1024;
 
-/// Of the determinant: its degree along each axis, and one.
-constexpr int placesOf(int order) { return 3 * order; }
+const LagrangeKernels& widestKernels() noexcept {
+  static const LagrangeKernels& widest = lagrangeKernels().back();
+  return widest;
+}
+
+/// @param places  equidistant, along each axis
+LagrangeGrid gridOf(int order, int places) {
+  return {curved::LagrangeColumns(order, curved::equidistant(places - 1))};
+}
 
 }  // namespace
 
 CurvedCells::CurvedCells(const LagrangeMesh& mesh)
     : mesh_(mesh),
-      columns_(mesh.order, curved::equidistant(placesOf(mesh.order) - 1)),
-      toBezier_(mesh::nodeMatrices<double>(columns_.value.rows - 1).values),
+      grid_(gridOf(mesh.order, 2 * mesh.order)),
+      bezierGrid_(gridOf(mesh.order, 3 * mesh.order)),  // one more than the degree
       quality_(mesh.order),
-      validity_(mesh.order) {}
+      validity_(mesh.order) {
+  bezierGrid_.toBezier = mesh::nodeMatrices<double>(bezierGrid_.columns.value.rows - 1).values;
+}
 
 std::span<const Index> CurvedCells::nodesOf(std::size_t cell) const {
   return std::span(mesh_.nodes).subspan(cell * mesh_.nodesPerCell(), mesh_.nodesPerCell());
@@ -47,96 +55,56 @@ Hex CurvedCells::cornersOf(std::size_t cell) const {
   return corners;
 }
 
-void CurvedCells::take(const Array<Vec3>& points, std::size_t cell, Scratch& scratch) const {
-  scratch.nodes.clear();
-  for (const Index node : nodesOf(cell)) scratch.nodes.push_back(points[node]);
+curved::LagrangeCells CurvedCells::lanesOf(const Array<Vec3>& points,
+                                           std::span<const Index> cells) const {
+  return {points.data(), cells.size(), [&](std::size_t i) { return nodesOf(cells[i]).data(); }};
 }
 
-CellState CurvedCells::stateOf(const Array<Vec3>& points, std::size_t cell, double least,
-                               Scratch& scratch) const {
-  take(points, cell, scratch);
-  const double scaled = quality_.smallest(scratch.nodes, scratch.values);
-  if (scaled <= 0 || scaled < least) return {scaled, false};
-  return {scaled, hasPositiveCoefficients(scratch) ||
-                      validity_.examine(scratch.nodes).validity == Validity::Positive};
+CurvedCells::States CurvedCells::qualitiesOf(const Array<Vec3>& points,
+                                             std::span<const Index> cells, Scratch& scratch) const {
+  const auto scaled = quality_.smallest(lanesOf(points, cells), scratch.columns);
+  States states;
+  for (std::size_t i = 0; i < states.size(); ++i) states[i] = {scaled[i], false};
+  return states;
 }
 
-bool CurvedCells::hasPositiveCoefficients(Scratch& scratch) const {
-  constexpr double kSafe = 1e-9;  // far more than rounding makes of sums of some hundred terms
-  columns_.evaluate(scratch.nodes, scratch.values);
-  mesh::Bezier<double>& determinants = scratch.determinants;
-  determinants.size.fill(toBezier_.columns);
-  determinants.values.clear();
-  const auto& [u, v, w] = scratch.values.columns;
-  for (std::size_t i = 0; i < u.values.size(); ++i) {
-    determinants.values.push_back(tripleProduct(u.values[i], v.values[i], w.values[i]));
+void CurvedCells::certify(const Array<Vec3>& points, std::span<const Index> cells, States& states,
+                          Scratch& scratch) const {
+  constexpr double kSafe = 1e-9;  // far beyond the rounding errors of sums of some hundred terms
+  const auto shares =
+      widestKernels().leastShares(bezierGrid_, lanesOf(points, cells), scratch.columns);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (states[i].scaled <= 0) continue;
+    // A proof follows at the end; it takes longer.
+    states[i].certified = shares[i] > kSafe;
+    if (states[i].certified) continue;
+    scratch.nodes.clear();
+    for (const Index node : nodesOf(cells[i])) scratch.nodes.push_back(points[node]);
+    states[i].certified = validity_.examine(scratch.nodes).validity == Validity::Positive;
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    mesh::apply(toBezier_, axis, determinants, scratch.numbers);
-  }
-  const auto [lowest, highest] =
-      std::minmax_element(determinants.values.begin(), determinants.values.end());
-  return *lowest > kSafe * *highest;
 }
 
-void CurvedCells::addTerms(const Array<Vec3>& points, std::size_t cell, Index moving,
-                           const IdealBox& box, bool bezier, Scratch& scratch,
-                           std::vector<EnergyTerm>& terms) const {
-  take(points, cell, scratch);
-  columns_.evaluate(scratch.nodes, scratch.values);
-  const std::span<const Index> nodes = nodesOf(cell);
-  const auto node =
-      static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), moving) - nodes.begin());
-  const std::size_t n = columns_.value.columns;
-  const std::size_t m = columns_.value.rows;
-  const std::array<std::size_t, 3> place = {node % n, node / n % n, node / n / n};
-  scratch.terms.clear();
-  for (std::size_t at = 0; at < m * m * m; ++at) {
-    const std::array<std::size_t, 3> row = {at % m, at / m % m, at / m / m};
-    std::array<Vec3, 3> edges;
-    Vec3 weights;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double scale = 1.0 / box[axis];
-      edges[axis] = times(scale, scratch.values.columns[axis].values[at]);
-      weights[axis] = scale;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const mesh::Matrix<double>& matrix = a == axis ? columns_.derivative : columns_.value;
-        weights[axis] *= matrix.entries[row[a] * n + place[a]];
-      }
+void CurvedCells::addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
+                           const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                           EnergyTerms& terms) const {
+  const LagrangeGrid& grid = bezier ? bezierGrid_ : grid_;
+  for (std::size_t first = 0; first < cells.size(); first += curved::kCellLanes) {
+    const auto some = cells.subspan(first, std::min(curved::kCellLanes, cells.size() - first));
+    MovingNode all{lanesOf(points, some), some.size(), {}, {}};
+    for (std::size_t i = 0; i < curved::kCellLanes; ++i) {
+      const Index cell = some[std::min(i, some.size() - 1)];
+      const std::span<const Index> nodes = nodesOf(cell);
+      all.node[i] =
+          static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), moving) - nodes.begin());
+      for (std::size_t k = 0; k < 3; ++k) all.scale[i][k] = 1.0 / boxes[cell][k];
     }
-    scratch.terms.push_back(termOf(edges, weights));
-  }
-  if (bezier) toBezier(scratch);
-  for (const EnergyTerm& term : scratch.terms) {
-    if (term.growth > 0 || dot(term.normal, term.normal) > 0) terms.push_back(term);
-  }
-}
-
-/// From the determinants at places to Bezier coefficients.
-void CurvedCells::toBezier(Scratch& scratch) const {
-  mesh::Bezier<double>& determinants = scratch.determinants;
-  mesh::Bezier<Vec3>& normals = scratch.normals;
-  determinants.size.fill(toBezier_.columns);
-  normals.size.fill(toBezier_.columns);
-  determinants.values.clear();
-  normals.values.clear();
-  for (const EnergyTerm& term : scratch.terms) {
-    determinants.values.push_back(term.determinant);
-    normals.values.push_back(term.normal);
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    mesh::apply(toBezier_, axis, determinants, scratch.numbers);
-    mesh::apply(toBezier_, axis, normals, scratch.values.scratch);
-  }
-  for (std::size_t i = 0; i < scratch.terms.size(); ++i) {
-    scratch.terms[i].determinant = determinants.values[i];
-    scratch.terms[i].normal = normals.values[i];
+    widestKernels().terms(grid, all, scratch.columns, terms.add(grid.columns.placeCount()));
   }
 }
 
 namespace {
 
-/// Features by their vertices, each of which is found at the cells that have it.
+/// Finds features by their vertices.
 template <std::size_t n, class Feature>
 class FeatureFinder {
  public:
@@ -149,7 +117,7 @@ class FeatureFinder {
   }
   [[nodiscard]] bool empty() const { return entries_.empty(); }
 
-  /// The first time that vertices are asked for, the tags of all features between them.
+  /// The tags of all features between vertices; none when called with them again.
   [[nodiscard]] std::vector<std::int32_t> take(const std::array<Index, n>& vertices) {
     const std::array<Index, n> key = sorted(vertices);
     auto entry = std::lower_bound(
@@ -172,7 +140,7 @@ class FeatureFinder {
   std::vector<Entry> entries_;
 };
 
-/// The nodes of one cell by their places.
+/// The nodes of a cell by their grid coordinates.
 class NodeGrid {
  public:
   NodeGrid(const LagrangeMesh& mesh, std::size_t cell)
@@ -183,7 +151,7 @@ class NodeGrid {
     return nodes_[place[0] + n * (place[1] + n * place[2])];
   }
   [[nodiscard]] Index corner(std::size_t c) const { return at(between(c, c, 0, c, 0)); }
-  /// From corner a so far towards corners b and c.
+  /// From corner a, s steps towards corner b and t towards corner c.
   [[nodiscard]] lattice::GridPoint between(std::size_t a, std::size_t b, int s, std::size_t c,
                                            int t) const {
     lattice::GridPoint place{};

@@ -1,4 +1,4 @@
-// Cells as lists of points: of straight cells corners, of others all nodes.
+// Cells as lists of points: corners of straight cells, all nodes of curved ones.
 #pragma once
 
 #include <array>
@@ -13,13 +13,14 @@
 
 #include <base/stage.hpp>
 #include <curved/lagrange_quality.hpp>
+#include <improve/lagrange_kernels.hpp>
 #include <improve/vertex_energy.hpp>
 #include <mesh/cell_validity.hpp>
 
 namespace hexhex::improvement {
 
 struct CellPoints {
-  std::span<const Index> all;  ///< those of cell 0, of cell 1, and so on
+  std::span<const Index> all;  ///< of cell 0, of cell 1, and so on
   std::size_t perCell = 8;
   const adjacency::VertexCells& around;  ///< the cells at each point
   std::size_t pointCount = 0;
@@ -30,10 +31,10 @@ struct CellPoints {
   }
 };
 
-// Cells of order 2 or 3, whose nodes move one by one as vertices of straight cells do: moving a
-// node changes the Jacobian matrix at any place by a matrix of rank one, too.
+// Cells of order 2 or 3. Their nodes move one by one, like vertices of straight cells: moving a
+// node changes the Jacobian matrix at any place by a matrix of rank one.
 
-/// What a cell, or the worst of some, is like.
+/// The quality of a cell.
 struct CellState {
   double scaled = 1;  ///< scaled Jacobian
   bool certified = true;
@@ -45,13 +46,8 @@ class CurvedCells {
 
   /// One per thread.
   struct Scratch {
+    curved::LagrangeScratch columns;
     std::vector<Vec3> nodes;
-    curved::LagrangeColumns::Values values;
-    mesh::Bezier<double> determinants;
-    mesh::Bezier<Vec3> normals;
-    std::vector<double> numbers;
-    std::vector<EnergyTerm> terms;
-    std::vector<EnergyTerm> found;  ///< of all cells around a node
   };
 
   /// @param mesh  of an order up to kMaxOrder; outlives this
@@ -61,33 +57,47 @@ class CurvedCells {
   [[nodiscard]] adjacency::VertexCells cellsAroundNodes(Stage& stage) const;
   [[nodiscard]] Hex cornersOf(std::size_t cell) const;
 
-  /// @param points  of nodes; those of the mesh itself are not looked at
-  /// @param least   a cell with a smaller scaled Jacobian need not be certified
-  [[nodiscard]] CellState stateOf(const Array<Vec3>& points, std::size_t cell, double least,
-                                  Scratch& scratch) const;
+  /// The states of one to four cells. If the scaled Jacobian of any is less than required, none is
+  /// certified.
+  /// @param points   of nodes, instead of those of the mesh
+  /// @param leastOf  of (cell): the scaled Jacobian required
+  template <class LeastOf>
+  [[nodiscard]] std::array<CellState, curved::kCellLanes> statesOf(const Array<Vec3>& points,
+                                                                   std::span<const Index> cells,
+                                                                   const LeastOf& leastOf,
+                                                                   Scratch& scratch) const {
+    std::array<CellState, curved::kCellLanes> states = qualitiesOf(points, cells, scratch);
+    bool areGood = true;
+    for (std::size_t i = 0; i < cells.size(); ++i) areGood &= states[i].scaled >= leastOf(cells[i]);
+    if (areGood) certify(points, cells, states, scratch);
+    return states;
+  }
 
-  /// The terms of a cell as a function of one of its nodes: at (3 p)^3 places, or with the Bezier
-  /// coefficients of the determinant instead of its values there.
-  void addTerms(const Array<Vec3>& points, std::size_t cell, Index moving, const IdealBox& box,
-                bool bezier, Scratch& scratch, std::vector<EnergyTerm>& terms) const;
+  /// Adds the terms of cells as functions of one of their nodes: at (2 p)^3 places or, with Bezier
+  /// coefficients of the determinant instead of its values, at (3 p)^3.
+  void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
+                const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                EnergyTerms& terms) const;
 
  private:
+  using States = std::array<CellState, curved::kCellLanes>;
   [[nodiscard]] std::span<const Index> nodesOf(std::size_t cell) const;
-  void take(const Array<Vec3>& points, std::size_t cell, Scratch& scratch) const;
-  void toBezier(Scratch& scratch) const;
-  /// Whether all Bezier coefficients of the determinant are, up to rounding: a proof follows in the
-  /// end, and takes five times as long.
-  [[nodiscard]] bool hasPositiveCoefficients(Scratch& scratch) const;
+  [[nodiscard]] curved::LagrangeCells lanesOf(const Array<Vec3>& points,
+                                              std::span<const Index> cells) const;
+  [[nodiscard]] States qualitiesOf(const Array<Vec3>& points, std::span<const Index> cells,
+                                   Scratch& scratch) const;
+  void certify(const Array<Vec3>& points, std::span<const Index> cells, States& states,
+               Scratch& scratch) const;
 
   const LagrangeMesh& mesh_;
-  curved::LagrangeColumns columns_;
-  mesh::Matrix<double> toBezier_;  ///< of the determinant, along an axis
+  LagrangeGrid grid_;
+  LagrangeGrid bezierGrid_;
   curved::LagrangeQuality quality_;
   mesh::CellValidity validity_;
 };
 
-/// Straight cells between neighbouring nodes, p^3 per cell, with the generators and tags of all
-/// nodes: their boundary is what has to be near the surface.
+/// Straight cells between adjacent nodes, p^3 per cell, with the generators and tags of all nodes.
+/// Their boundary is compared with the surface.
 [[nodiscard]] HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage);
 
 }  // namespace hexhex::improvement

@@ -21,15 +21,12 @@ using Number = TermLanes::Number;
 using Vector = mesh::LaneVector<Number>;
 using mesh::operator+;
 using mesh::operator-;
+using mesh::scaled;
 constexpr std::size_t kLanes = TermLanes::kCount;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// 1 / |1|^3: of the ideal shape, the energy is 1.
 constexpr double kUnit = 0.19245008972987526;  // 1 / (3 sqrt(3))
-
-HEXHEX_INLINE Vector scaled(const Number& factor, const Vector& a) noexcept {
-  return {factor * a[0], factor * a[1], factor * a[2]};
-}
 
 HEXHEX_INLINE double sumOf(const Number& x) noexcept { return (x[0] + x[1]) + (x[2] + x[3]); }
 

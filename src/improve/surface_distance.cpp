@@ -123,13 +123,28 @@ TriangleTree treeOf(const ReferenceSurface& surface, std::size_t begin, std::siz
   return TriangleTree(triangles);
 }
 
-/// Of vertices, centres and middles of edges; edges are those of two quads in most cases, and one
-/// of these asks.
+/// The vertices of polygons, each once.
+/// @param polygonOf  of (i)
+template <class PolygonOf>
+std::vector<Index> verticesOf(std::size_t polygons, std::size_t points,
+                              const PolygonOf& polygonOf) {
+  std::vector<Index> vertices;
+  std::vector<bool> isListed(points, false);
+  for (std::size_t i = 0; i < polygons; ++i) {
+    for (const Index v : polygonOf(i)) {
+      if (!isListed[v]) vertices.push_back(v);
+      isListed[v] = true;
+    }
+  }
+  return vertices;
+}
+
+/// Of centres and middles of edges; edges are those of two quads in most cases, and one of these
+/// asks.
 double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
   const std::array<Vec3, 4> corners = cornersOf(points, quad);
   double largest = tree.nearest(centreOf(corners)).distance;
   for (std::size_t i = 0; i < 4; ++i) {
-    largest = std::max(largest, tree.nearest(corners[i]).distance);
     const std::size_t next = (i + 1) % 4;
     if (quad[i] > quad[next]) continue;
     const std::array<Vec3, 2> ends = {corners[i], corners[next]};
@@ -138,12 +153,21 @@ double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTre
   return largest;
 }
 
-/// In diagonals.
+/// Of vertices, too; in diagonals.
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
+  const std::vector<Index> vertices =
+      verticesOf(quads.size(), points.size(), [&](std::size_t q) { return quads[q]; });
+  std::vector<double> ofVertices(points.size());
+  parallelFor(stage, vertices.size(), kSurfaceDistanceGrain, [&](std::size_t i) {
+    ofVertices[vertices[i]] = tree.nearest(points[vertices[i]]).distance;
+  });
   std::vector<double> distances(quads.size());
-  parallelFor(stage, quads.size(), kSurfaceDistanceGrain,
-              [&](std::size_t q) { distances[q] = distanceOf(points, quads[q], tree) / diagonal; });
+  parallelFor(stage, quads.size(), kSurfaceDistanceGrain, [&](std::size_t q) {
+    double largest = distanceOf(points, quads[q], tree);
+    for (const Index v : quads[q]) largest = std::max(largest, ofVertices[v]);
+    distances[q] = largest / diagonal;
+  });
   return distances;
 }
 
@@ -185,15 +209,19 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
     double distance;
   };
   const TriangleTree ofMesh = treeOf(points, quads);
+  const std::vector<Index> vertices =
+      verticesOf(surface.boundaryCount(), surface.points().size(),
+                 [&](std::size_t t) { return surface.triangleVertices(static_cast<Index>(t)); });
   const std::vector<FromSurface> found = collectFromBlocks<FromSurface>(
-      stage, surface.boundaryCount(), kSurfaceDistanceGrain,
+      stage, vertices.size() + surface.boundaryCount(), kSurfaceDistanceGrain,
       [&](std::size_t begin, std::size_t end, std::vector<FromSurface>& list) {
-        for (std::size_t t = begin; t < end; ++t) {
-          const std::array<Vec3, 3> corners = surface.triangle(static_cast<Index>(t));
-          for (const Vec3& point : {corners[0], corners[1], corners[2], centreOf(corners)}) {
-            const TriangleTree::Nearest nearest = ofMesh.nearest(point);
-            list.push_back({nearest.triangle / 4, nearest.distance / diagonal});
-          }
+        for (std::size_t i = begin; i < end; ++i) {
+          const Vec3 point =
+              i < vertices.size()
+                  ? surface.points()[vertices[i]]
+                  : centreOf(surface.triangle(static_cast<Index>(i - vertices.size())));
+          const TriangleTree::Nearest nearest = ofMesh.nearest(point);
+          list.push_back({nearest.triangle / 4, nearest.distance / diagonal});
         }
       });
   for (const FromSurface& sample : found) {

@@ -106,7 +106,8 @@ constexpr std::size_t kMostVisits = 4;
 constexpr double kPrice = 30;
 
 /// Where more cells are below the target, none that is at it may fall below it on the way: many
-/// would end there, and all that moved with them be put back and raised again.
+/// would end there, and all that moved with them be put back and raised again. So it is of curved
+/// cells: 1,749 of order 2 would take 5.0 s instead of 2.9 s and end with the same minimum.
 constexpr std::size_t kMostFalling = 5'000;
 
 /// A step smaller than this share of the cells' size does not wake the neighbours.
@@ -359,7 +360,7 @@ void Sweeps::raiseWorst(double target, double slack) {
   const Standing now = standing(target);
   const std::size_t low = now.bad + now.below;
   if (low == 0) return;
-  if (low > kMostFalling) {
+  if (low > kMostFalling || curved_ != nullptr) {
     raise({target, false, kPrice}, slack);
     return;
   }

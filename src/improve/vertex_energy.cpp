@@ -24,39 +24,17 @@ Vec3 applied(const std::array<double, 6>& m, const Vec3& x) noexcept {
 
 }  // namespace
 
-TermLanes* EnergyTerms::moreBlocks(std::size_t n) {
+TermLanes* EnergyTerms::add(std::size_t blocks) {
   const std::size_t first = size_;
-  size_ += n;
+  size_ += blocks;
   if (size_ > blocks_.size()) blocks_.resize(size_);
   return blocks_.data() + first;
 }
 
-void EnergyTerms::add(const EnergyTerm& term) {
-  if (free_ == 0) {
-    TermLanes& fresh = *moreBlocks(1);
-    fresh = TermLanes{};
-    fresh.square += 1;  // lanes without weight are no poles
-    fresh.determinant += 1;
-    free_ = TermLanes::kCount;
-  }
-  const std::size_t lane = TermLanes::kCount - free_--;
-  TermLanes& block = blocks_[size_ - 1];
-  block.square[lane] = term.square;
-  block.growth[lane] = term.growth;
-  block.determinant[lane] = term.determinant;
-  for (std::size_t k = 0; k < 3; ++k) {
-    block.slope[k][lane] = term.slope[k];
-    block.normal[k][lane] = term.normal[k];
-  }
-  block.weight[lane] = 1;
-}
-
 void EnergyTerms::addCells(std::span<const MovingCell> cells, std::size_t perCell,
                            void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept) {
-  free_ = 0;
   for (std::size_t first = 0; first < cells.size(); first += TermLanes::kCount) {
-    termsOf(cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first)),
-            moreBlocks(perCell));
+    termsOf(cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first)), add(perCell));
   }
 }
 
@@ -132,22 +110,6 @@ IdealBox idealBox(const Vec3& lengths) noexcept {
     box[k] = static_cast<float>(longest > 0 ? std::max(lengths[k], kThinnest * longest) : 1);
   }
   return box;
-}
-
-EnergyTerm termOf(const std::array<Vec3, 3>& columns, const Vec3& weights) noexcept {
-  const std::array<Vec3, 3> cofactors = {
-      cross(columns[1], columns[2]), cross(columns[2], columns[0]), cross(columns[0], columns[1])};
-  EnergyTerm term;
-  term.determinant = dot(columns[0], cofactors[0]);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    term.square += dot(columns[axis], columns[axis]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      term.slope[k] += weights[axis] * columns[axis][k];
-      term.normal[k] += weights[axis] * cofactors[axis][k];
-    }
-    term.growth += weights[axis] * weights[axis];
-  }
-  return term;
 }
 
 MovingCell movingCell(const std::array<const Vec3*, 8>& corners, std::size_t moving,

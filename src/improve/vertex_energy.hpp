@@ -19,19 +19,6 @@
 
 namespace hexhex::improvement {
 
-/// What one place of a cell contributes, for a step d of the vertex.
-struct EnergyTerm {
-  double square = 0;  ///< |J|^2 = square + 2 slope d + growth d^2
-  Vec3 slope{};
-  double growth = 0;
-  double determinant = 0;  ///< det J = determinant + normal d
-  Vec3 normal{};
-};
-
-/// What a place contributes of which the columns of J are known, and the derivatives of these by
-/// the vertex that moves: weights[axis] times the identity.
-[[nodiscard]] EnergyTerm termOf(const std::array<Vec3, 3>& columns, const Vec3& weights) noexcept;
-
 /// Lengths of the three edges of the ideal box of a cell.
 using IdealBox = std::array<float, 3>;
 
@@ -49,14 +36,15 @@ struct MovingCell {
 [[nodiscard]] MovingCell movingCell(const std::array<const Vec3*, 8>& corners, std::size_t moving,
                                     const IdealBox& box) noexcept;
 
-/// Four terms at once, one in each lane.
+/// What places of cells contribute for a step d of the vertex: four places at once, one in each
+/// lane.
 struct alignas(4 * sizeof(double)) TermLanes {
   static constexpr std::size_t kCount = 4;
   using Number = Lanes<double, kCount>;
-  Number square;
+  Number square;  ///< |J|^2 = square + 2 slope d + growth d^2
   std::array<Number, 3> slope;
   Number growth;
-  Number determinant;
+  Number determinant;  ///< det J = determinant + normal d
   std::array<Number, 3> normal;
   Number weight;  ///< 1, or 0 where there is no term
 };
@@ -64,11 +52,10 @@ struct alignas(4 * sizeof(double)) TermLanes {
 /// What all places of the cells around a vertex contribute.
 class EnergyTerms {
  public:
-  void clear() noexcept {
-    size_ = 0;
-    free_ = 0;
-  }
-  void add(const EnergyTerm& term);
+  void clear() noexcept { size_ = 0; }
+  /// Adds blocks that are to be filled.
+  /// @return the first of them
+  [[nodiscard]] TermLanes* add(std::size_t blocks);
   /// The terms of the four corners of each cell whose determinants depend on one of them.
   void addCorners(std::span<const MovingCell> cells);
   /// The terms of all Bezier coefficients of the determinant that depend on a corner, in place of
@@ -84,12 +71,8 @@ class EnergyTerms {
   void addCells(std::span<const MovingCell> cells, std::size_t perCell,
                 void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept);
 
-  /// @return the first of so many more blocks
-  TermLanes* moreBlocks(std::size_t n);
-
   std::vector<TermLanes> blocks_;  ///< those beyond the size are kept for later
   std::size_t size_ = 0;
-  std::size_t free_ = 0;  ///< lanes of the last block
 };
 
 /// The energy: the sum of (|J|^3 / (3 sqrt(3) chi))^power, each at least 1.

@@ -97,25 +97,18 @@ void PointMover::take(Index point, const SurfacePlace& place) {
 
 void VertexMover::collect(Index vertex, bool bezier) {
   terms_.clear();
-  straight_.clear();
-  scratch_.found.clear();
-  Index previous = kNone;
-  for (const Index cell : all_.cells.around(vertex)) {
-    if (cell == previous) continue;
-    previous = cell;
-    if (all_.curved == nullptr) {
-      straight_.push_back(straightCell(vertex, cell));
-    } else {
-      all_.curved->addTerms(all_.mesh.points, cell, vertex, all_.boxes[cell], bezier, scratch_,
-                            scratch_.found);
-    }
+  const std::span<const Index> around = all_.cells.around(vertex);
+  if (all_.curved != nullptr) {
+    all_.curved->addTerms(all_.mesh.points, around, vertex, all_.boxes, bezier, scratch_, terms_);
+    return;
   }
+  straight_.clear();
+  for (const Index cell : around) straight_.push_back(straightCell(vertex, cell));
   if (bezier) {
     terms_.addBezier(straight_);
   } else {
     terms_.addCorners(straight_);
   }
-  for (const EnergyTerm& term : scratch_.found) terms_.add(term);
 }
 
 MovingCell VertexMover::straightCell(Index vertex, Index cell) const {

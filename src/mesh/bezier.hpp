@@ -86,9 +86,6 @@ void addProducts(T* sums, const S& a, const T* numbers, std::size_t count) {
 inline void addProducts(double* sums, double a, const double* numbers, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) sums[i] += a * numbers[i];
 }
-inline void addProducts(Vec3* sums, double a, const Vec3* numbers, std::size_t count) {
-  addProducts(sums->data(), a, numbers->data(), 3 * count);
-}
 
 /// Multiplies all lines along an axis by a matrix.
 template <class S, class T>

@@ -36,6 +36,11 @@ template <class V>
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 template <class V>
+[[gnu::always_inline]] inline LaneVector<V> scaled(const V& factor,
+                                                   const LaneVector<V>& a) noexcept {
+  return {factor * a[0], factor * a[1], factor * a[2]};
+}
+template <class V>
 [[gnu::always_inline]] inline V dot(const LaneVector<V>& a, const LaneVector<V>& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

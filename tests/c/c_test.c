@@ -694,6 +694,59 @@ static void test_improve(void) {
   hexhex_map_destroy(map);
 }
 
+/* Writes the bounding box of a mesh, a little larger, as a surface. */
+static void write_box(const hexhex_mesh_arrays* mesh, const char* file) {
+  static const int triangles[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6},
+                                       {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                       {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  double box[2][3] = {{DBL_MAX, DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
+  for (size_t i = 0; i < 3 * mesh->point_count; ++i) {
+    box[0][i % 3] = fmin(box[0][i % 3], mesh->points[i]);
+    box[1][i % 3] = fmax(box[1][i % 3], mesh->points[i]);
+  }
+  FILE* out = fopen(file, "w");
+  fprintf(out, "OFF\n8 12 0\n");
+  for (int c = 0; c < 8; ++c) {
+    for (int k = 0; k < 3; ++k) {
+      const int side = c >> k & 1;
+      const double width = box[1][k] - box[0][k];
+      fprintf(out, "%.17g ", box[side][k] + (side - 0.5) * 0.02 * width);
+    }
+    fprintf(out, "\n");
+  }
+  for (int t = 0; t < 12; ++t)
+    fprintf(out, "3 %d %d %d\n", triangles[t][0], triangles[t][1], triangles[t][2]);
+  fclose(out);
+}
+
+/* Onto a surface that a file has. */
+static void test_improve_on_surface(const char* folder) {
+  hexhex_error error;
+  char file[512];
+  snprintf(file, sizeof file, "%s/box.off", folder);
+  hexhex_map* map = NULL;
+  hexhex_mesh* mesh = NULL;
+  CHECK_OK(hexhex_map_generate("box", NULL, &map, &error));
+  CHECK_OK(hexhex_extract(map, NULL, NULL, &mesh, NULL, &error));
+  hexhex_mesh_arrays arrays = HEXHEX_MESH_ARRAYS_INIT;
+  CHECK_OK(hexhex_mesh_get_arrays(mesh, &arrays, &error));
+  hexhex_improve_options options = HEXHEX_IMPROVE_OPTIONS_INIT;
+  hexhex_improve_report report = HEXHEX_IMPROVE_REPORT_INIT;
+  options.surface = file;
+  CHECK(hexhex_mesh_improve(mesh, NULL, &options, NULL, &report, &error) == HEXHEX_FILE_NOT_FOUND);
+  write_box(&arrays, file);
+  CHECK(hexhex_mesh_improve(mesh, map, &options, NULL, &report, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK_OK(hexhex_mesh_improve(mesh, NULL, &options, NULL, &report, &error));
+  CHECK(report.from_mesh_before > 1e-3 && report.from_mesh_after < 1e-9);
+  CHECK(report.cannot_be_positive == 0 && report.paired_vertices == 0);
+  /* A box of boxes is held by its corners, if by anything. */
+  CHECK(report.worst_cell < arrays.cell_count && report.worst_vertex < arrays.point_count);
+  CHECK(report.worst_tagged == 0 && report.worst_held_by <= HEXHEX_HELD_BY_CORNER);
+  CHECK(report.worst_angle == 0 || fabs(report.worst_angle - 90) < 1e-6);
+  hexhex_mesh_destroy(mesh);
+  hexhex_map_destroy(map);
+}
+
 /* Curved cells: extracted, improved, written, and read again. */
 static void test_improve_curved(const char* folder) {
   hexhex_error error;
@@ -1780,6 +1833,7 @@ int main(void) {
   test_features(folder);
   test_repair();
   test_improve();
+  test_improve_on_surface(folder);
   test_improve_curved(folder);
   test_quantize();
   test_shape();

@@ -1,5 +1,6 @@
 // Curved meshes end positive, with their nodes on the surface, and no worse.
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -70,6 +71,8 @@ TEST(ImproveCurved, TermsTellHowDeterminantsChange) {
     const LagrangeMesh mesh = extractedCurved(map, order, 1);
     const CurvedCells cells(mesh);
     CurvedCells::Scratch scratch;
+    const std::array<Index, 1> around = {0};
+    const Array<IdealBox> boxes(mesh.cellCount(), {1, 2, 3});
     Random random(5);
     for (std::size_t i = 0; i < mesh.nodesPerCell(); ++i) {
       const Index node = mesh.nodes[i];
@@ -77,19 +80,54 @@ TEST(ImproveCurved, TermsTellHowDeterminantsChange) {
       Array<Vec3> moved = mesh.points;
       for (std::size_t k = 0; k < 3; ++k) moved[node][k] += step[k];
       for (const bool bezier : {false, true}) {
-        std::vector<EnergyTerm> before;
-        std::vector<EnergyTerm> after;
-        cells.addTerms(mesh.points, 0, node, {1, 2, 3}, bezier, scratch, before);
-        cells.addTerms(moved, 0, node, {1, 2, 3}, bezier, scratch, after);
-        ASSERT_EQ(before.size(), after.size());
-        ASSERT_FALSE(before.empty());
-        for (std::size_t t = 0; t < before.size(); ++t) {
-          const EnergyTerm& term = before[t];
-          EXPECT_NEAR(term.determinant + dot(term.normal, step), after[t].determinant, 1e-7);
-          EXPECT_NEAR(term.square + 2 * dot(term.slope, step) + term.growth * dot(step, step),
-                      after[t].square, 1e-7);
+        EnergyTerms before;
+        EnergyTerms after;
+        cells.addTerms(mesh.points, around, node, boxes, bezier, scratch, before);
+        cells.addTerms(moved, around, node, boxes, bezier, scratch, after);
+        ASSERT_EQ(before.blocks().size(), after.blocks().size());
+        const auto places = static_cast<std::size_t>((bezier ? 3 : 2) * order);
+        ASSERT_EQ(before.blocks().size(), places * places * places);
+        for (std::size_t t = 0; t < before.blocks().size(); ++t) {
+          const TermLanes& term = before.blocks()[t];
+          for (std::size_t lane = 0; lane < TermLanes::kCount; ++lane) {
+            EXPECT_EQ(term.weight[lane], lane < around.size() ? 1 : 0);
+            const auto along = [&](const auto& vector) {
+              return vector[0][lane] * step[0] + vector[1][lane] * step[1] +
+                     vector[2][lane] * step[2];
+            };
+            if (term.weight[lane] == 0) continue;
+            EXPECT_NEAR(term.determinant[lane] + along(term.normal),
+                        after.blocks()[t].determinant[lane], 1e-7);
+            EXPECT_NEAR(
+                term.square[lane] + 2 * along(term.slope) + term.growth[lane] * dot(step, step),
+                after.blocks()[t].square[lane], 1e-7);
+          }
         }
       }
+    }
+  }
+}
+
+TEST(ImproveCurved, IsTheSameBitsForAllWidthsOfRegisters) {
+  const TetMap map = generateSample(SampleKind::Sphere, {.cells = 1, .jitter = 0.6}).map;
+  for (const int order : {2, 3}) {
+    const LagrangeMesh mesh = extractedCurved(map, order, 1);
+    LagrangeGrid grid = {{order, curved::equidistant(3 * order - 1)}};
+    grid.toBezier = mesh::nodeMatrices<double>(3 * static_cast<std::size_t>(order) - 1).values;
+    const auto nodesOf = [&](std::size_t i) { return &mesh.nodes[i * mesh.nodesPerCell()]; };
+    const curved::LagrangeCells cells(mesh.points.data(), 3, nodesOf);
+    const MovingNode moving{cells, 3, {0, 1, 2, 2}, {{{1, 2, 3}, {1, 1, 1}, {2, 2, 1}, {2, 2, 1}}}};
+    const auto results = [&](const LagrangeKernels& kernels) {
+      curved::LagrangeScratch scratch;
+      std::vector<TermLanes> terms(grid.columns.placeCount());
+      kernels.terms(grid, moving, scratch, terms.data());
+      return std::pair(std::move(terms), kernels.leastShares(grid, cells, scratch));
+    };
+    const auto [terms, shares] = results(lagrangeKernels().front());
+    for (const LagrangeKernels& kernels : lagrangeKernels()) {
+      const auto [sameTerms, sameShares] = results(kernels);
+      EXPECT_EQ(sameShares, shares);
+      EXPECT_EQ(std::memcmp(sameTerms.data(), terms.data(), terms.size() * sizeof(TermLanes)), 0);
     }
   }
 }

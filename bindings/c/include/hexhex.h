@@ -16,8 +16,8 @@
  *   is ever printed.
  * - Threads: functions may run concurrently as long as no two of them use the same handle, unless
  *   both only read it (parameters that are pointers to const). hexhex_context_cancel() and
- *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details for each
- *   function.
+ *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details for
+ * each function.
  * - Handles that are NULL, destroyed, of the wrong kind, or in use elsewhere yield
  *   HEXHEX_INVALID_ARGUMENT; functions without a status return 0 or NULL, or do nothing.
  *   docs/developer/reliability.md lists what cannot be detected.
@@ -1190,9 +1190,23 @@ typedef struct hexhex_improve_options {
   double slack;         /**< how far vertices may leave the surface, if needed; diagonals, to 0.1 */
   hexhex_pillow_mode pillow; /**< straight cells only */
   int snap_curves; /**< 1: snap mesh edges to curves that none follows; straight cells only */
+  /** File of the surface that the mesh approximates, onto which its boundary is pulled: .stl, .obj,
+   * .ply, .off or tets; see readSurfaceOf() in <hexhex/fill.hpp>. NULL: none. Only without a map.
+   */
+  const char* surface;
 } hexhex_improve_options;
 #define HEXHEX_IMPROVE_OPTIONS_INIT \
-  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3, HEXHEX_PILLOW_NEVER, 0 }
+  { sizeof(hexhex_improve_options), 0.3, 2, 0, 40, 1e-3, HEXHEX_PILLOW_NEVER, 0, NULL }
+
+/** What limits the quality of a cell; see CellHolder in <hexhex/improve.hpp>. */
+typedef enum hexhex_cell_holder HEXHEX_AS_INT {
+  HEXHEX_HELD_BY_NEIGHBOURS = 0,  /**< only the cells around it */
+  HEXHEX_HELD_BY_SURFACE = 1,     /**< two of its faces are on the boundary, nearly in a plane */
+  HEXHEX_HELD_BY_CURVE = 2,       /**< an edge of the object */
+  HEXHEX_HELD_BY_CORNER = 3,      /**< a corner of the object */
+  HEXHEX_HELD_BY_OPTION = 4,      /**< fix_boundary, or a cell that cannot be positive */
+  HEXHEX_HELD_BY_SHARED_FACES = 5 /**< two adjacent faces shared with another cell */
+} hexhex_cell_holder;
 
 /** Report of an improvement. See ImproveReport in <hexhex/improve.hpp>; lengths are in diagonals of
  * the surface's bounding box. hexhex_mesh_certify() finds the cells that are not positive. */
@@ -1227,19 +1241,27 @@ typedef struct hexhex_improve_report {
   uint64_t off_creases; /**< vertices that left creases because nothing else made cells positive */
   uint64_t added_cells; /**< cells of a pillow; they come last in the mesh */
   double curve_length;  /**< total length of the object's sharp and tagged edges */
-  double curves_followed;  /**< share of that length that mesh edges follow */
-  uint64_t snapped_curves; /**< curve segments to which edges were snapped */
+  double curves_followed;      /**< share of that length that mesh edges follow */
+  uint64_t snapped_curves;     /**< curve segments to which edges were snapped */
+  uint64_t cannot_be_positive; /**< cells that share two faces with another, so that one is not */
+  uint64_t paired_vertices;    /**< vertices fixed only because of these cells */
+  /** The cell with the least scaled Jacobian at the end, and what limits it. */
+  uint64_t worst_cell;
+  hexhex_cell_holder worst_held_by;
+  int worst_tagged;      /**< 1: the curve or corner has a tag */
+  uint32_t worst_vertex; /**< at the worst corner of that cell */
+  double worst_angle;    /**< between the two boundary faces there, in degrees; 0 without two */
 } hexhex_improve_report;
 #define HEXHEX_IMPROVE_REPORT_INIT                                                                \
   {                                                                                               \
     sizeof(hexhex_improve_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0, 0, 0, 0, 0, 0, 0, 0, 0, 0                                                              \
+        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, HEXHEX_HELD_BY_NEIGHBOURS, 0, 0, 0                 \
   }
 
 /** Moves vertices to make cells positive, then better. See <hexhex/improve.hpp>. A pillow adds
  * vertices and cells to the mesh: arrays requested earlier become invalid.
- * @param map          the map that the mesh was extracted from, or NULL: the surface is the
- *                     boundary of the mesh
+ * @param map          the map that the mesh was extracted from, or NULL: the surface is that of
+ *                     the options or, without one, the boundary of the mesh
  * @param options      or NULL
  * @param[out] report  initialized with HEXHEX_IMPROVE_REPORT_INIT, or NULL */
 HEXHEX_API hexhex_status hexhex_mesh_improve(hexhex_mesh* mesh, const hexhex_map* map,
