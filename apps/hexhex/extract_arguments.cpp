@@ -1,7 +1,6 @@
 #include "extract_arguments.hpp"
 
 #include <array>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -105,10 +104,9 @@ void requirePartialOutputs(const ExtractArguments& arguments) {
 
 /// What happens to maps that are not valid.
 void addRepairOptions(CLI::App& parser, ExtractArguments& arguments) {
-  addChoice<RepairMode>(parser, "--repair", arguments.options.repair,
-                        {{"auto", RepairMode::Auto}, {"off", RepairMode::Off}},
-                        "auto: repair flipped and flat tets of the map first, with a\n"
-                        "notice; off: they are an error. Valid maps pay nothing")
+  addChoice<bool>(parser, "--repair", arguments.repair, {{"auto", true}, {"off", false}},
+                  "auto: repair flipped and flat tets of the map first, with a\n"
+                  "notice; off: they are an error. Valid maps pay nothing")
       ->option_text("MODE [auto]");
   addRound(parser, arguments.options.round);
   parser.add_flag("--partial", arguments.partial,
@@ -135,13 +133,6 @@ void addMethod(CLI::App& parser, ExtractArguments& arguments) {
                     "propeller: the algorithm of the paper, slower. Both give\n"
                     "the same mesh, bit for bit")
       ->option_text("ENGINE [atlas]");
-  parser
-      .add_option("--epsilon", arguments.options.epsilon,
-                  "Enlargement of tets while the propeller engine searches\n"
-                  "lattice points, in parameter units; inf is legal. Never\n"
-                  "changes the result, only the time")
-      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()))
-      ->option_text("NUMBER [1e-6]");
   parser.add_flag("--stream", arguments.stream,
                   "Write the mesh piece by piece, for meshes larger than the\nmemory: " +
                       extensionsThat(&FileFormat::streams) +
@@ -173,7 +164,6 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
 }  // namespace
 
 void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
-  arguments.options.repair = RepairMode::Auto;
   addMapSource(parser, arguments.input);
   addKeepWalls(parser, arguments.input);
   addMeshOutput(parser, arguments.output);
