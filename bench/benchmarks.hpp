@@ -13,9 +13,6 @@ void registerScales();
 /// density/: the same from few to many hexahedra per tet.
 void registerDensities();
 
-/// epsilon/: the propeller engine for different enlargements of tets.
-void registerEpsilon();
-
 /// check/: verification, quality and certificates beside the extraction; command/: whole runs of
 /// the command.
 void registerMesh();

@@ -15,7 +15,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/quality.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include "bench_maps.hpp"
 #include "benchmarks.hpp"
@@ -273,11 +273,11 @@ void readingMesh(benchmark::State& state, const FormatVariant& variant, int thre
   });
 }
 
-void surveying(benchmark::State& state, int threads) {
+void summarizing(benchmark::State& state, int threads) {
   const std::filesystem::path file = sourceOf(denseMesh());
   timeReading(state, file, [threads](const std::filesystem::path& path) {
     Context context(threads);
-    benchmark::DoNotOptimize(surveyFile(path, context).pointChecksum);
+    benchmark::DoNotOptimize(summarizeFile(path, context).pointChecksum);
   });
 }
 
@@ -363,7 +363,7 @@ void registerFiles() {
     addFormat(format, {std::string(format.name)});
     if (format.compresses) addFormat(format, {std::string(format.name), true});
   }
-  add("survey_vtu", denseMap(), surveying);
+  add("summarize_vtu", denseMap(), summarizing);
 }
 
 }  // namespace hexhex::bench

@@ -9,7 +9,6 @@ int main(int argc, char** argv) {
   hexhex::bench::registerExtraction();
   hexhex::bench::registerScales();
   hexhex::bench::registerDensities();
-  hexhex::bench::registerEpsilon();
   hexhex::bench::registerMesh();
   hexhex::bench::registerFiles();
   hexhex::bench::registerCurved();

@@ -42,9 +42,17 @@
 namespace hexhex::command {
 namespace {
 
+/// The options, whose repair goes to the record.
+ExtractOptions optionsOf(const ExtractArguments& arguments, ExtractionRecord& record) {
+  ExtractOptions options = arguments.options;
+  if (arguments.repair) options.repair = &record.repaired;
+  return options;
+}
+
 /// What extracts a mesh and then verifies it.
-Extractor prepareExtractor(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun) {
-  const ExtractOptions& options = arguments.options;
+Extractor prepareExtractor(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
+                           ExtractionRecord& record) {
+  const ExtractOptions options = optionsOf(arguments, record);
   // Where there is no such number, the extraction says so.
   const bool fits = options.scale <= std::numeric_limits<int>::max() / arguments.order;
   const int maxScale = fits ? options.scale * arguments.order : options.scale;
@@ -86,7 +94,7 @@ Array<Vec3> improveOrCertify(const ExtractArguments& arguments, const TetMap& ma
   }
   Array<Vec3> before = arguments.page.empty() ? Array<Vec3>() : mesh.points;
   record.improved = longRun.part("improvement", [&] {
-    return improve(mesh, extractedMap(map, record.statistics), arguments.improveOptions, context);
+    return improve(mesh, extractedMap(map, &record.repaired), arguments.improveOptions, context);
   });
   record.certificate = record.improved->after;
   return pointsBefore(std::move(before), *record.improved);
@@ -144,7 +152,7 @@ void finishMesh(const ExtractArguments& arguments, const TetMap& map, auto& mesh
 void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                   ExtractionRecord& record) {
   Context& context = longRun.context();
-  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
+  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun, record);
   PiecewiseLinearMesh all = longRun.part(
       "extraction", [&] { return extractWithCurves(arguments, *extractor, context, record); });
   HexMesh& mesh = all.mesh;
@@ -152,13 +160,13 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
   extractor.reset();  // its memory serves what follows
   if (!arguments.arcs.empty()) {
     longRun.part("writing", [&] {
-      writeArcs(all, extractedMap(map, record.statistics), arguments.arcs, context);
+      writeArcs(all, extractedMap(map, &record.repaired), arguments.arcs, context);
     });
     record.arcs = {arguments.arcs, all.arcs.count(), all.arcs.points.size()};
   }
   if (!arguments.patches.empty()) {
     longRun.part("writing", [&] {
-      writePatches(all, extractedMap(map, record.statistics), arguments.patches, context);
+      writePatches(all, extractedMap(map, &record.repaired), arguments.patches, context);
     });
     record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
   }
@@ -171,11 +179,12 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
 void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                    ExtractionRecord& record) {
   Context& context = longRun.context();
-  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun);
+  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun, record);
   LagrangeMesh mesh = longRun.part("extraction", [&] {
     return extractor->extractLagrange(arguments.order, arguments.options, context,
                                       &record.statistics);
   });
+  record.straightenedCells = mesh.straightenedCells;
   verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
   extractor.reset();
   finishMesh(arguments, map, mesh, longRun, record);
@@ -187,9 +196,9 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
 /// The same in pieces, verified after it was written.
 void extractInPieces(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
-  StreamedMesh mesh =
-      extractStreamed(map, arguments.output, arguments.choice.options(), arguments.options,
-                      !arguments.noVerify, longRun, record.statistics);
+  StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.choice.options(),
+                                      optionsOf(arguments, record), !arguments.noVerify, longRun,
+                                      record.statistics);
   record.verification = std::move(mesh.verification);
   record.vertices = mesh.written.points;
   record.cells = mesh.written.cells;
@@ -204,8 +213,8 @@ void extractAllParts(const ExtractArguments& arguments, const TetMap& map, LongR
   PartOptions parts = arguments.parts.chosen();
   parts.verify = !arguments.noVerify;
   record.meshParts = longRun.part("extraction", [&] {
-    return extractInParts(map, arguments.output, options, arguments.options, parts, arguments.team,
-                          longRun.context(), record.statistics);
+    return extractInParts(map, arguments.output, options, optionsOf(arguments, record), parts,
+                          arguments.team, longRun.context(), record.statistics);
   });
   record.vertices = record.meshParts->summary.vertices;
   record.cells = record.meshParts->summary.cells;

@@ -17,7 +17,7 @@
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include "command.hpp"
 #include "expected_words.hpp"
@@ -64,7 +64,7 @@ struct FileContent {
   std::optional<Certificate> certificate;
   CellFaults faults;
   std::vector<NamedPatch> boundary;
-  std::optional<MeshSurvey> survey;
+  std::optional<MeshSummary> summary;
   bool isMap = false;
   std::vector<CellCount> types;  ///< of a mesh
 
@@ -100,12 +100,12 @@ FileContent contentOf(const HexMesh& mesh, double patchAngle, Context& context) 
 }
 
 /// What is known without the whole mesh in memory.
-FileContent contentOf(const MeshSurvey& survey) {
+FileContent contentOf(const MeshSummary& summary) {
   FileContent content;
-  content.cells = survey.cells;
-  content.points = survey.points;
-  if (survey.points > 0) content.box = Box{survey.lower, survey.upper};
-  content.survey = survey;
+  content.cells = summary.cells;
+  content.points = summary.points;
+  if (summary.points > 0) content.box = Box{summary.lower, summary.upper};
+  content.summary = summary;
   return content;
 }
 
@@ -117,7 +117,7 @@ FileContent readFile(const InfoArguments& arguments, Context& context) {
   reading.hexesOnly = true;
   reading.cellCounts = &types;
   FileContent content = [&] {
-    if (arguments.pieces) return contentOf(surveyFile(source.file, reading, context));
+    if (arguments.pieces) return contentOf(summarizeFile(source.file, reading, context));
     const auto read = readMapOrHexMesh(source.file, reading, context);
     if (const auto* const map = std::get_if<TetMap>(&read)) return contentOf(*map);
     return contentOf(std::get<HexMesh>(read), arguments.patchAngle.degrees, context);
@@ -198,9 +198,9 @@ void print(const FileContent& content) {
   if (content.isMap) {
     printLine("parameters", fmt::format("up to {:.6g} in size", content.largestParameter));
   }
-  if (content.survey) {
-    printLine("checksum of cells", checksumAsText(content.survey->cellChecksum));
-    printLine("checksum of vertices", checksumAsText(content.survey->pointChecksum));
+  if (content.summary) {
+    printLine("checksum of cells", checksumAsText(content.summary->cellChecksum));
+    printLine("checksum of vertices", checksumAsText(content.summary->pointChecksum));
   }
   printFaults(content.faults, content.cells);
   if (!content.certificate) return;
@@ -231,7 +231,7 @@ Json asJson(const FileContent& content, const std::string& file) {
     for (const CellCount& type : content.types) json["cell_types"][type.name] = type.count;
   }
   if (content.isMap) json["largest_parameter"] = content.largestParameter;
-  if (content.survey) json["checksums"] = checksumsAsJson(*content.survey);
+  if (content.summary) json["checksums"] = checksumsAsJson(*content.summary);
   if (content.certificate) {
     json["quality"] = qualityAsJson(*content.certificate);
     json["validity"] = validityAsJson(*content.certificate);

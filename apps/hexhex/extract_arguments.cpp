@@ -1,7 +1,6 @@
 #include "extract_arguments.hpp"
 
 #include <array>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -88,10 +87,10 @@ void requirePartialOutputs(const ExtractArguments& arguments) {
 
 /// What happens to maps that are not valid.
 void addRepairOptions(CLI::App& parser, ExtractArguments& arguments) {
-  addChoice<RepairMode>(parser, "--repair", arguments.options.repair, "MODE [auto]",
-                        {{"auto", RepairMode::Auto}, {"off", RepairMode::Off}},
-                        "auto: repair flipped and flat tets of the map first, with a\n"
-                        "notice; off: they are an error. Costs valid maps nothing");
+  addChoice<bool>(parser, "--repair", arguments.repair, "MODE [auto]",
+                  {{"auto", true}, {"off", false}},
+                  "auto: repair flipped and flat tets of the map first, with a\n"
+                  "notice; off: they are an error. Costs valid maps nothing");
   addRound(parser, arguments.options.round);
   parser.add_flag("--partial", arguments.partial,
                   "Write what can be extracted from a map beyond repair, with\n"
@@ -116,11 +115,6 @@ void addMethod(CLI::App& parser, ExtractArguments& arguments) {
                     "atlas: reads most cells off large charts of the map;\n"
                     "propeller: the algorithm of the paper, slower. Both give\n"
                     "the same mesh, bit for bit");
-  addValue(parser, "--epsilon", arguments.options.epsilon, "NUMBER [1e-6]",
-           "How much the propeller engine enlarges tets to search for\n"
-           "lattice points, in parameter units; may be inf. Changes the\n"
-           "time, never the result")
-      ->check(CLI::Range(0.0, std::numeric_limits<double>::infinity()));
   parser.add_flag("--stream", arguments.stream,
                   "Write the mesh piece by piece, for meshes larger than the\nmemory, as " +
                       extensionsThat(&FileFormat::streams) +
@@ -146,7 +140,6 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
 }  // namespace
 
 void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
-  arguments.options.repair = RepairMode::Auto;
   addMapSource(parser, arguments.input);
   addKeepWalls(parser, arguments.input);
   addMeshOutput(parser, arguments.output);

@@ -28,6 +28,7 @@ struct ExtractArguments {
   std::string page;  ///< empty: none
   int order = 1;
   ExtractOptions options;
+  bool repair = true;
   bool quantize = false;
   QuantizeOptions quantizeOptions;
   bool improve = false;

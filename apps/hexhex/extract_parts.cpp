@@ -57,9 +57,9 @@ PartsRecord extractInParts(const TetMap& map, const std::filesystem::path& outpu
     return {options, summary};
   }
   const std::unique_ptr<PartSink> files = openPartSink(output, writing, context);
-  PartSurvey survey(*files);
-  extractParts(survey, map, extraction, options, context, &statistics);
-  return {options, survey.result()};
+  PartSummarySink checked(*files);
+  extractParts(checked, map, extraction, options, context, &statistics);
+  return {options, checked.result()};
 }
 
 }  // namespace hexhex::command

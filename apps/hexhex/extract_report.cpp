@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -69,17 +68,10 @@ const char* partitionName(PartitionMethod method) {
 }
 
 Json meshPartsAsJson(const PartsRecord& record) {
-  const PartsSummary& summary = record.summary;
-  return {{"count", record.options.parts},
-          {"partition", partitionName(record.options.method)},
-          {"ghost_layers", record.options.ghostLayers},
-          {"verified", record.options.verify},
-          {"largest", summary.largest},
-          {"smallest", summary.smallest},
-          {"empty", summary.empty},
-          {"shared_vertices", summary.sharedVertices},
-          {"shared_faces", summary.sharedFaces},
-          {"most_neighbours", summary.mostNeighbours}};
+  return fieldsAsJson(record.summary, {{"count", record.options.parts},
+                                       {"partition", partitionName(record.options.method)},
+                                       {"ghost_layers", record.options.ghostLayers},
+                                       {"verified", record.options.verify}});
 }
 
 Json curvesAsJson(const CurvesRecord& parts, const char* pieces) {
@@ -90,11 +82,8 @@ Json curvesAsJson(const CurvesRecord& parts, const char* pieces) {
 Json curvedAsJson(const ExtractionRecord& record) {
   if (record.order == 1) return nullptr;
   return {{"nodes", record.curvedNodes == CurvedNodes::Exact ? "exact" : "blended"},
-          {"straightened_cells", record.statistics.straightenedCells}};
+          {"straightened_cells", record.straightenedCells}};
 }
-
-/// JSON knows no infinity.
-Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 const char* engineName(Engine engine) noexcept {
   return engine == Engine::Atlas ? "atlas" : "propeller";
@@ -122,53 +111,40 @@ std::uint64_t peakMemory() {
 
 std::string reportAsJson(const ExtractionRecord& record) {
   const ExtractStatistics& statistics = record.statistics;
-  const Json report = {
-      {"hexhex_version", HEXHEX_VERSION},
-      {"input", fileAsJson(record.input)},
-      {"output", fileAsJson(record.output)},
-      {"extract_seconds", statistics.seconds},
-      {"seconds", secondsAsJson(record.parts)},
-      {"cells", record.cells},
-      {"vertices", record.vertices},
-      {"tets", record.tets},
-      {"points", record.points},
-      {"scale", record.scale},
-      {"order", record.order},
-      {"nodes", record.order > 1 ? record.nodes : record.vertices},
-      {"curved", curvedAsJson(record)},
-      {"arcs", curvesAsJson(record.arcs, "inner_points")},
-      {"patches", curvesAsJson(record.patches, "polygons")},
-      {"threads", statistics.threads},
-      {"engine", engineName(record.engine)},
-      {"epsilon", finiteOrNull(statistics.epsilon)},
-      {"epsilon_fallback", statistics.epsilonFallback},
-      {"stages", stagesAsJson(record.stages)},
-      {"peak_memory_bytes", peakMemory()},
-      {"generators", byKind(statistics.generators)},
-      {"vertices_by_generator", byKind(statistics.vertices)},
-      {"local_propellers", statistics.localPropellers},
-      {"global_propellers", statistics.globalPropellers},
-      {"charts", statistics.charts},
-      {"cut_faces", statistics.cutFaces},
-      {"overlapping_tets", statistics.overlappingTets},
-      {"traced_cells", statistics.tracedCells},
-      {"singular_edges", statistics.singularEdges},
-      {"chart_jumps", statistics.chartJumps},
-      {"inner_faces", statistics.innerFaces},
-      {"max_displacement", statistics.maxDisplacement},
-      {"max_transition_residual", statistics.maxTransitionResidual},
-      {"mirrored", statistics.mirrored},
-      {"tets_inverted_in_space", statistics.tetsInvertedInSpace},
-      {"quality", orNull(record.certificate, qualityAsJson)},
-      {"validity", orNull(record.certificate, validityAsJson)},
-      {"boundary", orNull(record.boundary, boundaryAsJson)},
-      {"verification", orNull(record.verification, verificationAsJson)},
-      {"repair", repairAsJson(statistics.repair)},
-      {"quantization", record.quantized ? quantizeAsJson(*record.quantized) : Json(nullptr)},
-      {"improvement", record.improved ? improvementAsJson(*record.improved) : Json(nullptr)},
-      {"streamed", record.streamed.has_value()},
-      {"checksums", orNull(record.streamed, checksumsAsJson)},
-      {"parts", orNull(record.meshParts, meshPartsAsJson)}};
+  Json report = {{"hexhex_version", HEXHEX_VERSION},
+                 {"input", fileAsJson(record.input)},
+                 {"output", fileAsJson(record.output)},
+                 {"extract_seconds", statistics.seconds},
+                 {"seconds", secondsAsJson(record.parts)},
+                 {"cells", record.cells},
+                 {"vertices", record.vertices},
+                 {"tets", record.tets},
+                 {"points", record.points},
+                 {"scale", record.scale},
+                 {"order", record.order},
+                 {"nodes", record.order > 1 ? record.nodes : record.vertices},
+                 {"curved", curvedAsJson(record)},
+                 {"arcs", curvesAsJson(record.arcs, "inner_points")},
+                 {"patches", curvesAsJson(record.patches, "polygons")},
+                 {"engine", engineName(record.engine)},
+                 {"stages", stagesAsJson(record.stages)},
+                 {"peak_memory_bytes", peakMemory()}};
+  // Some names mean something else for the whole run.
+  Json counts = fieldsAsJson(statistics, {{"vertices_by_generator", byKind(statistics.vertices)}});
+  counts["generators"] = byKind(statistics.generators);
+  counts.erase("seconds");
+  counts.erase("vertices");
+  report.update(counts);
+  report.update({{"quality", orNull(record.certificate, qualityAsJson)},
+                 {"validity", orNull(record.certificate, validityAsJson)},
+                 {"boundary", orNull(record.boundary, boundaryAsJson)},
+                 {"verification", orNull(record.verification, verificationAsJson)},
+                 {"repair", repairAsJson(record.repaired.report)},
+                 {"quantization", orNull(record.quantized, quantizeAsJson)},
+                 {"improvement", orNull(record.improved, improvementAsJson)},
+                 {"streamed", record.streamed.has_value()},
+                 {"checksums", orNull(record.streamed, checksumsAsJson)},
+                 {"parts", orNull(record.meshParts, meshPartsAsJson)}});
   return jsonText(report);
 }
 
@@ -191,7 +167,7 @@ void printWarnings(const ExtractionRecord& record, const TetMap& map) {
     printWarning(
         "The tags and regions of the map are not in the mesh; leave out --stream for them.");
   }
-  if (statistics.repair.changed) printWarning(repairNotice(statistics.repair));
+  if (record.repaired.map) printWarning(repairNotice(record.repaired.report));
   if (statistics.tetsInvertedInSpace > 0) {
     printWarning(counted(statistics.tetsInvertedInSpace, "tet") +
                  " of the input are inverted in space. The mesh has the right connectivity, but "
@@ -226,9 +202,10 @@ void printSummary(const ExtractionRecord& record) {
   printLine("peak memory",
             fmt::format("{}, with {}", bytesAsText(peakMemory()),
                         counted(static_cast<std::uint64_t>(statistics.threads), "thread")));
-  if (statistics.repair.changed) {
-    printLine("repair", fmt::format("{:.3f} s, {}", statistics.repair.seconds,
-                                    counted(statistics.repair.regions.size(), "place")));
+  if (record.repaired.map) {
+    const RepairReport& repair = record.repaired.report;
+    printLine("repair",
+              fmt::format("{:.3f} s, {}", repair.seconds, counted(repair.regions.size(), "place")));
   }
   if (record.improved) {
     printImprovement(*record.improved);
@@ -237,7 +214,7 @@ void printSummary(const ExtractionRecord& record) {
   }
   if (record.boundary) printPatches(*record.boundary);
   if (record.order > 1) {
-    const std::size_t straightened = statistics.straightenedCells.size();
+    const std::size_t straightened = record.straightenedCells.size();
     printLine("order",
               fmt::format("{}, {} nodes{}", record.order, record.nodes,
                           straightened == 0 ? ""

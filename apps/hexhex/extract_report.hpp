@@ -16,7 +16,7 @@
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
@@ -57,6 +57,8 @@ struct ExtractionRecord {
   std::uint64_t cells = 0;
   std::array<std::uint64_t, 3> tags{};  ///< tagged vertices, edges and quads of the mesh
   ExtractStatistics statistics;
+  RepairedMap repaired;
+  std::vector<Index> straightenedCells;     ///< of higher order: LagrangeMesh::straightenedCells
   std::optional<QuantizeReport> quantized;  ///< empty for a map that was integer
   std::optional<ImproveReport> improved;    ///< empty for a mesh as it was extracted
   std::vector<StageTime> stages;
@@ -65,7 +67,7 @@ struct ExtractionRecord {
   std::optional<std::vector<NamedPatch>> boundary;  ///< empty if it was not listed
   std::optional<Certificate> certificate;           ///< empty if the mesh was never whole
   std::optional<VerifyReport> verification;         ///< empty if it was skipped
-  std::optional<MeshSurvey> streamed;               ///< of a mesh that was written in pieces
+  std::optional<MeshSummary> streamed;              ///< of a mesh that was written in pieces
   std::optional<PartsRecord> meshParts;             ///< of a mesh that was written in parts
 };
 

@@ -81,7 +81,7 @@ PendingFile::~PendingFile() {
 }
 
 void PendingFile::keep() {
-  replaceFile(pending_, real_);
+  io::replaceFile(pending_, real_);
   pending_.clear();
 }
 
@@ -125,7 +125,7 @@ class TwoSinks final : public MeshSink {
 };
 
 /// What the file holds: proven right, and the same, bit for bit, as what was written.
-VerifyReport compare(VerifyReport report, const MeshSurvey& written, const MeshSurvey& read) {
+VerifyReport compare(VerifyReport report, const MeshSummary& written, const MeshSummary& read) {
   const auto add = [&report](const char* item, std::uint64_t expected, std::uint64_t found) {
     report.items.push_back(
         {item, checksumAsText(expected), checksumAsText(found), expected == found});
@@ -138,10 +138,10 @@ VerifyReport compare(VerifyReport report, const MeshSurvey& written, const MeshS
 /// Reads a file piece by piece.
 VerifyReport readAndProve(const std::filesystem::path& file, std::string_view format,
                           const TetMapView& map, const VerifyOptions& options,
-                          const MeshSurvey& written, Context& context) {
+                          const MeshSummary& written, Context& context) {
   ReadOptions reading;
   reading.format = format;
-  SurveySink read(context);
+  SummarySink read(context);
   VerifySink proof(map, options, context);
   TwoSinks both(read, proof);
   readHexMeshTo(both, file, reading, context);
@@ -171,17 +171,17 @@ StreamedMesh extractStreamed(const TetMapView& map, const std::filesystem::path&
   StreamedMesh result;
   try {
     result.written = longRun.part("extraction and writing", [&] {
-      SurveySink survey(context);
+      SummarySink summary(context);
       const std::unique_ptr<MeshSink> file = openMeshSink(pending.path(), writing, context);
-      TwoSinks both(*file, survey);
+      TwoSinks both(*file, summary);
       extractTo(both, map, options, context, &statistics);
-      return survey.result();
+      return summary.result();
     });
     if (verified) {
       const VerifyOptions proof{options.scale, options.tolerance};
       result.verification = longRun.part("verification", [&] {
-        return readAndProve(pending.path(), writing.format, extractedMap(map, statistics), proof,
-                            result.written, context);
+        return readAndProve(pending.path(), writing.format, extractedMap(map, options.repair),
+                            proof, result.written, context);
       });
       requirePassed(
           *result.verification,

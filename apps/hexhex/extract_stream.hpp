@@ -8,7 +8,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
@@ -24,7 +24,7 @@ void requireStreamable(const std::filesystem::path& output, const WriteOptions& 
 
 /// What is known of a mesh that was written in pieces.
 struct StreamedMesh {
-  MeshSurvey written;                        ///< of the pieces
+  MeshSummary written;                       ///< of the pieces
   std::optional<VerifyReport> verification;  ///< empty if it was not wanted
 };
 

@@ -1,6 +1,5 @@
 #include "json.hpp"
 
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,7 +7,6 @@
 #include "output.hpp"
 
 namespace hexhex::command {
-namespace {
 
 Json valencesAsJson(const std::map<int, std::uint64_t>& countByValence) {
   Json object = Json::object();
@@ -16,15 +14,7 @@ Json valencesAsJson(const std::map<int, std::uint64_t>& countByValence) {
   return object;
 }
 
-Json expectationAsJson(const Expectation& expected) {
-  return {{"cells", expected.cells},
-          {"boundary_quads", expected.boundaryQuads},
-          {"inner_singular_edges", valencesAsJson(expected.innerSingularEdges)},
-          {"boundary_singular_edges", valencesAsJson(expected.boundarySingularEdges)},
-          {"euler_characteristic", expected.eulerCharacteristic},
-          {"components", expected.components},
-          {"boundary_components", expected.boundaryComponents}};
-}
+namespace {
 
 Json defectsAsJson(const std::vector<Defect>& defects) {
   Json list = Json::array();
@@ -80,29 +70,13 @@ Json checkAsJson(const CheckReport& report, int scale,
   const double factor = seamless ? seamless->integerFactor : 0;
   const char* kind = seamless ? kindName(*seamless) : "neither";
   if (report.valid()) kind = "integer";
-  return {{"valid", report.valid()},
-          {"kind", kind},
-          {"integer_factor", factor > 0 ? Json(factor) : Json(nullptr)},
-          {"points", report.points},
-          {"tets", report.tets},
-          {"edges", report.edges},
-          {"faces", report.faces},
-          {"inner_faces", report.innerFaces},
-          {"boundary_faces", report.boundaryFaces},
-          {"chart_jumps", report.chartJumps},
-          {"isolated_vertices", report.isolatedVertices},
-          {"tets_inverted_in_space", report.tetsInvertedInSpace},
-          {"mirrored", report.mirrored},
-          {"corners_reversed", report.cornersReversed},
-          {"max_transition_residual", report.maxTransitionResidual},
-          {"max_displacement", report.maxDisplacement},
-          {"inner_singular_tet_edges", valencesAsJson(report.innerSingularTetEdges)},
-          {"boundary_singular_tet_edges", valencesAsJson(report.boundarySingularTetEdges)},
-          {"singular_nodes", report.singularNodes},
-          {"boundary_genus", report.boundaryGenus},
-          {"defects", defectsAsJson(report.defects)},
-          {"scale", scale},
-          {"expected", report.valid() ? expectationAsJson(report.expected) : Json(nullptr)}};
+  Json json = fieldsAsJson(report, {{"valid", report.valid()},
+                                    {"kind", kind},
+                                    {"integer_factor", factor > 0 ? Json(factor) : Json(nullptr)}});
+  json["defects"] = defectsAsJson(report.defects);
+  json["scale"] = scale;
+  json["expected"] = report.valid() ? fieldsAsJson(report.expected) : Json(nullptr);
+  return json;
 }
 
 Json qualityAsJson(const Certificate& certificate) {
@@ -152,26 +126,16 @@ Json verificationAsJson(const VerifyReport& verification) {
   return {{"passed", verification.passed()}, {"items", std::move(items)}};
 }
 
-Json checksumsAsJson(const MeshSurvey& survey) {
-  return {{"cells", checksumAsText(survey.cellChecksum)},
-          {"vertices", checksumAsText(survey.pointChecksum)}};
+Json checksumsAsJson(const MeshSummary& summary) {
+  return {{"cells", checksumAsText(summary.cellChecksum)},
+          {"vertices", checksumAsText(summary.pointChecksum)}};
 }
 
 Json quantizeAsJson(const QuantizeReport& report) {
-  return {{"cells_wanted", report.cellsWanted},
-          {"cells", report.cells},
-          {"scale", report.scale},
-          {"displacement", report.displacement},
-          {"blocks", report.blocks},
-          {"arcs", report.arcs},
-          {"shortest_arc", report.shortestArc},
-          {"longest_arc", report.longestArc},
-          {"integers_by", report.integersBy},
-          {"attempts", report.attempts},
-          {"split_edges", report.splitEdges},
-          {"added_tets", report.addedTets},
-          {"scaled_jacobian_before", distortionAsJson(report.distortionBefore)},
-          {"scaled_jacobian_after", distortionAsJson(report.distortionAfter)}};
+  Json json = fieldsAsJson(report);
+  json["scaled_jacobian_before"] = distortionAsJson(report.distortionBefore);
+  json["scaled_jacobian_after"] = distortionAsJson(report.distortionAfter);
+  return json;
 }
 
 const char* nameOf(CellHolder holder) noexcept {
@@ -196,66 +160,35 @@ Json improvementAsJson(const ImproveReport& report) {
     return Json{
         {"from_mesh", d.fromMesh}, {"from_surface", d.fromSurface}, {"hausdorff", d.hausdorff()}};
   };
-  return {{"before", certificateAsJson(report.before)},
-          {"after", certificateAsJson(report.after)},
-          {"not_positive", report.notPositive},
-          {"diagonal", report.diagonal},
-          {"distance_before", distance(report.distanceBefore)},
-          {"distance_after", distance(report.distanceAfter)},
-          {"inner_distance_before", report.innerDistanceBefore},
-          {"inner_distance_after", report.innerDistanceAfter},
-          {"far_cells_before", report.farCellsBefore},
-          {"far_cells", report.farCells},
-          {"vertices",
-           {{"free", report.vertices[0]},
-            {"on_patches", report.vertices[1]},
-            {"on_curves", report.vertices[2]},
-            {"fixed", report.vertices[3]},
-            {"fixed_by_tags", report.taggedVertices},
-            {"fixed_by_option", report.boundaryVertices},
-            {"fixed_by_cells", report.pairedVertices}}},
-          {"moved_vertices", report.movedVertices},
-          {"largest_move", report.largestMove},
-          {"mean_move", report.meanMove},
-          {"off_surface", report.offSurface},
-          {"off_creases", report.offCreases},
-          {"added_cells", report.addedCells},
-          {"curve_length", report.curveLength},
-          {"curves_followed", report.curvesFollowed},
-          {"snapped_curves", report.snappedCurves},
-          {"cannot_be_positive", report.cannotBePositive},
-          {"worst_cell",
-           {{"cell", report.worst.cell},
-            {"held_by", nameOf(report.worst.holder)},
-            {"tagged", report.worst.isTagged},
-            {"vertex", report.worst.vertex},
-            {"angle", report.worst.angle}}},
-          {"seconds", report.seconds}};
+  return fieldsAsJson(report, {{"before", certificateAsJson(report.before)},
+                               {"after", certificateAsJson(report.after)},
+                               {"not_positive", report.notPositive},
+                               {"distance_before", distance(report.distanceBefore)},
+                               {"distance_after", distance(report.distanceAfter)},
+                               {"far_cells", report.farCells},
+                               {"vertices",
+                                {{"free", report.vertices[0]},
+                                 {"on_patches", report.vertices[1]},
+                                 {"on_curves", report.vertices[2]},
+                                 {"fixed", report.vertices[3]},
+                                 {"fixed_by_tags", report.taggedVertices},
+                                 {"fixed_by_option", report.boundaryVertices},
+                                 {"fixed_by_cells", report.pairedVertices}}},
+                               {"cannot_be_positive", report.cannotBePositive},
+                               {"worst_cell",
+                                {{"cell", report.worst.cell},
+                                 {"held_by", nameOf(report.worst.holder)},
+                                 {"tagged", report.worst.isTagged},
+                                 {"vertex", report.worst.vertex},
+                                 {"angle", report.worst.angle}}}});
 }
 
 Json shapeAsJson(const ShapeReport& report) {
-  const LabelReport& labels = report.labels;
-  return {{"method", nameOf(report.method)},
-          {"rotation", report.rotation},
-          {"labels",
-           {{"valid", labels.isValid()},
-            {"charts", labels.charts},
-            {"corners", labels.corners},
-            {"bad_loops", labels.badLoops},
-            {"bad_corners", labels.badCorners},
-            {"opposite_edges", labels.oppositeEdges},
-            {"turning_points", labels.turningPoints},
-            {"wrong_turns", labels.wrongTurns},
-            {"flat_charts", labels.flatCharts},
-            {"deviation", labels.deviation}}},
-          {"label_moves", report.labelMoves},
-          {"added_tets", report.addedTets},
-          {"feature_edges", report.featureEdges},
-          {"tagged_edges", report.taggedEdges},
-          {"inner_faces", report.innerFaces},
-          {"aligned_faces", report.alignedFaces},
-          {"aligned_area", report.alignedArea},
-          {"scaled_jacobian", distortionAsJson(report.distortion)}};
+  return fieldsAsJson(
+      report, {{"method", nameOf(report.method)},
+               {"rotation", report.rotation},
+               {"labels", fieldsAsJson(report.labels, {{"valid", report.labels.isValid()}})},
+               {"scaled_jacobian", distortionAsJson(report.distortion)}});
 }
 
 Json partAsJson(const MeshedPart& part) {

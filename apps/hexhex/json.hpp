@@ -2,28 +2,47 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include <hexhex/check.hpp>
 #include <hexhex/context.hpp>
+#include <hexhex/fields.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/mesh.hpp>
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/shape.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 #include <hexhex/verify.hpp>
 
 namespace hexhex::command {
 
 /// Keys in the order in which they are added: easier to read than alphabetical.
 using Json = nlohmann::ordered_json;
+
+[[nodiscard]] Json valencesAsJson(const std::map<int, std::uint64_t>& countByValence);
+
+/// An object with the fields of a report, behind those that are given.
+template <class Report>
+[[nodiscard]] Json fieldsAsJson(const Report& report, Json json = Json::object()) {
+  visitFields(report, [&json](const char* field, const auto& value) {
+    if constexpr (requires { valencesAsJson(value); }) {
+      json[field] = valencesAsJson(value);
+    } else {
+      json[field] = value;
+    }
+  });
+  return json;
+}
 
 /// @param seamless  empty if nobody looked
 [[nodiscard]] Json checkAsJson(const CheckReport& report, int scale,
@@ -33,7 +52,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json validityAsJson(const Certificate& certificate);
 [[nodiscard]] Json boundaryAsJson(std::span<const NamedPatch> patches);
 [[nodiscard]] Json verificationAsJson(const VerifyReport& verification);
-[[nodiscard]] Json checksumsAsJson(const MeshSurvey& survey);
+[[nodiscard]] Json checksumsAsJson(const MeshSummary& summary);
 [[nodiscard]] Json quantizeAsJson(const QuantizeReport& report);
 [[nodiscard]] Json improvementAsJson(const ImproveReport& report);
 [[nodiscard]] Json shapeAsJson(const ShapeReport& report);

@@ -113,10 +113,9 @@ Json repairAsJson(const RepairReport& report) {
                        {"moved_vertices", region.movedVertices},
                        {"largest_move", region.largestMove}});
   }
-  return {{"bad_tets", report.badTets},         {"moved_vertices", report.movedVertices},
-          {"largest_move", report.largestMove}, {"rounded_vertices", report.roundedVertices},
-          {"split_edges", report.splitEdges},   {"added_tets", report.addedTets},
-          {"seconds", report.seconds},          {"regions", std::move(regions)}};
+  Json json = fieldsAsJson(report);
+  json["regions"] = std::move(regions);
+  return json;
 }
 
 }  // namespace hexhex::command

@@ -158,18 +158,19 @@ void requireWritable(const std::filesystem::path& file, bool makesFolders) {
                            !std::filesystem::exists(file.parent_path(), missing);
   if (makesFolder || file.filename() == "polyMesh") return;
   // Opening a pipe twice would end it.
-  if (!std::filesystem::is_other(file, missing)) static_cast<void>(TextFile(file));
+  if (!std::filesystem::is_other(file, missing)) static_cast<void>(io::OutputFile(file));
 }
 
 Report::Report(const std::string& file) : isOnOutput_(file == "-") {
-  if (!file.empty() && !isOnOutput_) file_ = std::make_unique<TextFile>(file);
+  if (!file.empty() && !isOnOutput_) file_ = std::make_unique<io::OutputFile>(file);
 }
 
 void Report::write(const std::string& text) {
   if (isOnOutput_) {
     fmt::print("{}", text);
   } else {
-    file_->commit(text);
+    file_->write(text);
+    file_->commit();
   }
 }
 

@@ -23,6 +23,8 @@
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
+#include <io/core/output_file.hpp>
+
 namespace hexhex::command {
 
 /// Prints to the standard error output. What cannot be printed there is lost, and nothing else: a
@@ -99,7 +101,7 @@ class Report {
 
  private:
   bool isOnOutput_;
-  std::unique_ptr<TextFile> file_;
+  std::unique_ptr<io::OutputFile> file_;
 };
 
 /// Throws VerificationFailed, naming what does not agree, unless all checks passed.
@@ -108,9 +110,8 @@ class Report {
 void requirePassed(const VerifyReport& report, std::string_view problem, std::string_view advice);
 
 /// The map that an extraction took: the caller's, or what a repair made of it.
-[[nodiscard]] inline TetMapView extractedMap(const TetMapView& map,
-                                             const ExtractStatistics& statistics) {
-  return statistics.repairedMap ? TetMapView(*statistics.repairedMap) : map;
+[[nodiscard]] inline TetMapView extractedMap(const TetMapView& map, const RepairedMap* repaired) {
+  return repaired != nullptr && repaired->map ? TetMapView(*repaired->map) : map;
 }
 
 }  // namespace hexhex::command

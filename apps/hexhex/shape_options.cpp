@@ -92,14 +92,7 @@ void printShape(const ShapeReport& report) {
 Json filledAsJson(const std::string& file, const FilledPart& part) {
   Json json = {{"file", file}, {"tets", part.tets.tets.size()}};
   if (!part.report) return json;
-  const FillReport& report = *part.report;
-  json["filled"] = {{"mesher", report.mesher},
-                    {"tet_size", report.tetSize},
-                    {"triangles", report.triangles},
-                    {"bodies", report.bodies},
-                    {"voids", report.voids},
-                    {"volume", report.volume},
-                    {"filled_volume", report.filledVolume}};
+  json["filled"] = fieldsAsJson(*part.report);
   return json;
 }
 

@@ -64,19 +64,18 @@ Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& cont
   ExtractOptions options;
   options.scale = arguments.options.scale;
   options.tolerance = arguments.options.tolerance;
-  options.repair = RepairMode::Auto;
+  RepairedMap repaired;
+  options.repair = &repaired;
   options.curvedNodes = arguments.curvedNodes;
-  ExtractStatistics statistics;
   Subject subject;
   if (arguments.order == 1) {
-    subject.mesh = extract(map, options, context, &statistics);
+    subject.mesh = extract(map, options, context);
   } else {
-    subject.mesh = extractLagrange(map, arguments.order, options, context, &statistics);
+    subject.mesh = extractLagrange(map, arguments.order, options, context);
   }
   subject.map = arguments.mesh;
-  subject.verification =
-      compare(extractedMap(map, statistics), subject, arguments.options, context);
-  if (statistics.repair.changed) subject.notice = repairNotice(statistics.repair);
+  subject.verification = compare(extractedMap(map, &repaired), subject, arguments.options, context);
+  if (repaired.map) subject.notice = repairNotice(repaired.report);
   return subject;
 }
 

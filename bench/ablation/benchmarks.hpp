@@ -4,6 +4,9 @@
 
 namespace hexhex::bench {
 
+/// epsilon/: the propeller engine for different enlargements of tets.
+void registerEpsilon();
+
 /// rasterization/: the grid points of all tets by different methods.
 void registerRasterization();
 

@@ -7,6 +7,7 @@
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  hexhex::bench::registerEpsilon();
   hexhex::bench::registerRasterization();
   hexhex::bench::registerLookup();
   hexhex::bench::registerSwitches();

@@ -26,13 +26,13 @@ FULL = [
     Step("scale", BENCH, "^scale/.*/scale:[1-8]/", 5),
     Step("scale-large", BENCH, "^scale/.*/scale:1[0-9]/", 3),
     Step("density", BENCH, "^density/", 5),
-    Step("epsilon", BENCH, "^epsilon/", 5),
+    Step("epsilon", ABLATION, "^epsilon/", 5),
     Step("rasterization", ABLATION, "^rasterization/", 5),
     Step("lookup", ABLATION, "^lookup/", 5),
     Step("ablation", ABLATION, "^ablation/", 7),
     Step("mesh", BENCH, "^(check|command)/", 5),
     Step("curved", BENCH, "^arcs_and_patches/.*engine:atlas/threads:1", 3),
-    Step("files", BENCH, "^(read|write|copy|survey)_", 3),
+    Step("files", BENCH, "^(read|write|copy|summarize)_", 3),
 ]
 FULL_TEXT = ("full: medians of five repetitions, of seven for ablations, of three at scales above "
              "8, of arcs and of files; extraction in three rounds")
@@ -42,12 +42,12 @@ QUICK = [
     Step("scale", BENCH, "^scale/.*/scale:[1-8]/", 1, 0.01),
     Step("scale-large", BENCH, "^scale/(sphere|s17c).*/scale:12/", 1, 0.01),
     Step("density", BENCH, "^density/", 1, 0.01),
-    Step("epsilon", BENCH, "^epsilon/", 1, 0.01),
+    Step("epsilon", ABLATION, "^epsilon/", 1, 0.01),
     Step("rasterization", ABLATION, "^rasterization/.*/scale:[1-8]/", 1, 0.01),
     Step("lookup", ABLATION, "^lookup/.*/scale:[1-8]/", 1, 0.01),
     Step("ablation", ABLATION, "^ablation/(sphere_blocks_(low|middle)|s17c)", 3, 0.01),
     Step("mesh", BENCH, "^(check|command)/", 1, 0.01),
     Step("curved", BENCH, "^arcs_and_patches/(sphere_blocks_low|s17c).*engine:atlas/threads:1", 1, 0.01),
-    Step("files", BENCH, "^(read|write|copy|survey)_", 1, 0.01),
+    Step("files", BENCH, "^(read|write|copy|summarize)_", 1, 0.01),
 ]
 QUICK_TEXT = "quick (`--quick`): extraction is the median of three runs, all else ran once"

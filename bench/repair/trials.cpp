@@ -114,27 +114,27 @@ Tally run(const Trial& trial) {
   sound.defects = 0;
   const HexMesh wanted = extract(generateSample(trial.kind, sound).map);
   Context context(1);
-  ExtractStatistics statistics;
+  RepairedMap repaired;
   bool extracted = false;
   try {
     ExtractOptions options;
-    options.repair = RepairMode::Auto;
-    const HexMesh mesh = extract(damaged.map, options, context, &statistics);
+    options.repair = &repaired;
+    const HexMesh mesh = extract(damaged.map, options, context);
     extracted = true;
-    if (statistics.repair.changed) {
+    if (repaired.map) {
       tally.right = test::sameConnectivity(mesh, wanted) ? 1 : 0;
-      tally.refined = tally.right == 1 && statistics.repair.splitEdges > 0 ? 1 : 0;
-      const bool verified = verify(*statistics.repairedMap, mesh).passed();
+      tally.refined = tally.right == 1 && repaired.report.splitEdges > 0 ? 1 : 0;
+      const bool verified = verify(*repaired.map, mesh).passed();
       if (tally.right == 0) (verified ? tally.wrong : tally.noticed) = 1;
-      tally.seconds = statistics.repair.seconds;
+      tally.seconds = repaired.report.seconds;
     }
   } catch (const Error& error) {
     tally.refused = 1;
-    if (statistics.repair.badTets <= 20) {
+    if (repaired.report.badTets <= 20) {
       std::printf("  refused: %s\n    %s\n", commandFor(trial).c_str(), error.what());
     }
   }
-  const std::uint64_t badTets = statistics.repair.badTets;
+  const std::uint64_t badTets = repaired.report.badTets;
   if (badTets == 0 && extracted) return {};
   if (badTets > 20) return {};
   if (tally.wrong > 0) std::printf("  WRONG: %s\n", commandFor(trial).c_str());

@@ -5,7 +5,7 @@
 
 namespace hexhex::c {
 
-ExtractOptions extractOptions(const hexhex_extract_options* options) {
+ExtractOptions extractOptions(const hexhex_extract_options* options, RepairedMap& repaired) {
   const hexhex_extract_options given = readStruct(options, HEXHEX_EXTRACT_OPTIONS_INIT, "options");
   if (given.engine != HEXHEX_ENGINE_ATLAS && given.engine != HEXHEX_ENGINE_PROPELLER) {
     throw Error(ErrorCode::InvalidArgument, "There is no such engine.");
@@ -16,9 +16,8 @@ ExtractOptions extractOptions(const hexhex_extract_options* options) {
   }
   return {.engine = static_cast<Engine>(given.engine),
           .scale = given.scale,
-          .epsilon = given.epsilon,
           .tolerance = given.tolerance,
-          .repair = given.repair != 0 ? RepairMode::Auto : RepairMode::Off,
+          .repair = given.repair != 0 ? &repaired : nullptr,
           .round = given.round != 0,
           .curvedNodes = static_cast<CurvedNodes>(given.curved_nodes)};
 }
@@ -28,8 +27,6 @@ void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out
   hexhex_statistics result = HEXHEX_STATISTICS_INIT;
   result.seconds = statistics.seconds;
   result.threads = statistics.threads;
-  result.epsilon = statistics.epsilon;
-  result.epsilon_fallback = statistics.epsilonFallback ? 1 : 0;
   result.mirrored = statistics.mirrored ? 1 : 0;
   result.tets_inverted_in_space = statistics.tetsInvertedInSpace;
   result.max_displacement = statistics.maxDisplacement;
@@ -45,13 +42,7 @@ void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out
   result.cut_faces = statistics.cutFaces;
   result.overlapping_tets = statistics.overlappingTets;
   result.traced_cells = statistics.tracedCells;
-  result.repaired = statistics.repair.changed ? 1 : 0;
-  result.straightened_cells = statistics.straightenedCells.size();
   writeStruct(result, *out, "statistics");
-}
-
-Repaired repairedBy(ExtractStatistics&& statistics) {
-  return {std::move(statistics.repair), std::move(statistics.repairedMap)};
 }
 
 }  // namespace hexhex::c

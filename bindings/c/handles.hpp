@@ -22,7 +22,7 @@
 #include <hexhex/samples.hpp>
 #include <hexhex/stream.hpp>
 #include <hexhex/structure.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
@@ -30,12 +30,6 @@
 #include "handle_table.hpp"
 
 namespace hexhex::c {
-
-/// What an extraction did to the map before.
-struct Repaired {
-  RepairReport report = {};
-  std::shared_ptr<const TetMap> map = nullptr;  ///< null if nothing was repaired
-};
 
 /// Names as C sees them: of a handle, made once they are asked for.
 class Names {
@@ -62,7 +56,7 @@ class Names {
 struct hexhex_context : hexhex::c::RestingMemory {
   hexhex_context(int threads, hexhex_progress progress, void* user);
   hexhex::Context context;
-  hexhex::c::Repaired repaired = {};  ///< of the last extraction in pieces
+  hexhex::RepairedMap repaired = {};  ///< of the last extraction in pieces
 };
 
 struct hexhex_map : hexhex::c::RestingMemory {
@@ -84,7 +78,7 @@ struct hexhex_mesh : hexhex::c::RestingMemory {
   /// This one instead, which belongs to another handle, and so does this handle.
   std::shared_ptr<const hexhex::HexMesh> lent = nullptr;
   [[nodiscard]] const hexhex::HexMesh& mesh() const noexcept { return lent ? *lent : own; }
-  hexhex::c::Repaired repaired = {};  ///< of the extraction that made it
+  hexhex::RepairedMap repaired = {};  ///< of the extraction that made it
   hexhex::c::Names names;
 };
 
@@ -137,7 +131,7 @@ struct hexhex_piecewise_mesh : hexhex::c::RestingMemory {
 
 struct hexhex_lagrange_mesh : hexhex::c::RestingMemory {
   hexhex::LagrangeMesh mesh;
-  hexhex::c::Repaired repaired = {};
+  hexhex::RepairedMap repaired = {};
 };
 
 struct hexhex_mesh_writer : hexhex::c::RestingMemory {
@@ -149,7 +143,7 @@ struct hexhex_mesh_writer : hexhex::c::RestingMemory {
   std::optional<hexhex::c::Used<hexhex_context>> given;
   hexhex::Context own;
   std::unique_ptr<hexhex::MeshSink> sink;
-  hexhex::SurveySink* survey = nullptr;  ///< the sink, if it has no file
+  hexhex::SummarySink* summary = nullptr;  ///< the sink, if it has no file
   bool ended = false;
 };
 
@@ -162,14 +156,13 @@ class ContextOrDefault {
     if (given != nullptr) given_.emplace(given, "context");
   }
   Context& operator*() noexcept { return given_ ? (*given_)->context : own_; }
-  /// For hexhex_context_get_repair().
-  void keep(Repaired&& repaired) noexcept {
-    if (given_) (*given_)->repaired = std::move(repaired);
-  }
+  /// For hexhex_context_get_repair(): emptied, for what the next extraction in pieces repairs.
+  RepairedMap& repaired() noexcept { return (given_ ? (*given_)->repaired : repaired_) = {}; }
 
  private:
   std::optional<Used<hexhex_context>> given_;
   Context own_;
+  RepairedMap repaired_;
 };
 
 /// Refuses a number of elements that no memory can have.
@@ -271,8 +264,9 @@ void give(TetMap&& map, hexhex_map** out);
 void give(HexMesh&& mesh, hexhex_mesh** out);
 [[nodiscard]] TetMap copyOf(const hexhex_map& map);
 
-void writeSurvey(const MeshSurvey& survey, hexhex_survey* out);
-void writeQuality(const QualitySummary& summary, hexhex_quality& out);
+void writeSummary(const MeshSummary& summary, hexhex_mesh_summary* out);
+/// @param scaledJacobians, out  may be null
+void writeQuality(const Array<double>& values, double* scaledJacobians, hexhex_quality* out);
 
 /// What hexhex_mesh_certify() fills; null pointers are left out.
 void writeCertificate(const Certificate& certificate, std::uint8_t* validity,

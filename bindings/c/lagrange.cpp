@@ -76,6 +76,8 @@ hexhex_status hexhex_lagrange_mesh_copy(const hexhex_lagrange_arrays* arrays,
     made.nodes =
         copied<decltype(made.nodes)>(given.nodes, given.cell_count * made.nodesPerCell(), "nodes");
     copyBesides(given, given.point_count, made);
+    made.straightenedCells = copied<std::vector<hexhex::Index>>(
+        given.straightened_cells, given.straightened_cell_count, "straightened_cells");
     *mesh = enter(std::move(handle));
   });
 }
@@ -124,7 +126,9 @@ hexhex_status hexhex_lagrange_mesh_get_arrays(const hexhex_lagrange_mesh* mesh,
         .feature_edge_count = m.features.edges.size(),
         .feature_quads = flat<hexhex_feature_quad>(m.features.quads),
         .feature_quad_count = m.features.quads.size(),
-        .regions = flat<std::int32_t>(m.regions)};
+        .regions = flat<std::int32_t>(m.regions),
+        .straightened_cells = flat<std::uint32_t>(m.straightenedCells),
+        .straightened_cell_count = m.straightenedCells.size()};
     writeStruct(result, require(arrays, "arrays"), "arrays");
   });
 }
@@ -159,11 +163,8 @@ hexhex_status hexhex_lagrange_mesh_quality(const hexhex_lagrange_mesh* mesh,
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    const auto jacobians = hexhex::scaledJacobians(Used(mesh, "mesh")->mesh, *used);
-    if (scaled_jacobians != nullptr) {
-      std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
-    }
-    if (quality != nullptr) writeQuality(hexhex::summarize(jacobians), *quality);
+    writeQuality(hexhex::scaledJacobians(Used(mesh, "mesh")->mesh, *used), scaled_jacobians,
+                 quality);
   });
 }
 

@@ -5,7 +5,7 @@
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include "options.hpp"
 
@@ -44,19 +44,23 @@ std::vector<TagName> namesOf(const hexhex_tag_name* names, std::size_t count) {
   return list;
 }
 
-void writeSurvey(const MeshSurvey& survey, hexhex_survey* out) {
-  hexhex_survey result = {sizeof(hexhex_survey), survey.points,      survey.cells, {}, {},
-                          survey.pointChecksum,  survey.cellChecksum};
-  std::copy(survey.lower.begin(), survey.lower.end(), result.lower);
-  std::copy(survey.upper.begin(), survey.upper.end(), result.upper);
-  writeStruct(result, require(out, "survey"), "survey");
+void writeSummary(const MeshSummary& summary, hexhex_mesh_summary* out) {
+  hexhex_mesh_summary result = {
+      sizeof(hexhex_mesh_summary), summary.points,      summary.cells, {}, {},
+      summary.pointChecksum,       summary.cellChecksum};
+  std::copy(summary.lower.begin(), summary.lower.end(), result.lower);
+  std::copy(summary.upper.begin(), summary.upper.end(), result.upper);
+  writeStruct(result, require(out, "summary"), "summary");
 }
 
-void writeQuality(const QualitySummary& summary, hexhex_quality& out) {
+void writeQuality(const Array<double>& values, double* scaledJacobians, hexhex_quality* out) {
+  if (scaledJacobians != nullptr) std::copy(values.begin(), values.end(), scaledJacobians);
+  if (out == nullptr) return;
+  const QualitySummary summary = summarize(values);
   hexhex_quality result = {
       sizeof(hexhex_quality), summary.minimum, summary.mean, summary.notPositive, {}};
   std::copy(summary.histogram.begin(), summary.histogram.end(), result.histogram);
-  writeStruct(result, out, "quality");
+  writeStruct(result, *out, "quality");
 }
 
 void writeCertificate(const Certificate& certificate, std::uint8_t* validity,
@@ -194,22 +198,23 @@ hexhex_status hexhex_mesh_structure(const hexhex_mesh* mesh, hexhex_context* con
   });
 }
 
-hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_context* context,
-                                 hexhex_survey* survey, hexhex_error* error) {
+hexhex_status hexhex_summarize_mesh(const hexhex_mesh* mesh, hexhex_context* context,
+                                    hexhex_mesh_summary* summary, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    writeSurvey(hexhex::survey(Used(mesh, "mesh")->mesh(), *used), survey);
+    writeSummary(hexhex::summarize(Used(mesh, "mesh")->mesh(), *used), summary);
   });
 }
 
-hexhex_status hexhex_file_survey(const char* file, const hexhex_read_options* options,
-                                 hexhex_context* context, hexhex_survey* survey,
-                                 hexhex_error* error) {
+hexhex_status hexhex_summarize_file(const char* file, const hexhex_read_options* options,
+                                    hexhex_context* context, hexhex_mesh_summary* summary,
+                                    hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    writeSurvey(hexhex::surveyFile(&require(file, "file"), readOptions(options), *used), survey);
+    writeSummary(hexhex::summarizeFile(&require(file, "file"), readOptions(options), *used),
+                 summary);
   });
 }
 
@@ -232,11 +237,8 @@ hexhex_status hexhex_mesh_quality(const hexhex_mesh* mesh, hexhex_context* conte
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    const auto jacobians = hexhex::scaledJacobians(Used(mesh, "mesh")->mesh(), *used);
-    if (scaled_jacobians != nullptr) {
-      std::copy(jacobians.begin(), jacobians.end(), scaled_jacobians);
-    }
-    if (quality != nullptr) writeQuality(hexhex::summarize(jacobians), *quality);
+    writeQuality(hexhex::scaledJacobians(Used(mesh, "mesh")->mesh(), *used), scaled_jacobians,
+                 quality);
   });
 }
 
@@ -256,6 +258,6 @@ hexhex_status hexhex_summarize_quality(const double* values, size_t count, hexhe
   using namespace hexhex::c;
   return guarded(error, [&] {
     const auto given = copied<hexhex::Array<double>>(values, count, "values");
-    writeQuality(hexhex::summarize(given), require(quality, "quality"));
+    writeQuality(given, nullptr, &require(quality, "quality"));
   });
 }

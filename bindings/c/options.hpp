@@ -10,7 +10,9 @@
 
 namespace hexhex::c {
 
-[[nodiscard]] ExtractOptions extractOptions(const hexhex_extract_options* options);
+/// @param repaired  receives the map if it is to be repaired
+[[nodiscard]] ExtractOptions extractOptions(const hexhex_extract_options* options,
+                                            RepairedMap& repaired);
 
 /// The strings are the caller's.
 [[nodiscard]] ReadOptions readOptions(const hexhex_read_options* options);
@@ -33,17 +35,16 @@ void writeReport(const ImproveReport& report, hexhex_improve_report* out);
 /// With tags, and without parameters.
 void give(TetMesh&& tets, hexhex_map** map);
 
-[[nodiscard]] Repaired repairedBy(ExtractStatistics&& statistics);
 /// @param map, report  may be null
-void giveRepair(const Repaired& repaired, hexhex_map** map, hexhex_repair_report** report);
+void giveRepair(const RepairedMap& repaired, hexhex_map** map, hexhex_repair_report** report);
 
 /// @param out  may be null
 void writeStatistics(const ExtractStatistics& statistics, hexhex_statistics* out);
 
 // Where the handles of results keep what was repaired.
-[[nodiscard]] inline Repaired& repairedIn(hexhex_mesh& mesh) { return mesh.repaired; }
-[[nodiscard]] inline Repaired& repairedIn(hexhex_lagrange_mesh& mesh) { return mesh.repaired; }
-[[nodiscard]] inline Repaired& repairedIn(hexhex_piecewise_mesh& mesh) {
+[[nodiscard]] inline RepairedMap& repairedIn(hexhex_mesh& mesh) { return mesh.repaired; }
+[[nodiscard]] inline RepairedMap& repairedIn(hexhex_lagrange_mesh& mesh) { return mesh.repaired; }
+[[nodiscard]] inline RepairedMap& repairedIn(hexhex_piecewise_mesh& mesh) {
   return mesh.straight->repaired;
 }
 
@@ -55,13 +56,14 @@ hexhex_status runExtract(const hexhex_extract_options* options, hexhex_context* 
                          const Extract& extract) {
   return guarded(error, [&] {
     require(result, "mesh");
-    const ExtractOptions given = extractOptions(options);
+    RepairedMap repaired;
+    const ExtractOptions given = extractOptions(options, repaired);
     ContextOrDefault used(context);
     ExtractStatistics filled;
     auto handle = std::make_unique<Handle>();
     extract(*handle, given, *used, filled);
     writeStatistics(filled, statistics);
-    repairedIn(*handle) = repairedBy(std::move(filled));
+    repairedIn(*handle) = std::move(repaired);
     *result = enter(std::move(handle));
   });
 }

@@ -82,7 +82,7 @@ hexhex_status hexhex_repair_get_region(const hexhex_repair_report* report, size_
 
 namespace hexhex::c {
 
-void giveRepair(const Repaired& repaired, hexhex_map** map, hexhex_repair_report** report) {
+void giveRepair(const RepairedMap& repaired, hexhex_map** map, hexhex_repair_report** report) {
   hexhex_map* madeMap = nullptr;
   hexhex_repair_report* madeReport = nullptr;
   if (repaired.map) {

@@ -2,7 +2,7 @@
 
 #include <hexhex/io.hpp>
 #include <hexhex/stream.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include "options.hpp"
 
@@ -107,12 +107,11 @@ hexhex_status hexhex_extract_to(const hexhex_sink* sink, const hexhex_map* map,
   return guarded(error, [&] {
     Target target(sink);
     ContextOrDefault used(context);
-    used.keep({});
     hexhex::ExtractStatistics filled;
-    hexhex::extractTo(*target, Used(map, "map")->view, extractOptions(options), *used, &filled);
+    hexhex::extractTo(*target, Used(map, "map")->view, extractOptions(options, used.repaired()),
+                      *used, &filled);
     target.finish();
     writeStatistics(filled, statistics);
-    used.keep(repairedBy(std::move(filled)));
   });
 }
 
@@ -124,10 +123,9 @@ hexhex_status hexhex_extractor_extract_to(hexhex_extractor* extractor, const hex
   return guarded(error, [&] {
     Target target(sink);
     ContextOrDefault used(context);
-    used.keep({});
     hexhex::ExtractStatistics filled;
     Used(extractor, "extractor")
-        ->extractor.extractTo(*target, extractOptions(options), *used, &filled);
+        ->extractor.extractTo(*target, extractOptions(options, used.repaired()), *used, &filled);
     target.finish();
     writeStatistics(filled, statistics);
   });
@@ -139,12 +137,10 @@ hexhex_status hexhex_extract_to_file(const char* file, const hexhex_map* map,
   using namespace hexhex::c;
   return guarded(error, [&] {
     ContextOrDefault used(context);
-    used.keep({});
     hexhex::ExtractStatistics filled;
-    hexhex::extractToFile(&require(file, "file"), Used(map, "map")->view, extractOptions(options),
-                          *used, &filled);
+    hexhex::extractToFile(&require(file, "file"), Used(map, "map")->view,
+                          extractOptions(options, used.repaired()), *used, &filled);
     writeStatistics(filled, statistics);
-    used.keep(repairedBy(std::move(filled)));
   });
 }
 
@@ -160,30 +156,30 @@ hexhex_status hexhex_mesh_read_to(const hexhex_sink* sink, const char* file,
   });
 }
 
-hexhex_status hexhex_survey_writer_create(hexhex_context* context, hexhex_mesh_writer** writer,
-                                          hexhex_error* error) {
+hexhex_status hexhex_summary_writer_create(hexhex_context* context, hexhex_mesh_writer** writer,
+                                           hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     require(writer, "writer");
     auto handle = std::make_unique<hexhex_mesh_writer>(context);
-    auto survey = std::make_unique<hexhex::SurveySink>(handle->context());
-    handle->survey = survey.get();
-    handle->sink = std::move(survey);
+    auto summary = std::make_unique<hexhex::SummarySink>(handle->context());
+    handle->summary = summary.get();
+    handle->sink = std::move(summary);
     *writer = enter(std::move(handle));
   });
 }
 
-hexhex_status hexhex_survey_writer_get(const hexhex_mesh_writer* writer, hexhex_survey* survey,
-                                       hexhex_error* error) {
+hexhex_status hexhex_summary_writer_get(const hexhex_mesh_writer* writer,
+                                        hexhex_mesh_summary* summary, hexhex_error* error) {
   using namespace hexhex::c;
   return guarded(error, [&] {
     const Used given(writer, "writer");
-    if (given->survey == nullptr || !given->ended) {
+    if (given->summary == nullptr || !given->ended) {
       throw Error(ErrorCode::InvalidArgument,
-                  "The writer has added nothing up: make it with hexhex_survey_writer_create(), "
+                  "The writer has added nothing up: make it with hexhex_summary_writer_create(), "
                   "and ask after its end.");
     }
-    writeSurvey(given->survey->result(), survey);
+    writeSummary(given->summary->result(), summary);
   });
 }
 

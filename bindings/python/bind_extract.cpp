@@ -19,10 +19,9 @@ namespace hexhex::python {
 namespace {
 
 /// A copy of a piece, as the piece does not outlive the call.
-template <class Scalar, std::size_t kRank, class Span>
-auto copied(const Span& span, const std::array<std::size_t, kRank>& shape) {
-  using Element = std::remove_const_t<typename Span::element_type>;
-  return ownedArray<Scalar, kRank>(std::vector<Element>(span.begin(), span.end()), shape);
+template <class Span>
+auto copied(const Span& span) {
+  return ownedArray(std::vector(span.begin(), span.end()));
 }
 
 /// Hands pieces to a Python object's methods.
@@ -35,17 +34,15 @@ class PythonSink : public MeshSink {
   }
   void points(const PointPiece& piece) override {
     call([&] {
-      sink_.attr("points")(
-          piece.first, copied<double, 2>(piece.points, {piece.points.size(), 3}),
-          copied<Index, 1>(piece.generatorTet, {piece.generatorTet.size()}),
-          copied<CornerSet, 1>(piece.generatorCorners, {piece.generatorCorners.size()}));
+      sink_.attr("points")(piece.first, copied(piece.points), copied(piece.generatorTet),
+                           copied(piece.generatorCorners));
     });
   }
   void cells(std::uint64_t first, std::span<const Hex> cells) override {
-    call([&] { sink_.attr("cells")(first, copied<Index, 2>(cells, {cells.size(), 8})); });
+    call([&] { sink_.attr("cells")(first, copied(cells)); });
   }
   void cells(std::uint64_t first, std::span<const Hex64> cells) override {
-    call([&] { sink_.attr("cells")(first, copied<std::uint64_t, 2>(cells, {cells.size(), 8})); });
+    call([&] { sink_.attr("cells")(first, copied(cells)); });
   }
   void end() override {
     call([&] { sink_.attr("end")(); });
@@ -93,8 +90,8 @@ void readInto(const nb::object& target, const std::string& file, const std::stri
 nb::tuple extractMesh(const ArrayMap& map, const Options& options, int threads,
                       const Progress& progress) {
   return advising(map, threads, [&] {
-    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-      return extract(map.view(), options.get(), context, &statistics);
+    return runNoted(threads, progress, [&](Context& context, Notes& notes) {
+      return extract(map.view(), options.get(notes.repaired), context, &notes.statistics);
     });
   });
 }
@@ -102,19 +99,19 @@ nb::tuple extractMesh(const ArrayMap& map, const Options& options, int threads,
 nb::tuple extractInto(const nb::object& target, const ArrayMap& map, const Options& options,
                       int threads, const Progress& progress) {
   return intoSink(target, [&](MeshSink& sink) {
-    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-      extractTo(sink, map.view(), options.get(), context, &statistics);
+    return runNoted(threads, progress, [&](Context& context, Notes& notes) {
+      extractTo(sink, map.view(), options.get(notes.repaired), context, &notes.statistics);
     });
   });
 }
 
 nb::tuple extractIntoFile(const std::string& file, const ArrayMap& map, const Options& options,
                           const std::string& format, int threads, const Progress& progress) {
-  return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+  return runNoted(threads, progress, [&](Context& context, Notes& notes) {
     WriteOptions writing;
     writing.format = format;
     const std::unique_ptr<MeshSink> sink = openMeshSink(file, writing, context);
-    extractTo(*sink, map.view(), options.get(), context, &statistics);
+    extractTo(*sink, map.view(), options.get(notes.repaired), context, &notes.statistics);
   });
 }
 
@@ -128,28 +125,30 @@ class PyExtractor {
         })) {}
 
   nb::tuple extract(const Options& options, int threads, const Progress& progress) {
-    return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-      return extractor_.extract(options.get(), context, &statistics);
+    return runAlone(threads, progress, [&](Context& context, Notes& notes) {
+      return extractor_.extract(options.get(notes.repaired), context, &notes.statistics);
     });
   }
   nb::tuple extractInto(const nb::object& target, const Options& options, int threads,
                         const Progress& progress) {
     return intoSink(target, [&](MeshSink& sink) {
-      return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-        extractor_.extractTo(sink, options.get(), context, &statistics);
+      return runAlone(threads, progress, [&](Context& context, Notes& notes) {
+        extractor_.extractTo(sink, options.get(notes.repaired), context, &notes.statistics);
       });
     });
   }
   nb::tuple extractPieces(bool patches, const Options& options, int threads,
                           const Progress& progress) {
     const auto parts = patches ? PiecewiseLinearParts::ArcsAndPatches : PiecewiseLinearParts::Arcs;
-    return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-      return extractor_.extractPiecewiseLinear(parts, options.get(), context, &statistics);
+    return runAlone(threads, progress, [&](Context& context, Notes& notes) {
+      return extractor_.extractPiecewiseLinear(parts, options.get(notes.repaired), context,
+                                               &notes.statistics);
     });
   }
   nb::tuple extractOrder(int order, const Options& options, int threads, const Progress& progress) {
-    return runAlone(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
-      return extractor_.extractLagrange(order, options.get(), context, &statistics);
+    return runAlone(threads, progress, [&](Context& context, Notes& notes) {
+      return extractor_.extractLagrange(order, options.get(notes.repaired), context,
+                                        &notes.statistics);
     });
   }
   [[nodiscard]] std::uint64_t cells() const { return extractor_.cellsAtScaleOne(); }
@@ -159,13 +158,13 @@ class PyExtractor {
   /// wait for ever.
   template <class Work>
   nb::tuple runAlone(int threads, const Progress& progress, const Work& work) {
-    return runNoted(threads, progress, [&](Context& context, ExtractStatistics& statistics) {
+    return runNoted(threads, progress, [&](Context& context, Notes& notes) {
       const std::unique_lock lock(mutex_, std::try_to_lock);
       if (!lock) {
         throw Error(ErrorCode::InvalidArgument,
                     "The extractor is in use by another call. Make one for each thread.");
       }
-      return work(context, statistics);
+      return work(context, notes);
     });
   }
   ArrayMap map_;
@@ -213,12 +212,11 @@ void bindExtract(nb::module_& module) {
   nb::class_<Options>(module, "Options")
       .def(
           "__init__",
-          [](Options* self, int scale, bool propeller, double tolerance, double epsilon,
-             bool repair, bool round, bool exactNodes) {
-            new (self) Options{scale, propeller, tolerance, epsilon, repair, round, exactNodes};
+          [](Options* self, int scale, bool propeller, double tolerance, bool repair, bool round,
+             bool exactNodes) {
+            new (self) Options{scale, propeller, tolerance, repair, round, exactNodes};
           },
-          "scale"_a, "propeller"_a, "tolerance"_a, "epsilon"_a, "repair"_a, "round"_a,
-          "exact_nodes"_a);
+          "scale"_a, "propeller"_a, "tolerance"_a, "repair"_a, "round"_a, "exact_nodes"_a);
   module.def("extract", &extractMesh, "map"_a, "options"_a, "threads"_a, "progress"_a.none());
   module.def("extract_to", &extractInto, "sink"_a, "map"_a, "options"_a, "threads"_a,
              "progress"_a.none());

@@ -12,7 +12,7 @@
 #include <hexhex/view.hpp>
 #endif
 
-#include "border.hpp"
+#include "piece_taker.hpp"
 
 using namespace nanobind::literals;
 
@@ -30,30 +30,11 @@ WriteOptions writeOptions(const std::string& format, double patchAngle, bool com
 }
 
 /// A file that gets a mesh in pieces.
-class MeshWriter {
+class MeshWriter : public PieceTaker {
  public:
   MeshWriter(const std::string& file, const std::string& format) {
-    WriteOptions options;
-    options.format = format;
-    sink_ = openMeshSink(file, options, context_);
+    sink_ = openMeshSink(file, {.format = format}, context_);
   }
-  void begin(std::uint64_t points, std::uint64_t cells) { sink_->begin(points, cells); }
-  void points(std::uint64_t first, const InPoints& points, const In1<Index>& generatorTet,
-              const In1<CornerSet>& generatorCorners) {
-    sink_->points({first, elements<Vec3>(points), elements<Index>(generatorTet),
-                   elements<CornerSet>(generatorCorners)});
-  }
-  void cells(std::uint64_t first, const InCells& cells) {
-    sink_->cells(first, elements<Hex>(cells));
-  }
-  void cells64(std::uint64_t first, const In<std::uint64_t, 8>& cells) {
-    sink_->cells(first, elements<Hex64>(cells));
-  }
-  void end() { sink_->end(); }
-
- private:
-  Context context_;
-  std::unique_ptr<MeshSink> sink_;
 };
 
 nb::list formats() {
@@ -102,15 +83,8 @@ void writePage(const auto& mesh, const std::string& file, const std::string& tit
 }  // namespace
 
 void bindFiles(nb::module_& module) {
-  const nb::call_guard<nb::gil_scoped_release> released;
-  nb::class_<MeshWriter>(module, "MeshWriter")
-      .def(nb::init<const std::string&, const std::string&>(), "file"_a, "format"_a)
-      .def("begin", &MeshWriter::begin, "points"_a, "cells"_a, released)
-      .def("points", &MeshWriter::points, "first"_a, "points"_a.noconvert(),
-           "generator_tet"_a.noconvert(), "generator_corners"_a.noconvert(), released)
-      .def("cells", &MeshWriter::cells, "first"_a, "cells"_a.noconvert(), released)
-      .def("cells64", &MeshWriter::cells64, "first"_a, "cells"_a.noconvert(), released)
-      .def("end", &MeshWriter::end, released);
+  definePieces(nb::class_<MeshWriter>(module, "MeshWriter")
+                   .def(nb::init<const std::string&, const std::string&>(), "file"_a, "format"_a));
   module.def(
       "read_map",
       [](const std::string& file, const std::string& format, const std::string& mapArray,
@@ -128,10 +102,7 @@ void bindFiles(nb::module_& module) {
         TetMesh mesh = run(threads, progress, [&](Context& context) {
           return readTetMesh(file, {.format = format}, context);
         });
-        const std::size_t points = mesh.points.size();
-        const std::size_t tets = mesh.tets.size();
-        return nb::make_tuple(ownedArray<double, 2>(std::move(mesh.points), {points, 3}),
-                              ownedArray<Index, 2>(std::move(mesh.tets), {tets, 4}));
+        return nb::make_tuple(ownedArray(std::move(mesh.points)), ownedArray(std::move(mesh.tets)));
       },
       "file"_a, "format"_a, "threads"_a, "progress"_a.none());
   module.def(

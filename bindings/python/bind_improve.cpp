@@ -15,44 +15,26 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 
 nb::tuple asTuple(ImproveReport&& report) {
-  const auto listOfCells = [](Array<std::uint64_t>&& cells) {
-    const std::size_t count = cells.size();
-    return nb::cast(ownedArray<std::uint64_t, 1>(std::move(cells), {count}));
-  };
-  Dict d;
-  d["not_positive"] = listOfCells(std::move(report.notPositive));
-  d["far_cells"] = listOfCells(std::move(report.farCells));
-  d["far_cells_before"] = report.farCellsBefore;
-  d["diagonal"] = report.diagonal;
+  Dict d = fieldsOf(report);
+  d["not_positive"] = ownedArray(std::move(report.notPositive));
+  d["far_cells"] = ownedArray(std::move(report.farCells));
   d["from_mesh_before"] = report.distanceBefore.fromMesh;
   d["from_surface_before"] = report.distanceBefore.fromSurface;
   d["from_mesh_after"] = report.distanceAfter.fromMesh;
   d["from_surface_after"] = report.distanceAfter.fromSurface;
-  d["inner_distance_before"] = report.innerDistanceBefore;
-  d["inner_distance_after"] = report.innerDistanceAfter;
   d["free_vertices"] = report.vertices[0];
   d["patch_vertices"] = report.vertices[1];
   d["curve_vertices"] = report.vertices[2];
   d["fixed_vertices"] = report.vertices[3];
   d["tagged_vertices"] = report.taggedVertices;
   d["boundary_vertices"] = report.boundaryVertices;
-  d["moved_vertices"] = report.movedVertices;
-  d["largest_move"] = report.largestMove;
-  d["mean_move"] = report.meanMove;
-  d["off_surface"] = report.offSurface;
-  d["off_creases"] = report.offCreases;
-  d["added_cells"] = report.addedCells;
-  d["curve_length"] = report.curveLength;
-  d["curves_followed"] = report.curvesFollowed;
-  d["snapped_curves"] = report.snappedCurves;
   d["paired_vertices"] = report.pairedVertices;
-  d["cannot_be_positive"] = listOfCells(std::move(report.cannotBePositive));
+  d["cannot_be_positive"] = ownedArray(std::move(report.cannotBePositive));
   d["worst_cell"] = report.worst.cell;
   d["worst_held_by"] = static_cast<int>(report.worst.holder);
   d["worst_tagged"] = report.worst.isTagged;
   d["worst_vertex"] = report.worst.vertex;
   d["worst_angle"] = report.worst.angle;
-  d["seconds"] = report.seconds;
   return nb::make_tuple(asTuple(std::move(report.before)), asTuple(std::move(report.after)), d);
 }
 

@@ -32,7 +32,7 @@ auto kindNamed(const Table& table, const std::string& name, const char* what) {
 }
 
 Dict answerAsDict(const SampleAnswer& answer) {
-  Dict d = asDict(answer.expected);
+  Dict d = fieldsOf(answer.expected);
   d["vertices"] = answer.vertices;
   d["tagged_vertices"] = nb::cast(answer.features.vertices);
   d["tagged_edges"] = nb::cast(answer.features.edges);
@@ -83,34 +83,28 @@ nb::tuple mapStructureOf(const ArrayMap& map, double tolerance, int threads,
   const MapStructure s = run(threads, progress, [&](Context& context) {
     return findMapStructure(map.view(), tolerance, context);
   });
-  const std::size_t jumps = s.chartJumps.size();
-  std::vector<std::array<Index, 2>> tets(jumps);
-  std::vector<std::array<Index, 3>> vertices(jumps);
-  std::vector<std::array<std::array<std::int8_t, 3>, 3>> rotations(jumps);
-  std::vector<Vec3> translations(jumps);
-  for (std::size_t j = 0; j < jumps; ++j) {
-    tets[j] = s.chartJumps[j].tets;
-    vertices[j] = s.chartJumps[j].vertices;
-    rotations[j] = s.chartJumps[j].rotation;
-    translations[j] = s.chartJumps[j].translation;
+  std::vector<std::array<Index, 2>> tets;
+  std::vector<std::array<Index, 3>> vertices;
+  std::vector<std::array<std::array<std::int8_t, 3>, 3>> rotations;
+  std::vector<Vec3> translations;
+  for (const ChartJump& jump : s.chartJumps) {
+    tets.push_back(jump.tets);
+    vertices.push_back(jump.vertices);
+    rotations.push_back(jump.rotation);
+    translations.push_back(jump.translation);
   }
-  const std::size_t edges = s.singularEdges.size();
-  std::vector<std::array<Index, 2>> ends(edges);
-  std::vector<std::int32_t> valences(edges);
-  std::vector<std::uint8_t> boundary(edges);
-  for (std::size_t e = 0; e < edges; ++e) {
-    ends[e] = {s.singularEdges[e].vertex0, s.singularEdges[e].vertex1};
-    valences[e] = s.singularEdges[e].valence;
-    boundary[e] = s.singularEdges[e].boundary ? 1 : 0;
+  std::vector<std::array<Index, 2>> ends;
+  std::vector<std::int32_t> valences;
+  std::vector<std::uint8_t> boundary;
+  for (const SingularTetEdge& edge : s.singularEdges) {
+    ends.push_back({edge.vertex0, edge.vertex1});
+    valences.push_back(edge.valence);
+    boundary.push_back(edge.boundary ? 1 : 0);
   }
-  return nb::make_tuple(ownedArray<Index, 2>(std::move(tets), {jumps, 2}),
-                        ownedArray<Index, 2>(std::move(vertices), {jumps, 3}),
-                        ownedArray<std::int8_t, 3>(std::move(rotations), {jumps, 3, 3}),
-                        ownedArray<double, 2>(std::move(translations), {jumps, 3}),
-                        ownedArray<Index, 2>(std::move(ends), {edges, 2}),
-                        ownedArray<std::int32_t, 1>(std::move(valences), {edges}),
-                        ownedArray<std::uint8_t, 1>(std::move(boundary), {edges}),
-                        asList(s.defects));
+  return nb::make_tuple(ownedArray(std::move(tets)), ownedArray(std::move(vertices)),
+                        ownedArray(std::move(rotations)), ownedArray(std::move(translations)),
+                        ownedArray(std::move(ends)), ownedArray(std::move(valences)),
+                        ownedArray(std::move(boundary)), asList(s.defects));
 }
 
 TetMap mapOfFlags(const InPoints& points, const InTets& tets, const In<std::int8_t, 4>& flags,
@@ -149,52 +143,20 @@ void bindMap(nb::module_& module) {
           "feature_faces"_a.noconvert(), "regions"_a.noconvert(), "edge_valences"_a.noconvert(),
           "rotations"_a.noconvert(), "tag_names"_a);
 
-  nb::class_<TetMap>(module, "Map", "A map in the library's own arrays.")
-      .def_prop_ro("points",
-                   [](nb::handle self) {
-                     auto& points = unwrapped<TetMap>(self).points;
-                     return viewOn<double, 2>(points, self, {points.size(), 3});
-                   })
-      .def_prop_ro("tets",
-                   [](nb::handle self) {
-                     auto& tets = unwrapped<TetMap>(self).tets;
-                     return viewOn<Index, 2>(tets, self, {tets.size(), 4});
-                   })
-      .def_prop_ro("igm",
-                   [](nb::handle self) {
-                     auto& igm = unwrapped<TetMap>(self).parameters;
-                     return viewOn<double, 3>(igm, self, {igm.size(), 4, 3});
-                   })
-      .def_prop_ro("feature_vertices",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<TetMap>(self).features.vertices;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 2});
-                   })
-      .def_prop_ro("feature_edges",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<TetMap>(self).features.edges;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
-                   })
-      .def_prop_ro("feature_faces",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<TetMap>(self).features.faces;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 4});
-                   })
-      .def_prop_ro("tag_names", [](const TetMap& self) { return rowsOf(self.features.names); })
-      .def_prop_ro("regions",
-                   [](nb::handle self) {
-                     auto& regions = unwrapped<TetMap>(self).regions;
-                     return viewOn<std::int32_t, 1>(regions, self, {regions.size()});
-                   })
-      .def_prop_ro("edge_valences",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<TetMap>(self).edgeValences;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
-                   })
-      .def_prop_ro("rotations", [](nb::handle self) {
-        auto& list = unwrapped<TetMap>(self).rotations;
-        return viewOn<std::int8_t, 2>(list, self, {list.size(), 4});
-      });
+  nb::class_<TetMap> binding(module, "Map", "A map in the library's own arrays.");
+  defineView(binding, "points", &TetMap::points);
+  defineView(binding, "tets", &TetMap::tets);
+  defineView(binding, "igm", &TetMap::parameters);
+  defineView(
+      binding, "feature_vertices", [](TetMap & m) -> auto& { return m.features.vertices; });
+  defineView(
+      binding, "feature_edges", [](TetMap & m) -> auto& { return m.features.edges; });
+  defineView(
+      binding, "feature_faces", [](TetMap & m) -> auto& { return m.features.faces; });
+  defineView(binding, "regions", &TetMap::regions);
+  defineView(binding, "edge_valences", &TetMap::edgeValences);
+  defineView(binding, "rotations", &TetMap::rotations);
+  binding.def_prop_ro("tag_names", [](const TetMap& self) { return rowsOf(self.features.names); });
 
   module.def("generate", &generateMap, "kind"_a, "cells"_a, "refine"_a, "valence"_a, "charts"_a,
              "jitter"_a, "on_lattice"_a, "noise"_a, "offset"_a, "seed"_a, "features"_a, "defects"_a,

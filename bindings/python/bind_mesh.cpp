@@ -10,16 +10,17 @@
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/structure.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include "mesh_arrays.hpp"
+#include "piece_taker.hpp"
 
 using namespace nanobind::literals;
 
 namespace hexhex::python {
 namespace {
 
-Dict asDict(const MeshSurvey& s) {
+Dict asDict(const MeshSummary& s) {
   Dict d;
   d["points"] = s.points;
   d["cells"] = s.cells;
@@ -30,36 +31,22 @@ Dict asDict(const MeshSurvey& s) {
   return d;
 }
 
-/// A sink that adds up, with the context that it wants.
-class PySurvey {
+/// A sink that adds up.
+class PySummary : public PieceTaker {
  public:
-  void begin(std::uint64_t points, std::uint64_t cells) { sink_.begin(points, cells); }
-  void points(std::uint64_t first, const InPoints& points) {
-    sink_.points({first, elements<Vec3>(points), {}, {}});
+  PySummary() { sink_ = std::make_unique<SummarySink>(context_); }
+  [[nodiscard]] const MeshSummary& result() const {
+    return static_cast<const SummarySink&>(*sink_).result();
   }
-  void cells(std::uint64_t first, const InCells& cells) {
-    sink_.cells(first, elements<Hex>(cells));
-  }
-  void cells64(std::uint64_t first, const In<std::uint64_t, 8>& cells) {
-    sink_.cells(first, elements<Hex64>(cells));
-  }
-  void end() { sink_.end(); }
-  [[nodiscard]] const MeshSurvey& result() const { return sink_.result(); }
-
- private:
-  Context context_;
-  SurveySink sink_{context_};
 };
 
 /// Vertices, valence, on the boundary, and the counts.
 nb::tuple meshStructureOf(const HexMesh& mesh, int threads, const Progress& progress) {
   const MeshStructure s =
       run(threads, progress, [&](Context& context) { return findStructure(mesh, context); });
-  const std::size_t n = s.singularEdges.size();
-  std::vector<Quad> rows(n);  // two vertices, valence, boundary
-  for (std::size_t e = 0; e < n; ++e) {
-    const SingularHexEdge& edge = s.singularEdges[e];
-    rows[e] = {edge.vertex0, edge.vertex1, edge.valence, edge.boundary ? 1U : 0U};
+  std::vector<std::array<Index, 4>> rows;  // two vertices, valence, boundary
+  for (const SingularHexEdge& edge : s.singularEdges) {
+    rows.push_back({edge.vertex0, edge.vertex1, edge.valence, edge.boundary ? 1U : 0U});
   }
   Dict d;
   d["faces"] = s.faces;
@@ -68,7 +55,7 @@ nb::tuple meshStructureOf(const HexMesh& mesh, int threads, const Progress& prog
   d["components"] = s.components;
   d["boundary_components"] = s.boundaryComponents;
   d["euler_characteristic"] = s.eulerCharacteristic;
-  return nb::make_tuple(ownedArray<Index, 2>(std::move(rows), {n, 4}), d);
+  return nb::make_tuple(ownedArray(std::move(rows)), d);
 }
 
 /// (name, tag, quads, area, centre, normal) of each.
@@ -76,10 +63,8 @@ nb::list namedPatchesOf(const HexMesh& mesh, double angle, int threads) {
   nb::list list;
   for (NamedPatch& patch :
        run(threads, {}, [&](Context& context) { return namedPatches(mesh, angle, context); })) {
-    const std::size_t n = patch.quads.size();
-    list.append(nb::make_tuple(patch.name, patch.tag,
-                               ownedArray<Index, 2>(std::move(patch.quads), {n, 4}), patch.area,
-                               patch.centre, patch.normal));
+    list.append(nb::make_tuple(patch.name, patch.tag, ownedArray(std::move(patch.quads)),
+                               patch.area, patch.centre, patch.normal));
   }
   return list;
 }
@@ -87,29 +72,24 @@ nb::list namedPatchesOf(const HexMesh& mesh, double angle, int threads) {
 nb::tuple baseComplexOf(const HexMesh& mesh, int threads, const Progress& progress) {
   BaseComplex found =
       run(threads, progress, [&](Context& context) { return findBaseComplex(mesh, context); });
-  const std::size_t n = mesh.cells.size();
   std::vector<std::array<std::uint64_t, 4>> blocks;
   for (const MeshBlock& block : found.blocks) {
     blocks.push_back({block.size[0], block.size[1], block.size[2], block.cells});
   }
   nb::list curves;
   for (SingularCurve& curve : found.curves) {
-    const std::size_t length = curve.vertices.size();
-    curves.append(nb::make_tuple(ownedArray<Index, 1>(std::move(curve.vertices), {length}),
-                                 curve.valence, curve.boundary));
+    curves.append(
+        nb::make_tuple(ownedArray(std::move(curve.vertices)), curve.valence, curve.boundary));
   }
   nb::list irregular;
   for (IrregularVertices& type : found.irregular) {
-    const std::size_t count = type.vertices.size();
     irregular.append(nb::make_tuple(type.boundary, type.innerValences, type.boundaryValences,
-                                    ownedArray<Index, 1>(std::move(type.vertices), {count})));
+                                    ownedArray(std::move(type.vertices))));
   }
-  const std::size_t count = blocks.size();
-  return nb::make_tuple(ownedArray<Index, 2>(std::move(found.cellSheets), {n, 3}), found.sheets,
-                        ownedArray<Index, 2>(std::move(found.cellChords), {n, 3}), found.chords,
-                        ownedArray<Index, 1>(std::move(found.cellBlocks), {n}),
-                        ownedArray<std::uint64_t, 2>(std::move(blocks), {count, 4}), curves,
-                        irregular);
+  return nb::make_tuple(ownedArray(std::move(found.cellSheets)), found.sheets,
+                        ownedArray(std::move(found.cellChords)), found.chords,
+                        ownedArray(std::move(found.cellBlocks)), ownedArray(std::move(blocks)),
+                        curves, irregular);
 }
 
 }  // namespace
@@ -124,38 +104,32 @@ nb::tuple asTuple(Certificate&& certificate) {
     worst.append(
         nb::make_tuple(bad.cell, point(bad.place), point(bad.position), bad.scaledJacobian));
   }
-  const std::size_t n = certificate.validity.size();
-  return nb::make_tuple(
-      ownedArray<double, 1>(std::move(certificate.scaledJacobians), {n}), s.minimum, s.mean,
-      s.notPositive, histogram, ownedArray<std::uint8_t, 1>(std::move(certificate.validity), {n}),
-      certificate.positive, certificate.refuted, certificate.undecided, certificate.minimum, worst);
+  return nb::make_tuple(ownedArray(std::move(certificate.scaledJacobians)), s.minimum, s.mean,
+                        s.notPositive, histogram, ownedArray(std::move(certificate.validity)),
+                        certificate.positive, certificate.refuted, certificate.undecided,
+                        certificate.minimum, worst);
 }
 
 void bindMesh(nb::module_& module) {
   nb::class_<HexMesh> binding(module, "Mesh", "A mesh in the library's own arrays.");
-  binding
-      .def(
-          "__init__",
-          [](HexMesh* self, const InPoints& points, const InCells& cells,
-             const In1<Index>& generatorTet, const In1<CornerSet>& generatorCorners,
-             const In<std::int32_t, 2>& vertices, const In<std::int32_t, 3>& edges,
-             const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions,
-             const std::vector<NameRow>& names) {
-            HexMesh mesh;
-            assign(mesh.cells, elements<Hex>(cells));
-            GivenArrays{points, generatorTet, generatorCorners, vertices,
-                        edges,  quads,        regions,          names}
-                .copyTo(mesh);
-            new (self) HexMesh(std::move(mesh));
-          },
-          "points"_a.noconvert(), "cells"_a.noconvert(), "generator_tet"_a.noconvert(),
-          "generator_corners"_a.noconvert(), "feature_vertices"_a.noconvert(),
-          "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert(),
-          "tag_names"_a)
-      .def_prop_ro("cells", [](nb::handle self) {
-        auto& cells = unwrapped<HexMesh>(self).cells;
-        return viewOn<Index, 2>(cells, self, {cells.size(), 8});
-      });
+  binding.def(
+      "__init__",
+      [](HexMesh* self, const InPoints& points, const InCells& cells,
+         const In1<Index>& generatorTet, const In1<CornerSet>& generatorCorners,
+         const In<std::int32_t, 2>& vertices, const In<std::int32_t, 3>& edges,
+         const In<std::int32_t, 5>& quads, const In1<std::int32_t>& regions,
+         const std::vector<NameRow>& names) {
+        HexMesh mesh;
+        assign(mesh.cells, elements<Hex>(cells));
+        GivenArrays{points, generatorTet, generatorCorners, vertices, edges, quads, regions, names}
+            .copyTo(mesh);
+        new (self) HexMesh(std::move(mesh));
+      },
+      "points"_a.noconvert(), "cells"_a.noconvert(), "generator_tet"_a.noconvert(),
+      "generator_corners"_a.noconvert(), "feature_vertices"_a.noconvert(),
+      "feature_edges"_a.noconvert(), "feature_quads"_a.noconvert(), "regions"_a.noconvert(),
+      "tag_names"_a);
+  defineView(binding, "cells", &HexMesh::cells);
   defineArrays(binding);
 
   module.def(
@@ -169,18 +143,18 @@ void bindMesh(nb::module_& module) {
   module.def("named_patches", &namedPatchesOf, "mesh"_a, "angle"_a, "threads"_a);
   module.def("base_complex", &baseComplexOf, "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
-      "survey",
+      "summarize",
       [](const HexMesh& mesh, int threads, const Progress& progress) {
         return asDict(
-            run(threads, progress, [&](Context& context) { return survey(mesh, context); }));
+            run(threads, progress, [&](Context& context) { return summarize(mesh, context); }));
       },
       "mesh"_a, "threads"_a, "progress"_a.none());
   module.def(
-      "survey_file",
+      "summarize_file",
       [](const std::string& file, const std::string& format, int threads,
          const Progress& progress) {
         return asDict(run(threads, progress, [&](Context& context) {
-          return surveyFile(file, {.format = format}, context);
+          return summarizeFile(file, {.format = format}, context);
         }));
       },
       "file"_a, "format"_a, "threads"_a, "progress"_a.none());
@@ -197,15 +171,9 @@ void bindMesh(nb::module_& module) {
       },
       "corners"_a.noconvert());
 
-  const nb::call_guard<nb::gil_scoped_release> released;
-  nb::class_<PySurvey>(module, "SurveySink")
-      .def(nb::init<>())
-      .def("begin", &PySurvey::begin, "points"_a, "cells"_a, released)
-      .def("points", &PySurvey::points, "first"_a, "points"_a.noconvert(), released)
-      .def("cells", &PySurvey::cells, "first"_a, "cells"_a.noconvert(), released)
-      .def("cells64", &PySurvey::cells64, "first"_a, "cells"_a.noconvert(), released)
-      .def("end", &PySurvey::end, released)
-      .def("result", [](const PySurvey& self) { return asDict(self.result()); });
+  definePieces(nb::class_<PySummary>(module, "SummarySink")
+                   .def(nb::init<>())
+                   .def("result", [](const PySummary& self) { return asDict(self.result()); }));
 }
 
 }  // namespace hexhex::python

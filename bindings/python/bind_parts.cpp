@@ -8,25 +8,15 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 namespace {
 
-template <class T>
-auto listOf(Array<T>&& values) {
-  const std::size_t size = values.size();
-  return ownedArray<T, 1>(std::move(values), std::array<std::size_t, 1>{size});
-}
-
 /// (part, vertices, faces): faces as rows of cell, side and the other cell.
 nb::tuple neighbourTuple(PartNeighbour&& neighbour) {
-  Array<std::uint64_t> rows;
-  rows.reserve(3 * neighbour.faces.size());
+  std::vector<std::array<std::uint64_t, 3>> rows;
+  rows.reserve(neighbour.faces.size());
   for (const PartFace& face : neighbour.faces) {
-    rows.push_back(face.cell);
-    rows.push_back(face.side);
-    rows.push_back(face.otherCell);
+    rows.push_back({face.cell, face.side, face.otherCell});
   }
-  const std::size_t faces = neighbour.faces.size();
-  return nb::make_tuple(
-      neighbour.part, listOf(std::move(neighbour.vertices)),
-      ownedArray<std::uint64_t, 2>(std::move(rows), std::array<std::size_t, 2>{faces, 3}));
+  return nb::make_tuple(neighbour.part, ownedArray(std::move(neighbour.vertices)),
+                        ownedArray(std::move(rows)));
 }
 
 }  // namespace
@@ -45,23 +35,11 @@ nb::tuple partTuple(MeshPart&& part) {
   for (PartNeighbour& neighbour : part.neighbours) {
     neighbours.append(neighbourTuple(std::move(neighbour)));
   }
-  return nb::make_tuple(std::move(part.mesh), part.part, part.ownPoints, part.ownCells,
-                        listOf(std::move(part.globalPoints)), listOf(std::move(part.globalCells)),
-                        listOf(std::move(part.pointOwners)), listOf(std::move(part.ghostParts)),
-                        listOf(std::move(part.ghostLayers)), neighbours);
-}
-
-Dict partsDict(const PartsSummary& summary) {
-  Dict d;
-  d["cells"] = summary.cells;
-  d["vertices"] = summary.vertices;
-  d["largest"] = summary.largest;
-  d["smallest"] = summary.smallest;
-  d["empty"] = summary.empty;
-  d["shared_vertices"] = summary.sharedVertices;
-  d["shared_faces"] = summary.sharedFaces;
-  d["most_neighbours"] = summary.mostNeighbours;
-  return d;
+  return nb::make_tuple(
+      std::move(part.mesh), part.part, part.ownPoints, part.ownCells,
+      ownedArray(std::move(part.globalPoints)), ownedArray(std::move(part.globalCells)),
+      ownedArray(std::move(part.pointOwners)), ownedArray(std::move(part.ghostParts)),
+      ownedArray(std::move(part.ghostLayers)), neighbours);
 }
 
 namespace {
@@ -70,8 +48,9 @@ nb::list extractAll(const ArrayMap& map, std::uint32_t parts, std::uint32_t ghos
                     const std::string& partition, bool verify, const Options& options, int threads,
                     const Progress& progress) {
   std::vector<MeshPart> made = run(threads, progress, [&](Context& context) {
-    return extractParts(map.view(), options.get(), partOptions(parts, ghosts, partition, verify),
-                        context);
+    RepairedMap repaired;
+    return extractParts(map.view(), options.get(repaired),
+                        partOptions(parts, ghosts, partition, verify), context);
   });
   nb::list list;
   for (MeshPart& part : made) list.append(partTuple(std::move(part)));
@@ -82,14 +61,15 @@ Dict extractIntoFiles(const std::string& file, const ArrayMap& map, std::uint32_
                       std::uint32_t ghosts, const std::string& partition, bool verify,
                       const Options& options, const std::string& format, int threads,
                       const Progress& progress) {
-  return partsDict(run(threads, progress, [&](Context& context) {
+  return fieldsOf(run(threads, progress, [&](Context& context) {
     WriteOptions writing;
     writing.format = format;
     const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
-    PartSurvey survey(*sink);
-    extractParts(survey, map.view(), options.get(), partOptions(parts, ghosts, partition, verify),
-                 context);
-    return survey.result();
+    PartSummarySink checked(*sink);
+    RepairedMap repaired;
+    extractParts(checked, map.view(), options.get(repaired),
+                 partOptions(parts, ghosts, partition, verify), context);
+    return checked.result();
   }));
 }
 

@@ -10,19 +10,7 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 
 Dict asDict(const QuantizeReport& r) {
-  Dict d;
-  d["cells_wanted"] = r.cellsWanted;
-  d["cells"] = r.cells;
-  d["scale"] = r.scale;
-  d["displacement"] = r.displacement;
-  d["blocks"] = r.blocks;
-  d["arcs"] = r.arcs;
-  d["shortest_arc"] = r.shortestArc;
-  d["longest_arc"] = r.longestArc;
-  d["integers_by"] = r.integersBy;
-  d["attempts"] = r.attempts;
-  d["split_edges"] = r.splitEdges;
-  d["added_tets"] = r.addedTets;
+  Dict d = fieldsOf(r);
   d["worst_before"] = r.distortionBefore.worst;
   d["median_before"] = r.distortionBefore.median;
   d["worst_after"] = r.distortionAfter.worst;

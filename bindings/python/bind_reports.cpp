@@ -2,7 +2,6 @@
 #include <string>
 #include <vector>
 
-#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -13,18 +12,6 @@
 using namespace nanobind::literals;
 
 namespace hexhex::python {
-
-Dict asDict(const Expectation& e) {
-  Dict d;
-  d["cells"] = e.cells;
-  d["boundary_quads"] = e.boundaryQuads;
-  d["inner_singular_edges"] = nb::cast(e.innerSingularEdges);
-  d["boundary_singular_edges"] = nb::cast(e.boundarySingularEdges);
-  d["euler_characteristic"] = e.eulerCharacteristic;
-  d["components"] = e.components;
-  d["boundary_components"] = e.boundaryComponents;
-  return d;
-}
 
 nb::list asList(const std::vector<Defect>& defects) {
   nb::list list;
@@ -51,26 +38,9 @@ nb::list asList(const VerifyReport& report) {
 namespace {
 
 Dict asDict(const CheckReport& r) {
-  Dict d;
-  d["points"] = r.points;
-  d["tets"] = r.tets;
-  d["edges"] = r.edges;
-  d["faces"] = r.faces;
-  d["boundary_faces"] = r.boundaryFaces;
-  d["inner_faces"] = r.innerFaces;
-  d["chart_jumps"] = r.chartJumps;
-  d["isolated_vertices"] = r.isolatedVertices;
-  d["tets_inverted_in_space"] = r.tetsInvertedInSpace;
-  d["mirrored"] = r.mirrored;
-  d["corners_reversed"] = r.cornersReversed;
-  d["max_transition_residual"] = r.maxTransitionResidual;
-  d["max_displacement"] = r.maxDisplacement;
-  d["inner_singular_tet_edges"] = nb::cast(r.innerSingularTetEdges);
-  d["boundary_singular_tet_edges"] = nb::cast(r.boundarySingularTetEdges);
-  d["singular_nodes"] = r.singularNodes;
-  d["boundary_genus"] = nb::cast(r.boundaryGenus);
+  Dict d = fieldsOf(r);
   d["defects"] = asList(r.defects);
-  d["expected"] = r.valid() ? nb::object(python::asDict(r.expected)) : nb::none();
+  d["expected"] = r.valid() ? nb::object(fieldsOf(r.expected)) : nb::none();
   return d;
 }
 

@@ -17,25 +17,10 @@ const char* nameOf(ShapeMethod method) {
 }
 
 Dict asDict(const ShapeReport& r) {
-  Dict d;
+  Dict d = fieldsOf(r);
+  d.update(fieldsOf(r.labels));
   d["method"] = nameOf(r.method);
-  d["rotation"] = ownedArray<double, 2>(std::array(r.rotation), {3, 3});
-  d["charts"] = r.labels.charts;
-  d["corners"] = r.labels.corners;
-  d["bad_loops"] = r.labels.badLoops;
-  d["bad_corners"] = r.labels.badCorners;
-  d["opposite_edges"] = r.labels.oppositeEdges;
-  d["turning_points"] = r.labels.turningPoints;
-  d["wrong_turns"] = r.labels.wrongTurns;
-  d["flat_charts"] = r.labels.flatCharts;
-  d["deviation"] = r.labels.deviation;
-  d["label_moves"] = r.labelMoves;
-  d["added_tets"] = r.addedTets;
-  d["feature_edges"] = r.featureEdges;
-  d["tagged_edges"] = r.taggedEdges;
-  d["inner_faces"] = r.innerFaces;
-  d["aligned_faces"] = r.alignedFaces;
-  d["aligned_area"] = r.alignedArea;
+  d["rotation"] = ownedArray(r.rotation);
   d["worst"] = r.distortion.worst;
   d["median"] = r.distortion.median;
   return d;
@@ -51,26 +36,13 @@ nb::list asList(const std::vector<WayReport>& ways) {
   return list;
 }
 
-Dict asDict(const FillReport& r) {
-  Dict d;
-  d["mesher"] = r.mesher;
-  d["tet_size"] = r.tetSize;
-  d["tets"] = r.tets;
-  d["triangles"] = r.triangles;
-  d["bodies"] = r.bodies;
-  d["voids"] = r.voids;
-  d["volume"] = r.volume;
-  d["filled_volume"] = r.filledVolume;
-  return d;
-}
-
 /// @return tets, and how they were filled or None
 nb::tuple partOfFile(const std::string& file, const FillOptions& options, int threads,
                      const Progress& progress) {
   FilledPart part =
       run(threads, progress, [&](Context& context) { return readPart(file, options, context); });
   nb::object report = nb::none();
-  if (part.report) report = asDict(*part.report);
+  if (part.report) report = fieldsOf(*part.report);
   return nb::make_tuple(std::move(part.tets), report);
 }
 

@@ -90,7 +90,9 @@ nb::tuple extractOne(const nb::object& connected, const ArrayMap* map, const std
   const PartOptions parts = partOptions(1, ghosts, partition, verify);
   return partTuple(runTogether(connected, map, path, threads, progress,
                                [&](PythonTeam& team, const TetMapView& view, Context& context) {
-                                 return extractPart(team, view, options.get(), parts, context);
+                                 RepairedMap repaired;
+                                 return extractPart(team, view, options.get(repaired), parts,
+                                                    context);
                                }));
 }
 
@@ -101,12 +103,13 @@ Dict extractTogether(const nb::object& connected, const std::string& file, const
   const PartOptions parts = partOptions(1, ghosts, partition, verify);
   WriteOptions writing;
   writing.format = format;
-  return partsDict(runTogether(
+  return fieldsOf(runTogether(
       connected, map, path, threads, progress,
       [&](PythonTeam& team, const TetMapView& view, Context& context) {
         const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context, &team);
         PartsSummary summary;
-        extractPart(team, *sink, view, options.get(), parts, context, nullptr, &summary);
+        RepairedMap repaired;
+        extractPart(team, *sink, view, options.get(repaired), parts, context, nullptr, &summary);
         return summary;
       }));
 }

@@ -98,26 +98,18 @@ void runWork(int threads, const Progress& progress, const std::function<void(Con
   if (stages != nullptr) *stages = context.stageTimes();
 }
 
-ExtractOptions Options::get() const {
+ExtractOptions Options::get(RepairedMap& repaired) const {
   return {.engine = propeller ? Engine::Propeller : Engine::Atlas,
           .scale = scale,
-          .epsilon = epsilon,
           .tolerance = tolerance,
-          .repair = repair ? RepairMode::Auto : RepairMode::Off,
+          .repair = repair ? &repaired : nullptr,
           .round = round,
           .curvedNodes = exactNodes ? CurvedNodes::Exact : CurvedNodes::Blended};
 }
 
 Dict asDict(const RepairReport& report) {
-  Dict d;
+  Dict d = fieldsOf(report);
   d["changed"] = report.changed;
-  d["bad_tets"] = report.badTets;
-  d["moved_vertices"] = report.movedVertices;
-  d["largest_move"] = report.largestMove;
-  d["split_edges"] = report.splitEdges;
-  d["added_tets"] = report.addedTets;
-  d["rounded_vertices"] = report.roundedVertices;
-  d["seconds"] = report.seconds;
   nb::list regions;
   for (const RepairedRegion& region : report.regions) {
     regions.append(
@@ -129,16 +121,6 @@ Dict asDict(const RepairReport& report) {
   return d;
 }
 
-namespace {
-
-nb::list countsAsList(const std::array<std::uint64_t, 4>& counts) {
-  nb::list list;
-  for (const std::uint64_t count : counts) list.append(count);
-  return list;
-}
-
-}  // namespace
-
 nb::list asList(const std::vector<StageTime>& stages) {
   nb::list list;
   for (const StageTime& time : stages) list.append(nb::make_tuple(time.stage, time.seconds));
@@ -146,34 +128,12 @@ nb::list asList(const std::vector<StageTime>& stages) {
 }
 
 nb::tuple asTuple(const Notes& notes) {
-  const ExtractStatistics& s = notes.statistics;
-  Dict d;
-  d["seconds"] = s.seconds;
-  d["threads"] = s.threads;
-  d["epsilon"] = s.epsilon;
-  d["epsilon_fallback"] = s.epsilonFallback;
-  d["mirrored"] = s.mirrored;
-  d["tets_inverted_in_space"] = s.tetsInvertedInSpace;
-  d["max_displacement"] = s.maxDisplacement;
-  d["max_transition_residual"] = s.maxTransitionResidual;
-  d["chart_jumps"] = s.chartJumps;
-  d["inner_faces"] = s.innerFaces;
-  d["singular_edges"] = s.singularEdges;
-  d["generators"] = countsAsList(s.generators);
-  d["vertices"] = countsAsList(s.vertices);
-  d["local_propellers"] = s.localPropellers;
-  d["global_propellers"] = s.globalPropellers;
-  d["charts"] = s.charts;
-  d["cut_faces"] = s.cutFaces;
-  d["overlapping_tets"] = s.overlappingTets;
-  d["traced_cells"] = s.tracedCells;
-  nb::list straightened;
-  for (const Index cell : s.straightenedCells) straightened.append(cell);
-  d["straightened_cells"] = straightened;
+  Dict d = fieldsOf(notes.statistics);
   d["stages"] = asList(notes.stages);
-  if (!s.repairedMap) return nb::make_tuple(d, nb::none(), nb::none());
+  const auto& [map, report] = notes.repaired;
+  if (!map) return nb::make_tuple(d, nb::none(), nb::none());
   // Nobody else holds it; Python has no const.
-  return nb::make_tuple(d, asDict(s.repair), std::const_pointer_cast<TetMap>(s.repairedMap));
+  return nb::make_tuple(d, asDict(report), std::const_pointer_cast<TetMap>(map));
 }
 
 }  // namespace hexhex::python

@@ -1,17 +1,21 @@
 // The border between C++ and Python: arrays in and out without copies, long work without the GIL.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -21,6 +25,7 @@
 #include <hexhex/context.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/extract.hpp>
+#include <hexhex/fields.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
@@ -47,6 +52,14 @@ std::span<const Element> elements(const NdArray& array) {
   return {reinterpret_cast<const Element*>(array.data()), array.shape(0)};
 }
 
+/// The fields of a report by name.
+template <class Report>
+Dict fieldsOf(const Report& report) {
+  Dict d;
+  visitFields(report, [&d](const char* field, const auto& value) { d[field] = value; });
+  return d;
+}
+
 template <class To, class From>
 void assign(To& to, const From& from) {
   to.assign(from.begin(), from.end());
@@ -69,7 +82,34 @@ struct ArrayMap {
   [[nodiscard]] TetMap copy() const;
 };
 
-/// A numpy array on the elements of `list`, which `owner` keeps alive.
+/// An element of an array as a row of a numpy array: its scalars, and how many there are.
+template <class Element>
+struct Row {
+  using Scalar = Element;
+  static constexpr std::array<std::size_t, 0> kShape = {};
+};
+template <class Element>
+requires std::is_enum_v<Element>
+struct Row<Element> : Row<std::underlying_type_t<Element>> {
+};
+/// Tagged elements, all of whose numbers have 32 bits.
+template <class Element>
+requires std::is_class_v<Element>
+struct Row<Element> {
+  using Scalar = std::int32_t;
+  static constexpr std::array<std::size_t, 1> kShape = {sizeof(Element) / sizeof(Scalar)};
+};
+template <class Element, std::size_t n>
+struct Row<std::array<Element, n>> {
+  using Scalar = typename Row<Element>::Scalar;
+  static constexpr auto kShape = [] {
+    std::array<std::size_t, 1 + Row<Element>::kShape.size()> shape = {n};
+    std::copy(Row<Element>::kShape.begin(), Row<Element>::kShape.end(), shape.begin() + 1);
+    return shape;
+  }();
+};
+
+/// A numpy array on the scalars of `list`, which `owner` keeps alive.
 template <class Scalar, std::size_t kRank, class List>
 auto viewOn(List& list, nb::handle owner, const std::array<std::size_t, kRank>& shape) {
   using Element = std::conditional_t<std::is_const_v<List>, const Scalar, Scalar>;
@@ -77,12 +117,21 @@ auto viewOn(List& list, nb::handle owner, const std::array<std::size_t, kRank>& 
   return Out(reinterpret_cast<Element*>(list.data()), kRank, shape.data(), owner);
 }
 
-/// A numpy array that owns `list`.
-template <class Scalar, std::size_t kRank, class List>
-auto ownedArray(List&& list, const std::array<std::size_t, kRank>& shape) {
-  auto* const moved = new List(std::forward<List>(list));
+/// The same with a row for each element.
+template <class List>
+auto viewOn(List& list, nb::handle owner) {
+  using Of = Row<typename List::value_type>;
+  std::array<std::size_t, 1 + Of::kShape.size()> shape = {list.size()};
+  std::copy(Of::kShape.begin(), Of::kShape.end(), shape.begin() + 1);
+  return viewOn<typename Of::Scalar, 1 + Of::kShape.size()>(list, owner, shape);
+}
+
+/// A numpy array that owns a list, which is moved into it.
+template <class List>
+auto ownedArray(List list) {
+  auto* const moved = new List(std::move(list));
   const nb::capsule owner(moved, [](void* kept) noexcept { delete static_cast<List*>(kept); });
-  return viewOn<Scalar, kRank>(*moved, owner, shape);
+  return viewOn(*moved, owner);
 }
 
 /// Runs work(context) in a thread of its own, without the GIL. A signal (Ctrl-C) or an exception in
@@ -114,6 +163,7 @@ auto run(int threads, const Progress& progress, const Work& work,
 /// What an extraction tells beside its mesh.
 struct Notes {
   ExtractStatistics statistics = {};
+  RepairedMap repaired = {};
   std::vector<StageTime> stages = {};
 };
 
@@ -123,16 +173,25 @@ T& unwrapped(nb::handle self) {
   return *nb::inst_ptr<T>(self);
 }
 
-/// What every extraction may be told: scale, engine, tolerance, epsilon, repair, round.
+/// Defines a property that is a view on a list of an object, and keeps the object alive.
+/// @param listOf  a member, or a function from the object to the list
+template <class T, class ListOf>
+void defineView(nb::class_<T>& binding, const char* name, const ListOf& listOf) {
+  binding.def_prop_ro(name, [listOf](nb::handle self) {
+    return viewOn(std::invoke(listOf, unwrapped<T>(self)), self);
+  });
+}
+
+/// What every extraction may be told.
 struct Options {
   int scale = 1;
   bool propeller = false;
   double tolerance = 1e-2;
-  double epsilon = 1e-6;
   bool repair = false;
   bool round = false;
   bool exactNodes = false;
-  [[nodiscard]] ExtractOptions get() const;
+  /// @param repaired  receives the map if it is to be repaired
+  [[nodiscard]] ExtractOptions get(RepairedMap& repaired) const;
 };
 
 [[nodiscard]] Error adviceOn(const Error& error, const ArrayMap& map, int threads);
@@ -140,12 +199,12 @@ struct Options {
 /// (statistics, report of the repair or None, repaired map or None)
 [[nodiscard]] nb::tuple asTuple(const Notes& notes);
 
-/// What work(context, statistics) makes, and what it tells beside that; the latter alone if it
+/// What work(context, notes) makes, and what it tells beside that; the latter alone if it
 /// makes nothing.
 template <class Work>
 nb::tuple runNoted(int threads, const Progress& progress, const Work& work) {
   Notes notes;
-  const auto noted = [&](Context& context) { return work(context, notes.statistics); };
+  const auto noted = [&](Context& context) { return work(context, notes); };
   if constexpr (std::is_void_v<decltype(noted(std::declval<Context&>()))>) {
     run(threads, progress, noted, &notes.stages);
     return asTuple(notes);
@@ -179,7 +238,6 @@ auto advising(const ArrayMap& map, int threads, const Work& work) {
 [[nodiscard]] nb::tuple asTuple(ImproveReport&& report);
 /// (name, expected, found, whether it passed) of each check
 [[nodiscard]] nb::list asList(const VerifyReport& report);
-[[nodiscard]] Dict asDict(const Expectation& expected);
 [[nodiscard]] nb::list asList(const std::vector<Defect>& defects);
 
 void bindMap(nb::module_& module);

@@ -32,42 +32,17 @@ struct GivenArrays {
 /// Defines properties that are views on the arrays beside the cells, and keep the mesh alive.
 template <class Mesh>
 void defineArrays(nb::class_<Mesh>& binding) {
-  binding
-      .def_prop_ro("points",
-                   [](nb::handle self) {
-                     auto& points = unwrapped<Mesh>(self).points;
-                     return viewOn<double, 2>(points, self, {points.size(), 3});
-                   })
-      .def_prop_ro("generator_tet",
-                   [](nb::handle self) {
-                     auto& tets = unwrapped<Mesh>(self).generatorTet;
-                     return viewOn<Index, 1>(tets, self, {tets.size()});
-                   })
-      .def_prop_ro("generator_corners",
-                   [](nb::handle self) {
-                     auto& corners = unwrapped<Mesh>(self).generatorCorners;
-                     return viewOn<CornerSet, 1>(corners, self, {corners.size()});
-                   })
-      .def_prop_ro("feature_vertices",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<Mesh>(self).features.vertices;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 2});
-                   })
-      .def_prop_ro("feature_edges",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<Mesh>(self).features.edges;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 3});
-                   })
-      .def_prop_ro("feature_quads",
-                   [](nb::handle self) {
-                     auto& list = unwrapped<Mesh>(self).features.quads;
-                     return viewOn<std::int32_t, 2>(list, self, {list.size(), 5});
-                   })
-      .def_prop_ro("tag_names", [](const Mesh& self) { return rowsOf(self.features.names); })
-      .def_prop_ro("regions", [](nb::handle self) {
-        auto& regions = unwrapped<Mesh>(self).regions;
-        return viewOn<std::int32_t, 1>(regions, self, {regions.size()});
-      });
+  defineView(binding, "points", &Mesh::points);
+  defineView(binding, "generator_tet", &Mesh::generatorTet);
+  defineView(binding, "generator_corners", &Mesh::generatorCorners);
+  defineView(
+      binding, "feature_vertices", [](Mesh & m) -> auto& { return m.features.vertices; });
+  defineView(
+      binding, "feature_edges", [](Mesh & m) -> auto& { return m.features.edges; });
+  defineView(
+      binding, "feature_quads", [](Mesh & m) -> auto& { return m.features.quads; });
+  defineView(binding, "regions", &Mesh::regions);
+  binding.def_prop_ro("tag_names", [](const Mesh& self) { return rowsOf(self.features.names); });
 }
 
 }  // namespace hexhex::python

@@ -11,6 +11,5 @@ namespace hexhex::python {
                                       const std::string& partition, bool verify);
 /// The fields of the class MeshPart, in their order.
 [[nodiscard]] nb::tuple partTuple(MeshPart&& part);
-[[nodiscard]] Dict partsDict(const PartsSummary& summary);
 
 }  // namespace hexhex::python

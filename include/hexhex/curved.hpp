@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
@@ -130,6 +131,11 @@ struct LagrangeMesh {
   HexFeatures features = {};
   Array<std::int32_t> regions = {};
 
+  /// Cells, ascending, whose nodes on the boundary, on region interfaces or on tagged elements
+  /// extractLagrange() moved off the image of the map because the cell or a neighbour was not
+  /// positive. Not stored in files.
+  std::vector<Index> straightenedCells = {};
+
   [[nodiscard]] std::size_t nodesPerCell() const noexcept {
     const auto n = static_cast<std::size_t>(order) + 1;
     return n * n * n;
@@ -173,7 +179,7 @@ void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& fil
 /// The same with the map that the mesh was extracted from, so that `.ovmb` files include the
 /// indices of the tet simplices that contain points and segments, in the numbering of the `.ovm` or
 /// `.ovmb` file that writeMap() writes for this map.
-/// @param map  after a repair, the repaired map (ExtractStatistics::repairedMap)
+/// @param map  after a repair, the repaired map (ExtractOptions::repair)
 /// @throws Error  also InvalidArgument for a different map, and as writeMap() for `.ovmb`
 void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                const std::filesystem::path& file, Context& context);

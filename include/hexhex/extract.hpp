@@ -6,8 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include <hexhex/context.hpp>
 #include <hexhex/export.h>
@@ -22,18 +20,12 @@ enum class Engine : std::uint8_t {
   Propeller  ///< the algorithm of the paper: traces every edge
 };
 
-/// How to treat a map with flipped or flat tets.
-enum class RepairMode : std::uint8_t {
-  Off,  ///< report an error
-  Auto  ///< repair the map first, if this build supports repair
-};
-
 /// Placement of the nodes of higher-order cells that are not hex vertices (extractLagrange()).
 enum class CurvedNodes : std::uint8_t {
   /// Nodes on the boundary, on region interfaces and on tagged edges and quads lie on the image of
   /// the map; all others are blended between them. A cell is positive wherever its straight
   /// counterpart is. To achieve this, some cells may leave the surface: see
-  /// ExtractStatistics::straightenedCells.
+  /// LagrangeMesh::straightenedCells.
   Blended,
   Exact  ///< all nodes lie on the image of the map, even where cells fold over
 };
@@ -43,24 +35,21 @@ struct ExtractOptions {
   /// Factor for all parameters, applied before extraction: yields scale^3 times as many cells. At
   /// least 1.
   int scale = 1;
-  /// Margin by which tets are enlarged when candidate lattice points are enumerated, in parameter
-  /// units. Affects only the time, never the result; 0 and infinity are valid. Propeller engine
-  /// only: the atlas engine enumerates no candidates. (Section 5.2.3)
-  double epsilon = 1e-6;
   /// Maximum violation of the integer conditions (transitions, boundary, singularities) in the
   /// input, in parameter units before scaling. Below 0.25.
   double tolerance = 1e-2;
-  RepairMode repair = RepairMode::Off;
+  /// If not null, a map with flipped or flat tets is repaired first (repair.hpp): receives the
+  /// repaired map, to which the mesh belongs, and what it held before is gone. If null, such a map
+  /// is an error.
+  RepairedMap* repair = nullptr;
   bool round = false;  ///< as RepairOptions::round, if the map is repaired
   CurvedNodes curvedNodes = CurvedNodes::Blended;
 };
 
-/// Statistics of an extraction.
+/// Counts and times of an extraction.
 struct ExtractStatistics {
   double seconds = 0;                     ///< from input arrays to finished arrays
   int threads = 0;                        ///< number of threads used
-  double epsilon = 0;                     ///< value used; 0 with the atlas engine
-  bool epsilonFallback = false;           ///< always false: no epsilon is too small
   bool mirrored = false;                  ///< the map reverses orientation
   std::uint64_t tetsInvertedInSpace = 0;  ///< a warning: harmless for extraction
   double maxDisplacement = 0;             ///< caused by sanitization, in unscaled parameter units
@@ -79,15 +68,6 @@ struct ExtractStatistics {
   std::uint64_t cutFaces = 0;         ///< interior faces of the tet mesh where a chart ends
   std::uint64_t overlappingTets = 0;  ///< tets that did not fit into their first chart
   std::uint64_t tracedCells = 0;      ///< cells with a corner outside their chart
-
-  /// Higher-order cells, ascending, whose nodes on the boundary, on region interfaces or on tagged
-  /// elements were moved off the image of the map because the cell or a neighbour was not positive.
-  std::vector<Index> straightenedCells;
-
-  RepairReport repair;  ///< `changed` is false if the map was valid
-  /// The repaired map, from which the mesh was extracted and to whose tets `generatorTet` refers;
-  /// null if the map was valid.
-  std::shared_ptr<const TetMap> repairedMap;
 };
 
 /// Extracts the hexahedral mesh that the map implies, in time linear in the number of tets plus the
@@ -107,8 +87,8 @@ struct ExtractStatistics {
 /// mesh.regions holds for each cell the region of the smallest tet that contains its centre. Maps
 /// without features and regions incur no cost.
 ///
-/// If options.repair is Auto, a map with flipped or flat tets is repaired first (repair.hpp), and
-/// the result belongs to statistics->repairedMap. A valid map incurs no cost.
+/// With options.repair, a map with flipped or flat tets is repaired first, and the mesh is that of
+/// options.repair->map. A valid map incurs no cost.
 ///
 /// @throws Error  for every violated condition of an integer-grid map, with its place;
 ///         InvalidArgument if features name vertices that do not exist or are listed twice with

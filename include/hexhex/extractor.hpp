@@ -22,8 +22,8 @@ struct ExtractorOptions {
   /// The largest scale that will be requested, at least 1; for higher-order cells, times the order.
   /// Large values leave less precision for the fractional part.
   int maxScale = 64;
-  /// As in ExtractOptions. All statistics provide the repaired map as `repairedMap`.
-  RepairMode repair = RepairMode::Off;
+  // As in ExtractOptions:
+  RepairedMap* repair = nullptr;  ///< filled by the constructor
   bool round = false;
 };
 
@@ -46,10 +46,10 @@ class Extractor {
   Extractor(const Extractor&) = delete;
   Extractor& operator=(const Extractor&) = delete;
 
-  /// Extracts the mesh at options.scale, which is at most maxScale. Ignores options.tolerance, as
-  /// the map is already prepared. The mesh is identical to that of extract(), bit for bit, if
-  /// options.scale and maxScale are below 256; with a larger maxScale, positions may differ in
-  /// their last digits.
+  /// Extracts the mesh at options.scale, which is at most maxScale. Ignores options.tolerance and
+  /// options.repair, as the map is already prepared. The mesh is identical to that of extract(),
+  /// bit for bit, if options.scale and maxScale are below 256; with a larger maxScale, positions
+  /// may differ in their last digits.
   /// @param[out] statistics  filled if not null; excludes the time of the preparation
   /// @throws Error InvalidArgument, TooLarge, Cancelled, OutOfMemory
   [[nodiscard]] HexMesh extract(const ExtractOptions& options, Context& context,

@@ -9,6 +9,7 @@
 #include <hexhex/extract.hpp>        // IWYU pragma: export
 #include <hexhex/extractor.hpp>      // IWYU pragma: export
 #include <hexhex/features.hpp>       // IWYU pragma: export
+#include <hexhex/fields.hpp>         // IWYU pragma: export
 #include <hexhex/fill.hpp>           // IWYU pragma: export
 #include <hexhex/improve.hpp>        // IWYU pragma: export
 #include <hexhex/io.hpp>             // IWYU pragma: export
@@ -24,7 +25,7 @@
 #include <hexhex/shape.hpp>          // IWYU pragma: export
 #include <hexhex/stream.hpp>         // IWYU pragma: export
 #include <hexhex/structure.hpp>      // IWYU pragma: export
-#include <hexhex/survey.hpp>         // IWYU pragma: export
+#include <hexhex/summary.hpp>        // IWYU pragma: export
 #include <hexhex/team.hpp>           // IWYU pragma: export
 #include <hexhex/types.hpp>          // IWYU pragma: export
 #include <hexhex/verify.hpp>         // IWYU pragma: export

@@ -17,10 +17,6 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
-namespace hexhex::io {
-class OutputFile;
-}
-
 namespace hexhex HEXHEX_API_NAMESPACE {
 
 /// Number of volume cells of one type in a file.
@@ -172,29 +168,6 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file);
                                                      const WriteOptions& options, Context& context);
 [[nodiscard]] std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                                      Context& context);
-
-/// A text file written by the caller; like all files written here, it appears complete or not at
-/// all. It is opened immediately, so that write errors surface before long work. Without commit(),
-/// nothing is left behind.
-class TextFile {
- public:
-  /// @throws Error FileWrite
-  explicit TextFile(const std::filesystem::path& file);
-  ~TextFile();
-  TextFile(const TextFile&) = delete;
-  TextFile& operator=(const TextFile&) = delete;
-
-  /// Writes the text and moves the file to its final name.
-  /// @throws Error FileWrite
-  void commit(std::string_view text);
-
- private:
-  std::unique_ptr<io::OutputFile> output_;
-};
-
-/// Renames a finished file within its folder, durably: the new name survives a power failure.
-/// @throws Error FileWrite
-void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target);
 
 /// Reads a hexahedral mesh and passes it on in pieces. A `.vtu` file with appended data, as written
 /// by this library, takes a few megabytes of memory whatever its size, and includes the generators

@@ -142,11 +142,12 @@ struct PartsSummary {
 
 /// Forwards parts to another sink and checks that they are consistent: any two neighbours have the
 /// same lists of vertices and faces, by global numbers, except with a probability of 1 in 2^64; and
-/// all cell and vertex numbers occur. In a team of processes, each process has a survey of its
+/// all cell and vertex numbers occur. In a team of processes, each process has a sink for its
 /// part, and end() combines them.
-class PartSurvey final : public PartSink {
+class PartSummarySink final : public PartSink {
  public:
-  explicit PartSurvey(PartSink& sink, ProcessTeam* team = nullptr) : sink_(sink), team_(team) {}
+  explicit PartSummarySink(PartSink& sink, ProcessTeam* team = nullptr)
+      : sink_(sink), team_(team) {}
   void begin(const PartsInfo& info) override;
   void part(MeshPart&& part) override;
   /// @throws Error VerificationFailed if parts are inconsistent; the other sink's end() is not

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <hexhex/context.hpp>
@@ -41,6 +42,14 @@ struct RepairReport {
   std::uint64_t addedTets = 0;        ///< by these splits
   std::uint64_t roundedVertices = 0;  ///< moved because of RepairOptions::round
   double seconds = 0;
+};
+
+/// Receives what an extraction repaired: see ExtractOptions::repair.
+struct RepairedMap {
+  /// The map from which the mesh was extracted, and to whose tets `generatorTet` refers; null if
+  /// the caller's map was valid.
+  std::shared_ptr<const TetMap> map;
+  RepairReport report;  ///< filled even if an error is thrown
 };
 
 /// Whether this build supports repair (requires Eigen).

@@ -92,7 +92,7 @@ class ProcessTeam {
 
 /// Extracts one of as many parts as there are processes: the one with the number of this process's
 /// rank. All processes have the same map and options. Each process holds the map, some tens of
-/// bytes per tet, and its part. Checks that all parts form one mesh, as PartSurvey does.
+/// bytes per tet, and its part. Checks that all parts form one mesh, as PartSummarySink does.
 /// @param parts  with a number of parts of 1 or that of processes
 /// @throws Error  the same in all processes, as extractParts(); InvalidArgument for another number
 ///         of parts, and if maps or options differ; VerificationFailed

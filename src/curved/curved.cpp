@@ -66,13 +66,13 @@ void requireOrder(int order) {
 
 /// @param map  scaled for the mesh; is rescaled for the nodes
 LagrangeMesh withNodes(HexMesh mesh, igm::PreparedMap& map, int order, CurvedNodes nodes,
-                       Context& context, ExtractStatistics& statistics) {
+                       Context& context) {
   LagrangeMesh result = groupNodes(mesh, map, order, context);
   result.features = std::move(mesh.features);
   result.regions = std::move(mesh.regions);
   if (nodes == CurvedNodes::Blended) {
     Stage stage(context, "blending");
-    statistics.straightenedCells = blendNodes(result, stage);
+    result.straightenedCells = blendNodes(result, stage);
   }
   return result;
 }
@@ -86,7 +86,6 @@ namespace hexhex {
 PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinearParts parts,
                                            const ExtractOptions& options, Context& context,
                                            ExtractStatistics* statistics) {
-  extraction::checkOptions(options);
   PiecewiseLinearMesh result;
   const extraction::ReportedCall call{"extractPiecewiseLinear", extraction::kPiecewiseSteps};
   extraction::runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
@@ -102,14 +101,13 @@ PiecewiseLinearMesh extractPiecewiseLinear(const TetMapView& map, PiecewiseLinea
 LagrangeMesh extractLagrange(const TetMapView& map, int order, const ExtractOptions& options,
                              Context& context, ExtractStatistics* statistics) {
   curved::requireOrder(order);
-  extraction::checkOptions(options);
   LagrangeMesh result;
   const extraction::ReportedCall call{"extractLagrange", extraction::kLagrangeSteps};
   extraction::runExtraction(call, {}, context, statistics, [&](ExtractStatistics& filled) {
     extraction::ScaledMap scaled =
         extraction::prepareScaled(map, options, {order}, context, filled);
     result = curved::withNodes(extraction::extractScaled(scaled, options, context, filled),
-                               scaled.map, order, options.curvedNodes, context, filled);
+                               scaled.map, order, options.curvedNodes, context);
   });
   return result;
 }
@@ -138,7 +136,7 @@ LagrangeMesh Extractor::extractLagrange(int order, const ExtractOptions& options
                  context, statistics, [&](std::uint64_t cells, ExtractStatistics& filled) {
                    HexMesh mesh = prepared_->mesh(cells, options, context, filled);
                    result = curved::withNodes(std::move(mesh), prepared_->mapToScale(), order,
-                                              options.curvedNodes, context, filled);
+                                              options.curvedNodes, context);
                  });
   return result;
 }

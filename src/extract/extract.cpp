@@ -19,29 +19,22 @@
 
 namespace hexhex::extraction {
 
-void checkOptions(const ExtractOptions& options) {
-  if (!(options.epsilon >= 0)) {
-    throw Error(ErrorCode::InvalidArgument, "Epsilon is " + std::to_string(options.epsilon) +
-                                                ". Choose a number from 0, or infinity.");
-  }
-}
-
 namespace {
 
 /// Whether to try a repair, even if this build can only say that it cannot: for flipped and flat
 /// tets, and for what they may have caused, as they falsify angles around edges and thereby
 /// singularities. Other defects are repaired only if rounding was requested.
 bool isToBeRepaired(const igm::DefectCollector& defects, const ExtractOptions& options) {
-  if (options.repair == RepairMode::Off) return false;
+  if (options.repair == nullptr) return false;
   const auto found = [&](ErrorCode code) { return defects.has(code); };
   return options.round || found(ErrorCode::FlippedTet) || found(ErrorCode::SingularityOffLattice) ||
          found(ErrorCode::TransitionResidual) || found(ErrorCode::HalfIntegerFixedPoint);
 }
 
 /// Prepares the map, or what a repair makes of it.
-/// @param report  on the repair, if there was one
 ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOptions& options,
-                         Context& context, RepairReport& report) {
+                         Context& context) {
+  if (options.repair != nullptr) *options.repair = {};
   {
     igm::DefectCollector defects;
     igm::PreparedMap prepared = igm::prepareMap(map, options.tolerance, maxScale, context, defects,
@@ -50,13 +43,14 @@ ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOption
     if (!isToBeRepaired(defects, options)) defects.throwIfAny();
   }
   const RepairOptions repair{options.tolerance, maxScale, options.round, true};
-  auto repaired =
-      std::make_shared<const TetMap>(repairs::repairInArena(map, repair, context, report));
+  auto repaired = std::make_shared<const TetMap>(
+      repairs::repairInArena(map, repair, context, options.repair->report));
   igm::DefectCollector defects;
   igm::PreparedMap prepared =
       igm::prepareMap(*repaired, options.tolerance, maxScale, context, defects,
                       igm::ChartChoice::Unfolded, options.switches);
   defects.throwIfAny();
+  options.repair->map = repaired;
   return {std::move(prepared), std::move(repaired)};
 }
 
@@ -65,9 +59,8 @@ ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOption
 ValidMap prepareValid(const TetMapView& map, int maxScale, const EngineOptions& options,
                       Context& context, ExtractStatistics& statistics) {
   requireValidTags(map);
-  ValidMap valid = prepareOrRepair(map, maxScale, options, context, statistics.repair);
+  ValidMap valid = prepareOrRepair(map, maxScale, options, context);
   const igm::PreparedMap& prepared = valid.prepared;
-  statistics.repairedMap = valid.repaired;
   statistics.mirrored = prepared.input.mirrored;
   statistics.tetsInvertedInSpace = prepared.input.tetsInvertedInSpace;
   statistics.maxDisplacement = prepared.exact.maxDisplacement;
@@ -135,7 +128,6 @@ HexMesh extractScaled(ScaledMap& scaled, const EngineOptions& options, Context& 
 
 HexMesh extractWith(const TetMapView& map, const EngineOptions& options, Context& context,
                     ExtractStatistics* statistics) {
-  checkOptions(options);
   HexMesh mesh;
   runExtraction({"extract"}, {}, context, statistics, [&](ExtractStatistics& filled) {
     ScaledMap scaled = prepareScaled(map, options, {}, context, filled);
@@ -155,7 +147,6 @@ HexMesh extract(const TetMapView& map, const ExtractOptions& options, Context& c
 
 void extractTo(MeshSink& sink, const TetMapView& map, const ExtractOptions& options,
                Context& context, ExtractStatistics* statistics) {
-  extraction::checkOptions(options);
   extraction::runExtraction({"extractTo"}, {}, context, statistics, [&](ExtractStatistics& filled) {
     const extraction::ScaledMap scaled = extraction::prepareScaled(
         map, options, {1, extraction::kMaxStreamedCells}, context, filled);

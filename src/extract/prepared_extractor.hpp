@@ -38,7 +38,6 @@ class Extractor::Prepared {
   void run(const extraction::ReportedCall& call, const ExtractOptions& options,
            const extraction::ScaleLimits& limits, Context& context, ExtractStatistics* statistics,
            const Work& work) {
-    extraction::checkOptions(options);
     if (options.scale < 1 || options.scale > maxScale_ / limits.furtherScale) {
       const bool curved = limits.furtherScale > 1;
       throw Error(ErrorCode::InvalidArgument,

@@ -23,15 +23,16 @@ namespace hexhex::extraction {
 inline constexpr double kMaxCells = kNone;
 inline constexpr double kMaxStreamedCells = igm::kMaxCountedCells;
 
-/// @throws Error InvalidArgument for an epsilon out of range
-void checkOptions(const ExtractOptions& options);
-
-/// The caller's options, and the engine's switches.
+/// The caller's options, and what tests and ablations vary.
 struct EngineOptions : ExtractOptions {
   // NOLINTNEXTLINE(google-explicit-constructor): options without switches mean the defaults.
   EngineOptions(const ExtractOptions& options, const EngineSwitches& switches_ = {})
       : ExtractOptions(options), switches(switches_) {}
   EngineSwitches switches;
+  /// Margin by which the propeller engine enlarges tets when it enumerates candidates for lattice
+  /// points, in parameter units; at least 0. Affects only the time, never the result: exact
+  /// predicates decide. (Section 5.2.3)
+  double epsilon = 1e-6;
 };
 
 /// A map that has passed all checks.

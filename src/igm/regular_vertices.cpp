@@ -76,9 +76,9 @@ RegularVertices::BoundaryFace boundaryFace(const LocalParameters& parameters,
 }
 
 /// Goes through boundary faces, then through tets and inner faces.
-class Survey {
+class RegularVertexSearch {
  public:
-  Survey(const adjacency::TetTopology& topology, const LocalParameters& parameters)
+  RegularVertexSearch(const adjacency::TetTopology& topology, const LocalParameters& parameters)
       : topology_(topology),
         parameters_(parameters),
         planes_(topology.pointCount),
@@ -265,7 +265,7 @@ class Survey {
 
 RegularVertices findRegularVertices(const adjacency::TetTopology& topology,
                                     const LocalParameters& parameters, Stage& stage) {
-  return Survey(topology, parameters).run(stage);
+  return RegularVertexSearch(topology, parameters).run(stage);
 }
 
 }  // namespace hexhex::igm

@@ -146,7 +146,6 @@ template <class Make>
 void runParts(ProcessTeam* team, std::uint32_t sinkLayers, const TetMapView& map,
               const ExtractOptions& options, const PartOptions& parts, Context& context,
               ExtractStatistics* statistics, const Make& make) {
-  extraction::checkOptions(options);
   checkOptions(parts);
   PartOptions needed = parts;
   needed.ghostLayers = std::max(needed.ghostLayers, sinkLayers);
@@ -186,7 +185,7 @@ std::uint64_t hashOf(const TetMapView& map, const ExtractOptions& options,
   addBytes(hash, std::as_bytes(map.regions));
   hash.add(static_cast<std::uint64_t>(options.scale));
   hash.add(std::bit_cast<std::uint64_t>(options.tolerance));
-  hash.add(static_cast<std::uint64_t>(options.repair));
+  hash.add(options.repair != nullptr ? 1 : 0);
   hash.add(options.round ? 1 : 0);
   hash.add(parts.ghostLayers);
   hash.add(static_cast<std::uint64_t>(parts.method));
@@ -241,14 +240,14 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     PartOptions all = parts;
     all.parts = team.size();
     parts::requireSame(team, parts::hashOf(map, options, parts));
-    PartSurvey survey(sink, &team);
+    PartSummarySink checked(sink, &team);
     parts::runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
                     [&](parts::ProvenParts& maker, const PartsInfo& info) {
-                      survey.begin(info);
-                      survey.part(maker.make(team.rank()));
-                      survey.end();
+                      checked.begin(info);
+                      checked.part(maker.make(team.rank()));
+                      checked.end();
                     });
-    if (summary != nullptr) *summary = survey.result();
+    if (summary != nullptr) *summary = checked.result();
   });
 }
 

@@ -47,7 +47,7 @@ struct HexVertices {
 
   /// Sweeps the map.
   /// @param map      scaled
-  /// @param epsilon  as in ExtractOptions
+  /// @param epsilon  as in extraction::EngineOptions
   /// @throws Error TooLarge if the vertices cannot be numbered in 32 bits
   HexVertices(const igm::PreparedMap& map, double epsilon, Stage& stage);
 

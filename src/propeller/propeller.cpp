@@ -303,7 +303,6 @@ void count(const HexVertices& vertices, const LocalConnectivity& local,
 
 HexMesh runPipeline(const igm::PreparedMap& map, std::uint64_t expectedCells, double epsilon,
                     Context& context, ExtractStatistics& statistics) {
-  statistics.epsilon = epsilon;
   HexMesh mesh;
   HexVertices vertices = [&] {
     Stage stage(context, "vertices");

@@ -57,7 +57,7 @@ struct GlobalConnectivity {
 
 /// Extracts the mesh of a map that has passed all checks and is scaled.
 /// @param expectedCells  the map's parametric volume
-/// @param epsilon        as in ExtractOptions
+/// @param epsilon        as in extraction::EngineOptions
 /// @param[in,out] statistics  receives what the stages count
 [[nodiscard]] HexMesh runPipeline(const igm::PreparedMap& map, std::uint64_t expectedCells,
                                   double epsilon, Context& context, ExtractStatistics& statistics);

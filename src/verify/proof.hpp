@@ -78,7 +78,7 @@ class Proof {
 // Is a part of a mesh a part of the mesh of a map? The proof of proof.hpp, part by part, in memory
 // that does not grow with the whole mesh: each part proves the tets that own something of it. Since
 // the numbers of vertices and cells are those that the map implies, tets that own nothing of any
-// part own nothing at all. PartSurvey checks by the numbers that nothing is missing.
+// part own nothing at all. PartSummarySink checks by the numbers that nothing is missing.
 
 class PartProof {
  public:

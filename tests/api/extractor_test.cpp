@@ -151,10 +151,10 @@ TEST(Extractor, Streams) {
   ExtractOptions options;
   options.scale = 2;
   Context context;
-  SurveySink sink(context);
+  SummarySink sink(context);
   extractor.extractTo(sink, options, context);
   Context other;
-  EXPECT_EQ(sink.result(), survey(extract(map, options), other));
+  EXPECT_EQ(sink.result(), summarize(extract(map, options), other));
 }
 
 }  // namespace

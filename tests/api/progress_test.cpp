@@ -60,7 +60,7 @@ class Calls {
         {"extractTo",
          [&](Context& c) {
            Context own;
-           SurveySink sink(own);
+           SummarySink sink(own);
            extractTo(sink, map_, {}, c);
          }},
         {"extractPartial", [&](Context& c) { static_cast<void>(extractPartial(map_, {}, c)); }},
@@ -113,7 +113,8 @@ class Calls {
         {"readHexMesh", [&](Context& c) { static_cast<void>(readHexMesh(file("mesh.vtu"), c)); }},
         {"readMapOrHexMesh",
          [&](Context& c) { static_cast<void>(readMapOrHexMesh(file("mesh.vtu"), {}, c)); }},
-        {"surveyFile", [&](Context& c) { static_cast<void>(surveyFile(file("mesh.vtu"), c)); }},
+        {"summarizeFile",
+         [&](Context& c) { static_cast<void>(summarizeFile(file("mesh.vtu"), c)); }},
         {"readMapPair",
          [&](Context& c) {
            static_cast<void>(readMapPair(file("map.hexex"), file("map.hexex"), c));

@@ -50,15 +50,14 @@ void useEverything(const std::filesystem::path& folder) {
   broken.parameters[0][0] = broken.parameters[0][1];
   EXPECT_FALSE(check(broken).valid());
   EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(broken)); }), ErrorCode::FlippedTet);
-  EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(map, {.epsilon = -1})); }),
+  EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(map, {.scale = 0})); }),
             ErrorCode::InvalidArgument);
   Context cancelled;
   cancelled.cancel();
   EXPECT_EQ(test::codeOf([&] { static_cast<void>(extract(map, {}, cancelled)); }),
             ErrorCode::Cancelled);
   for (const Engine engine : {Engine::Atlas, Engine::Propeller}) {
-    // An epsilon of zero makes the second engine start over.
-    const HexMesh mesh = extract(map, {.engine = engine, .scale = 2, .epsilon = 0});
+    const HexMesh mesh = extract(map, {.engine = engine, .scale = 2});
     EXPECT_TRUE(verify(map, mesh, {.scale = 2}).passed());
     EXPECT_FALSE(verify(map, mesh, {.scale = 3}).passed());
     for (const char* name : {"m.mesh", "m.vtu", "m.ovm", "m.ovmb", "m.vtk", "m.msh", "m.meshb"}) {
@@ -84,7 +83,7 @@ void useEverything(const std::filesystem::path& folder) {
   writeLagrangeMesh(extractLagrange(map, 2, {}, context), folder / "c.vtu", {}, context);
   EXPECT_EQ(readLagrangeMesh(folder / "c.vtu", context).cellCount(), pieces.mesh.cells.size());
   extractToFile(folder / "stream.vtu", map, {}, context);
-  EXPECT_EQ(surveyFile(folder / "stream.vtu", context), survey(pieces.mesh, context));
+  EXPECT_EQ(summarizeFile(folder / "stream.vtu", context), summarize(pieces.mesh, context));
   EXPECT_GT(findMapStructure(map, 1e-2, context).singularEdges.size(), 0U);
   EXPECT_EQ(test::codeOf([&] { static_cast<void>(readMap(folder / "m.vtu")); }),
             ErrorCode::FileUnsupported);

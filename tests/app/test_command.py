@@ -62,7 +62,7 @@ KINDS = ["box", "cylinder", "sphere", "star", "tetrahedron", "torus", "shell", "
 
 REPORT_KEYS = {
     "boundary",    "hexhex_version", "input", "output", "extract_seconds", "seconds", "cells", "vertices", "tets", "points",
-    "scale", "threads", "engine", "epsilon", "epsilon_fallback", "stages", "peak_memory_bytes",
+    "scale", "threads", "engine", "stages", "peak_memory_bytes",
     "generators", "vertices_by_generator", "local_propellers", "global_propellers", "charts",
     "cut_faces", "overlapping_tets", "traced_cells", "singular_edges", "chart_jumps", "inner_faces",
     "max_displacement", "max_transition_residual", "mirrored", "tets_inverted_in_space", "quality",
@@ -238,8 +238,6 @@ class BadUsage(CommandTest):
             ["extract", "map.hexex", "-o", "a.vtu", "--scale", "0"],
             ["extract", "map.hexex", "-o", "a.vtu", "--scale", "1.5"],
             ["extract", "map.hexex", "-o", "a.vtu", "--threads", "-1"],
-            ["extract", "map.hexex", "-o", "a.vtu", "--epsilon", "small"],
-            ["extract", "map.hexex", "-o", "a.vtu", "--epsilon", "-1"],
             ["extract", "map.hexex", "-o", "a.vtu", "--tolerance", "0.25"],
             ["check", "map.hexex", "--tolerance", "nan"],
             ["generate", "pyramid", "-o", "a.hexex"],
@@ -617,14 +615,12 @@ class Pipeline(CommandTest):
         for engine in ["atlas", "propeller"]:
             with self.subTest(engine=engine):
                 self.run_command("extract", map_file, "-o", "a.vtu", "--report", "r.json",
-                                 "--threads", "2", "--engine", engine, "--epsilon", "inf")
+                                 "--threads", "2", "--engine", engine)
                 report = json.loads((self.folder / "r.json").read_text())
                 self.assert_general_report(report, map_file)
                 self.assertEqual(report["engine"], engine)
                 self.assertEqual(report["charts"] > 0, engine == "atlas")
                 self.assertEqual(report["global_propellers"] > 0, engine == "propeller")
-                if engine == "propeller":
-                    self.assertIsNone(report["epsilon"])
                 self.assertEqual(sum(report["quality"]["histogram"]), report["cells"])
                 self.assertEqual(len(report["quality"]["histogram"]), 20)
                 validity = report["validity"]
@@ -1450,9 +1446,9 @@ class Parts(CommandTest):
         parts = json.loads((self.folder / "r.json").read_text())["parts"]
         self.assertEqual((parts["count"], parts["partition"], parts["ghost_layers"]), (5, "curve", 1))
         self.assertTrue(parts["verified"])
-        surveys = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
+        summaries = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
                    for file in ["whole.vtu", "parts.pvtu"]]
-        self.assertEqual(surveys[0], surveys[1])
+        self.assertEqual(summaries[0], summaries[1])
         for file in ["whole", "parts"]:
             self.run_command("convert", f"{file}.{'vtu' if file == 'whole' else 'pvtu'}", f"{file}.mesh", "--quiet")
         self.assertEqual((self.folder / "whole.mesh").read_bytes(), (self.folder / "parts.mesh").read_bytes())
@@ -1489,9 +1485,9 @@ class Stream(CommandTest):
                     self.assertRegex(text, r"verification +passed, 7 checks, of the file")
                     self.assertNotIn("Jacobian", text)
                     self.run_command("verify", map_file, pieces, "--scale", "2", "--quiet")
-                    surveys = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
+                    summaries = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
                                for file in [whole, pieces]]
-                    self.assertEqual(surveys[0], surveys[1])
+                    self.assertEqual(summaries[0], summaries[1])
 
     def test_report(self):
         map_file = self.generate("sphere")

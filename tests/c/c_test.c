@@ -217,20 +217,20 @@ static void test_everything_once(const char* folder) {
   CHECK(certificate.worst[0].cell == 0 && certificate.worst[0].scaled_jacobian == -1);
   hexhex_mesh_destroy(bad);
 
-  hexhex_survey survey = HEXHEX_SURVEY_INIT;
-  hexhex_survey other = HEXHEX_SURVEY_INIT;
-  CHECK_OK(hexhex_mesh_survey(mesh, NULL, &survey, &error));
+  hexhex_mesh_summary whole = HEXHEX_MESH_SUMMARY_INIT;
+  hexhex_mesh_summary other = HEXHEX_MESH_SUMMARY_INIT;
+  CHECK_OK(hexhex_summarize_mesh(mesh, NULL, &whole, &error));
   snprintf(file, sizeof file, "%s/mesh.vtu", folder);
   CHECK_OK(hexhex_mesh_write(mesh, file, NULL, NULL, &error));
-  CHECK_OK(hexhex_file_survey(file, NULL, NULL, &other, &error));
-  CHECK(survey.cells == 3584 && memcmp(&survey, &other, sizeof survey) == 0);
+  CHECK_OK(hexhex_summarize_file(file, NULL, NULL, &other, &error));
+  CHECK(whole.cells == 3584 && memcmp(&whole, &other, sizeof whole) == 0);
   CHECK_OK(hexhex_extract_to_file(file, map, &options, NULL, NULL, &error));
-  CHECK_OK(hexhex_file_survey(file, NULL, NULL, &other, &error));
-  CHECK(memcmp(&survey, &other, sizeof survey) == 0);
+  CHECK_OK(hexhex_summarize_file(file, NULL, NULL, &other, &error));
+  CHECK(memcmp(&whole, &other, sizeof whole) == 0);
   hexhex_mesh* copy = NULL;
   CHECK_OK(hexhex_mesh_copy(&m, &copy, &error));
-  CHECK_OK(hexhex_mesh_survey(copy, NULL, &other, &error));
-  CHECK(memcmp(&survey, &other, sizeof survey) == 0);
+  CHECK_OK(hexhex_summarize_mesh(copy, NULL, &other, &error));
+  CHECK(memcmp(&whole, &other, sizeof whole) == 0);
   hexhex_mesh_destroy(copy);
   CHECK_OK(hexhex_mesh_read(file, NULL, NULL, &copy, &error));
   hexhex_mesh_destroy(copy);
@@ -241,8 +241,8 @@ static void test_everything_once(const char* folder) {
   for (int scale = 3; scale > 0; --scale) {
     options.scale = scale;
     CHECK_OK(hexhex_extractor_extract(extractor, &options, NULL, &copy, &statistics, &error));
-    CHECK_OK(hexhex_mesh_survey(copy, NULL, &other, &error));
-    CHECK((scale == 2) == (other.point_checksum == survey.point_checksum));
+    CHECK_OK(hexhex_summarize_mesh(copy, NULL, &other, &error));
+    CHECK((scale == 2) == (other.point_checksum == whole.point_checksum));
     hexhex_mesh_destroy(copy);
   }
   options.scale = 4;
@@ -326,17 +326,17 @@ static void test_errors(const char* folder) {
   hexhex_mesh_destroy(mesh);
   newer.unknown = 1;
   CHECK(hexhex_extract(good, &newer.known, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
-  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, -1, 0, 0, HEXHEX_NODES_BLENDED};
-  older.size = offsetof(hexhex_extract_options, epsilon); /* so those two are defaults */
+  hexhex_extract_options older = {0, HEXHEX_ENGINE_ATLAS, 1, -1, 0, 0, HEXHEX_NODES_BLENDED};
+  older.size = offsetof(hexhex_extract_options, tolerance); /* so that is the default */
   CHECK_OK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error));
   hexhex_mesh_destroy(mesh);
   older.size = 0;
   CHECK(hexhex_extract(good, &older, NULL, &mesh, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
   hexhex_statistics small = HEXHEX_STATISTICS_INIT;
-  small.size = offsetof(hexhex_statistics, epsilon);
-  small.epsilon = 77; /* beyond what the caller says it knows */
+  small.size = offsetof(hexhex_statistics, max_displacement);
+  small.max_displacement = 77; /* beyond what the caller says it knows */
   CHECK_OK(hexhex_extract(good, NULL, NULL, &mesh, &small, &error));
-  CHECK(small.threads > 0 && small.epsilon == 77);
+  CHECK(small.threads > 0 && small.max_displacement == 77);
   hexhex_mesh_destroy(mesh);
   hexhex_map_destroy(good);
 
@@ -551,10 +551,10 @@ static void test_features(const char* folder) {
   CHECK(hexhex_mesh_writer_end(early, &error) == HEXHEX_INVALID_ARGUMENT);
   hexhex_mesh_writer_destroy(early);
   CHECK(access(other, F_OK) != 0);
-  hexhex_survey mine = HEXHEX_SURVEY_INIT;
-  hexhex_survey theirs = HEXHEX_SURVEY_INIT;
-  CHECK_OK(hexhex_file_survey(file, NULL, NULL, &mine, &error));
-  CHECK_OK(hexhex_mesh_survey(mesh, NULL, &theirs, &error));
+  hexhex_mesh_summary mine = HEXHEX_MESH_SUMMARY_INIT;
+  hexhex_mesh_summary theirs = HEXHEX_MESH_SUMMARY_INIT;
+  CHECK_OK(hexhex_summarize_file(file, NULL, NULL, &mine, &error));
+  CHECK_OK(hexhex_summarize_mesh(mesh, NULL, &theirs, &error));
   CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
   hexhex_mesh_destroy(mesh);
   hexhex_map_destroy(borrowed);
@@ -609,7 +609,6 @@ static void test_repair(void) {
     hexhex_verify_report* verified = NULL;
     options.repair = 1;
     CHECK_OK(hexhex_extract(map, &options, NULL, &mesh, &statistics, &error));
-    CHECK(statistics.repaired);
     CHECK_OK(hexhex_mesh_get_repair(mesh, &repaired, &report, &error));
     CHECK(repaired != NULL && report != NULL);
     CHECK_OK(hexhex_verify(repaired, mesh, 1e-2, 1, NULL, &verified, &error));
@@ -764,18 +763,20 @@ static void test_improve_curved(const char* folder) {
     hexhex_certificate before = HEXHEX_CERTIFICATE_INIT;
     hexhex_certificate after = HEXHEX_CERTIFICATE_INIT;
     hexhex_extract_options nodes = HEXHEX_EXTRACT_OPTIONS_INIT;
-    hexhex_statistics statistics = HEXHEX_STATISTICS_INIT;
-    CHECK_OK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, &statistics, &error));
+    hexhex_lagrange_arrays arrays = HEXHEX_LAGRANGE_ARRAYS_INIT;
+    CHECK_OK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, NULL, &error));
     CHECK_OK(hexhex_lagrange_mesh_certify(mesh, NULL, NULL, NULL, &before, &error));
+    CHECK_OK(hexhex_lagrange_mesh_get_arrays(mesh, &arrays, &error));
     CHECK(before.refuted + before.undecided == 0 &&
-          statistics.straightened_cells < before.positive);
+          arrays.straightened_cell_count < before.positive);
     hexhex_lagrange_mesh_destroy(mesh);
     nodes.curved_nodes = (hexhex_curved_nodes)2;
     CHECK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, NULL, &error) ==
           HEXHEX_INVALID_ARGUMENT);
     nodes.curved_nodes = HEXHEX_NODES_EXACT;
-    CHECK_OK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, &statistics, &error));
-    CHECK(statistics.straightened_cells == 0);
+    CHECK_OK(hexhex_extract_lagrange(map, order, &nodes, NULL, &mesh, NULL, &error));
+    CHECK_OK(hexhex_lagrange_mesh_get_arrays(mesh, &arrays, &error));
+    CHECK(arrays.straightened_cell_count == 0);
     CHECK_OK(hexhex_lagrange_mesh_certify(mesh, NULL, NULL, NULL, &before, &error));
     if (order == 4) {
       CHECK(hexhex_lagrange_mesh_improve(mesh, map, &options, NULL, &report, &error) ==
@@ -1572,8 +1573,8 @@ static void test_writer_as_sink(const char* folder) {
   hexhex_extract_options options = HEXHEX_EXTRACT_OPTIONS_INIT;
   hexhex_mesh_writer* writer = NULL;
   hexhex_sink sink = HEXHEX_SINK_INIT;
-  hexhex_survey mine = HEXHEX_SURVEY_INIT;
-  hexhex_survey theirs = HEXHEX_SURVEY_INIT;
+  hexhex_mesh_summary mine = HEXHEX_MESH_SUMMARY_INIT;
+  hexhex_mesh_summary theirs = HEXHEX_MESH_SUMMARY_INIT;
   options.scale = 2;
   snprintf(file, sizeof file, "%s/as_sink.data", folder);
   snprintf(copy, sizeof copy, "%s/as_sink.mesh", folder);
@@ -1583,10 +1584,10 @@ static void test_writer_as_sink(const char* folder) {
   CHECK_OK(hexhex_mesh_writer_create(file, &writing, NULL, &writer, &error));
   CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
   CHECK_OK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error));
-  CHECK(hexhex_survey_writer_get(writer, &mine, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK(hexhex_summary_writer_get(writer, &mine, &error) == HEXHEX_INVALID_ARGUMENT);
   hexhex_mesh_writer_destroy(writer);
-  CHECK(hexhex_file_survey(file, NULL, NULL, &mine, &error) == HEXHEX_FILE_UNSUPPORTED);
-  CHECK_OK(hexhex_file_survey(file, &reading, NULL, &mine, &error));
+  CHECK(hexhex_summarize_file(file, NULL, NULL, &mine, &error) == HEXHEX_FILE_UNSUPPORTED);
+  CHECK_OK(hexhex_summarize_file(file, &reading, NULL, &mine, &error));
   CHECK(mine.cells == 3584);
 
   CHECK_OK(hexhex_mesh_writer_create(copy, NULL, NULL, &writer, &error));
@@ -1594,15 +1595,15 @@ static void test_writer_as_sink(const char* folder) {
   CHECK(hexhex_mesh_read_to(&sink, file, NULL, NULL, &error) == HEXHEX_FILE_UNSUPPORTED);
   CHECK_OK(hexhex_mesh_read_to(&sink, file, &reading, NULL, &error));
   hexhex_mesh_writer_destroy(writer);
-  CHECK_OK(hexhex_file_survey(copy, NULL, NULL, &theirs, &error));
+  CHECK_OK(hexhex_summarize_file(copy, NULL, NULL, &theirs, &error));
   CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
 
-  CHECK_OK(hexhex_survey_writer_create(NULL, &writer, &error));
-  CHECK(hexhex_survey_writer_get(writer, &theirs, &error) == HEXHEX_INVALID_ARGUMENT);
+  CHECK_OK(hexhex_summary_writer_create(NULL, &writer, &error));
+  CHECK(hexhex_summary_writer_get(writer, &theirs, &error) == HEXHEX_INVALID_ARGUMENT);
   CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
   CHECK_OK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error));
-  memset(&theirs.points, 0, sizeof theirs - offsetof(hexhex_survey, points));
-  CHECK_OK(hexhex_survey_writer_get(writer, &theirs, &error));
+  memset(&theirs.points, 0, sizeof theirs - offsetof(hexhex_mesh_summary, points));
+  CHECK_OK(hexhex_summary_writer_get(writer, &theirs, &error));
   CHECK(memcmp(&mine, &theirs, sizeof mine) == 0);
   /* What the writer refuses is the error: it has had a mesh already. */
   CHECK(hexhex_extract_to(&sink, map, &options, NULL, NULL, &error) == HEXHEX_INVALID_ARGUMENT);
@@ -1612,15 +1613,15 @@ static void test_writer_as_sink(const char* folder) {
                              0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1};
   const uint32_t cell[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   const uint64_t wide[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-  hexhex_survey sums[2] = {HEXHEX_SURVEY_INIT, HEXHEX_SURVEY_INIT};
+  hexhex_mesh_summary sums[2] = {HEXHEX_MESH_SUMMARY_INIT, HEXHEX_MESH_SUMMARY_INIT};
   for (int i = 0; i < 2; ++i) {
-    CHECK_OK(hexhex_survey_writer_create(NULL, &writer, &error));
+    CHECK_OK(hexhex_summary_writer_create(NULL, &writer, &error));
     CHECK_OK(hexhex_mesh_writer_sink(writer, &sink, &error));
     CHECK(sink.begin(sink.user, 8, 1) == 0);
     CHECK(sink.points(sink.user, 0, 8, points, NULL, NULL) == 0);
     CHECK((i == 0 ? sink.cells(sink.user, 0, 1, cell) : sink.cells64(sink.user, 0, 1, wide)) == 0);
     CHECK(sink.end(sink.user) == 0 && sink.end(sink.user) != 0);
-    CHECK_OK(hexhex_survey_writer_get(writer, &sums[i], &error));
+    CHECK_OK(hexhex_summary_writer_get(writer, &sums[i], &error));
     hexhex_mesh_writer_destroy(writer);
   }
   CHECK(sums[0].cells == 1 && memcmp(&sums[0], &sums[1], sizeof *sums) == 0);

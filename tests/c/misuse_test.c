@@ -129,7 +129,7 @@ static hexhex_seamless_report out_seamless_report = HEXHEX_SEAMLESS_REPORT_INIT;
 static hexhex_sink out_sink = HEXHEX_SINK_INIT;
 static size_t out_size;
 static hexhex_structure out_structure = HEXHEX_STRUCTURE_INIT;
-static hexhex_survey out_survey = HEXHEX_SURVEY_INIT;
+static hexhex_mesh_summary out_summary = HEXHEX_MESH_SUMMARY_INIT;
 static const char* out_text;
 static uint64_t out_uint64;
 static hexhex_verify_item out_verify_item = HEXHEX_VERIFY_ITEM_INIT;
@@ -325,16 +325,16 @@ static void call_all(const handles* h, enum kind kind, const char* file) {
     REFUSED(hexhex_mesh_writer_sink(h->mesh_writer, &out_sink, &error));
   }
   if (concerns(k_mesh | k_context)) {
-    REFUSED(hexhex_mesh_survey(h->mesh, h->context, &out_survey, &error));
+    REFUSED(hexhex_summarize_mesh(h->mesh, h->context, &out_summary, &error));
   }
   if (concerns(k_context)) {
-    REFUSED(hexhex_file_survey(file, NULL, h->context, &out_survey, &error));
+    REFUSED(hexhex_summarize_file(file, NULL, h->context, &out_summary, &error));
   }
   if (concerns(k_context)) {
-    REFUSED(hexhex_survey_writer_create(h->context, &made.mesh_writer, &error));
+    REFUSED(hexhex_summary_writer_create(h->context, &made.mesh_writer, &error));
   }
   if (concerns(k_mesh_writer)) {
-    REFUSED(hexhex_survey_writer_get(h->mesh_writer, &out_survey, &error));
+    REFUSED(hexhex_summary_writer_get(h->mesh_writer, &out_summary, &error));
   }
   if (concerns(k_map | k_context)) {
     REFUSED(hexhex_check(h->map, 1e-2, 1, h->context, &made.check_report, &error));
@@ -647,7 +647,7 @@ static void test_sizes_of_structs(const char* file) {
     WRONG(holes_summary, HEXHEX_HOLES_SUMMARY_INIT, hexhex_holes_get_summary(h.holes, &s, &error));
     WRONG(sink, HEXHEX_SINK_INIT, hexhex_extract_to(&s, h.map, NULL, NULL, NULL, &error));
     WRONG(sink, HEXHEX_SINK_INIT, hexhex_mesh_writer_sink(h.mesh_writer, &s, &error));
-    WRONG(survey, HEXHEX_SURVEY_INIT, hexhex_mesh_survey(h.mesh, NULL, &s, &error));
+    WRONG(mesh_summary, HEXHEX_MESH_SUMMARY_INIT, hexhex_summarize_mesh(h.mesh, NULL, &s, &error));
     WRONG(check_summary, HEXHEX_CHECK_SUMMARY_INIT,
           hexhex_check_get_summary(h.check_report, &s, &error));
     WRONG(map_structure_arrays, HEXHEX_MAP_STRUCTURE_ARRAYS_INIT,
@@ -728,7 +728,7 @@ static void test_counts(const char* file) {
     hexhex_quality quality = HEXHEX_QUALITY_INIT;
     if (n >= SIZE_MAX / 8) REFUSED(hexhex_summarize_quality(numbers, n, &quality, &error));
     hexhex_mesh_writer* writer = NULL;
-    CHECK_OK(hexhex_survey_writer_create(NULL, &writer, NULL));
+    CHECK_OK(hexhex_summary_writer_create(NULL, &writer, NULL));
     CHECK_OK(hexhex_mesh_writer_begin(writer, 1, 1, NULL));
     REFUSED(hexhex_mesh_writer_points(writer, 0, n, numbers, NULL, NULL, &error));
     REFUSED(hexhex_mesh_writer_cells(writer, 0, n, indices, &error));
@@ -768,8 +768,8 @@ static void test_numbers(const char* file) {
     status = hexhex_context_create(&how, &context, NULL);
     CHECK((status == HEXHEX_OK) == (n >= 0));
     if (n >= 0) {
-      hexhex_survey survey = HEXHEX_SURVEY_INIT;
-      status = hexhex_mesh_survey(h.mesh, context, &survey, NULL);
+      hexhex_mesh_summary summary = HEXHEX_MESH_SUMMARY_INIT;
+      status = hexhex_summarize_mesh(h.mesh, context, &summary, NULL);
       CHECK(status == HEXHEX_OK || status == HEXHEX_INVALID_ARGUMENT ||
             status == HEXHEX_OUT_OF_MEMORY);
     }
@@ -978,7 +978,8 @@ static void* use_handles(void* argument) {
         (void)hexhex_buffer_bytes(h->buffer);
         break;
       case 13:
-        note(s, hexhex_mesh_survey(h->mesh, h->context, &(hexhex_survey)HEXHEX_SURVEY_INIT, NULL));
+        note(s, hexhex_summarize_mesh(h->mesh, h->context,
+                                      &(hexhex_mesh_summary)HEXHEX_MESH_SUMMARY_INIT, NULL));
         break;
       case 14:
         note(s, hexhex_mesh_writer_sink(h->mesh_writer, &sink, NULL));

@@ -22,25 +22,19 @@ namespace {
 struct Blended {
   LagrangeMesh mesh;
   LagrangeMesh exact;
-  std::vector<Index> straightened;
 };
 
-LagrangeMesh extracted(const TetMap& map, int order, int scale, CurvedNodes nodes,
-                       ExtractStatistics* statistics = nullptr) {
+LagrangeMesh extracted(const TetMap& map, int order, int scale, CurvedNodes nodes) {
   ExtractOptions options;
   options.scale = scale;
   options.curvedNodes = nodes;
   Context context(2);
-  return extractLagrange(map, order, options, context, statistics);
+  return extractLagrange(map, order, options, context);
 }
 
 Blended blended(const TetMap& map, int order, int scale = 1) {
-  ExtractStatistics statistics;
-  Blended result = {extracted(map, order, scale, CurvedNodes::Blended, &statistics),
-                    extracted(map, order, scale, CurvedNodes::Exact),
-                    {}};
-  result.straightened = statistics.straightenedCells;
-  return result;
+  return {extracted(map, order, scale, CurvedNodes::Blended),
+          extracted(map, order, scale, CurvedNodes::Exact)};
 }
 
 /// The value and the derivative of the Lagrange polynomial of node i of p + 1 at x.
@@ -130,7 +124,7 @@ std::size_t examine(const TetMap& map, int order, int scale = 1) {
   }
   // What stays is on the image of the map, unless its cell is named.
   std::set<Index> free;
-  for (const Index cell : found.straightened) free.merge(nodesOf(found.mesh, cell));
+  for (const Index cell : found.mesh.straightenedCells) free.merge(nodesOf(found.mesh, cell));
   for (const auto& [nodes, cells] : facesOf(found.mesh)) {
     if (cells.size() > 1) continue;
     for (const Index node : nodes) {
@@ -215,7 +209,7 @@ TEST(Blending, WhatFoldsInsideIsStraight) {
   const Blended found = blended(map, 2);
   EXPECT_GT(certify(found.exact, context).refuted, 0U);
   EXPECT_TRUE(certify(found.mesh, context).allPositive());
-  EXPECT_TRUE(found.straightened.empty());
+  EXPECT_TRUE(found.mesh.straightenedCells.empty());
   const std::size_t node = nodeAt(found.exact, {1.9, 0.5, 0.5});
   EXPECT_TRUE(isAt(found.mesh.points[node], {1, 0.5, 0.5}));
 }
@@ -231,12 +225,13 @@ TEST(Blending, ADentThatIsTooDeepIsHalved) {
     EXPECT_TRUE(certify(found.mesh, context).allPositive());
     const std::size_t node = nodeAt(found.exact, {0.5, 0.5, depth});
     if (depth < 1) {
-      EXPECT_TRUE(found.straightened.empty());
+      EXPECT_TRUE(found.mesh.straightenedCells.empty());
       EXPECT_EQ(found.mesh.points[node], found.exact.points[node]);
     } else {
       EXPECT_EQ(certify(found.exact, context).refuted, 1U);
-      ASSERT_EQ(found.straightened.size(), 1U);
-      EXPECT_EQ(nodesOf(found.mesh, found.straightened[0]).count(static_cast<Index>(node)), 1U);
+      ASSERT_EQ(found.mesh.straightenedCells.size(), 1U);
+      EXPECT_EQ(
+          nodesOf(found.mesh, found.mesh.straightenedCells[0]).count(static_cast<Index>(node)), 1U);
       EXPECT_TRUE(isAt(found.mesh.points[node], {0.5, 0.5, depth / 2}));
     }
     for (std::size_t i = 0; i < found.mesh.points.size(); ++i) {
@@ -256,7 +251,7 @@ TEST(Blending, ABadStraightCellIsLeftAsItIs) {
   const Blended found = blended(map, 2);
   EXPECT_EQ(certify(straightMesh(found.mesh), context).refuted, 1U);
   EXPECT_EQ(certify(found.mesh, context).refuted, 1U);
-  EXPECT_TRUE(found.straightened.empty());
+  EXPECT_TRUE(found.mesh.straightenedCells.empty());
 }
 
 /// The largest distance of the boundary at radius 10 from the cylinder.
@@ -296,7 +291,7 @@ TEST(Blending, AThinPlateFollowsItsCylinderMoreCloselyWithEachOrder) {
     // Nodes are vertices of tets, and on the cylinder.
     const Blended found = blended(bentBox(onCylinder, 2, 2 * order), order);
     EXPECT_TRUE(certify(found.mesh, context).allPositive());
-    EXPECT_TRUE(found.straightened.empty());
+    EXPECT_TRUE(found.mesh.straightenedCells.empty());
     distance[static_cast<std::size_t>(order)] = distanceFromCylinder(found.mesh);
   }
   EXPECT_NEAR(distance[1], 10 * (1 - std::cos(kQuarter / 8)), 1e-3);

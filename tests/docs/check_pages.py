@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Whether the pages of docs/ have all that they should: every error code; in their snippets, which other
-tests run, every function of the libraries for C++, C and Python; and for every C function once, who may
-call it from several threads. And whether all tables of the pages are whole, and links lead somewhere."""
+tests run, every function of the libraries for C++, C and Python; every field of reports, which the header
+for C has, too; and for every C function once, who may call it from several threads. And whether all tables
+of the pages are whole, and links lead somewhere."""
 
 import ast
 import pathlib
@@ -50,6 +51,15 @@ def python_names():
                 names.update(method.name for method in node.body
                              if isinstance(method, ast.FunctionDef) and method.name[0] != "_")
     return sorted(names)
+
+
+def report_fields():
+    return sorted(set(re.findall(r'visit\("(\w+)"', text("include/hexhex/fields.hpp"))))
+
+
+# C has no meshes in parts, and functions for tables.
+NOT_IN_C = {"most_neighbours", "shared_faces", "shared_vertices", "boundary_genus", "inner_singular_edges",
+            "boundary_singular_edges", "inner_singular_tet_edges", "boundary_singular_tet_edges"}
 
 
 def threads_of_c():
@@ -133,6 +143,8 @@ def broken_tables():
 def main():
     missing = threads_of_c() + misused_in_c() + broken_tables() + broken_links()
     contents = (("docs/user/errors.md", error_codes(), None), ("docs/user/troubleshooting.md", error_codes(), None),
+             ("docs/user/report.md", report_fields(), None),
+             ("bindings/c/include/hexhex.h", sorted({*report_fields()} - NOT_IN_C), None),
              ("docs/user/api-c.md", c_functions(), "c"), ("docs/user/api-cpp.md", cpp_functions(), "cpp"),
              ("docs/user/api-python.md", python_names(), "python"))
     for page, names, language in contents:

@@ -18,20 +18,21 @@ TetMap damaged() {
   return generateSample(SampleKind::Sphere, options).map;
 }
 
-Error errorOfExtraction(RepairMode mode) {
-  return errorOf([&] { static_cast<void>(extract(damaged(), {.repair = mode})); });
+Error errorOfExtraction(RepairedMap* repaired) {
+  return errorOf([&] { static_cast<void>(extract(damaged(), {.repair = repaired})); });
 }
 
-TEST(RepairMode, OffLeavesFlippedTetsAnError) {
-  const Error error = errorOfExtraction(RepairMode::Off);
+TEST(RepairOption, NoneLeavesFlippedTetsAnError) {
+  const Error error = errorOfExtraction(nullptr);
   EXPECT_EQ(error.code(), ErrorCode::FlippedTet) << error.what();
   EXPECT_EQ(std::string(error.what()).find("Eigen"), std::string::npos) << error.what();
 }
 
 /// CI builds once without the solver, for the thread sanitizer.
-TEST(RepairMode, SaysWhatIsMissingInABuildWithoutSolver) {
+TEST(RepairOption, SaysWhatIsMissingInABuildWithoutSolver) {
   if (canRepair()) GTEST_SKIP() << "skipped: built with Eigen";
-  const Error fromExtraction = errorOfExtraction(RepairMode::Auto);
+  RepairedMap repaired;
+  const Error fromExtraction = errorOfExtraction(&repaired);
   EXPECT_EQ(fromExtraction.code(), ErrorCode::FlippedTet) << fromExtraction.what();
   EXPECT_EQ(fromExtraction.place().kind, PlaceKind::Tet);
   EXPECT_NE(std::string(fromExtraction.what()).find("libeigen3-dev"), std::string::npos)

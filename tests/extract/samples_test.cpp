@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <extract/steps.hpp>
+
 #include "extract/support.hpp"
 
 namespace hexhex::test::samples {
@@ -100,11 +102,12 @@ TEST_P(SampleExtraction, ThreadsDoNotMatter) {
 TEST_P(SampleExtraction, EpsilonDoesNotMatter) {
   const Sample sample = generateSample(GetParam(), options(5, 3, ChartStyle::Random, 0.4, 0.4));
   const HexMesh usual = verifiedExtraction(sample.map);
+  Context context;
   for (const double epsilon : {0.0, 1e-12, 1e-2, 1.0, 1e300, HUGE_VAL}) {
-    ExtractOptions o;
-    o.engine = Engine::Propeller;
+    extraction::EngineOptions o(ExtractOptions{.engine = Engine::Propeller});
     o.epsilon = epsilon;
-    EXPECT_TRUE(sameBits(usual, extract(sample.map, o))) << "epsilon " << epsilon;
+    EXPECT_TRUE(sameBits(usual, extraction::extractWith(sample.map, o, context)))
+        << "epsilon " << epsilon;
   }
 }
 

@@ -8,7 +8,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 #include <hexhex/stream.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <io/io_test_support.hpp>
 
@@ -59,7 +59,7 @@ TEST(ExtractToFile, HasTheArraysOfTheOrdinaryWriters) {
       EXPECT_EQ(statistics.vertices[0] + statistics.vertices[1] + statistics.vertices[2] +
                     statistics.vertices[3],
                 mesh.points.size());
-      EXPECT_EQ(surveyFile(folder / ("pieces" + extension), context), survey(mesh, context));
+      EXPECT_EQ(summarizeFile(folder / ("pieces" + extension), context), summarize(mesh, context));
     }
     EXPECT_TRUE(contentOf(folder / "pieces.mesh") == withoutQuads(contentOf(folder / "whole.mesh")))
         << i;

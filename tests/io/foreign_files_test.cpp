@@ -15,7 +15,7 @@
 
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <io/core/hdf5_library.hpp>
 #include <io/core/zlib_blocks.hpp>
@@ -157,7 +157,7 @@ TEST(ForeignFiles, CompressedFilesOfAnyFormat) {
     const HexMesh read = readHexMesh(file);
     EXPECT_EQ(read.cells, mesh.cells);
     expectSameBits(read.points, mesh.points);
-    EXPECT_EQ(surveyFile(file, context).cells, mesh.cells.size());
+    EXPECT_EQ(summarizeFile(file, context).cells, mesh.cells.size());
 
     const std::string packed = gzipOf(plain);
     std::string other = packed;

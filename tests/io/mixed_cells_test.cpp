@@ -9,7 +9,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <io/io_test_support.hpp>
 
@@ -179,7 +179,7 @@ TEST_F(MixedCells, AreRefusedAndNamed) {
     };
     expectRefused([&] { static_cast<void>(readHexMesh(file, context_)); });
     expectRefused([&] { static_cast<void>(readMapOrHexMesh(file, {}, context_)); });
-    expectRefused([&] { static_cast<void>(surveyFile(file, context_)); });
+    expectRefused([&] { static_cast<void>(summarizeFile(file, context_)); });
     // A file that is written piece by piece does not appear.
     expectRefused([&] {
       const auto sink = openMeshSink(folder_ / "copy.vtu", context_);
@@ -203,7 +203,7 @@ TEST_F(MixedCells, AreLeftOutIfThatIsAskedFor) {
     expectCounts();
     EXPECT_TRUE(std::holds_alternative<HexMesh>(readMapOrHexMesh(file, options, context_)));
     expectCounts();
-    EXPECT_EQ(surveyFile(file, options, context_).cells, 1U);
+    EXPECT_EQ(summarizeFile(file, options, context_).cells, 1U);
     expectCounts();
   });
 }
@@ -303,7 +303,7 @@ TEST_F(MixedCells, AreFoundInBinaryFiles) {
   EXPECT_NE(failure.sentence.find("2 hexahedra and 1 prism"), std::string::npos)
       << failure.sentence;
   EXPECT_NE(failureOf([&] {
-              static_cast<void>(surveyFile(file, context_));
+              static_cast<void>(summarizeFile(file, context_));
             }).sentence.find("2 hexahedra and 1 prism"),
             std::string::npos);
   EXPECT_EQ(readHexMesh(file, {.hexesOnly = true}, context_).cells.size(), 2U);

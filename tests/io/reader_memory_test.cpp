@@ -20,7 +20,7 @@
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <io/core/zlib_blocks.hpp>
 #include <io/io_test_support.hpp>
@@ -104,8 +104,8 @@ const std::vector<Reader>& readers() {
        [](const auto& file, Context& context) {
          static_cast<void>(readTetMesh(file, {}, context));
        }},
-      {"survey", kMeshes,
-       [](const auto& file, Context& context) { static_cast<void>(surveyFile(file, context)); }},
+      {"summary", kMeshes,
+       [](const auto& file, Context& context) { static_cast<void>(summarizeFile(file, context)); }},
       {"lagrange", ".vtu .vtk .inp .exo", [](const auto& file, Context& context) {
          static_cast<void>(readLagrangeMesh(file, context));
        }}};

@@ -8,7 +8,7 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <io/io_test_support.hpp>
 
@@ -153,9 +153,9 @@ TEST(RoundTrips, OfTextsWithAByteOrderMark) {
     addByteOrderMark(file);
     ASSERT_GT(std::filesystem::file_size(file), 1U << 16);
     expectSameMeshes(readHexMesh(file, way.reading(), context), mesh);
-    SurveySink sink(context);
+    SummarySink sink(context);
     readHexMeshTo(sink, file, way.reading(), context);
-    EXPECT_EQ(sink.result().cellChecksum, survey(mesh, context).cellChecksum);
+    EXPECT_EQ(sink.result().cellChecksum, summarize(mesh, context).cellChecksum);
   }
 }
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <hexhex/io.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <io/file_size_limit.hpp>
 #include <io/io_test_support.hpp>
@@ -467,12 +467,12 @@ TEST(Stream, CancellationIsNoticed) {
   EXPECT_EQ(failureOf([&] { sendPoints(*sink, 0, 8); }).code, ErrorCode::Cancelled);
 }
 
-TEST(Survey, IsTheSameHoweverAMeshComes) {
+TEST(MeshSummary, IsTheSameHoweverAMeshComes) {
   const TemporaryFolder folder;
   Random random(43);
   HexMesh mesh = gridMesh(50, 40, 30);
   Context one(1);
-  const MeshSurvey expected = survey(mesh, one);
+  const MeshSummary expected = summarize(mesh, one);
   EXPECT_EQ(expected.points, mesh.points.size());
   EXPECT_EQ(expected.cells, mesh.cells.size());
   EXPECT_EQ(expected.lower, (Vec3{0, 0, 0}));
@@ -481,41 +481,41 @@ TEST(Survey, IsTheSameHoweverAMeshComes) {
   writeHexMesh(mesh, folder / "a.mesh");
   for (const int threads : {1, 2, 3}) {
     Context context(threads);
-    EXPECT_EQ(surveyFile(folder / "a.vtu", context), expected);
-    EXPECT_EQ(surveyFile(folder / "a.mesh", context), expected);
+    EXPECT_EQ(summarizeFile(folder / "a.vtu", context), expected);
+    EXPECT_EQ(summarizeFile(folder / "a.mesh", context), expected);
     for (const bool wide : {false, true}) {
-      SurveySink sink(context);
+      SummarySink sink(context);
       send(sink, mesh, random, 20'000, wide);
       EXPECT_EQ(sink.result(), expected);
     }
   }
 }
 
-TEST(Survey, ChecksumsTellMeshesApart) {
+TEST(MeshSummary, ChecksumsTellMeshesApart) {
   const HexMesh mesh = gridMesh(3, 3, 3);
   Context context;
-  const MeshSurvey expected = survey(mesh, context);
+  const MeshSummary expected = summarize(mesh, context);
   HexMesh other = mesh;
   std::swap(other.points[1], other.points[2]);
-  EXPECT_NE(survey(other, context).pointChecksum, expected.pointChecksum);
-  EXPECT_EQ(survey(other, context).cellChecksum, expected.cellChecksum);
+  EXPECT_NE(summarize(other, context).pointChecksum, expected.pointChecksum);
+  EXPECT_EQ(summarize(other, context).cellChecksum, expected.cellChecksum);
   other = mesh;
   other.points[7][1] = std::nextafter(other.points[7][1], 2);
-  EXPECT_NE(survey(other, context).pointChecksum, expected.pointChecksum);
+  EXPECT_NE(summarize(other, context).pointChecksum, expected.pointChecksum);
   other = mesh;
   std::swap(other.cells[4][0], other.cells[4][1]);
-  EXPECT_NE(survey(other, context).cellChecksum, expected.cellChecksum);
-  EXPECT_EQ(survey(other, context).pointChecksum, expected.pointChecksum);
+  EXPECT_NE(summarize(other, context).cellChecksum, expected.cellChecksum);
+  EXPECT_EQ(summarize(other, context).pointChecksum, expected.pointChecksum);
   other = mesh;
   std::swap(other.cells[0], other.cells[1]);
-  EXPECT_NE(survey(other, context).cellChecksum, expected.cellChecksum);
-  EXPECT_EQ(survey(HexMesh{}, context), MeshSurvey{});
+  EXPECT_NE(summarize(other, context).cellChecksum, expected.cellChecksum);
+  EXPECT_EQ(summarize(HexMesh{}, context), MeshSummary{});
 }
 
 /// As another program computed them, so that figures of yesterday compare with those of tomorrow.
-TEST(Survey, ChecksumsAreThoseOfTheFirstVersion) {
+TEST(MeshSummary, ChecksumsAreThoseOfTheFirstVersion) {
   Context context;
-  const MeshSurvey sums = survey(gridMesh(2, 2, 2), context);
+  const MeshSummary sums = summarize(gridMesh(2, 2, 2), context);
   EXPECT_EQ(sums.pointChecksum, 2268866626704337417U);
   EXPECT_EQ(sums.cellChecksum, 2959003485796918603U);
 }

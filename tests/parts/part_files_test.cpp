@@ -40,8 +40,8 @@ class PartFiles : public testing::Test {
              const WriteOptions& writing = {}) const {
     Context context;
     const std::unique_ptr<PartSink> sink = openPartSink(file, writing, context);
-    PartSurvey survey(*sink);
-    extractParts(survey, map, {}, parts, context);
+    PartSummarySink checked(*sink);
+    extractParts(checked, map, {}, parts, context);
   }
   static std::string textOf(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);

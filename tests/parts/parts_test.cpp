@@ -86,12 +86,12 @@ Cut cutOf(const TetMap& map, const PartOptions& options, int scale) {
     void end() override {}
   };
   Nothing nothing;
-  PartSurvey survey(nothing);
+  PartSummarySink checked(nothing);
   Context context;
   ExtractOptions extraction;
   extraction.scale = scale;
-  extractParts(survey, map, extraction, options, context);
-  const PartsSummary& summary = survey.result();
+  extractParts(checked, map, extraction, options, context);
+  const PartsSummary& summary = checked.result();
   return {static_cast<double>(summary.largest) * options.parts / static_cast<double>(summary.cells),
           summary.sharedVertices};
 }
@@ -149,11 +149,11 @@ TEST(Parts, ThatDoNotFitTogetherAreRefused) {
     std::vector<MeshPart> changed = parts;
     change(changed[1]);
     Counter counter;
-    PartSurvey survey(counter);
-    survey.begin({3, 0, mesh.points.size(), mesh.cells.size()});
-    for (MeshPart& part : changed) survey.part(std::move(part));
+    PartSummarySink checked(counter);
+    checked.begin({3, 0, mesh.points.size(), mesh.cells.size()});
+    for (MeshPart& part : changed) checked.part(std::move(part));
     try {
-      survey.end();
+      checked.end();
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::VerificationFailed);
       EXPECT_EQ(counter.ends, 0);

@@ -718,7 +718,7 @@ def test_pieces(sphere, tmp_path):
     with pytest.raises(AttributeError):
         hexhex.extract_to(object(), sphere)
     hexhex.extract_to_file(tmp_path / "m.vtu", sphere, scale=2)
-    assert hexhex.survey(tmp_path / "m.vtu") == hexhex.survey(mesh)
+    assert hexhex.summarize(tmp_path / "m.vtu") == hexhex.summarize(mesh)
     writer = hexhex.MeshWriter(tmp_path / "w.vtu")
     with pytest.raises(hexhex.HexhexError):
         writer.end()
@@ -911,12 +911,12 @@ def test_small_things(sphere, tmp_path):
     assert len(stages) > 5 and stages[0][0] == "input" and all(s >= 0 for _, s in stages)
 
     hexhex.write(mesh, tmp_path / "mesh.data", format="vtu")
-    assert hexhex.survey(tmp_path / "mesh.data", format="vtu") == hexhex.survey(mesh)
-    sink = hexhex.SurveySink()
+    assert hexhex.summarize(tmp_path / "mesh.data", format="vtu") == hexhex.summarize(mesh)
+    sink = hexhex.SummarySink()
     with pytest.raises(hexhex.ArgumentError):
         sink.result()
     hexhex.read_to(sink, tmp_path / "mesh.data", format="vtu")
-    assert sink.result() == hexhex.survey(mesh)
+    assert sink.result() == hexhex.summarize(mesh)
     with pytest.raises(hexhex.ArgumentError):
         sink.end()
     with pytest.raises(AttributeError):
@@ -936,12 +936,12 @@ def test_repair_of_pieces(tmp_path):
         pytest.skip("without Eigen")
     bad = hexhex.generate("sphere", cells=8, refine=4, defects=2)
     notes = hexhex.extract_to_file(tmp_path / "m.vtu", bad, repair=True)
-    assert notes["repair"].bad_tets >= 2
-    assert hexhex.verify(notes["repaired_map"], hexhex.read(tmp_path / "m.vtu"))
-    notes = hexhex.extract_to(hexhex.SurveySink(), bad, repair=True)
-    assert notes["repair"].changed and notes["repaired_map"] is not None
-    notes = hexhex.extract_to(hexhex.SurveySink(), hexhex.generate("sphere"), repair=True)
-    assert notes["repair"] is None and notes["repaired_map"] is None
+    assert notes.repair.bad_tets >= 2
+    assert hexhex.verify(notes.repaired_map, hexhex.read(tmp_path / "m.vtu"))
+    notes = hexhex.extract_to(hexhex.SummarySink(), bad, repair=True)
+    assert notes.repair.changed and notes.repaired_map is not None
+    notes = hexhex.extract_to(hexhex.SummarySink(), hexhex.generate("sphere"), repair=True)
+    assert notes.repair is None and notes.repaired_map is None
     mesh = hexhex.extract(bad, order=2, repair=True)
     assert mesh.repair.changed and hexhex.verify(mesh.repaired_map, mesh)
     # A repair that fails says what it has done.

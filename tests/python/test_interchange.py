@@ -42,7 +42,7 @@ def same_features(a, b):
 
 def same_meshes(a, b):
     names = ("generator_tet", "generator_corners", "regions")
-    return (hexhex.survey(a) == hexhex.survey(b) and same_features(a, b)
+    return (hexhex.summarize(a) == hexhex.summarize(b) and same_features(a, b)
             and all(np.array_equal(getattr(a, name), getattr(b, name)) for name in names))
 
 
@@ -78,7 +78,7 @@ def test_copies_can_be_written(tagged, tmp_path):
 def test_reports_pickle(tagged, mesh):
     broken = hexhex.generate("sphere", cells=8, refine=4, defects=2)
     for value in (hexhex.check(tagged), hexhex.check(broken), hexhex.verify(tagged, mesh, scale=2),
-                  hexhex.survey(mesh), hexhex.formats()):
+                  hexhex.summarize(mesh), hexhex.formats()):
         assert all(other == value for other in in_two_ways(value))
     for value in (hexhex.quality(mesh), hexhex.map_structure(tagged), hexhex.extract_partial(broken)):
         assert all(repr(other) == repr(value) for other in in_two_ways(value))
@@ -152,7 +152,7 @@ def test_pictures(tagged, mesh):
 
 @pytest.mark.parametrize("scale", [2.0, np.float32(2), np.int8(2)])
 def test_whole_numbers(tagged, mesh, scale):
-    assert hexhex.survey(hexhex.extract(tagged, scale=scale)) == hexhex.survey(mesh)
+    assert hexhex.summarize(hexhex.extract(tagged, scale=scale)) == hexhex.summarize(mesh)
     assert hexhex.verify(tagged, mesh, scale=scale)
 
 
@@ -255,7 +255,7 @@ def test_meshio(tagged, mesh, tmp_path):
         (read,), (made,) = meshio.read(tmp_path / "c.vtu").cells, curved.to_meshio().cells
         assert read.type == made.type and np.array_equal(read.data, made.data)
     back = hexhex.Mesh.from_meshio(mesh.to_meshio())
-    assert hexhex.survey(back) == hexhex.survey(mesh) and np.array_equal(back.regions, mesh.regions)
+    assert hexhex.summarize(back) == hexhex.summarize(mesh) and np.array_equal(back.regions, mesh.regions)
     assert np.array_equal(back.generator_corners, mesh.generator_corners)
     # By way of its files, and several blocks.
     tagged.to_meshio().write(tmp_path / "map.vtu")
@@ -263,7 +263,7 @@ def test_meshio(tagged, mesh, tmp_path):
     cut = len(mesh.cells) // 3
     blocks = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells[:cut].astype(int)),
                                        ("hexahedron", mesh.cells[cut:].astype(int))])
-    assert hexhex.survey(hexhex.Mesh.from_meshio(blocks)) == hexhex.survey(mesh)
+    assert hexhex.summarize(hexhex.Mesh.from_meshio(blocks)) == hexhex.summarize(mesh)
     with pytest.raises(hexhex.ArgumentError, match="no tetrahedra"):
         hexhex.Map.from_meshio(blocks)
 

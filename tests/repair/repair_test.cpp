@@ -231,13 +231,18 @@ TEST_F(Repairs, AreTheSameForAnyNumberOfThreads) {
 TEST_F(Repairs, AreDoneByTheExtraction) {
   const TetMap map = damaged();
   Context context;
-  ExtractStatistics statistics;
-  ExtractOptions automatic;
-  automatic.repair = RepairMode::Auto;
-  const HexMesh mesh = extract(map, automatic, context, &statistics);
-  EXPECT_TRUE(statistics.repair.changed);
-  ASSERT_NE(statistics.repairedMap, nullptr);
-  EXPECT_TRUE(verify(*statistics.repairedMap, mesh).passed());
+  RepairedMap repaired;
+  const HexMesh mesh = extract(map, {.repair = &repaired}, context);
+  EXPECT_TRUE(repaired.report.changed);
+  ASSERT_NE(repaired.map, nullptr);
+  EXPECT_TRUE(verify(*repaired.map, mesh).passed());
+  const Extractor extractor(map, {.repair = &repaired}, context);
+  ASSERT_NE(repaired.map, nullptr);
+  EXPECT_EQ(extractor.cellsAtScaleOne(), mesh.cells.size());
+  const TetMap sound = generateSample(SampleKind::Box).map;
+  static_cast<void>(extract(sound, {.repair = &repaired}, context));
+  EXPECT_EQ(repaired.map, nullptr) << "left from the call before";
+  EXPECT_FALSE(repaired.report.changed);
   try {
     static_cast<void>(extract(map));
     FAIL() << "no error";

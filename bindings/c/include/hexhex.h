@@ -710,15 +710,14 @@ typedef enum hexhex_curved_nodes {
 typedef struct hexhex_extract_options {
   size_t size;
   hexhex_engine engine;
-  int scale;      /**< factor for all parameters: yields scale^3 times as many cells; at least 1 */
-  double epsilon; /**< propeller engine only; affects only the time, never the result */
+  int scale; /**< factor for all parameters: yields scale^3 times as many cells; at least 1 */
   double tolerance; /**< maximum violation of the integer conditions by the map, below 0.25 */
   int repair;       /**< 1: repair a map with flipped or flat tets first */
   int round;        /**< as in hexhex_repair_options, if the map is repaired */
   hexhex_curved_nodes curved_nodes;
 } hexhex_extract_options;
 #define HEXHEX_EXTRACT_OPTIONS_INIT \
-  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-6, 1e-2, 0, 0, HEXHEX_NODES_BLENDED }
+  { sizeof(hexhex_extract_options), HEXHEX_ENGINE_ATLAS, 1, 1e-2, 0, 0, HEXHEX_NODES_BLENDED }
 
 /** Statistics of an extraction. ExtractStatistics in <hexhex/extract.hpp> explains the fields;
  * arrays are indexed by kind of generator: vertex, edge, face, cell. */
@@ -726,8 +725,6 @@ typedef struct hexhex_statistics {
   size_t size;
   double seconds;
   int threads;
-  double epsilon;
-  int epsilon_fallback;
   int mirrored;
   uint64_t tets_inverted_in_space;
   double max_displacement;
@@ -743,11 +740,9 @@ typedef struct hexhex_statistics {
   uint64_t cut_faces;
   uint64_t overlapping_tets;
   uint64_t traced_cells;
-  int repaired;                /**< 1 if the map was repaired: see hexhex_mesh_get_repair() */
-  uint64_t straightened_cells; /**< cells that left the surface in order to be positive */
 } hexhex_statistics;
 #define HEXHEX_STATISTICS_INIT \
-  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(hexhex_statistics), 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0, 0, 0, 0, 0, 0 }
 
 /** Extracts the hexahedral mesh of a map.
  * @param[out] statistics  initialized with HEXHEX_STATISTICS_INIT, or NULL */
@@ -913,8 +908,8 @@ HEXHEX_API void hexhex_mesh_writer_destroy(hexhex_mesh_writer* writer);
 HEXHEX_API hexhex_status hexhex_mesh_writer_sink(hexhex_mesh_writer* writer, hexhex_sink* sink,
                                                  hexhex_error* error);
 
-/** Summary of a mesh: see MeshSurvey in <hexhex/survey.hpp>. */
-typedef struct hexhex_survey {
+/** Summary of a mesh: see MeshSummary in <hexhex/summary.hpp>. */
+typedef struct hexhex_mesh_summary {
   size_t size;
   uint64_t points;
   uint64_t cells;
@@ -922,22 +917,23 @@ typedef struct hexhex_survey {
   double upper[3];
   uint64_t point_checksum;
   uint64_t cell_checksum;
-} hexhex_survey;
-#define HEXHEX_SURVEY_INIT \
-  { sizeof(hexhex_survey), 0, 0, {0}, {0}, 0, 0 }
+} hexhex_mesh_summary;
+#define HEXHEX_MESH_SUMMARY_INIT \
+  { sizeof(hexhex_mesh_summary), 0, 0, {0}, {0}, 0, 0 }
 
-HEXHEX_API hexhex_status hexhex_mesh_survey(const hexhex_mesh* mesh, hexhex_context* context,
-                                            hexhex_survey* survey, hexhex_error* error);
-HEXHEX_API hexhex_status hexhex_file_survey(const char* file, const hexhex_read_options* options,
-                                            hexhex_context* context, hexhex_survey* survey,
-                                            hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_summarize_mesh(const hexhex_mesh* mesh, hexhex_context* context,
+                                               hexhex_mesh_summary* summary, hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_summarize_file(const char* file, const hexhex_read_options* options,
+                                               hexhex_context* context,
+                                               hexhex_mesh_summary* summary, hexhex_error* error);
 /** Creates a writer without a file that summarizes what it receives; query it after end.
  * @param context  as for hexhex_mesh_writer_create() */
-HEXHEX_API hexhex_status hexhex_survey_writer_create(hexhex_context* context,
-                                                     hexhex_mesh_writer** writer,
-                                                     hexhex_error* error);
-HEXHEX_API hexhex_status hexhex_survey_writer_get(const hexhex_mesh_writer* writer,
-                                                  hexhex_survey* survey, hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_summary_writer_create(hexhex_context* context,
+                                                      hexhex_mesh_writer** writer,
+                                                      hexhex_error* error);
+HEXHEX_API hexhex_status hexhex_summary_writer_get(const hexhex_mesh_writer* writer,
+                                                   hexhex_mesh_summary* summary,
+                                                   hexhex_error* error);
 
 /* ---- Checking maps --------------------------------------------------------------------------- */
 
@@ -1559,11 +1555,15 @@ typedef struct hexhex_lagrange_arrays {
   const hexhex_feature_quad* feature_quads;
   size_t feature_quad_count;
   const int32_t* regions; /**< per cell, or NULL */
+  /** Cells that left the surface in order to be positive, ascending: set by
+   * hexhex_extract_lagrange(). */
+  const uint32_t* straightened_cells;
+  size_t straightened_cell_count;
 } hexhex_lagrange_arrays;
 #define HEXHEX_LAGRANGE_ARRAYS_INIT                                                                \
   {                                                                                                \
     sizeof(hexhex_lagrange_arrays), 0, NULL, 0, 0, NULL, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, \
-        NULL                                                                                       \
+        NULL, NULL, 0                                                                              \
   }
 
 /** Creates a mesh with copies of the arrays, e.g. to write it.

@@ -42,8 +42,10 @@ from ._types import (
     BoundaryPatch,
     CheckReport,
     Defect,
+    Extraction,
     Features,
     FileFormat,
+    FillReport,
     Hole,
     ImproveReport,
     IrregularVertices,
@@ -51,22 +53,21 @@ from ._types import (
     Map,
     MapStructure,
     Mesh,
-    FillReport,
-    MeshedPart,
     MeshPart,
-    PartialMesh,
+    MeshSummary,
+    MeshedPart,
     PartNeighbour,
+    PartialMesh,
     Patches,
     Quality,
     QuantizeReport,
     RefutedCell,
-    RepairedRegion,
     RepairReport,
+    RepairedRegion,
     SampleKind,
     SeamlessReport,
     ShapeReport,
     SingularCurve,
-    Survey,
     VerifyItem,
     VerifyReport,
     WayReport,
@@ -87,20 +88,20 @@ AnyMesh = TypeVar("AnyMesh", Mesh, LagrangeMesh)
 __version__: str = _hexhex.version()
 
 __all__ = [
-    "Arcs", "ArgumentError", "BaseComplex", "BoundaryPatch", "CancelledError", "CheckReport", "Defect", "Extractor", "Features",
-    "FileError", "FileFormat", "HexhexError", "Hole", "ImproveReport", "InternalError",
-    "IrregularVertices",
-    "LagrangeMesh", "Map",
+    "Arcs", "ArgumentError", "BaseComplex", "BoundaryPatch", "CancelledError", "CheckReport",
+    "Defect", "Extraction", "Extractor", "Features", "FileError", "FileFormat", "HexhexError",
+    "Hole", "ImproveReport", "InternalError", "IrregularVertices", "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
-    "MeshWriter", "MeshedPart", "PartNeighbour", "PartialMesh", "Patches", "Quality", "QuantizeReport",
-    "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind", "SeamlessReport", "ShapeReport",
-    "SingularCurve", "Survey", "SurveySink", "TqdmProgress", "VerifyItem", "VerifyReport", "ViewPage", "WayReport", "can_quantize", "can_repair",
+    "MeshSummary", "MeshWriter", "MeshedPart", "PartNeighbour", "PartialMesh", "Patches",
+    "Quality", "QuantizeReport", "RefutedCell", "RepairReport", "RepairedRegion", "SampleKind",
+    "SeamlessReport", "ShapeReport", "SingularCurve", "SummarySink", "TqdmProgress",
+    "VerifyItem", "VerifyReport", "ViewPage", "WayReport", "can_quantize", "can_repair",
     "check", "defect_kinds", "examine_seamless", "extract", "extract_partial", "extract_parts",
-    "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate", "holds_curved",
-    "improve",
-    "map_from_flags", "map_from_pair", "map_from_tets", "map_structure", "mesh", "quality", "quantize", "read",
-    "read_curved", "read_flags", "read_map", "read_mesh", "read_pair", "read_tets", "read_to",
-    "repair", "require_format", "same_mesh", "sample_kinds", "scaled_jacobian", "survey", "verify", "view", "write",
+    "extract_parts_to_file", "extract_to", "extract_to_file", "formats", "generate",
+    "holds_curved", "improve", "map_from_flags", "map_from_pair", "map_from_tets",
+    "map_structure", "mesh", "quality", "quantize", "read", "read_curved", "read_flags",
+    "read_map", "read_mesh", "read_pair", "read_tets", "read_to", "repair", "require_format",
+    "same_mesh", "sample_kinds", "scaled_jacobian", "summarize", "verify", "view", "write",
 ]
 
 
@@ -140,12 +141,12 @@ def _one_of(names: tuple[str, ...], name: str, what: str) -> str:
     return name
 
 
-def _options(scale: int, engine: str, tolerance: float, epsilon: float, repair: bool,
-             round: bool, curved_nodes: str = "blended") -> _hexhex.Options:
+def _options(scale: int, engine: str, tolerance: float, repair: bool, round: bool,
+             curved_nodes: str = "blended") -> _hexhex.Options:
     _one_of(("atlas", "propeller"), engine, "engine")
     _one_of(("blended", "exact"), curved_nodes, "place of curved nodes")
-    return _hexhex.Options(_whole(scale, "scale"), engine == "propeller", tolerance, epsilon, repair,
-                           round, curved_nodes == "exact")
+    return _hexhex.Options(_whole(scale, "scale"), engine == "propeller", tolerance, repair, round,
+                           curved_nodes == "exact")
 
 
 def _threads(threads: Optional[int]) -> int:
@@ -162,9 +163,8 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             igm: npt.ArrayLike | None = None, *, scale: int = 1, threads: int | None = None,
             order: int = 1, curved_nodes: str = "blended", arcs: bool = False,
             patches: bool = False, repair: bool = False, round: bool = False,
-            engine: str = "atlas", tolerance: float = 1e-2, epsilon: float = 1e-6,
-            quantize: bool = False, cells: float | None = None,
-            edge_length: float | None = None, progress: Progress | None = None) -> Mesh:
+            engine: str = "atlas", tolerance: float = 1e-2, quantize: bool = False,
+            cells: float | None = None, edge_length: float | None = None, progress: Progress | None = None) -> Mesh:
     """Extracts the hexahedral mesh that an integer-grid map implies.
 
     Args:
@@ -179,7 +179,7 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
         curved_nodes: placement of their nodes. "blended": nodes on the surface lie where the map
             puts them, and all others are blended between these. Cells are positive wherever
             straight ones are; those that left the surface to achieve this are listed in
-            ``mesh.statistics["straightened_cells"]``. "exact": all nodes lie where the map puts
+            ``mesh.curved.straightened_cells``. "exact": all nodes lie where the map puts
             them, and cells may fold over.
         arcs: store the exact shapes of edges in ``mesh.arcs``.
         patches: store the exact shapes of faces in ``mesh.patches``, and of edges in ``mesh.arcs``.
@@ -189,7 +189,6 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             0.1.
         engine: "atlas", or "propeller" for the algorithm of the paper; both yield the same mesh.
         tolerance: maximum violation of the integer conditions by the map, below 0.25.
-        epsilon: propeller engine only; affects only the time, never the result.
         quantize: turn a seamless map into an integer-grid map first, like quantize(): see
             ``mesh.quantization`` and ``mesh.quantized_map``.
         cells, edge_length: target resolution of the quantization, as in quantize().
@@ -221,8 +220,8 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
         raise ArgumentError("The arguments cells and edge_length are of quantizations: add "
                             "quantize=True. An integer-grid map has a scale.", "InvalidArgument")
     arrays = given._arrays()
-    last = (_options(scale, engine, tolerance, epsilon, repair, round, curved_nodes),
-            _threads(threads), progress)
+    last = (_options(scale, engine, tolerance, repair, round, curved_nodes), _threads(threads),
+            progress)
     mesh = _assembled(
         order, arcs, patches, lambda: _hexhex.extract(arrays, *last),
         lambda: _hexhex.extract_piecewise(arrays, patches, *last),
@@ -273,14 +272,9 @@ class MeshSink(Protocol):
 
 def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None = None,
                repair: bool = False, round: bool = False, tolerance: float = 1e-2,
-               progress: Progress | None = None) -> dict[str, Any]:
+               progress: Progress | None = None) -> Extraction:
     """Extracts the same mesh as extract(), bit for bit, but passes it on in pieces and never holds
     all of it in memory. Excludes tags and regions. Other arguments and errors are as in extract().
-
-    Returns:
-        Statistics. Since there is no mesh to hold them, these include ``repair`` and
-        ``repaired_map``: the report of the repair and the repaired map, from which the mesh was
-        extracted; None if there was no repair.
 
     >>> class Count:
     ...     total = 0
@@ -288,24 +282,23 @@ def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None 
     ...     def points(self, first, points, generator_tet, generator_corners): pass
     ...     def cells(self, first, cells): self.total += len(cells)
     ...     def end(self): print(self.total)
-    >>> statistics = hexhex.extract_to(Count(), hexhex.generate("sphere"), scale=2)
+    >>> extraction = hexhex.extract_to(Count(), hexhex.generate("sphere"), scale=2)
     3584
     """
-    options = _options(scale, "atlas", tolerance, 0, repair, round)
-    return _with_repair(_hexhex.extract_to(sink, map._arrays(), options, _threads(threads),
+    options = _options(scale, "atlas", tolerance, repair, round)
+    return _extraction(_hexhex.extract_to(sink, map._arrays(), options, _threads(threads),
                                            progress))
 
 
-def _with_repair(notes: tuple[dict[str, Any], Any, Any]) -> dict[str, Any]:
+def _extraction(notes: tuple[dict[str, Any], Any, Any]) -> Extraction:
     statistics, report, repaired = notes
-    statistics["repair"] = None if report is None else RepairReport._of(report)
-    statistics["repaired_map"] = None if repaired is None else Map._from_handle(repaired)
-    return statistics
+    return Extraction(statistics, None if report is None else RepairReport._of(report),
+                      None if repaired is None else Map._from_handle(repaired))
 
 
 def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None = None,
                     threads: int | None = None, repair: bool = False, round: bool = False,
-                    tolerance: float = 1e-2, progress: Progress | None = None) -> dict[str, Any]:
+                    tolerance: float = 1e-2, progress: Progress | None = None) -> Extraction:
     """Extracts the same mesh to a file, .vtu, .mesh, .meshb, .vtk or .msh, which appears complete
     or not at all. Returns the same.
 
@@ -315,12 +308,12 @@ def extract_to_file(file: Path, map: Map, *, scale: int = 1, format: str | None 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = pathlib.Path(folder) / "large.vtu"
-    ...     statistics = hexhex.extract_to_file(file, hexhex.generate("box"), scale=3)
-    ...     hexhex.survey(file).cells
+    ...     extraction = hexhex.extract_to_file(file, hexhex.generate("box"), scale=3)
+    ...     hexhex.summarize(file).cells
     13824
     """
-    options = _options(scale, "atlas", tolerance, 0, repair, round)
-    return _with_repair(_hexhex.extract_to_file(
+    options = _options(scale, "atlas", tolerance, repair, round)
+    return _extraction(_hexhex.extract_to_file(
         os.fspath(file), map._arrays(), options, format or "", _threads(threads), progress))
 
 
@@ -359,7 +352,7 @@ def extract_parts(map: Map, parts: int, *, ghosts: int = 0, partition: str = "cu
     True
     """
     _check_partition(parts, ghosts, partition)
-    options = _options(scale, "atlas", tolerance, 0, repair, round)
+    options = _options(scale, "atlas", tolerance, repair, round)
     return [MeshPart._of(values) for values in _hexhex.extract_parts(
         map._arrays(), parts, ghosts, partition, verify, options, _threads(threads), progress)]
 
@@ -383,7 +376,7 @@ def extract_parts_to_file(file: Path, map: Map, parts: int, *, ghosts: int = 0,
     (128, 512)
     """
     _check_partition(parts, ghosts, partition)
-    options = _options(scale, "atlas", tolerance, 0, repair, round)
+    options = _options(scale, "atlas", tolerance, repair, round)
     return _hexhex.extract_parts_to_file(
         os.fspath(file), map._arrays(), parts, ghosts, partition, verify, options,
         format or "", _threads(threads), progress)
@@ -438,7 +431,7 @@ class MeshWriter:
         self._writer.end()
 
 
-def _cells_to(sink: _hexhex.MeshWriter | _hexhex.SurveySink, first: int,
+def _cells_to(sink: _hexhex.MeshWriter | _hexhex.SummarySink, first: int,
               cells: npt.ArrayLike) -> None:
     array = np.asarray(cells)
     if array.dtype == np.uint64 and array.ndim == 2 and array.shape[1] == 8:
@@ -447,20 +440,20 @@ def _cells_to(sink: _hexhex.MeshWriter | _hexhex.SurveySink, first: int,
         sink.cells(first, _indices(array, 8, "cells"))
 
 
-class SurveySink:
-    """A MeshSink that summarizes what it receives: result() then equals survey() of the mesh.
+class SummarySink:
+    """A MeshSink that summarizes what it receives: result() then equals summarize() of the mesh.
 
     Raises:
         ArgumentError: for calls in the wrong order, and vertices that do not exist.
 
-    >>> sink, map = hexhex.SurveySink(), hexhex.generate("box")
-    >>> statistics = hexhex.extract_to(sink, map)
-    >>> sink.result() == hexhex.survey(hexhex.extract(map))
+    >>> sink, map = hexhex.SummarySink(), hexhex.generate("box")
+    >>> extraction = hexhex.extract_to(sink, map)
+    >>> sink.result() == hexhex.summarize(hexhex.extract(map))
     True
     """
 
     def __init__(self) -> None:
-        self._sink = _hexhex.SurveySink()
+        self._sink = _hexhex.SummarySink()
         self._ended = False
 
     def begin(self, points: int, cells: int, /) -> None:
@@ -472,7 +465,7 @@ class SurveySink:
     def points(self, first: int, points: npt.ArrayLike, generator_tet: object = None,
                generator_corners: object = None, /) -> None:
         """Adds points, starting at number first: float64 (n, 3). Ignores generators."""
-        self._sink.points(first, _floats(points, (3,), "points"))
+        self._sink.points(first, _floats(points, (3,), "points"), *_generators(None, None, 0))
 
     def cells(self, first: int, cells: npt.ArrayLike, /) -> None:
         """Adds cells, starting at number first: integers (m, 8)."""
@@ -483,11 +476,11 @@ class SurveySink:
         self._sink.end()
         self._ended = True
 
-    def result(self) -> Survey:
+    def result(self) -> MeshSummary:
         """Returns the summary, after end(). Raises ArgumentError before."""
         if not self._ended:
             raise ArgumentError("The mesh has not ended yet.", "InvalidArgument")
-        return Survey(**self._sink.result())
+        return MeshSummary(**self._sink.result())
 
 
 def read_to(sink: MeshSink, file: Path, *, format: str | None = None, threads: int | None = None,
@@ -499,9 +492,9 @@ def read_to(sink: MeshSink, file: Path, *, format: str | None = None, threads: i
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = pathlib.Path(folder) / "large.vtu"
-    ...     statistics = hexhex.extract_to_file(file, hexhex.generate("box"), scale=3)
+    ...     extraction = hexhex.extract_to_file(file, hexhex.generate("box"), scale=3)
     ...     hexhex.read_to(hexhex.MeshWriter(file.with_suffix(".mesh")), file)
-    ...     hexhex.survey(file) == hexhex.survey(file.with_suffix(".mesh"))
+    ...     hexhex.summarize(file) == hexhex.summarize(file.with_suffix(".mesh"))
     True
     """
     _hexhex.read_to(sink, os.fspath(file), format or "", _threads(threads), progress)
@@ -541,22 +534,20 @@ class Extractor:
 
     def extract(self, *, scale: int = 1, threads: int | None = None, order: int = 1,
                 curved_nodes: str = "blended", arcs: bool = False, patches: bool = False,
-                engine: str = "atlas", epsilon: float = 1e-6,
-                progress: Progress | None = None) -> Mesh:
+                engine: str = "atlas", progress: Progress | None = None) -> Mesh:
         """Extracts the mesh at a scale, which is identical to that of hexhex.extract(). The scale
         times the order must not exceed ``max_scale``."""
-        last = (_options(scale, engine, 0, epsilon, False, False, curved_nodes), _threads(threads),
-                progress)
+        last = (_options(scale, engine, 0, False, False, curved_nodes), _threads(threads), progress)
         return _assembled(
             order, arcs, patches, lambda: self._extractor.extract(*last),
             lambda: self._extractor.extract_piecewise(patches, *last),
             lambda: self._extractor.extract_lagrange(_whole(order, "order"), *last))
 
     def extract_to(self, sink: MeshSink, *, scale: int = 1, threads: int | None = None,
-                   progress: Progress | None = None) -> dict[str, Any]:
+                   progress: Progress | None = None) -> Extraction:
         """Extracts the same mesh in pieces, like hexhex.extract_to()."""
-        options = _options(scale, "atlas", 0, 0, False, False)
-        return _with_repair(self._extractor.extract_to(sink, options, _threads(threads), progress))
+        options = _options(scale, "atlas", 0, False, False)
+        return _extraction(self._extractor.extract_to(sink, options, _threads(threads), progress))
 
 
 def can_repair() -> bool:
@@ -1276,8 +1267,8 @@ def same_mesh(a: Mesh, b: Mesh) -> bool:
     return _compare.canonical(a) == _compare.canonical(b)
 
 
-def survey(mesh: Mesh | Path, *, format: str | None = None, threads: int | None = None,
-           progress: Progress | None = None) -> Survey:
+def summarize(mesh: Mesh | Path, *, format: str | None = None, threads: int | None = None,
+           progress: Progress | None = None) -> MeshSummary:
     """Summarizes a mesh in memory or in a file of any size, for comparing meshes.
 
     Args:
@@ -1285,11 +1276,11 @@ def survey(mesh: Mesh | Path, *, format: str | None = None, threads: int | None 
         format: name of the file's format, whatever its extension: see formats().
 
     >>> map = hexhex.generate("box")
-    >>> hexhex.survey(hexhex.extract(map)) == hexhex.survey(hexhex.extract(map, threads=1))
+    >>> hexhex.summarize(hexhex.extract(map)) == hexhex.summarize(hexhex.extract(map, threads=1))
     True
     """
     if isinstance(mesh, Mesh):
-        values = _hexhex.survey(mesh._handle, _threads(threads), progress)
+        values = _hexhex.summarize(mesh._handle, _threads(threads), progress)
     else:
-        values = _hexhex.survey_file(os.fspath(mesh), format or "", _threads(threads), progress)
-    return Survey(**values)
+        values = _hexhex.summarize_file(os.fspath(mesh), format or "", _threads(threads), progress)
+    return MeshSummary(**values)

@@ -440,7 +440,35 @@ class Patches:
         return cls(**handle.patches, _handle=handle)
 
 
-class LagrangeMesh(_interchange.Wrappable):
+class _Hexes(_interchange.Wrappable):
+    """What meshes of straight and of curved cells have in common."""
+
+    _handle: Any
+
+    @property
+    def generator_tet(self) -> Indices:
+        """Per vertex or node: a tet that contains its generator, uint32 of shape (n,); empty if
+        unknown."""
+        return self._handle.generator_tet
+
+    @property
+    def generator_corners(self) -> Corners:
+        """Per vertex or node: its generator as corners of that tet, bit i for corner i, uint8
+        (n,)."""
+        return self._handle.generator_corners
+
+    @property
+    def features(self) -> Features:
+        """Tagged elements of the straight mesh, with quads as faces; views."""
+        return Features._of_mesh(self._handle)
+
+    @property
+    def regions(self) -> Ints:
+        """Region of each cell, int32 (m,); empty if unknown."""
+        return self._handle.regions
+
+
+class LagrangeMesh(_Hexes):
     """Hexahedra of order p: ``mesh.curved`` from ``extract(..., order=p)``, the result of
     read_curved(), or a mesh made from copies of your own arrays.
 
@@ -476,7 +504,7 @@ class LagrangeMesh(_interchange.Wrappable):
             *_generators(generator_tet, generator_corners, len(places)),
             _ints(f.vertices, 2, "features.vertices"), _ints(f.edges, 3, "features.edges"),
             _ints(f.faces, 5, "features.faces"), _ints(regions, 0, "regions"),
-            f._name_rows())
+            f._name_rows(), np.empty(0, dtype=np.uint32))
 
     @classmethod
     def _from_handle(cls, handle: _hexhex.LagrangeMesh) -> LagrangeMesh:
@@ -518,24 +546,10 @@ class LagrangeMesh(_interchange.Wrappable):
         return self._handle.vertex_count
 
     @property
-    def generator_tet(self) -> Indices:
-        """As in Mesh, per node, uint32 (n,)."""
-        return self._handle.generator_tet
-
-    @property
-    def generator_corners(self) -> Corners:
-        """As in Mesh, per node, uint8 (n,)."""
-        return self._handle.generator_corners
-
-    @property
-    def features(self) -> Features:
-        """Features of the straight mesh, as in Mesh."""
-        return Features._of_mesh(self._handle)
-
-    @property
-    def regions(self) -> Ints:
-        """Region of each cell, int32 (m,); empty if unknown."""
-        return self._handle.regions
+    def straightened_cells(self) -> Indices:
+        """Cells that left the surface in order to be positive, ascending, uint32 (k,); empty unless
+        made by extract()."""
+        return self._handle.straightened_cells
 
     def straight(self) -> Mesh:
         """Returns a copy of the straight mesh of the corners, with generators, tags and regions.
@@ -635,7 +649,7 @@ class BaseComplex:
                 f"{len(self.block_cells)} blocks, {len(self.curves)} singular curves>")
 
 
-class Mesh(_interchange.Wrappable):
+class Mesh(_Hexes):
     """A hexahedral mesh.
 
     ``Mesh(points, cells)`` copies your own arrays: float64 (n, 3) and integers (m, 8), and
@@ -725,29 +739,9 @@ class Mesh(_interchange.Wrappable):
         return self._handle.cells
 
     @property
-    def generator_tet(self) -> Indices:
-        """Per vertex: a tet that contains its generator, uint32 of shape (n,); empty if unknown."""
-        return self._handle.generator_tet
-
-    @property
-    def generator_corners(self) -> npt.NDArray[np.uint8]:
-        """Per vertex: its generator as corners of that tet, bit i for corner i, uint8 (n,)."""
-        return self._handle.generator_corners
-
-    @property
     def generator_kind(self) -> npt.NDArray[np.uint8]:
         """Per vertex: dimension of its generator, 0 vertex, 1 edge, 2 face, 3 tet; uint8 (n,)."""
         return _kind(self.generator_corners)
-
-    @property
-    def features(self) -> Features:
-        """Tagged elements of the mesh, with quads as faces; views."""
-        return Features._of_mesh(self._handle)
-
-    @property
-    def regions(self) -> Ints:
-        """Region of each cell, int32 (m,); empty if unknown."""
-        return self._handle.regions
 
     def boundary_patches(self, angle: float = 40) -> list[BoundaryPatch]:
         """Returns the named parts of the boundary, as grouped by write(): by tag, or else its
@@ -857,6 +851,15 @@ class Mesh(_interchange.Wrappable):
 
 
 @dataclasses.dataclass(frozen=True)
+class Extraction:
+    """What extract_to() and extract_to_file() return: what a Mesh has beside its arrays."""
+
+    statistics: dict[str, Any]
+    repair: RepairReport | None  #: if the map was repaired
+    repaired_map: Map | None  #: from which the mesh was extracted, if the map was repaired
+
+
+@dataclasses.dataclass(frozen=True)
 class Hole:
     """A place where cells are missing."""
 
@@ -883,7 +886,7 @@ class PartialMesh:
 
 
 @dataclasses.dataclass(frozen=True)
-class Survey:
+class MeshSummary:
     """Summary of a mesh; equal for meshes that are equal, bit for bit."""
 
     points: int
@@ -1130,7 +1133,8 @@ _of_hexes = operator.attrgetter("generator_tet", "generator_corners", "feature_v
                                 "feature_edges", "feature_quads", "regions", "tag_names")
 copyreg.pickle(_hexhex.Mesh, lambda h: (_hexhex.Mesh, (h.points, h.cells, *_of_hexes(h))))
 copyreg.pickle(_hexhex.LagrangeMesh, lambda h: (
-    _hexhex.LagrangeMesh, (h.order, h.points, h.nodes, h.vertex_count, *_of_hexes(h))))
+    _hexhex.LagrangeMesh, (h.order, h.points, h.nodes, h.vertex_count, *_of_hexes(h),
+                           h.straightened_cells)))
 copyreg.pickle(_hexhex.PiecewiseMesh, lambda h: (
     _hexhex.PiecewiseMesh, (h.mesh, h.arcs, h.patches)))
 

@@ -46,7 +46,7 @@ def extract_part(comm: MPI.Comm, map: Map | Path | None, *, ghosts: int = 0,
     with _Team(comm) as team:
         return MeshPart._of(_hexhex.extract_part_of_team(
             team, *_given(map, team), ghosts, partition, verify,
-            _options(scale, "atlas", tolerance, 0, repair, round), _threads(threads), progress))
+            _options(scale, "atlas", tolerance, repair, round), _threads(threads), progress))
 
 
 def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *, ghosts: int = 0,
@@ -64,7 +64,7 @@ def extract_parts_to_file(comm: MPI.Comm, file: Path, map: Map | Path | None, *,
     with _Team(comm) as team:
         return _hexhex.extract_to_file_of_team(
             team, os.fspath(file), *_given(map, team), ghosts, partition, verify,
-            _options(scale, "atlas", tolerance, 0, repair, round), format or "", _threads(threads),
+            _options(scale, "atlas", tolerance, repair, round), format or "", _threads(threads),
             progress)
 
 

@@ -84,19 +84,11 @@ void giveName(const std::filesystem::path& finished, const std::filesystem::path
 
 }  // namespace
 
-}  // namespace hexhex::io
-
-namespace hexhex {
-
 void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target) {
-  const io::ChangedFolder folder(target);
-  io::giveName(finished, target);
+  const ChangedFolder folder(target);
+  giveName(finished, target);
   folder.sync();
 }
-
-}  // namespace hexhex
-
-namespace hexhex::io {
 
 OutputFile::OutputFile(std::filesystem::path target, Target kind)
     : target_(std::move(target)), buffer_(new char[kBufferSize]) {
@@ -238,17 +230,3 @@ void OutputFile::fail(const std::string& reason, int error) const {
 }
 
 }  // namespace hexhex::io
-
-namespace hexhex {
-
-TextFile::TextFile(const std::filesystem::path& file)
-    : output_(std::make_unique<io::OutputFile>(file)) {}
-
-TextFile::~TextFile() = default;
-
-void TextFile::commit(std::string_view text) {
-  output_->write(text);
-  output_->commit();
-}
-
-}  // namespace hexhex

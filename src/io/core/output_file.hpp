@@ -111,6 +111,10 @@ class ChangedFolder {
   int descriptor_;
 };
 
+/// Renames a finished file within its folder, durably: the new name survives a power failure.
+/// @throws Error FileWrite
+void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target);
+
 /// A buffered file that is written to a temporary beside its target and, when it is safe on the
 /// disk, renamed by commit(). Without commit() the temporary vanishes and the target stays as it
 /// was. A target that exists and is no regular file (a device, a pipe) is written directly.

@@ -32,12 +32,13 @@ struct Extracted
   hexhex::LagrangeMesh curved;
   hexhex::Array<double> quality;
   hexhex::MeshStructure structure;
-  hexhex::ExtractStatistics statistics;
+  hexhex::RepairedMap repaired;
 };
 
 struct Request
 {
   hexhex::ExtractOptions options;
+  bool repair = false;
   int order = 1;
   bool quantize = false;
   double cells = 0; // to quantize for
@@ -91,21 +92,21 @@ void improveAll(Extracted& result, const hexhex::TetMapView& map, const Request&
 Extracted extractAll(const hexhex::TetMap& map, const Request& request, hexhex::Context& context)
 {
   Extracted result;
+  hexhex::ExtractOptions options = request.options;
+  options.repair = request.repair ? &result.repaired : nullptr;
   if (request.arcs || request.patches)
   {
     const auto parts = request.patches ? hexhex::PiecewiseLinearParts::ArcsAndPatches
                                        : hexhex::PiecewiseLinearParts::Arcs;
-    result.linear = hexhex::extractPiecewiseLinear(
-      map, parts, request.options, context, &result.statistics);
+    result.linear = hexhex::extractPiecewiseLinear(map, parts, options, context);
   }
   else
   {
-    result.linear.mesh = hexhex::extract(map, request.options, context, &result.statistics);
+    result.linear.mesh = hexhex::extract(map, options, context);
   }
   // What the mesh belongs to.
-  const hexhex::TetMapView repaired = result.statistics.repairedMap
-    ? hexhex::TetMapView(*result.statistics.repairedMap)
-    : hexhex::TetMapView(map);
+  const hexhex::TetMapView repaired =
+    result.repaired.map ? hexhex::TetMapView(*result.repaired.map) : hexhex::TetMapView(map);
   hexhex::HexMesh& mesh = result.linear.mesh;
   if (request.verify)
   {
@@ -180,7 +181,7 @@ int vtkHexHexExtract::RequestData(
   request.options.engine = this->Engine == 0 ? hexhex::Engine::Atlas : hexhex::Engine::Propeller;
   request.options.scale = this->Scale;
   request.options.tolerance = this->Tolerance;
-  request.options.repair = this->Repair != 0 ? hexhex::RepairMode::Auto : hexhex::RepairMode::Off;
+  request.repair = this->Repair != 0;
   request.order = this->Order;
   request.quantize = this->Quantize != 0;
   request.cells = this->Cells;
@@ -208,11 +209,11 @@ int vtkHexHexExtract::RequestData(
     vtkErrorMacro(<< problem);
     return 0;
   }
-  const hexhex::RepairReport& repair = result.statistics.repair;
-  if (repair.changed)
+  if (result.repaired.map)
   {
+    const auto& places = result.repaired.report.regions;
     vtkWarningMacro(<< "The map has flipped or flat tets, which were repaired before the extraction, in "
-                    << repair.regions.size() << (repair.regions.size() == 1 ? " place." : " places."));
+                    << places.size() << (places.size() == 1 ? " place." : " places."));
   }
   vtkUnstructuredGrid& grid = *vtkUnstructuredGrid::GetData(outputs, 0);
   if (this->Order == 1)

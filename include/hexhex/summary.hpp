@@ -18,7 +18,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 /// `pointChecksum`; meshes with the same cells in the same order have the same `cellChecksum`;
 /// however they are stored and divided into pieces. Different meshes have different checksums
 /// except with a probability of 1 in 2^64, barring deliberate collisions.
-struct MeshSurvey {
+struct MeshSummary {
   std::uint64_t points = 0;
   std::uint64_t cells = 0;
   Vec3 lower{};  ///< corners of the bounding box; 0 without points
@@ -26,16 +26,16 @@ struct MeshSurvey {
   std::uint64_t pointChecksum = 0;
   std::uint64_t cellChecksum = 0;
 
-  [[nodiscard]] bool operator==(const MeshSurvey& /*other*/) const = default;
+  [[nodiscard]] bool operator==(const MeshSummary& /*other*/) const = default;
 };
 
 /// A sink that summarizes what it receives and rejects what openMeshSink() rejects. Takes hardly
 /// any memory.
-class SurveySink : public MeshSink {
+class SummarySink : public MeshSink {
  public:
   /// @param context  must outlive the sink
-  explicit SurveySink(Context& context);
-  ~SurveySink() override;
+  explicit SummarySink(Context& context);
+  ~SummarySink() override;
   void begin(std::uint64_t pointCount, std::uint64_t cellCount) override;
   void points(const PointPiece& piece) override;
   void cells(std::uint64_t first, std::span<const Hex> cells) override;
@@ -43,7 +43,7 @@ class SurveySink : public MeshSink {
   void end() override;
 
   /// Valid after end().
-  [[nodiscard]] const MeshSurvey& result() const noexcept;
+  [[nodiscard]] const MeshSummary& result() const noexcept;
 
  private:
   class HEXHEX_HIDDEN Adder;
@@ -52,12 +52,12 @@ class SurveySink : public MeshSink {
 
 /// Summarizes a mesh in memory.
 /// @throws Error InvalidArgument for cells with vertices that do not exist; NotFinite
-[[nodiscard]] MeshSurvey survey(const HexMesh& mesh, Context& context);
+[[nodiscard]] MeshSummary summarize(const HexMesh& mesh, Context& context);
 
 /// Summarizes a mesh in a file, read with readHexMeshTo(): in pieces where possible.
 /// @throws Error  as readHexMesh()
-[[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
-                                    Context& context);
-[[nodiscard]] MeshSurvey surveyFile(const std::filesystem::path& file, Context& context);
+[[nodiscard]] MeshSummary summarizeFile(const std::filesystem::path& file,
+                                        const ReadOptions& options, Context& context);
+[[nodiscard]] MeshSummary summarizeFile(const std::filesystem::path& file, Context& context);
 
 }  // namespace HEXHEX_API_NAMESPACE

@@ -8,10 +8,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include <hexhex/extract.hpp>
+#include <extract/steps.hpp>
 
+#include "ablation/benchmarks.hpp"
 #include "bench_maps.hpp"
-#include "benchmarks.hpp"
 
 namespace hexhex::bench {
 
@@ -33,8 +33,7 @@ struct Sums {
   std::uint64_t hexes = 0;
 
   void extractAll(double epsilon) {
-    ExtractOptions options;
-    options.engine = Engine::Propeller;
+    extraction::EngineOptions options(ExtractOptions{.engine = Engine::Propeller});
     options.epsilon = epsilon;
     for (const TetMap& map : maps()) {
       for (const int scale : {1, 2, 4}) {
@@ -44,10 +43,10 @@ struct Sums {
     }
   }
 
-  void extractOne(const TetMap& map, const ExtractOptions& options) {
+  void extractOne(const TetMap& map, const extraction::EngineOptions& options) {
     Context context(1);
     ExtractStatistics statistics;
-    hexes += extract(map, options, context, &statistics).cells.size();
+    hexes += extraction::extractWith(map, options, context, &statistics).cells.size();
     seconds += statistics.seconds;
     for (const StageTime& time : context.stageTimes()) {
       if (time.stage == "vertices") vertexSeconds += time.seconds;

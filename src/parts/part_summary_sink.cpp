@@ -40,14 +40,14 @@ std::uint64_t sumBelow(std::uint64_t count) {
 
 namespace hexhex {
 
-void PartSurvey::begin(const PartsInfo& info) {
+void PartSummarySink::begin(const PartsInfo& info) {
   info_ = info;
   summary_ = {};
   summary_.smallest = info.cellCount;
   sink_.begin(info);
 }
 
-void PartSurvey::part(MeshPart&& part) {
+void PartSummarySink::part(MeshPart&& part) {
   summary_.cells += part.ownCells;
   summary_.largest = std::max(summary_.largest, part.ownCells);
   summary_.smallest = std::min(summary_.smallest, part.ownCells);
@@ -72,7 +72,7 @@ void PartSurvey::part(MeshPart&& part) {
 }
 
 /// Combines the results of all processes.
-void PartSurvey::addUp() {
+void PartSummarySink::addUp() {
   const PartsSummary& own = summary_;
   const std::array<std::uint64_t, 11> mine = {
       own.cells,       own.vertices,       own.largest, own.smallest, own.empty, own.sharedVertices,
@@ -97,7 +97,7 @@ void PartSurvey::addUp() {
   }
 }
 
-void PartSurvey::end() {
+void PartSummarySink::end() {
   if (team_ != nullptr) addUp();
   const bool complete = summary_.cells == info_.cellCount &&
                         summary_.vertices == info_.pointCount &&

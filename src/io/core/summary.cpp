@@ -3,7 +3,7 @@
 #include <mutex>
 
 #include <hexhex/io.hpp>
-#include <hexhex/survey.hpp>
+#include <hexhex/summary.hpp>
 
 #include <base/parallel.hpp>
 #include <io/core/checked_sink.hpp>
@@ -11,7 +11,7 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kSurveyGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
+constexpr std::size_t kSummaryGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
 
 /// What number `place` of an array adds to its checksum: all bits of both matter for all bits.
 std::uint64_t summand(std::uint64_t place, std::uint64_t value) {
@@ -31,18 +31,18 @@ void enlarge(Vec3& lower, Vec3& upper, const Vec3& point) {
 }  // namespace
 
 /// Integers add up to the same in any order, and so do boxes.
-class SurveyWriter {
+class SummaryWriter {
  public:
-  explicit SurveyWriter(int threads) : quiet_(threads) {}
+  explicit SummaryWriter(int threads) : quiet_(threads) {}
 
-  [[nodiscard]] const MeshSurvey& result() const noexcept { return result_; }
+  [[nodiscard]] const MeshSummary& result() const noexcept { return result_; }
 
   void begin(std::uint64_t points, std::uint64_t cells) { result_ = {points, cells, {}, {}, 0, 0}; }
 
   void points(const PointPiece& piece) {
     if (piece.first == 0) result_.lower = result_.upper = piece.points.front();
     forEachBlock(piece.points.size(), [&](std::size_t begin, std::size_t end) {
-      MeshSurvey part;
+      MeshSummary part;
       part.lower = part.upper = piece.points[begin];
       for (std::size_t i = begin; i < end; ++i) {
         enlarge(part.lower, part.upper, piece.points[i]);
@@ -75,59 +75,59 @@ class SurveyWriter {
  private:
   template <class F>
   void forEachBlock(std::size_t n, const F& f) {
-    Stage stage(quiet_, "survey");
+    Stage stage(quiet_, "summary");
     withThreadsHere(quiet_.threads(), [&] {
       parallelBlocks(
-          stage, n, kSurveyGrain,
+          stage, n, kSummaryGrain,
           [&f](std::size_t begin, std::size_t end, std::size_t /*block*/) { f(begin, end); });
     });
   }
 
   Context quiet_;  // many short loops, which report no progress of their own
   std::mutex mutex_;
-  MeshSurvey result_;
+  MeshSummary result_;
 };
 
 }  // namespace hexhex::io
 
 namespace hexhex {
 
-class SurveySink::Adder final : public io::CheckedSink<io::SurveyWriter> {
+class SummarySink::Adder final : public io::CheckedSink<io::SummaryWriter> {
   using CheckedSink::CheckedSink;
 };
 
-SurveySink::SurveySink(Context& context)
-    : adder_(std::make_unique<Adder>("survey", "survey", context, context.threads())) {}
-SurveySink::~SurveySink() = default;
+SummarySink::SummarySink(Context& context)
+    : adder_(std::make_unique<Adder>("summary", "summary", context, context.threads())) {}
+SummarySink::~SummarySink() = default;
 
-void SurveySink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
+void SummarySink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
   adder_->begin(pointCount, cellCount);
 }
-void SurveySink::points(const PointPiece& piece) { adder_->points(piece); }
-void SurveySink::cells(std::uint64_t first, std::span<const Hex> cells) {
+void SummarySink::points(const PointPiece& piece) { adder_->points(piece); }
+void SummarySink::cells(std::uint64_t first, std::span<const Hex> cells) {
   adder_->cells(first, cells);
 }
-void SurveySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
+void SummarySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
   adder_->cells(first, cells);
 }
-void SurveySink::end() { adder_->end(); }
-const MeshSurvey& SurveySink::result() const noexcept { return adder_->writer().result(); }
+void SummarySink::end() { adder_->end(); }
+const MeshSummary& SummarySink::result() const noexcept { return adder_->writer().result(); }
 
-MeshSurvey survey(const HexMesh& mesh, Context& context) {
-  SurveySink sink(context);
+MeshSummary summarize(const HexMesh& mesh, Context& context) {
+  SummarySink sink(context);
   withThreads(context.threads(), [&] { io::sendTo(sink, mesh); });
   return sink.result();
 }
 
-MeshSurvey surveyFile(const std::filesystem::path& file, const ReadOptions& options,
-                      Context& context) {
-  SurveySink sink(context);
+MeshSummary summarizeFile(const std::filesystem::path& file, const ReadOptions& options,
+                          Context& context) {
+  SummarySink sink(context);
   readHexMeshTo(sink, file, options, context);
   return sink.result();
 }
 
-MeshSurvey surveyFile(const std::filesystem::path& file, Context& context) {
-  return surveyFile(file, {}, context);
+MeshSummary summarizeFile(const std::filesystem::path& file, Context& context) {
+  return summarizeFile(file, {}, context);
 }
 
 }  // namespace hexhex
