@@ -18,8 +18,8 @@
 namespace hexhex::pipeline {
 namespace {
 
-/// Of a mesh by a polycube that is good enough: scaled Jacobian, distance to the part in diagonals
-/// (coarse quads alone are some thousandths from a curved surface), followed share of curves.
+/// When a polycube's mesh is good enough: least scaled Jacobian, distance to the part in diagonals
+/// (chords of coarse quads alone cost some thousandths), share of curves followed.
 constexpr double kGood = 0.5;
 constexpr double kNear = 5e-3;
 constexpr double kFollowed = 0.99;
@@ -31,7 +31,7 @@ std::string_view nameOf(ShapeMethod method) {
   return method == ShapeMethod::Frames ? "frames" : "polycube";
 }
 
-/// Of one way: its mesh, why there is none, or what ends the search.
+/// What one way came to: its mesh, why it has none, or an error that ends the search.
 struct Outcome {
   std::optional<MeshedPart> part;
   std::optional<Error> refusal;
@@ -55,7 +55,7 @@ WayReport reportOf(ShapeMethod method, const Outcome& outcome) {
   return report;
 }
 
-/// A better mesh would not be worth the wait.
+/// Whether a better mesh is not worth waiting for.
 bool isGoodEnough(const Outcome& outcome) {
   if (!outcome.part) return false;
   const WayReport report = reportOf(ShapeMethod::Auto, outcome);
@@ -89,7 +89,7 @@ std::string whyKept(const WayReport& kept, const WayReport& other, bool otherIsN
               first.place().kind == PlaceKind::None ? second.place() : first.place());
 }
 
-/// Both ways, each with a context of its own, whose progress and cancellation are the caller's.
+/// Runs both ways, each in a context of its own that shares the caller's progress and cancellation.
 class BothWays {
  public:
   BothWays(const Way& way, Context& context)
@@ -136,7 +136,7 @@ class BothWays {
   }
 
   MeshedPart better() {
-    // Whatever the other way came to in the meantime: with one thread, it would not have begun.
+    // Discard what the other way has found by now: with one thread, it would not have started.
     if (isGoodEnough(outcomes_[0])) {
       outcomes_[1] = {};
       outcomes_[1].isNeeded = false;
@@ -147,7 +147,7 @@ class BothWays {
     if (!outcomes_[0].part && !outcomes_[1].part) failBoth(outcomes_);
     std::array<WayReport, 2> reports;
     for (std::size_t i = 0; i < kWays.size(); ++i) reports[i] = reportOf(kWays[i], outcomes_[i]);
-    // Of two that are not certified, frames': they are nearer to it.
+    // If neither is certified, keep that of the frames, which is closer to it.
     const bool isFirst = outcomes_[0].part && reports[0].merit > reports[1].merit;
     const std::size_t kept = isFirst || !outcomes_[1].part ? 0 : 1;
     MeshedPart part = std::move(*outcomes_[kept].part);
