@@ -99,6 +99,9 @@ class ReferenceSurface {
   /// The first so many triangles are the boundary of the object; the others are inside.
   [[nodiscard]] std::size_t boundaryCount() const noexcept { return boundaryTriangles_; }
   [[nodiscard]] std::array<Vec3, 3> triangle(Index t) const noexcept;
+  [[nodiscard]] const std::array<Index, 3>& triangleVertices(Index t) const noexcept {
+    return triangles_[t];
+  }
   [[nodiscard]] std::array<Vec3, 2> segment(Index s) const noexcept;
   [[nodiscard]] std::size_t segmentCount() const noexcept { return segments_.size(); }
   [[nodiscard]] const std::array<Index, 2>& segmentVertices(Index s) const noexcept {

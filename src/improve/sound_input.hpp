@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include <hexhex/quality.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
