@@ -48,8 +48,9 @@ struct ImproveOptions {
 /// Distance between the boundaries of the object and of the mesh, in diagonals of the surface's
 /// bounding box.
 struct SurfaceDistance {
-  double fromMesh = 0;  ///< maximum over vertices, centres and edge midpoints of the boundary quads
-  double fromSurface = 0;  ///< maximum over vertices and centres of the object's boundary triangles
+  double fromMesh = 0;  ///< maximum over boundary quads, at 5 x 5 points of each
+  /// Maximum over vertices, edge midpoints and centres of the object's boundary triangles.
+  double fromSurface = 0;
 
   [[nodiscard]] double hausdorff() const noexcept {
     return fromMesh > fromSurface ? fromMesh : fromSurface;

@@ -18,16 +18,16 @@ namespace {
 /// Where more cells are below the target, moving all at once takes too long: a minute and more.
 constexpr std::size_t kMostLowAtOnce = 5'000;
 
-/// A mesh that is farther from the surface, in diagonals, is what people call another shape: its
-/// boundary quads become smaller where they are far, until it is half as far.
-constexpr double kOtherShape = 5e-3;
-constexpr double kFarChord = kOtherShape / 2;
-/// Rounds of that, at most, and in a row without a nearer mesh.
+/// A mesh farther than 5e-3 diagonals from the surface passes for another shape: its boundary quads
+/// shrink where they are far, until it is half as far. A tenth is left for what samples miss.
+constexpr double kOtherShape = 4.5e-3;
+constexpr double kFarChord = 2.5e-3;
+/// Rounds, at most, and in a row without a nearer mesh.
 constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
-/// By less than that, a mesh is no nearer: right angles are given for it.
+/// Being nearer by less is not worth the right angles that it costs.
 constexpr double kNearer = 0.99;
-/// And if less than that is left of what scaled Jacobians add up to, it is not worth it.
+/// Nor is it if less than this share is left of the sum of scaled Jacobians.
 constexpr double kKept = 0.98;
 
 /// The least scaled Jacobian that is to be kept: what was, or the target if the mesh is pulled onto
@@ -215,8 +215,8 @@ class Moving {
     sweeps.raiseWorst(options_.target, 0);
   }
 
-  /// Makes quads smaller where the surface bends most, as long as that brings the mesh nearer. The
-  /// least scaled Jacobian stays, and nearly all of the mean.
+  /// Makes quads smaller where they are far from the surface, as long as that brings the mesh
+  /// nearer. The least scaled Jacobian stays, and nearly all of the mean.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
     if (best.largest.hausdorff() <= kOtherShape) return best;
     Array<Vec3> points = subject_.mesh.points;

@@ -123,15 +123,12 @@ TriangleTree treeOf(const ReferenceSurface& surface, std::size_t begin, std::siz
   return TriangleTree(triangles);
 }
 
-/// The vertices of polygons, each once.
-/// @param polygonOf  of (i)
-template <class PolygonOf>
-std::vector<Index> verticesOf(std::size_t polygons, std::size_t points,
-                              const PolygonOf& polygonOf) {
+/// The vertices of quads, each once.
+std::vector<Index> verticesOf(std::span<const Quad> quads, std::size_t points) {
   std::vector<Index> vertices;
   std::vector<bool> isListed(points, false);
-  for (std::size_t i = 0; i < polygons; ++i) {
-    for (const Index v : polygonOf(i)) {
+  for (const Quad& quad : quads) {
+    for (const Index v : quad) {
       if (!isListed[v]) vertices.push_back(v);
       isListed[v] = true;
     }
@@ -139,25 +136,59 @@ std::vector<Index> verticesOf(std::size_t polygons, std::size_t points,
   return vertices;
 }
 
-/// Of centres and middles of edges; edges are those of two quads in most cases, and one of these
-/// asks.
+/// Where quads are divided: chords of a curved surface, and ridges between triangles as long as
+/// quads, are farthest from it anywhere between.
+constexpr std::array<double, 3> kQuarters = {0.25, 0.5, 0.75};
+
+Vec3 between(const Vec3& a, const Vec3& b, double share) {
+  return plus(times(1 - share, a), times(share, b));
+}
+
+/// At quarters along edges and across; edges are those of two quads in most cases,
+/// and one of these asks.
 double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
   const std::array<Vec3, 4> corners = cornersOf(points, quad);
-  double largest = tree.nearest(centreOf(corners)).distance;
+  double largest = 0;
+  const auto ask = [&](const Vec3& point) {
+    largest = std::max(largest, tree.nearest(point).distance);
+  };
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t next = (i + 1) % 4;
     if (quad[i] > quad[next]) continue;
-    const std::array<Vec3, 2> ends = {corners[i], corners[next]};
-    largest = std::max(largest, tree.nearest(centreOf(ends)).distance);
+    for (const double share : kQuarters) ask(between(corners[i], corners[next], share));
+  }
+  for (const double across : kQuarters) {
+    const Vec3 begin = between(corners[0], corners[3], across);
+    const Vec3 end = between(corners[1], corners[2], across);
+    for (const double share : kQuarters) ask(between(begin, end, share));
   }
   return largest;
 }
 
-/// Of vertices, too; in diagonals.
+/// Vertices of triangles, middles of their edges, and centres: each once.
+std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
+  std::vector<std::array<Index, 2>> edges;  // both vertices the same: only that
+  std::vector<Vec3> samples;
+  for (Index t = 0; t < surface.boundaryCount(); ++t) {
+    samples.push_back(centreOf(surface.triangle(t)));
+    const std::array<Index, 3>& v = surface.triangleVertices(t);
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges.push_back({v[i], v[i]});
+      edges.push_back(ascending(v[i], v[(i + 1) % 3]));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (const auto& [a, b] : edges) {
+    samples.push_back(between(surface.points()[a], surface.points()[b], 0.5));
+  }
+  return samples;
+}
+
+/// In diagonals, at vertices too.
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
-  const std::vector<Index> vertices =
-      verticesOf(quads.size(), points.size(), [&](std::size_t q) { return quads[q]; });
+  const std::vector<Index> vertices = verticesOf(quads, points.size());
   std::vector<double> ofVertices(points.size());
   parallelFor(stage, vertices.size(), kSurfaceDistanceGrain, [&](std::size_t i) {
     ofVertices[vertices[i]] = tree.nearest(points[vertices[i]]).distance;
@@ -204,30 +235,15 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
   distance.ofQuads = distancesOf(points, quads, tree, diagonal, stage);
   distance.largest.fromMesh = largestOf(distance.ofQuads);
 
-  struct FromSurface {
-    std::size_t quad;
-    double distance;
-  };
   const TriangleTree ofMesh = treeOf(points, quads);
-  const std::vector<Index> vertices =
-      verticesOf(surface.boundaryCount(), surface.points().size(),
-                 [&](std::size_t t) { return surface.triangleVertices(static_cast<Index>(t)); });
-  const std::vector<FromSurface> found = collectFromBlocks<FromSurface>(
-      stage, vertices.size() + surface.boundaryCount(), kSurfaceDistanceGrain,
-      [&](std::size_t begin, std::size_t end, std::vector<FromSurface>& list) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const Vec3 point =
-              i < vertices.size()
-                  ? surface.points()[vertices[i]]
-                  : centreOf(surface.triangle(static_cast<Index>(i - vertices.size())));
-          const TriangleTree::Nearest nearest = ofMesh.nearest(point);
-          list.push_back({nearest.triangle / 4, nearest.distance / diagonal});
-        }
-      });
-  for (const FromSurface& sample : found) {
-    double& ofQuad = distance.ofQuads[sample.quad];
-    ofQuad = std::max(ofQuad, sample.distance);
-    distance.largest.fromSurface = std::max(distance.largest.fromSurface, sample.distance);
+  const std::vector<Vec3> samples = samplesOf(surface);
+  std::vector<TriangleTree::Nearest> found(samples.size());
+  parallelFor(stage, samples.size(), kSurfaceDistanceGrain,
+              [&](std::size_t i) { found[i] = ofMesh.nearest(samples[i]); });
+  for (const auto& [far, triangle] : found) {
+    double& ofQuad = distance.ofQuads[triangle / 4];
+    ofQuad = std::max(ofQuad, far / diagonal);
+    distance.largest.fromSurface = std::max(distance.largest.fromSurface, far / diagonal);
   }
   return distance;
 }

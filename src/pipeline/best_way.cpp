@@ -18,8 +18,8 @@
 namespace hexhex::pipeline {
 namespace {
 
-/// Of a mesh by a polycube that is good enough: scaled Jacobian, distance to the part in diagonals
-/// (coarse quads alone are some thousandths from a curved surface), followed share of curves.
+/// When a polycube's mesh is good enough: least scaled Jacobian, distance to the part in diagonals
+/// (chords of coarse quads alone cost some thousandths), share of curves followed.
 constexpr double kGood = 0.5;
 constexpr double kNear = 5e-3;
 constexpr double kFollowed = 0.99;
@@ -31,7 +31,7 @@ std::string_view nameOf(ShapeMethod method) {
   return method == ShapeMethod::Frames ? "frames" : "polycube";
 }
 
-/// Outcome of one way: its mesh, the reason why there is none, or the error that ends the search.
+/// What one way came to: its mesh, why it has none, or an error that ends the search.
 struct Outcome {
   std::optional<MeshedPart> part;
   std::optional<Error> refusal;
@@ -55,7 +55,7 @@ WayReport reportOf(ShapeMethod method, const Outcome& outcome) {
   return report;
 }
 
-/// A better mesh would not be worth the wait.
+/// Whether a better mesh is not worth waiting for.
 bool isGoodEnough(const Outcome& outcome) {
   if (!outcome.part) return false;
   const WayReport report = reportOf(ShapeMethod::Auto, outcome);
@@ -89,8 +89,7 @@ std::string whyKept(const WayReport& kept, const WayReport& other, bool otherIsN
               first.place().kind == PlaceKind::None ? second.place() : first.place());
 }
 
-/// Runs both ways, each with its own context, which passes progress to the caller and cancellation
-/// from there.
+/// Runs both ways, each in a context of its own that shares the caller's progress and cancellation.
 class BothWays {
  public:
   BothWays(const Way& way, Context& context)
@@ -137,7 +136,7 @@ class BothWays {
   }
 
   MeshedPart better() {
-    // The other way's outcome is dropped, as one thread would not have begun it.
+    // Discard what the other way has found by now: with one thread, it would not have started.
     if (isGoodEnough(outcomes_[0])) {
       outcomes_[1] = {};
       outcomes_[1].isNeeded = false;

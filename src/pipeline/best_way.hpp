@@ -1,5 +1,5 @@
-// Several ways to a mesh of one part, beside each other: which errors belong to a way, and which
-// mesh is kept.
+// Runs several ways to a mesh of one part: decides which errors concern one way only, and which
+// mesh to keep.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hexhex::pipeline {
 
-/// One way has no mesh; another one may have.
+/// One way leads to no mesh; another may.
 class Refusal : public Error {
  public:
   /// @param hasMap  whether the way had made a map, so that another map of its may have a mesh
@@ -22,9 +22,9 @@ class Refusal : public Error {
   bool hasMap_;
 };
 
-/// Whether an error belongs to the way that met it. Others are about the part, the options or this
-/// machine, wish to end, or are bugs: no other way may hide them.
-/// @param hasMap  whether the way had made a map: then tets and their topology are those of the map
+/// Whether an error concerns only the way that met it. The others (a bad part, bad options, lack of
+/// resources, cancellation, bugs) must not be hidden by the success of another way.
+/// @param hasMap  whether the way had made a map: errors about tets then refer to that map
 [[nodiscard]] bool isOfTheWay(ErrorCode code, bool hasMap) noexcept;
 
 /// Makes a mesh of one map after the other, until there is one, or there are no more maps.
@@ -34,12 +34,12 @@ class Refusal : public Error {
 [[nodiscard]] MeshedPart firstMesh(const std::function<MeshedPart(std::uint64_t)>& meshOfMap,
                                    std::uint64_t mostMaps);
 
-/// Makes a mesh by one way; throws Refusal where only this one has none.
+/// Makes a mesh by one way; throws Refusal if that way has none.
 using Way = std::function<MeshedPart(ShapeMethod, Context&)>;
 
-/// Goes both ways, and keeps the better mesh. A polycube that nothing could be better than ends the
-/// search. The result is the same whether both run at once or one after the other.
-/// @param atOnce  if there is more than one thread
+/// Tries both ways and keeps the better mesh. A good enough polycube ends the search. The result is
+/// the same whether they run at once or one after the other.
+/// @param atOnce  run both at once if there is more than one thread
 /// @throws Error NotMeshable with the reasons of both
 [[nodiscard]] MeshedPart bestOfBothWays(const Way& way, bool atOnce, Context& context);
 

@@ -37,8 +37,7 @@ void requirePassed(const VerifyReport& report) {
   }
 }
 
-/// Takes tagged edges for those that are found by angle, which vertices may leave if nothing else
-/// helps.
+/// Improves without tags: edges found by angle remain, which vertices may leave as a last resort.
 ImproveReport improveWithoutTags(HexMesh& mesh, TetMapView map, const ImproveOptions& options,
                                  Context& context) {
   map.features = {};
@@ -130,7 +129,7 @@ MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& op
 }  // namespace pipeline
 
 MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context& context) {
-  // Before minutes are spent on maps; what is no number at all is quantize()'s to refuse.
+  // Check before spending minutes on maps; quantize() refuses what is not a positive number.
   if (options.quantize.cells > 0) quantization::requireNumberable(options.quantize.cells);
   if (options.shape.method != ShapeMethod::Auto) {
     return pipeline::meshBy(options.shape.method, tets, options, context);

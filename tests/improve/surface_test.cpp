@@ -1,6 +1,8 @@
 // Nearest places on surfaces, and what holds a vertex.
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -86,6 +88,28 @@ TEST(Surface, AWalkStaysOnItsPatchAndItsCurve) {
       EXPECT_NEAR(place.point[k], fixed ? from[k] : std::clamp(far[k], 0.0, 4.0), 1e-12);
     }
   }
+}
+
+/// A roof over one quad, whose ridge is a quarter of the way across.
+TEST(Surface, DistancesSeeARidgeBesideTheCentreOfAQuad) {
+  constexpr double kHeight = 0.1;
+  SurfaceParts parts;
+  for (const double y : {0.0, 1.0}) {
+    parts.points.push_back({0, y, 0});
+    parts.points.push_back({0.25, y, kHeight});
+    parts.points.push_back({1, y, 0});
+  }
+  parts.triangles = {{{0, 1, 4}, 0}, {{0, 4, 3}, 0}, {{1, 2, 5}, 0}, {{1, 5, 4}, 0}};
+  parts.boundaryTriangles = parts.triangles.size();
+  Context context(1);
+  Stage stage(context, "test");
+  const Array<Vec3> points = parts.points;
+  const ReferenceSurface surface(std::move(parts), stage);
+  const std::vector<Quad> quads = {{0, 2, 5, 3}};
+  const SurfaceDistance found =
+      distanceBetween(points, quads, surface, treeOf(surface), 1, stage).largest;
+  EXPECT_NEAR(found.fromSurface, kHeight, 1e-12);
+  EXPECT_NEAR(found.fromMesh, kHeight / std::hypot(1, kHeight / 0.25), 1e-12);  // to the steep side
 }
 
 /// Short chains are what bad cells make, unless they end at vertices with tags.

@@ -135,8 +135,8 @@ inline Vec3 pointOf(const std::array<Vec3, 4>& quad, double s, double t) {
 
 }  // namespace sampled
 
-/// The reported distance looks at few points: vertices, centres and middles of edges of quads,
-/// which are those of two steps; vertices and centres of triangles, which are among those of three.
+/// The reported distance looks at the points of quads at four steps; and at vertices, middles of
+/// edges and centres of triangles, which are among those at six.
 /// @param steps  sides of quads and triangles are divided into so many
 inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, int steps = 4) {
   using namespace sampled;
@@ -186,8 +186,8 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
 
 /// Whether a reported distance is right, as far as it looks.
 inline void expectSampled(const SurfaceDistance& reported, const HexMesh& mesh, const TetMap& map) {
-  EXPECT_NEAR(reported.fromMesh, sampledDistance(mesh, map, 2).fromMesh, 1e-9);
-  const double fromObject = sampledDistance(mesh, map, 3).fromObject;
+  EXPECT_NEAR(reported.fromMesh, sampledDistance(mesh, map, 4).fromMesh, 1e-9);
+  const double fromObject = sampledDistance(mesh, map, 6).fromObject;
   EXPECT_LE(reported.fromSurface, fromObject + 1e-9);
   EXPECT_GE(reported.fromSurface, 0.5 * fromObject - 1e-9);
 }
