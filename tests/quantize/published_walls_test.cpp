@@ -31,7 +31,8 @@ Sample seamlessSample(SampleKind kind) {
 
 TetMap parse(const PublishedMap& published, bool keepWalls = false) {
   Context context;
-  return io::readHexex({published.text, "published.hexex"}, {.keepWalls = keepWalls}, context);
+  return readBytes<io::readHexex>(published.text, "published.hexex", context,
+                                  ReadOptions{.keepWalls = keepWalls});
 }
 
 /// What `extract --quantize --improve` makes of a map.
