@@ -109,9 +109,9 @@ void damage(const std::string& text, const Parse& parse) {
 }
 
 /// Of readers whose input is a file or bytes.
-template <auto read>
+template <auto& read>
 auto parse(std::string_view text, const std::string& fileName, Context& context) {
-  return read(Input(text, fileName), context);
+  return readBytes<read>(text, fileName, context);
 }
 
 TEST(DamagedFiles, Hexex) {

@@ -12,6 +12,7 @@
 #include <hexhex/hexhex.hpp>
 
 #include <io/formats/formats.hpp>
+#include <io/io_test_support.hpp>
 
 #include "quantize/real_maps.hpp"
 #include "support/published_map.hpp"
