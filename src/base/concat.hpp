@@ -8,9 +8,10 @@
 namespace hexhex {
 
 /// The parts one after the other: texts, paths, characters, and numbers as std::to_string() has
-/// them.
+/// them. By value, so that literals of different lengths share their code, and no variable of a
+/// loop has its address taken for an error.
 template <class... Parts>
-[[nodiscard]] std::string concat(const Parts&... parts) {
+[[nodiscard]] std::string concat(Parts... parts) {
   std::string text;
   const auto add = [&text]<class Part>(const Part& part) {
     static_assert(!std::is_same_v<Part, bool>);

@@ -90,16 +90,16 @@ class ByteCursor {
   /// Throws an error about what is read next: "<file>, byte 48: <sentence>".
   /// @param sentence  its parts, as of concat()
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     failAt(position(), code, sentence...);
   }
   template <class... Parts>
-  [[noreturn]] void failAt(std::size_t position, ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void failAt(std::size_t position, ErrorCode code, Parts... sentence) const {
     failAt(position, code, Place{}, sentence...);
   }
   template <class... Parts>
   [[noreturn]] void failAt(std::size_t position, ErrorCode code, Place place,
-                           const Parts&... sentence) const {
+                           Parts... sentence) const {
     throw Error(code, concat(fileName_, ", byte ", position, ": ", sentence...), place);
   }
 

@@ -82,7 +82,7 @@ class TextSource {
 
   /// As TextScanner::fail().
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     scanner_->fail(code, sentence...);
   }
 
@@ -117,12 +117,12 @@ class ByteFile {
   }
   [[nodiscard]] const std::string& name() const noexcept { return *name_; }
   template <class... Parts>
-  [[noreturn]] void fail(std::size_t position, ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(std::size_t position, ErrorCode code, Parts... sentence) const {
     fail(position, code, Place{}, sentence...);
   }
   template <class... Parts>
   [[noreturn]] void fail(std::size_t position, ErrorCode code, Place place,
-                         const Parts&... sentence) const {
+                         Parts... sentence) const {
     throw Error(code, concat(*name_, ", byte ", position, ": ", sentence...), place);
   }
 
@@ -179,7 +179,7 @@ class BinaryRecord : public LittleEndianNumbers<BinaryRecord> {
   [[nodiscard]] static std::string spelling(std::uint64_t number) { return std::to_string(number); }
 
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     file_->fail(position(), code, sentence...);
   }
 
@@ -229,7 +229,7 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
   }
 
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     file_->fail(position_, code, sentence...);
   }
 

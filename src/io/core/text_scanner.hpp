@@ -212,12 +212,12 @@ class TextScanner {
   /// Throws an error about the current token: "<file>, line 12: <sentence>".
   /// @param sentence  its parts, as of concat()
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     fail(code, Place{PlaceKind::Line, line()}, sentence...);
   }
   /// The same with a place other than the line.
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, Place place, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Place place, Parts... sentence) const {
     throw Error(code, concat(fileName_, ", line ", line(), ": ", sentence...), place);
   }
   /// After readNumber returned false: throws an error that tells what was found instead of `what`.

@@ -292,7 +292,7 @@ class ExodusReader {
 
  private:
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     throw Error(code, concat(input_.name(), ": ", sentence...));
   }
 

@@ -532,7 +532,7 @@ class WindowSource {
   }
   /// The reader of whole files reports what is wrong.
   template <class... Parts>
-  [[noreturn]] static void fail(ErrorCode code, const Parts&... sentence) {
+  [[noreturn]] static void fail(ErrorCode code, Parts... sentence) {
     throw Error(code, concat(sentence...));
   }
 

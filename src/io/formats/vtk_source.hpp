@@ -127,11 +127,11 @@ class VtkSource {
   /// Throws an error about the file.
   /// @param sentence  its parts, as of concat()
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     fail(code, Place{}, sentence...);
   }
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, Place place, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Place place, Parts... sentence) const {
     throw Error(code, concat(fileName_, ": ", sentence...), place);
   }
 

@@ -475,7 +475,7 @@ class VtkHdfReader {
   using Begins = std::vector<std::uint64_t>;  ///< rows of each partition, and the end of the last
 
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     throw Error(code, concat(input_.name(), ": ", sentence...));
   }
   [[nodiscard]] std::uint64_t rowsOf(const std::string& path) const {

@@ -83,7 +83,7 @@ class XmlTags {
 
   /// Throws an error about the line that the tag begins in: "<file>, line 12: <sentence>".
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const XmlTag& tag, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, const XmlTag& tag, Parts... sentence) const {
     TextScanner scanner(text_, fileName_);
     scanner.moveTo(tag.begin);
     scanner.fail(code, sentence...);

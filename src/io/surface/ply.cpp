@@ -83,7 +83,7 @@ class PlyBytes {
   }
 
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     cursor_.fail(code, sentence...);
   }
 
@@ -107,7 +107,7 @@ class PlyText {
   explicit PlyText(TextScanner& scanner) : scanner_(scanner) {}
   double number(PlyType /*type*/, const char* what) { return scanner_.number(what); }
   template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, const Parts&... sentence) const {
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     scanner_.fail(code, sentence...);
   }
 
