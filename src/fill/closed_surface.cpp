@@ -15,6 +15,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/box.hpp>
+#include <base/concat.hpp>
 #include <base/vector3.hpp>
 
 namespace hexhex::fill {
@@ -30,7 +31,7 @@ std::string asText(const Vec3& point) {
     std::array<char, 32> room{};
     const auto end = std::to_chars(room.data(), room.data() + room.size(), x,
                                    std::chars_format::general, kDigits);
-    text += (text.empty() ? "(" : ", ") + std::string(room.data(), end.ptr);
+    text += concat((text.empty() ? "(" : ", "), std::string(room.data(), end.ptr));
   }
   return text + ")";
 }
@@ -104,10 +105,10 @@ class Checked {
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
       for (const Index v : surface_.triangles[t]) {
         if (v < surface_.points.size()) continue;
-        throw Error(ErrorCode::IndexOutOfRange,
-                    "Triangle " + std::to_string(t) + " of the surface names vertex " +
-                        std::to_string(v) + ", which does not exist.",
-                    {PlaceKind::Vertex, v});
+        throw Error(
+            ErrorCode::IndexOutOfRange,
+            concat("Triangle ", t, " of the surface names vertex ", v, ", which does not exist."),
+            {PlaceKind::Vertex, v});
       }
       if (!isFlat(cornersOf(surface_, t))) continue;
       throw Error(ErrorCode::NotMeshable,
@@ -163,12 +164,12 @@ class Checked {
       std::size_t end = i + 1;
       while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
       if (end - i > 2) {
-        throw Error(ErrorCode::NonManifoldEdge,
-                    std::to_string(end - i) + " triangles of the surface meet in " +
-                        edgeName(sides[i].ends) +
-                        "; it bounds a body only if there are two at each edge. Bodies that touch "
-                        "have to be united, or moved apart, where they were made.",
-                    {PlaceKind::Edge, sides[i].ends[0], sides[i].ends[1]});
+        throw Error(
+            ErrorCode::NonManifoldEdge,
+            concat(end - i, " triangles of the surface meet in ", edgeName(sides[i].ends),
+                   "; it bounds a body only if there are two at each edge. Bodies that touch "
+                   "have to be united, or moved apart, where they were made."),
+            {PlaceKind::Edge, sides[i].ends[0], sides[i].ends[1]});
       }
       if (end - i == 2) {
         twins_[sides[i].side] = sides[i + 1].side;
@@ -181,7 +182,7 @@ class Checked {
     if (open == 0) return;
     throw Error(ErrorCode::NonManifoldEdge,
                 "The surface is open: " + edgeName(firstOpen) + " has one triangle only" +
-                    (open == 1 ? "" : ", and so have " + std::to_string(open - 1) + " others") +
+                    (open == 1 ? "" : concat(", and so have ", open - 1, " others")) +
                     ". Close it where it was made. Vertices have to be equal in all digits to be "
                     "the same.",
                 {PlaceKind::Edge, firstOpen[0], firstOpen[1]});

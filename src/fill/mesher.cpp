@@ -18,6 +18,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/concat.hpp>
 #include <base/vector3.hpp>
 
 namespace hexhex::fill {
@@ -111,7 +112,7 @@ std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
   std::string packages;
   const auto add = [&packages](bool holds, const char* name) {
-    if (holds) packages += (packages.empty() ? "" : ",") + std::string(name);
+    if (holds) packages += concat((packages.empty() ? "" : ","), name);
   };
   add(wanted(Mesher::TetWild) && !isStep, "tetwild");
   add(wanted(Mesher::Netgen), "netgen");
@@ -206,9 +207,7 @@ TetMesh tidied(TetMesh read) {
 
 TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& task,
                    const std::filesystem::path& folder, const ProgramEnd& end, Context& context) {
-  if (end.code != 0) {
-    failBy(mesher, task, "failed with exit code " + std::to_string(end.code), end.said);
-  }
+  if (end.code != 0) failBy(mesher, task, concat("failed with exit code ", end.code), end.said);
   const bool hasNames = std::filesystem::exists(folder / kNamed);
   const std::filesystem::path result = folder / (hasNames ? kNamed : runner.result);
   if (!std::filesystem::exists(result)) failBy(mesher, task, "wrote no mesh", end.said);
@@ -225,8 +224,7 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
     if (!mesh.tets.empty()) return mesh;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;
-    failBy(mesher, task, "wrote a mesh that cannot be read (" + std::string(error.what()) + ")",
-           end.said);
+    failBy(mesher, task, concat("wrote a mesh that cannot be read (", error.what(), ")"), end.said);
   }
   failBy(mesher, task, "made no tets", end.said);
 }

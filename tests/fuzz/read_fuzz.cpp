@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include <sanitizer/allocator_interface.h>
 
@@ -106,28 +107,22 @@ void read(std::string_view text) {
   examine(parse(text, "input", context));
 }
 
-/// Of readers whose input is a file or bytes.
+/// Of readers whose input is a file or bytes. Maps are in arrays of the usual name.
 template <auto readInput>
 auto parse(std::string_view text, const std::string& fileName, Context& context) {
-  return readInput(Input(text, fileName), context);
-}
-
-TetMap parseHexex(std::string_view text, const std::string& fileName, Context& context) {
-  return readHexex({text, fileName}, {.keepWalls = true}, context);
-}
-
-// Maps in arrays of the usual name.
-TetMap parseVtkLegacyMap(std::string_view text, const std::string& fileName, Context& context) {
-  return readVtkLegacyMap({text, fileName}, {}, context);
-}
-TetMap parseVtuMap(std::string_view text, const std::string& fileName, Context& context) {
-  return readVtuMap({text, fileName}, {}, context);
+  return inStage(context, "read", [&](Stage& stage) {
+    if constexpr (std::is_same_v<decltype(readInput), ReadMap*>) {
+      return readInput({text, fileName}, {.keepWalls = true}, stage);
+    } else {
+      return readInput({text, fileName}, stage);
+    }
+  });
 }
 
 /// What a compressed file holds, read as the format of most text.
 HexMesh parseGzip(std::string_view text, const std::string& fileName, Context& context) {
   const Array<char> bytes = inflateGzip(text, fileName);
-  return readGmsh({asText(bytes), fileName}, context);
+  return parse<readGmsh>(asText(bytes), fileName, context);
 }
 
 /// All files in one: '=' is between points, faces and tets.
@@ -160,7 +155,7 @@ struct Reader {
 };
 
 constexpr std::array kReaders = {
-    Reader{"hexex", read<parseHexex>},
+    Reader{"hexex", read<parse<readHexex>>},
     Reader{"mesh", read<parse<readMedit>>},
     Reader{"mesh-tets", read<parse<readMeditTets>>},
     Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
@@ -170,9 +165,9 @@ constexpr std::array kReaders = {
     Reader{"msh-curved", read<parse<readCurvedGmsh>>},
     Reader{"vtk", read<parse<readVtkLegacy>>},
     Reader{"vtu", read<parse<readVtu>>, fuzz::changeAppended},
-    Reader{"vtk-map", read<parseVtkLegacyMap>},
+    Reader{"vtk-map", read<parse<readVtkLegacyMap>>},
     Reader{"vtk-tets", read<parse<readVtkLegacyTets>>},
-    Reader{"vtu-map", read<parseVtuMap>, fuzz::changeAppended},
+    Reader{"vtu-map", read<parse<readVtuMap>>, fuzz::changeAppended},
     Reader{"vtu-tets", read<parse<readVtuTets>>, fuzz::changeAppended},
     Reader{"vtu-lagrange", read<parse<readLagrangeVtu>>, fuzz::changeAppended},
     Reader{"vtk-curved", read<parse<readCurvedVtkLegacy>>},

@@ -32,7 +32,7 @@ constexpr Hex kCell = {0, 1, 2, 3, 4, 5, 6, 7};
 
 HexMesh gmsh(const std::string& text) {
   Context context;
-  return readGmsh({text, "m.msh"}, context);
+  return readBytes<readGmsh>(text, "m.msh", context);
 }
 
 /// What versions 1 and 4.0 call a cube of region 5 with a quad of tag 7 on it.
@@ -212,7 +212,7 @@ std::string listed(const std::vector<Vec3>& points, bool numbered) {
 
 HexMesh abaqus(const std::string& text) {
   Context context;
-  return AbaqusFormat::readMesh({text, "m.inp"}, context);
+  return readBytes<AbaqusFormat::readMesh>(text, "m.inp", context);
 }
 
 const std::string kInpNodes =
@@ -432,7 +432,7 @@ const std::string kUnvGroups =
 
 HexMesh unv(const std::string& text) {
   Context context;
-  return UnvFormat::readMesh({text, "m.unv"}, context);
+  return readBytes<UnvFormat::readMesh>(text, "m.unv", context);
 }
 
 TEST(ForeignFiles, UniversalFilesWithGroups) {
@@ -575,7 +575,7 @@ HexMesh vtuOf(const std::string& pieces) {
   Context context;
   const std::string text = "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>\n" + pieces +
                            "</UnstructuredGrid></VTKFile>\n";
-  return readVtu({text, "m.vtu"}, context);
+  return readBytes<readVtu>(text, "m.vtu", context);
 }
 
 TEST(ForeignFiles, PiecesOfVtuBecomeOneMesh) {
@@ -701,14 +701,15 @@ TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {
     if (i % 2 == 0) bytes.resize(random.below(good.size()));
     if (i % 2 == 1) bytes[random.below(good.size())] = static_cast<char>(random.below(256));
     try {
-      static_cast<void>(ExodusFormat::readMesh({bytes, "a.e"}, context));
+      static_cast<void>(readBytes<ExodusFormat::readMesh>(bytes, "a.e", context));
     } catch (const Error&) {
       ++refused;
     }
   }
   EXPECT_GE(refused, 200U);
   const Failure hdf = failureOf([&] {
-    static_cast<void>(ExodusFormat::readMesh({"\x89HDF\r\n\x1a\n........", "a.e"}, context));
+    static_cast<void>(
+        readBytes<ExodusFormat::readMesh>("\x89HDF\r\n\x1a\n........", "a.e", context));
   });
   EXPECT_NE(hdf.sentence.find("HDF5"), std::string::npos) << hdf.sentence;
 }

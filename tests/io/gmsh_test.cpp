@@ -27,7 +27,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return readGmsh({text, "m.msh"}, context);
+  return readBytes<readGmsh>(text, "m.msh", context);
 }
 
 Failure failure(const std::string& text) {
@@ -62,7 +62,7 @@ TEST(Gmsh, WritesExactlyTheSectionsOfVersion22) {
   mesh.features.edges = {{{0, 1}, 9}};
   mesh.features.vertices = {{3, 6}, {0, 6}};
   Context context;
-  writeGmsh22Text(mesh, folder / "a.msh", {}, context);
+  writeHexMesh(mesh, folder / "a.msh", {.format = "msh22-ascii"}, context);
   EXPECT_EQ(contentOf(folder / "a.msh"),
             kHead22 +
                 "$PhysicalNames\n5\n0 6 \"point_6\"\n1 9 \"curve_9\"\n2 2 \"surface_2\"\n"
@@ -79,8 +79,9 @@ TEST(Gmsh, WritesExactlyTheSectionsOfVersion41) {
   mesh.regions.clear();
   Context context;
   WriteOptions options;
+  options.format = "msh41-ascii";
   options.patchAngle = 0;
-  writeGmsh41Text(mesh, folder / "a.msh", options, context);
+  writeHexMesh(mesh, folder / "a.msh", options, context);
   EXPECT_EQ(contentOf(folder / "a.msh"),
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
             "$PhysicalNames\n2\n2 1 \"boundary\"\n3 2 \"hexahedra\"\n$EndPhysicalNames\n"
@@ -242,7 +243,7 @@ TEST(Gmsh, CellsOfOrder2) {
     for (const std::string& text : {cube.version22(), cube.version41(), cube.bytes22()}) {
       SCOPED_TRACE(text.substr(0, 21) + std::to_string(nodes));
       // From memory and from a file, where it is looked at without the whole of it.
-      EXPECT_TRUE(holdsCurvedGmsh({text, "m.msh"}, context));
+      EXPECT_TRUE(readBytes<holdsCurvedGmsh>(text, "m.msh", context));
       writeText(folder / "a.msh", text);
       ASSERT_TRUE(holdsLagrangeCells(folder / "a.msh", context));
       const LagrangeMesh mesh = readLagrangeMesh(folder / "a.msh", context);
@@ -265,8 +266,9 @@ TEST(Gmsh, CellsOfOrder2) {
           << straight.sentence;
       for (std::size_t size = 0; size + 13 < text.size(); size += 7) {
         const std::string part = text.substr(0, size);
-        EXPECT_NO_THROW(static_cast<void>(holdsCurvedGmsh({part, "m.msh"}, context)));
-        EXPECT_THROW(static_cast<void>(readCurvedGmsh({part, "m.msh"}, context)), Error) << size;
+        EXPECT_NO_THROW(static_cast<void>(readBytes<holdsCurvedGmsh>(part, "m.msh", context)));
+        EXPECT_THROW(static_cast<void>(readBytes<readCurvedGmsh>(part, "m.msh", context)), Error)
+            << size;
       }
     }
   }
@@ -276,7 +278,8 @@ TEST(Gmsh, CellsOfOrder2AloneAndOfOneType) {
   const TemporaryFolder folder;
   Context context;
   const auto sentence = [&](const std::string& text) {
-    return failureOf([&] { static_cast<void>(readCurvedGmsh({text, "m.msh"}, context)); }).sentence;
+    return failureOf([&] { static_cast<void>(readBytes<readCurvedGmsh>(text, "m.msh", context)); })
+        .sentence;
   };
   const std::string good = CubeOfOrder2(27).version22();
   const std::string mixed = replaced(replaced(good, "$Elements\n4\n", "$Elements\n5\n"),
@@ -292,7 +295,7 @@ TEST(Gmsh, CellsOfOrder2AloneAndOfOneType) {
       << sentence(straight);
   writeText(folder / "a.msh", straight);
   EXPECT_FALSE(holdsLagrangeCells(folder / "a.msh", context));
-  EXPECT_FALSE(holdsCurvedGmsh({straight, "m.msh"}, context));
+  EXPECT_FALSE(readBytes<holdsCurvedGmsh>(straight, "m.msh", context));
 }
 
 /// The groups of a file: "dimension name" by number, which no two have.
@@ -419,7 +422,7 @@ TEST(Gmsh, BinaryOfVersion22HasTheTagsThatWereWritten) {
   mesh.features.quads = {{boundaryPatches(mesh, 40, context)[0].vertices, 4}};
   mesh.regions.assign(mesh.cells.size(), 0);
   std::fill_n(mesh.regions.begin(), 5, 6);
-  writeGmsh22Text(mesh, folder / "a.msh", {}, context);
+  writeHexMesh(mesh, folder / "a.msh", {.format = "msh22-ascii"}, context);
   const HexMesh read = parse(inBytes22(contentOf(folder / "a.msh")));
   expectSameBits(read.points, mesh.points);
   EXPECT_EQ(read.cells, mesh.cells);
@@ -459,9 +462,8 @@ TEST(Gmsh, FirstErrorInBytesWithAnyNumberOfThreads) {
   binary[place + 72 * 9] = binary[place + 72 * 9 + 1] = '\xff';
   for (const int threads : {1, 4}) {
     Context context(threads);
-    const Failure wrong = failureOf([&] {
-      static_cast<void>(readGmsh({binary, "m.msh"}, context));
-    });
+    const Failure wrong =
+        failureOf([&] { static_cast<void>(readBytes<readGmsh>(binary, "m.msh", context)); });
     EXPECT_EQ(wrong.code, ErrorCode::IndexOutOfRange);
     EXPECT_EQ(toString(wrong.place), "cell 7950");
     EXPECT_NE(wrong.sentence.find("byte " + std::to_string(place + 8)), std::string::npos)

@@ -67,7 +67,7 @@ TEST(HdfFiles, ExodusOfNetcdf4) {
   Context context;
   EXPECT_FALSE(holdsLagrangeCells(file, context));
   expectExodus(readHexMesh(file));
-  expectExodus(ExodusFormat::readMesh({contentOf(file), "a.e"}, context));
+  expectExodus(readBytes<ExodusFormat::readMesh>(contentOf(file), "a.e", context));
 
   ASSERT_EQ(makeFile("exodus27", file), "");
   ASSERT_TRUE(holdsLagrangeCells(file, context));
@@ -91,7 +91,7 @@ TEST(HdfFiles, CutOffFilesAreRefused) {
   Context context;
   for (std::size_t size = 8; size < good.size(); size += good.size() / 30) {
     const Failure failure = failureOf([&] {
-      static_cast<void>(ExodusFormat::readMesh({good.substr(0, size), "a.e"}, context));
+      static_cast<void>(readBytes<ExodusFormat::readMesh>(good.substr(0, size), "a.e", context));
     });
     EXPECT_EQ(failure.code, ErrorCode::FileSyntax) << size << failure.sentence;
   }

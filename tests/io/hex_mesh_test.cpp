@@ -19,12 +19,12 @@ namespace {
 
 HexMesh mesh(const std::string& text) {
   Context context;
-  return readMedit({text, "m.mesh"}, context);
+  return readBytes<readMedit>(text, "m.mesh", context);
 }
 
 HexMesh vtu(const std::string& text) {
   Context context;
-  return readVtu({text, "m.vtu"}, context);
+  return readBytes<readVtu>(text, "m.vtu", context);
 }
 
 const std::string kHead = "MeshVersionFormatted 2\nDimension 3\n";

@@ -21,7 +21,7 @@ const std::string kOneTet = kPoints + "1\n" + kTet;
 
 TetMap parse(const std::string& text, const ReadOptions& options = {}) {
   Context context;
-  return readHexex({text, "m.hexex"}, options, context);
+  return readBytes<readHexex>(text, "m.hexex", context, options);
 }
 
 void expectSame(const TetMap& a, const TetMap& b) {
@@ -224,7 +224,7 @@ TEST(Hexex, CancellationEndsReading) {
   Context context;
   context.cancel();
   EXPECT_EQ(failureOf([&] {
-              static_cast<void>(readHexex({kOneTet, "m"}, {}, context));
+              static_cast<void>(readBytes<readHexex>(kOneTet, "m", context, ReadOptions{}));
             }).code,
             ErrorCode::Cancelled);
 }

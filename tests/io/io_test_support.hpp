@@ -10,12 +10,17 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
+#include <io/core/input_file.hpp>
+#include <io/core/output_file.hpp>
 
 #include "support/random.hpp"
 
@@ -50,6 +55,24 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// What the reader of a format makes of bytes.
+/// @param more  what else it takes
+template <auto& reader, class... More>
+auto readBytes(std::string_view bytes, const std::string& name, Context& context,
+               const More&... more) {
+  return io::inStage(context, "read",
+                     [&](Stage& stage) { return reader(io::Input(bytes, name), more..., stage); });
+}
+
+/// Has a file written by write(output, stage).
+template <class Write>
+void writeBy(const std::filesystem::path& file, Context& context, const Write& write) {
+  io::OutputFile output(file);
+  Stage stage(context, "write");
+  write(output, stage);
+  output.commit();
+}
 
 /// A text with the first place that reads `from` changed.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -23,14 +23,14 @@ TetMap vtu(const std::string& text, std::string_view array = "igm") {
   Context context;
   ReadOptions options;
   options.mapArray = array;
-  return readVtuMap({text, "m.vtu"}, options, context);
+  return readBytes<readVtuMap>(text, "m.vtu", context, options);
 }
 
 TetMap vtk(const std::string& text, std::string_view array = "igm") {
   Context context;
   ReadOptions options;
   options.mapArray = array;
-  return readVtkLegacyMap({text, "m.vtk"}, options, context);
+  return readBytes<readVtkLegacyMap>(text, "m.vtk", context, options);
 }
 
 // A hexahedron between two tets, so that tets and cells have different numbers.

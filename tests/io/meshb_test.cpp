@@ -17,7 +17,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return readMeshb({text, "m.meshb"}, context);
+  return readBytes<readMeshb>(text, "m.meshb", context);
 }
 
 template <class... T>
@@ -41,7 +41,9 @@ TEST(Meshb, AllVersionsHoldTheMesh) {
   Context context;
   std::size_t previous = 0;
   for (const std::uint32_t version : {2U, 3U, 4U}) {
-    writeMeshbVersion(mesh, folder / "a.meshb", version, context);
+    writeBy(folder / "a.meshb", context, [&](OutputFile& output, Stage& stage) {
+      writeMeshbVersion(mesh, output, version, stage);
+    });
     const std::string file = contentOf(folder / "a.meshb");
     EXPECT_TRUE(file.starts_with(bytes(1U, version)));
     EXPECT_GT(file.size(), previous);

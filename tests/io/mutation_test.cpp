@@ -109,9 +109,9 @@ void damage(const std::string& text, const Parse& parse) {
 }
 
 /// Of readers whose input is a file or bytes.
-template <auto read>
+template <auto& read>
 auto parse(std::string_view text, const std::string& fileName, Context& context) {
-  return read(Input(text, fileName), context);
+  return readBytes<read>(text, fileName, context);
 }
 
 TEST(DamagedFiles, Hexex) {
@@ -119,7 +119,7 @@ TEST(DamagedFiles, Hexex) {
   writeMap(smallMap(), folder / "a.hexex");
   damage(contentOf(folder / "a.hexex") + "1\n0 1 2 1/3\n1 1 1\n0\n1 2\n1 2 3\n",
          [](std::string_view text, const std::string& fileName, Context& context) {
-           return readHexex({text, fileName}, {.keepWalls = true}, context);
+           return readBytes<readHexex>(text, fileName, context, ReadOptions{.keepWalls = true});
          });
 }
 
@@ -153,7 +153,9 @@ TEST(DamagedFiles, Meshb) {
   const TemporaryFolder folder;
   Context context;
   for (const std::uint32_t version : {2U, 4U}) {
-    writeMeshbVersion(gridMesh(2, 2, 1), folder / "a.meshb", version, context);
+    writeBy(folder / "a.meshb", context, [&](OutputFile& output, Stage& stage) {
+      writeMeshbVersion(gridMesh(2, 2, 1), output, version, stage);
+    });
     damage(contentOf(folder / "a.meshb"), parse<readMeshb>);
   }
 }
@@ -178,7 +180,7 @@ TEST(DamagedFiles, MapsInVtkFiles) {
     writeMap(smallMap(), folder / "a.vtk", options, context);
     damage(contentOf(folder / "a.vtk"),
            [](const std::string& text, const std::string& name, Context& reading) {
-             return readVtkLegacyMap({text, name}, {}, reading);
+             return readBytes<readVtkLegacyMap>(text, name, reading, ReadOptions{});
            });
   }
   for (const bool compress : {false, hasZlib()}) {
@@ -187,7 +189,7 @@ TEST(DamagedFiles, MapsInVtkFiles) {
     writeMap(smallMap(), folder / "a.vtu", options, context);
     damage(contentOf(folder / "a.vtu"),
            [](const std::string& text, const std::string& name, Context& reading) {
-             return readVtuMap({text, name}, {}, reading);
+             return readBytes<readVtuMap>(text, name, reading, ReadOptions{});
            });
   }
 }

@@ -91,11 +91,18 @@ bool isConsistent(const HexMesh& mesh) {
 }
 
 /// Whether the file was refused.
+/// @tparam Read  ReadMap or ReadMesh
 template <class Read>
 bool isRefused(const std::string& bytes, const Read& read) {
   try {
     Context context(1);
-    EXPECT_TRUE(isConsistent(read({bytes, "damaged"}, context)));
+    EXPECT_TRUE(isConsistent(inStage(context, "read", [&](Stage& stage) {
+      if constexpr (std::is_same_v<Read, ReadMap>) {
+        return read({bytes, "damaged"}, {}, stage);
+      } else {
+        return read({bytes, "damaged"}, stage);
+      }
+    })));
   } catch (const Error& error) {
     EXPECT_NE(error.code(), ErrorCode::Internal) << error.what();
     EXPECT_TRUE(std::string_view(error.what()).starts_with("damaged")) << error.what();

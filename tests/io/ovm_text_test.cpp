@@ -19,12 +19,12 @@ namespace {
 
 TetMap map(const std::string& text) {
   Context context;
-  return readOvmMap({text, "m.ovm"}, context);
+  return readBytes<readOvmMap>(text, "m.ovm", context, ReadOptions{});
 }
 
 HexMesh mesh(const std::string& text) {
   Context context;
-  return readOvmHexMesh({text, "m.ovm"}, context);
+  return readBytes<readOvmHexMesh>(text, "m.ovm", context);
 }
 
 const std::string kGeometry =

@@ -21,12 +21,12 @@ namespace {
 
 TetMap map(const std::string& bytes) {
   Context context;
-  return readOvmbMap({bytes, "m.ovmb"}, context);
+  return readBytes<readOvmbMap>(bytes, "m.ovmb", context, ReadOptions{});
 }
 
 HexMesh mesh(const std::string& bytes) {
   Context context;
-  return readOvmbHexMesh({bytes, "m.ovmb"}, context);
+  return readBytes<readOvmbHexMesh>(bytes, "m.ovmb", context);
 }
 
 /// Two tets at the face 1 2 3, as lists of the format. Edges 0: 0-1, 1: 0-2, 2: 0-3, 3: 1-2,
@@ -625,7 +625,7 @@ TEST(Ovmb, WriterMakesTheBytesOfTheDescription) {
   single.tets = {{0, 1, 2, 3}};
   single.parameters = {{{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 4}}}};
   Context context;
-  writeOvmbMap(single, folder / "a.ovmb", context);
+  writeMap(single, folder / "a.ovmb", context);
   Bytes expected = ovmbHeader(1, {4, 6, 4, 1});
   expected.chunk("DIRP", directory());
   Bytes points;

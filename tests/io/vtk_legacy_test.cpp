@@ -17,7 +17,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return readVtkLegacy({text, "m.vtk"}, context);
+  return readBytes<readVtkLegacy>(text, "m.vtk", context);
 }
 
 Failure failure(const std::string& text) {

@@ -12,6 +12,7 @@
 #include <hexhex/hexhex.hpp>
 
 #include <io/formats/formats.hpp>
+#include <io/io_test_support.hpp>
 
 #include "quantize/real_maps.hpp"
 #include "support/published_map.hpp"
@@ -31,7 +32,8 @@ Sample seamlessSample(SampleKind kind) {
 
 TetMap parse(const PublishedMap& published, bool keepWalls = false) {
   Context context;
-  return io::readHexex({published.text, "published.hexex"}, {.keepWalls = keepWalls}, context);
+  return readBytes<io::readHexex>(published.text, "published.hexex", context,
+                                  ReadOptions{.keepWalls = keepWalls});
 }
 
 /// What `extract --quantize --improve` makes of a map.

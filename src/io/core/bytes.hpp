@@ -13,6 +13,8 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
+
 namespace hexhex::io {
 
 /// A size that a file tells, which may have more bits than sizes have here.
@@ -73,9 +75,8 @@ class ByteCursor {
   /// @param what  for the message, e.g. "the name of a property"
   [[nodiscard]] std::string_view take(std::uint64_t size, std::string_view what) {
     if (size > rest_.size()) {
-      fail(ErrorCode::FileSyntax, std::string(what) + " needs " + std::to_string(size) +
-                                      " bytes, but only " + std::to_string(rest_.size()) +
-                                      " are left.");
+      fail(ErrorCode::FileSyntax, what, " needs ", size, " bytes, but only ", rest_.size(),
+           " are left.");
     }
     const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(size));
     rest_.remove_prefix(taken.size());
@@ -87,14 +88,19 @@ class ByteCursor {
   }
 
   /// Throws an error about what is read next: "<file>, byte 48: <sentence>".
-  [[noreturn]] void fail(ErrorCode code, std::string_view sentence) const {
-    failAt(position(), code, sentence);
+  /// @param sentence  its parts, as of concat()
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    failAt(position(), code, sentence...);
   }
-  [[noreturn]] void failAt(std::size_t position, ErrorCode code, std::string_view sentence,
-                           Place place = {}) const {
-    throw Error(code,
-                fileName_ + ", byte " + std::to_string(position) + ": " + std::string(sentence),
-                place);
+  template <class... Parts>
+  [[noreturn]] void failAt(std::size_t position, ErrorCode code, Parts... sentence) const {
+    failAt(position, code, Place{}, sentence...);
+  }
+  template <class... Parts>
+  [[noreturn]] void failAt(std::size_t position, ErrorCode code, Place place,
+                           Parts... sentence) const {
+    throw Error(code, concat(fileName_, ", byte ", position, ": ", sentence...), place);
   }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <io/core/cell_counts.hpp>
 
 namespace hexhex::io {
@@ -32,7 +33,7 @@ std::string singular(std::string_view plural) {
   const bool greek = noun.ends_with("hedra");
   noun.pop_back();
   if (greek) noun += "on";
-  return noun + std::string(plural.substr(std::min(end, plural.size())));
+  return concat(noun, plural.substr(std::min(end, plural.size())));
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ std::vector<CellCount> CellCounts::list() const {
     if (count > 0) list.push_back({std::string(plural), count});
   }
   for (const auto& [type, count] : unknown_) {
-    list.push_back({"cells of VTK's type " + std::to_string(type), count});
+    list.push_back({concat("cells of VTK's type ", type), count});
   }
   return list;
 }
@@ -70,7 +71,7 @@ std::string CellCounts::text() const {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i > 0) text += i + 1 == all.size() ? " and " : ", ";
     const auto& [name, count] = all[i];
-    text += std::to_string(count) + ' ' + (count == 1 ? singular(name) : name);
+    text += concat(count, ' ', (count == 1 ? singular(name) : name));
   }
   return text;
 }
@@ -108,8 +109,8 @@ void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,
       of(kind);
   if (others == 0) return;
   throw Error(ErrorCode::FileUnsupported,
-              fileName + ": the file holds " + text() + ", but all cells must be " +
-                  std::string(kind.plural) + ". " + std::string(advice));
+              concat(fileName, ": the file holds ", text(), ", but all cells must be ", kind.plural,
+                     ". ", advice));
 }
 
 }  // namespace hexhex::io

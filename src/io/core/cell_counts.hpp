@@ -122,7 +122,7 @@ class CellCounts {
   void add(const CellKind& kind, std::uint64_t count) { addVtk(kind.vtkType, count); }
 
   [[nodiscard]] std::uint64_t of(const CellKind& kind) const;
-  /// Refuses a file that holds others, too.
+  /// Refuses a file that also holds others.
   /// @param advice  what helps
   /// @throws Error FileUnsupported
   void requireOnly(const CellKind& kind, const std::string& fileName,

@@ -8,6 +8,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
@@ -19,16 +20,14 @@ namespace {
 /// Refuses an optional array that is there but has another size than what it describes.
 void requireSize(std::size_t size, std::size_t expected, const char* elements, const char* values) {
   if (size == 0 || size == expected) return;
-  throw Error(ErrorCode::InvalidArgument, "The mesh has " + std::to_string(expected) + " " +
-                                              elements + " but " + std::to_string(size) + " " +
-                                              values + ".");
+  throw Error(ErrorCode::InvalidArgument,
+              concat("The mesh has ", expected, " ", elements, " but ", size, " ", values, "."));
 }
 
 void requireFinite(std::span<const Vec3> points, Stage& stage) {
   const std::size_t vertex = firstNotFinite(points, stage);
   if (vertex == points.size()) return;
-  throw Error(ErrorCode::NotFinite,
-              "A coordinate of vertex " + std::to_string(vertex) + " is not finite.",
+  throw Error(ErrorCode::NotFinite, concat("A coordinate of vertex ", vertex, " is not finite."),
               Place{PlaceKind::Vertex, vertex});
 }
 
@@ -44,9 +43,8 @@ std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage) {
 void requireWritable(const TetMap& map, Stage& stage) {
   const auto requirePerTet = [&map](std::size_t size, const char* what) {
     if (size == map.tets.size()) return;
-    throw Error(ErrorCode::InvalidArgument, "The map has " + std::to_string(map.tets.size()) +
-                                                " tets but " + what + " for " +
-                                                std::to_string(size) + ".");
+    throw Error(ErrorCode::InvalidArgument,
+                concat("The map has ", map.tets.size(), " tets but ", what, " for ", size, "."));
   };
   requirePerTet(map.parameters.size(), "parameters");
   if (!map.rotations.empty()) requirePerTet(map.rotations.size(), "rotations");
@@ -61,8 +59,8 @@ void requireWritable(const TetMap& map, Stage& stage) {
   if (tet == map.tets.size()) return;
   const bool range = isInRange(tet);
   throw Error(range ? ErrorCode::NotFinite : ErrorCode::IndexOutOfRange,
-              range ? "A parameter of tet " + std::to_string(tet) + " is not finite."
-                    : "Tet " + std::to_string(tet) + " names a vertex that does not exist.",
+              range ? concat("A parameter of tet ", tet, " is not finite.")
+                    : concat("Tet ", tet, " names a vertex that does not exist."),
               Place{PlaceKind::Tet, tet});
 }
 
@@ -82,7 +80,7 @@ constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
                                           << 14;  // a fraction of a millisecond's work
 
 std::string numbers(std::uint64_t first, std::uint64_t size) {
-  return std::to_string(size) + " from number " + std::to_string(first) + " on";
+  return concat(size, " from number ", first, " on");
 }
 
 }  // namespace
@@ -112,9 +110,8 @@ void SinkCalls::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
   // So that no product of a count with the bytes of an element wraps around.
   constexpr std::uint64_t kMost = std::uint64_t{1} << 48U;
   if (std::max(pointCount, cellCount) > kMost) {
-    throw Error(ErrorCode::TooLarge, name_ + ": a mesh of " + std::to_string(pointCount) +
-                                         " vertices and " + std::to_string(cellCount) +
-                                         " cells is too large for a file.");
+    throw Error(ErrorCode::TooLarge, concat(name_, ": a mesh of ", pointCount, " vertices and ",
+                                            cellCount, " cells is too large for a file."));
   }
   pointCount_ = pointCount;
   cellCount_ = cellCount;
@@ -137,8 +134,8 @@ void SinkCalls::points(const PointPiece& piece) {
 bool SinkCalls::beginsCells() {
   if (state_ == State::Fresh) refuse("cells() or end() was called before begin()");
   if (nextPoint_ != pointCount_) {
-    refuse("only " + std::to_string(nextPoint_) + " of " + std::to_string(pointCount_) +
-           " vertices came before cells() or end()");
+    refuse(
+        concat("only ", nextPoint_, " of ", pointCount_, " vertices came before cells() or end()"));
   }
   return std::exchange(state_, State::Cells) == State::Points;
 }
@@ -154,10 +151,10 @@ void SinkCalls::cells(std::uint64_t first, std::span<const Cell> cells) {
   withThreadsHere(quiet_.threads(),
                   [&] { wrong = firstFault(stage, cells.size(), isInRange, kCheckedSinkGrain); });
   if (wrong < cells.size()) {
-    throw Error(ErrorCode::InvalidArgument,
-                name_ + ": a corner of cell " + std::to_string(first + wrong) +
-                    " is not a vertex of the mesh.",
-                Place{PlaceKind::Cell, first + wrong});
+    throw Error(
+        ErrorCode::InvalidArgument,
+        concat(name_, ": a corner of cell ", first + wrong, " is not a vertex of the mesh."),
+        Place{PlaceKind::Cell, first + wrong});
   }
   nextCell_ += cells.size();
 }
@@ -166,8 +163,7 @@ template void SinkCalls::cells(std::uint64_t first, std::span<const Hex64> cells
 
 void SinkCalls::end() {
   if (nextCell_ != cellCount_) {
-    refuse("only " + std::to_string(nextCell_) + " of " + std::to_string(cellCount_) +
-           " cells came before end()");
+    refuse(concat("only ", nextCell_, " of ", cellCount_, " cells came before end()"));
   }
   state_ = State::Ended;
 }
@@ -175,12 +171,12 @@ void SinkCalls::end() {
 void SinkCalls::requireNext(const char* what, std::uint64_t first, std::uint64_t size,
                             std::uint64_t next, std::uint64_t count) const {
   if (first != next) {
-    refuse("number " + std::to_string(next) + " of the " + what + " has to come next, but " +
-           numbers(first, size) + " came");
+    refuse(concat("number ", next, " of the ", what, " has to come next, but ",
+                  numbers(first, size), " came"));
   }
   if (size > count - next) {
-    refuse(numbers(first, size) + " are more " + what + " than the " + std::to_string(count) +
-           " that begin() announced");
+    refuse(concat(numbers(first, size), " are more ", what, " than the ", count,
+                  " that begin() announced"));
   }
 }
 
@@ -197,10 +193,9 @@ void SinkCalls::requireConsistent(const PointPiece& piece) {
   std::size_t wrong = 0;
   withThreadsHere(quiet_.threads(), [&] { wrong = firstNotFinite(piece.points, stage); });
   if (wrong == piece.points.size()) return;
-  throw Error(
-      ErrorCode::NotFinite,
-      name_ + ": a coordinate of vertex " + std::to_string(piece.first + wrong) + " is not finite.",
-      Place{PlaceKind::Vertex, piece.first + wrong});
+  throw Error(ErrorCode::NotFinite,
+              concat(name_, ": a coordinate of vertex ", piece.first + wrong, " is not finite."),
+              Place{PlaceKind::Vertex, piece.first + wrong});
 }
 
 void SinkCalls::refuse(const std::string& sentence) const {

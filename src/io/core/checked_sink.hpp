@@ -18,6 +18,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/output_file.hpp>
 
 namespace hexhex::io {
 
@@ -40,7 +41,7 @@ class SinkCalls {
   /// @param stage  under which the time is noted; outlives this
   SinkCalls(std::string name, std::string_view stage, Context& context);
 
-  /// Does what one call is to do. A call that throws is the last one.
+  /// Does the work of one call. After a call that throws, all others are refused.
   void run(const std::function<void()>& call);
 
   void begin(std::uint64_t pointCount, std::uint64_t cellCount);
@@ -126,12 +127,36 @@ class CheckedSink : public MeshSink {
   Writer writer_;
 };
 
-/// A sink over a writer that is made from a file and a number of threads.
+/// A writer with the file that it writes.
+template <class Writer>
+class FileWriter {
+ public:
+  FileWriter(const std::filesystem::path& file, int threads)
+      : output_(file), writer_(output_, threads) {}
+
+  void begin(std::uint64_t points, std::uint64_t cells) { writer_.begin(points, cells); }
+  void points(const PointPiece& piece) { writer_.points(piece); }
+  void beginCells() { writer_.beginCells(); }
+  template <class Cell>
+  void cells(std::uint64_t first, std::span<const Cell> cells) {
+    writer_.cells(first, cells);
+  }
+  void end() {
+    writer_.end();
+    output_.commit();
+  }
+
+ private:
+  OutputFile output_;
+  Writer writer_;
+};
+
+/// A sink over a writer that is made from an open file and a number of threads.
 template <class Writer>
 [[nodiscard]] std::unique_ptr<MeshSink> openWriterSink(const std::filesystem::path& file,
                                                        Context& context) {
-  return std::make_unique<CheckedSink<Writer>>(file.string(), "write mesh", context, file,
-                                               context.threads());
+  return std::make_unique<CheckedSink<FileWriter<Writer>>>(file.string(), "write mesh", context,
+                                                           file, context.threads());
 }
 
 /// Hands a mesh over, from begin() to end(). Generators go along if there are as many as vertices.

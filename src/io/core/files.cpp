@@ -11,8 +11,10 @@
 #include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/parts.hpp>
+#include <hexhex/quality.hpp>
 #include <hexhex/team.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
@@ -33,7 +35,7 @@ constexpr std::array<WorkStep, 1> kReadTriangles = {{{"read triangles", 1}}};
 constexpr std::array<WorkStep, 1> kReadMesh = {{{"read mesh", 1}}};
 constexpr std::array<WorkStep, 2> kReadAny = {{{"read mesh", 1}, {"read map", 1}}};
 constexpr std::array<WorkStep, 1> kWriteMap = {{{"write map", 1}}};
-/// Its indices are looked at first.
+/// Its indices are checked first.
 constexpr std::array<WorkStep, 2> kWriteMesh = {{{"write mesh", 0.02}, {"write mesh", 1}}};
 constexpr std::array<WorkStep, 1> kWriteCurved = {{{"write mesh", 1}}};
 constexpr std::array<WorkStep, 1> kWriteArcs = {{{"write arcs", 1}}};
@@ -45,8 +47,8 @@ constexpr std::array<WorkStep, 1> kWritePatches = {{{"write patches", 1}}};
 
 [[noreturn]] void failToRead(const std::filesystem::path& file, const Format& format) {
   if (format.overHdf5) requireHdf5(file);
-  refuse(file, "files of the format \"" + std::string(format.label.name) +
-                   "\" are written, but not read.");
+  refuse(file,
+         concat("files of the format \"", format.label.name, "\" are written, but not read."));
 }
 
 /// The format of a hex mesh that is to be read.
@@ -68,15 +70,17 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
                              FileContent content) {
   refuseGzip(file);
   const Format& format = findFormat(file, options.format, content);
-  if (content == FileContent::HexMesh && format.meshes.write == nullptr && !format.overHdf5) {
-    refuse(file, "files of the format \"" + std::string(format.label.name) +
-                     (format.parts.open == nullptr
-                          ? "\" are read, but not written."
-                          : "\" are read; they are written by `hexhex extract --parts` alone."));
+  const bool writes = format.meshes.write != nullptr || format.meshes.writeFolder != nullptr;
+  if (content == FileContent::HexMesh && !writes && !format.overHdf5) {
+    refuse(file,
+           concat("files of the format \"", format.label.name,
+                  (format.parts.open == nullptr
+                       ? "\" are read, but not written."
+                       : "\" are read; they are written by `hexhex extract --parts` alone.")));
   }
   if (options.compress && !format.compresses) {
-    refuse(file, "the format \"" + std::string(format.label.name) +
-                     "\" knows no compression; only .vtu does.");
+    refuse(file,
+           concat("the format \"", format.label.name, "\" knows no compression; only .vtu does."));
   }
   if (options.compress && !hasZlib()) {
     refuse(file,
@@ -87,7 +91,7 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
   return format;
 }
 
-/// Tells what volume cells a reader has found, and refuses those that it has left out.
+/// Reports the volume cells that a reader found, and refuses those that it left out.
 /// @param allowed  whether they may be left out
 void settleCells(const Input& input, const CellKind& wanted, const ReadOptions& options,
                  bool allowed) {
@@ -103,14 +107,16 @@ void settleCells(const Input& input, const CellKind& wanted, const ReadOptions& 
 
 TetMap readMapOf(const Input& input, const Format& format, const ReadOptions& options,
                  Context& context) {
-  TetMap map = format.maps.read(input, options, context);
+  TetMap map = inStage(context, "read map",
+                       [&](Stage& stage) { return format.maps.read(input, options, stage); });
   settleCells(input, kCellKind<4>, options, false);
   return map;
 }
 
 HexMesh readMeshOf(const Input& input, const Format& format, const ReadOptions& options,
                    Context& context) {
-  HexMesh mesh = format.meshes.read(input, context);
+  HexMesh mesh =
+      inStage(context, "read mesh", [&](Stage& stage) { return format.meshes.read(input, stage); });
   settleCells(input, kCellKind<8>, options, options.hexesOnly);
   return mesh;
 }
@@ -156,30 +162,62 @@ const Format& curvedFormatToWrite(const std::filesystem::path& file, std::string
   const Format& format = findFormat(file, name, FileContent::CurvedCells);
   const int only = format.curved.onlyOrder;
   if (order != 0 && only != 0 && order != only) {
-    refuse(file, "the format \"" + std::string(format.label.name) + "\" holds cells of order " +
-                     std::to_string(only) + " and straight ones, but these are of order " +
-                     std::to_string(order) + ".");
+    refuse(file, concat("the format \"", format.label.name, "\" holds cells of order ", only,
+                        " and straight ones, but these are of order ", order, "."));
   }
   return format;
 }
 
-/// @param map  null: not known
-void writeAllArcs(const PiecewiseLinearMesh& mesh, const TetMapView* map,
-                  const std::filesystem::path& file, Context& context) {
-  const Format& format = findFormat(file, {}, FileContent::Arcs);
-  inSteps(context, "writeArcs", kWriteArcs, [&] { format.writeArcs(mesh, map, file, context); });
+/// What the target of a format may be.
+OutputFile::Target targetOf(const Format& format) {
+  return format.overHdf5 ? OutputFile::Target::Regular : OutputFile::Target::Any;
 }
-void writeAllPatches(const PiecewiseLinearMesh& mesh, const TetMapView* map,
-                     const std::filesystem::path& file, Context& context) {
-  const Format& format = findFormat(file, {}, FileContent::Patches);
-  inSteps(context, "writePatches", kWritePatches,
-          [&] { format.writePatches(mesh, map, file, context); });
+
+/// Opens a file, first, so that a folder that is not writable shows at once; has it written in a
+/// stage; and commits it.
+template <class Write>
+void writeFile(const std::filesystem::path& file, const Format& format, std::string_view stageName,
+               Context& context, const Write& write) {
+  OutputFile output(file, targetOf(format));
+  Stage stage(context, stageName);
+  write(output, stage);
+  output.commit();
+}
+
+/// The same of cells, with their measures where the format holds them.
+/// @param write  WriteMesh or WriteCurved
+template <class Mesh, class Write>
+void writeMeasured(const Mesh& mesh, const std::filesystem::path& file, const Format& format,
+                   WriteOptions options, Context& context, Write* write) {
+  OutputFile output(file, targetOf(format));
+  Array<double> measures;
+  if (format.measures && options.scaledJacobians.empty()) {
+    measures = scaledJacobians(mesh, context);
+    options.scaledJacobians = measures;
+  }
+  Stage stage(context, "write mesh");
+  write(mesh, output, options, stage);
+  output.commit();
+}
+
+/// @param map      null: not known
+/// @param content  Arcs or Patches
+void writePiecewise(const PiecewiseLinearMesh& mesh, const TetMapView* map,
+                    const std::filesystem::path& file, FileContent content, Context& context) {
+  const Format& format = findFormat(file, {}, content);
+  const bool arcs = content == FileContent::Arcs;
+  inSteps(context, arcs ? "writeArcs" : "writePatches", arcs ? kWriteArcs : kWritePatches, [&] {
+    writeFile(file, format, arcs ? "write arcs" : "write patches", context,
+              [&](OutputFile& output, Stage& stage) {
+                (arcs ? format.writeArcs : format.writePatches)(mesh, map, output, stage);
+              });
+  });
 }
 
 void requireForTeams(const std::filesystem::path& file, const Format& format) {
   if (format.parts.byTeams) return;
-  refuse(file, "several processes cannot write \"" + std::string(format.label.name) +
-                   "\" together. They can write: " + teamFormats() + '.');
+  refuse(file, concat("several processes cannot write \"", format.label.name,
+                      "\" together. They can write: ", teamFormats(), '.'));
 }
 
 /// Files of other names, or in other formats, are no set that can be read.
@@ -218,7 +256,8 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::Tets);
   return inSteps(context, "readTetMesh", io::kReadTets, [&] {
     const io::Input input = io::openInput(file, context);
-    io::TetCells tets = format.readTets(input, context);
+    io::TetCells tets = io::inStage(context, "read tets",
+                                    [&](Stage& stage) { return format.readTets(input, stage); });
     io::settleCells(input, io::kCellKind<4>, options, false);
     TetMesh mesh;
     mesh.points.assign(tets.points.begin(), tets.points.end());
@@ -235,7 +274,10 @@ TetMesh readTetMesh(const std::filesystem::path& file, const ReadOptions& option
 TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& context) {
   const io::Format& format = io::findFormat(file, {}, io::FileContent::Triangles);
   return inSteps(context, "readTriangleMesh", io::kReadTriangles, [&] {
-    return io::welded(format.readTriangles(io::openInput(file, context), context));
+    const io::Input input = io::openInput(file, context);
+    return io::inStage(context, "read triangles", [&](Stage& stage) {
+      return io::welded(format.readTriangles(input, stage));
+    });
   });
 }
 
@@ -268,7 +310,7 @@ std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file
     try {
       return io::readMeshOf(input, format, options, context);
     } catch (const Error& error) {
-      // That there are no hexahedra; what else is wrong, the other reader will find, too.
+      // There are no hexahedra; other mistakes, the other reader will find as well.
       const io::CellCounts& counts = *input.counts();
       const bool hasOthers = !counts.list().empty();
       if (error.code() != ErrorCode::FileUnsupported || counts.of(io::kCellKind<8>) > 0 ||
@@ -288,7 +330,9 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, const Read
       const io::Input input = io::openInput(file, context);
       io::SettledSink settled(sink, input, options);
       if (format.pieces.read != nullptr) return format.pieces.read(settled, input, context);
-      io::sendTo(settled, format.meshes.read(input, context));
+      io::sendTo(settled, io::inStage(context, "read mesh", [&](Stage& stage) {
+                   return format.meshes.read(input, stage);
+                 }));
     });
   });
 }
@@ -300,8 +344,11 @@ void readHexMeshTo(MeshSink& sink, const std::filesystem::path& file, Context& c
 void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
               Context& context) {
   const io::Format& format = io::writableFormat(file, options, io::FileContent::Map);
-  inSteps(context, "writeMap", io::kWriteMap,
-          [&] { format.maps.write(map, file, options, context); });
+  inSteps(context, "writeMap", io::kWriteMap, [&] {
+    io::writeFile(file, format, "write map", context, [&](io::OutputFile& output, Stage& stage) {
+      format.maps.write(map, output, options, stage);
+    });
+  });
 }
 
 void writeMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
@@ -321,7 +368,10 @@ void writeHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
       Stage stage(context, "write mesh");
       withThreads(context.threads(), [&] { io::requireWritable(mesh, options, stage); });
     }
-    format.meshes.write(mesh, file, options, context);
+    if (format.meshes.writeFolder != nullptr) {
+      return format.meshes.writeFolder(mesh, file, options, context);
+    }
+    io::writeMeasured(mesh, file, format, options, context, format.meshes.write);
   });
 }
 
@@ -368,22 +418,22 @@ void requireMapFormat(const std::filesystem::path& file, const WriteOptions& opt
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                Context& context) {
-  io::writeAllArcs(mesh, nullptr, file, context);
+  io::writePiecewise(mesh, nullptr, file, io::FileContent::Arcs, context);
 }
 
 void writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                const std::filesystem::path& file, Context& context) {
-  io::writeAllArcs(mesh, &map, file, context);
+  io::writePiecewise(mesh, &map, file, io::FileContent::Arcs, context);
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const std::filesystem::path& file,
                   Context& context) {
-  io::writeAllPatches(mesh, nullptr, file, context);
+  io::writePiecewise(mesh, nullptr, file, io::FileContent::Patches, context);
 }
 
 void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
                   const std::filesystem::path& file, Context& context) {
-  io::writeAllPatches(mesh, &map, file, context);
+  io::writePiecewise(mesh, &map, file, io::FileContent::Patches, context);
 }
 
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
@@ -392,17 +442,19 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
   mesh::requireConsistent(mesh);
   if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
     throw Error(ErrorCode::InvalidArgument,
-                "There are " + std::to_string(options.scaledJacobians.size()) +
-                    " scaled Jacobians of " + std::to_string(mesh.cellCount()) +
-                    " cells. Give one for each, or none.");
+                concat("There are ", options.scaledJacobians.size(), " scaled Jacobians of ",
+                       mesh.cellCount(), " cells. Give one for each, or none."));
   }
   inSteps(context, "writeLagrangeMesh", io::kWriteCurved,
-          [&] { format.curved.write(mesh, file, options, context); });
+          [&] { io::writeMeasured(mesh, file, format, options, context, format.curved.write); });
 }
 
 bool holdsLagrangeCells(const std::filesystem::path& file, Context& context) {
   const io::Format* const format = io::curvedFormat(file);
-  return format != nullptr && format->curved.isIn(io::openInput(file, context), context);
+  if (format == nullptr) return false;
+  const io::Input input = io::openInput(file, context);
+  return io::inStage(context, "read mesh",
+                     [&](Stage& stage) { return format->curved.isIn(input, stage); });
 }
 
 LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& context) {
@@ -413,8 +465,11 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
                ".exo and .e "
                "files only.");
   }
-  return inSteps(context, "readLagrangeMesh", io::kReadMesh,
-                 [&] { return format->curved.read(io::openInput(file, context), context); });
+  return inSteps(context, "readLagrangeMesh", io::kReadMesh, [&] {
+    const io::Input input = io::openInput(file, context);
+    return io::inStage(context, "read mesh",
+                       [&](Stage& stage) { return format->curved.read(input, stage); });
+  });
 }
 
 void requireArcFormat(const std::filesystem::path& file) {
@@ -438,7 +493,7 @@ std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
     io::requireSameOutput(*team, file, options);
   }
   if (format.overHdf5 && io::isFirst(team)) io::requireHdf5(file);
-  return format.parts.open(file, options, context, team);
+  return format.parts.open(file, context, team);
 }
 
 void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,

@@ -95,13 +95,13 @@ Flags placed(const TriangleLabels& found, const TetMesh& tets, const TetBoundary
   for (std::size_t i = 0; i < found.triangles.size(); ++i) {
     const TetBoundary::Face* const face = boundary.find(found.triangles[i]);
     if (face == nullptr || face->isInner) {
-      refuseFlags(file, "triangle " + std::to_string(i) + " (counted from 0) is " +
-                            (face == nullptr ? "no face of a tet." : "inside of the tet mesh."));
+      refuseFlags(file,
+                  concat("triangle ", i, " (counted from 0) is ",
+                         (face == nullptr ? "no face of a tet." : "inside of the tet mesh.")));
     }
     if (found.labels[i] < 0 || found.labels[i] > 5) {
-      refuseFlags(file, "triangle " + std::to_string(i) + " (counted from 0) has the label " +
-                            std::to_string(found.labels[i]) +
-                            "; labels are 0 to 5 for +x -x +y -y +z -z.");
+      refuseFlags(file, concat("triangle ", i, " (counted from 0) has the label ", found.labels[i],
+                               "; labels are 0 to 5 for +x -x +y -y +z -z."));
     }
     flags[face->tet][face->face] = static_cast<std::int8_t>(found.labels[i]);
   }
@@ -172,11 +172,11 @@ class Positions {
 /// A number per triangle of a surface.
 TriangleLabels onSurface(const FlagsFile& flags, std::vector<std::int64_t> labels,
                          const TetMesh& tets, const TetBoundary& boundary, Stage& stage) {
-  const TriangleMesh surface = readObj(flags.surface, stage.context());
+  const TriangleMesh surface = readObj(flags.surface, stage);
   if (labels.size() != surface.triangles.size()) {
-    refuseFlags(flags.file, "there are " + std::to_string(labels.size()) + " labels, but " +
-                                std::to_string(surface.triangles.size()) + " triangles in " +
-                                flags.surface.string() + ".");
+    refuseFlags(flags.file,
+                concat("there are ", labels.size(), " labels, but ", surface.triangles.size(),
+                       " triangles in ", flags.surface.string(), "."));
   }
   const Positions positions(tets, boundary);
   std::vector<Index> vertexOf;
@@ -189,8 +189,8 @@ TriangleLabels onSurface(const FlagsFile& flags, std::vector<std::int64_t> label
     for (Index& v : triangle) {
       if (vertexOf[v] == kNone) {
         refuseFlags(flags.surface,
-                    "vertex " + std::to_string(v + 1) +
-                        " is no boundary vertex of the tet mesh: no position agrees.");
+                    concat("vertex ", v + 1,
+                           " is no boundary vertex of the tet mesh: no position agrees."));
       }
       v = vertexOf[v];
     }
@@ -204,19 +204,19 @@ Flags perFace(const std::vector<std::int64_t>& numbers, const FlagsFile& flags, 
   if (numbers.size() != 4 * tets.tets.size()) {
     refuseFlags(
         flags.file,
-        "there are " + std::to_string(numbers.size()) + " labels; expected four for each of " +
-            std::to_string(tets.tets.size()) + " tets" +
-            (numbers.size() == boundary.size()
-                 ? ". They are as many as the boundary has triangles: name the surface whose "
-                   "triangles they belong to (--surface)."
-                 : ", or one for each triangle of a surface (--surface)."));
+        concat("there are ", numbers.size(), " labels; expected four for each of ",
+               tets.tets.size(), " tets",
+               (numbers.size() == boundary.size()
+                    ? ". They are as many as the boundary has triangles: name the surface whose "
+                      "triangles they belong to (--surface)."
+                    : ", or one for each triangle of a surface (--surface).")));
   }
   Flags result(tets.tets.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] < -1 || numbers[i] > 5) {
-      refuseFlags(flags.file, "label " + std::to_string(i) + " (counted from 0) is " +
-                                  std::to_string(numbers[i]) +
-                                  "; labels are 0 to 5 for +x -x +y -y +z -z, and -1 for none.");
+      refuseFlags(flags.file,
+                  concat("label ", i, " (counted from 0) is ", numbers[i],
+                         "; labels are 0 to 5 for +x -x +y -y +z -z, and -1 for none."));
     }
     result[i / 4][i % 4] = static_cast<std::int8_t>(numbers[i]);
   }
@@ -232,11 +232,11 @@ namespace hexhex {
 io::Flags readFlags(const FlagsFile& flags, const TetMesh& tets, Context& context) {
   const std::string extension = io::lowerCaseExtension(flags.file);
   const io::TetBoundary boundary(tets);
-  if (extension == ".vtu" || extension == ".vtk") {
-    const auto read = extension == ".vtu" ? io::readVtuLabels : io::readVtkLegacyLabels;
-    return io::placed(read(flags.file, flags.array, context), tets, boundary, flags.file);
-  }
   return io::inStage(context, "read labels", [&](Stage& stage) {
+    if (extension == ".vtu" || extension == ".vtk") {
+      const auto read = extension == ".vtu" ? io::readVtuLabels : io::readVtkLegacyLabels;
+      return io::placed(read(flags.file, flags.array, stage), tets, boundary, flags.file);
+    }
     std::vector<std::int64_t> numbers = io::readLabelNumbers(flags.file, stage);
     if (flags.surface.empty()) return io::perFace(numbers, flags, tets, boundary);
     return io::placed(io::onSurface(flags, std::move(numbers), tets, boundary, stage), tets,

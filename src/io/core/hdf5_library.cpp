@@ -7,6 +7,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/concat.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/hdf_reader.hpp>
 #if defined(HEXHEX_HAS_HDF5)
@@ -35,15 +36,14 @@ void* load(const std::filesystem::path& file) {
     problem = query == nullptr ? dlerror() : "";
     if (query != nullptr) {
       reinterpret_cast<decltype(&H5get_libversion)>(query)(&version[0], &version[1], &version[2]);
-      problem = "its version is " + std::to_string(version[0]) + "." + std::to_string(version[1]);
+      problem = concat("its version is ", version[0], ".", version[1]);
     }
     if (version[0] == H5_VERS_MAJOR && version[1] == H5_VERS_MINOR) return library;
   }
   throw Error(ErrorCode::FileUnsupported,
-              file.string() + ": such files take the library HDF5, version " +
-                  std::to_string(H5_VERS_MAJOR) + "." + std::to_string(H5_VERS_MINOR) +
-                  ", which cannot be loaded (" + problem +
-                  "). Install " HEXHEX_HDF5_PACKAGE ", or choose another format.");
+              concat(file.string(), ": such files take the library HDF5, version ", H5_VERS_MAJOR,
+                     ".", H5_VERS_MINOR, ", which cannot be loaded (", problem,
+                     "). Install " HEXHEX_HDF5_PACKAGE ", or choose another format."));
 }
 
 void* library(const std::filesystem::path& file) {

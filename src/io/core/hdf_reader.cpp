@@ -4,6 +4,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <io/core/hdf_file.hpp>
 #include <io/core/hdf_reader.hpp>
 #include <io/core/zlib_blocks.hpp>
@@ -167,9 +168,7 @@ class OpenHdf final : public HdfReader {
   }
 
   [[nodiscard]] hid_t openFile(const Input& input) const {
-    if (!input.bytes()) {
-      return HDF5(H5Fopen)(input.path().c_str(), H5F_ACC_RDONLY, access_.id());
-    }
+    if (!input.bytes()) return HDF5(H5Fopen)(input.path().c_str(), H5F_ACC_RDONLY, access_.id());
     constexpr std::size_t kStep = std::size_t{1} << 16;  // by which memory would grow
     access_.require(HDF5(H5Pset_fapl_core)(access_.id(), kStep, false));
     // HDF5 copies the bytes, and takes a pointer to such as it might change.
@@ -187,7 +186,7 @@ class OpenHdf final : public HdfReader {
   [[nodiscard]] std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory,
                                        const char* what) const {
     const Dataset set(*this, path);
-    if (set.kind != kind) fail(path, std::string("has no ") + what + '.');
+    if (set.kind != kind) fail(path, concat("has no ", what, '.'));
     std::vector<T> values(set.count(*this, path));
     if (!values.empty()) set.read(memory, values.data());
     return values;
@@ -205,6 +204,18 @@ class OpenHdf final : public HdfReader {
 std::unique_ptr<HdfReader> HdfReader::open(const Input& input) {
   requireHdf5(input.name());
   return std::make_unique<OpenHdf>(input);
+}
+
+std::unique_ptr<HdfReader> HdfReader::openAny(const Input& input, Stage& stage) {
+  const std::string head = firstBytes(input);
+  if (head == kHdfMark) return open(input);
+  if (head.empty()) {  // a pipe
+    Array<char> room;
+    const std::string_view bytes = input.text(room, stage, "");
+    if (bytes.starts_with(kHdfMark)) return open({bytes, input.name()});
+  }
+  throw Error(ErrorCode::FileSyntax,
+              input.name() + ": the file does not begin as HDF5 files do. Is its extension right?");
 }
 
 }  // namespace hexhex::io

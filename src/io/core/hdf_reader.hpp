@@ -25,6 +25,9 @@ class HdfReader {
  public:
   /// @throws Error FileUnsupported without the library; FileSyntax if HDF5 cannot read the file
   [[nodiscard]] static std::unique_ptr<HdfReader> open(const Input& input);
+  /// The same of an input that may be a pipe.
+  /// @throws Error FileSyntax also for what does not begin as HDF5 files do
+  [[nodiscard]] static std::unique_ptr<HdfReader> openAny(const Input& input, Stage& stage);
   virtual ~HdfReader() = default;
   HdfReader(const HdfReader&) = delete;
   HdfReader& operator=(const HdfReader&) = delete;

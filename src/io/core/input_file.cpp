@@ -23,7 +23,7 @@ constexpr std::size_t kMinimumStep = std::size_t{1} << 20;
 // files of some megabytes have work for several threads.
 constexpr std::size_t kInputFileGrain = std::size_t{1} << 20;
 
-// How much of a file shows what it is.
+// Bytes that suffice to recognize a format.
 constexpr std::size_t kHead = std::size_t{1} << 16;
 
 std::string reasonOf(int error) { return std::generic_category().message(error); }

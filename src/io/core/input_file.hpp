@@ -60,7 +60,7 @@ class InputFile {
 /// @param first  what the file begins with, white space aside: one of these characters
 /// @throws Error FileNotFound if it does not exist, is a folder, or cannot be read to its end;
 ///         FileSyntax, before the rest is read, if it is larger than 64 KiB and begins otherwise
-///         (of a smaller one, who parses it says more)
+///         (for a smaller one, the parser reports more)
 [[nodiscard]] Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage,
                                         std::string_view first = {});
 
@@ -98,7 +98,7 @@ class Input {
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
   /// What readers of this input count.
   [[nodiscard]] const std::shared_ptr<CellCounts>& counts() const noexcept { return counts_; }
-  /// All bytes but a byte-order mark. Those of a file go to `room`; what `first` is says
+  /// All bytes except a byte-order mark. A file is read into `room`; `first` is as in
   /// readWholeFile().
   [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage,
                                       std::string_view first) const {
@@ -136,22 +136,19 @@ template <class Work>
 ///         too, a regular file is never in memory as a whole
 /// @param more  what else the reader's constructor takes
 template <class Reader, class... More>
-[[nodiscard]] auto readWith(const Input& input, std::string_view stageName, Context& context,
-                            const More&... more) {
-  return inStage(context, stageName, [&](Stage& stage) {
-    const auto read = [&](const auto& source) {
-      return Reader(source, input.name(), stage, more...).read();
-    };
-    if constexpr (std::is_constructible_v<Reader, const InputFile&, const std::string&, Stage&,
-                                          const More&...>) {
-      if (!input.bytes()) {
-        const InputFile file(input.path());
-        if (file.isRegular()) return read(file);
-      }
+[[nodiscard]] auto readWith(const Input& input, Stage& stage, const More&... more) {
+  const auto read = [&](const auto& source) {
+    return Reader(source, input.name(), stage, more...).read();
+  };
+  if constexpr (std::is_constructible_v<Reader, const InputFile&, const std::string&, Stage&,
+                                        const More&...>) {
+    if (!input.bytes()) {
+      const InputFile file(input.path());
+      if (file.isRegular()) return read(file);
     }
-    Array<char> room;
-    return read(input.text(room, stage, Reader::kFirst));
-  });
+  }
+  Array<char> room;
+  return read(input.text(room, stage, Reader::kFirst));
 }
 
 }  // namespace hexhex::io

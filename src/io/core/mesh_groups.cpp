@@ -13,6 +13,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -79,7 +80,7 @@ std::string groupName(const GroupWords& words, Tag tag) {
   const auto given = words.names.find(tag);
   if (given != words.names.end() && !given->second.empty()) return given->second;
   const std::int64_t wide = tag;
-  return words.tagged + (wide < 0 ? "_m" : "_") + std::to_string(wide < 0 ? -wide : wide);
+  return concat(words.tagged, (wide < 0 ? "_m" : "_"), wide < 0 ? -wide : wide);
 }
 
 /// Whether groups are numbered by tags: the largest one needs a successor for untagged elements.
@@ -110,10 +111,9 @@ void requireVertices(const HexMesh& mesh, const Vertices& vertices, const char* 
                      std::size_t i) {
   for (const std::uint32_t vertex : vertices) {
     if (vertex < mesh.points.size()) continue;
-    throw Error(ErrorCode::InvalidArgument, std::string("Feature ") + what + " " +
-                                                std::to_string(i) + " names vertex " +
-                                                std::to_string(vertex) + ", but the mesh has " +
-                                                std::to_string(mesh.points.size()) + " vertices.");
+    throw Error(ErrorCode::InvalidArgument,
+                concat("Feature ", what, " ", i, " names vertex ", vertex, ", but the mesh has ",
+                       mesh.points.size(), " vertices."));
   }
 }
 
@@ -281,8 +281,8 @@ MeshGroups::MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage)
 void requireInt32(std::size_t count, const std::string& numbers, const std::string& instead) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (count <= kMost) return;
-  throw Error(ErrorCode::TooLarge, numbers + " with 31 bits, which do not suffice for " +
-                                       std::to_string(count) + "; " + instead + ".");
+  throw Error(ErrorCode::TooLarge, concat(numbers, " with 31 bits, which do not suffice for ",
+                                          count, "; ", instead, "."));
 }
 
 Array<std::uint32_t> cellReferences(const HexMesh& mesh, Untagged untagged) {

@@ -46,7 +46,7 @@ class TextSource {
 
   [[nodiscard]] std::uint64_t size(const NumberName& name) {
     const std::int64_t value = integer(name);
-    if (value < 0) fail(ErrorCode::FileSyntax, name.text() + " is negative.");
+    if (value < 0) fail(ErrorCode::FileSyntax, name.text(), " is negative.");
     return static_cast<std::uint64_t>(value);
   }
   [[nodiscard]] std::int64_t integer(const NumberName& name) { return scanner_->integer(name); }
@@ -80,11 +80,10 @@ class TextSource {
                  });
   }
 
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    scanner_->fail(code, sentence);
-  }
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place) const {
-    scanner_->fail(code, sentence, place);
+  /// As TextScanner::fail().
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    scanner_->fail(code, sentence...);
   }
 
  private:
@@ -111,9 +110,20 @@ class ByteFile {
     input_->readAt(position, room, size);
     return room;
   }
-  [[noreturn]] void fail(std::size_t position, ErrorCode code, const std::string& sentence,
-                         Place place) const {
-    throw Error(code, *name_ + ", byte " + std::to_string(position) + ": " + sentence, place);
+  /// The same, copied. Thread-safe.
+  void readAt(std::uint64_t position, char* to, std::size_t size) const {
+    if (!isInMemory()) return input_->readAt(position, to, size);
+    std::copy_n(bytes_.data() + position, size, to);
+  }
+  [[nodiscard]] const std::string& name() const noexcept { return *name_; }
+  template <class... Parts>
+  [[noreturn]] void fail(std::size_t position, ErrorCode code, Parts... sentence) const {
+    fail(position, code, Place{}, sentence...);
+  }
+  template <class... Parts>
+  [[noreturn]] void fail(std::size_t position, ErrorCode code, Place place,
+                         Parts... sentence) const {
+    throw Error(code, concat(*name_, ", byte ", position, ": ", sentence...), place);
   }
 
  private:
@@ -143,7 +153,7 @@ class LittleEndianNumbers {
   }
   double finite(double value, const NumberName& name) const {
     if (std::isfinite(value)) return value;
-    static_cast<const Derived*>(this)->fail(ErrorCode::NotFinite, name.text() + " is not finite.");
+    static_cast<const Derived*>(this)->fail(ErrorCode::NotFinite, name.text(), " is not finite.");
   }
 };
 
@@ -168,8 +178,9 @@ class BinaryRecord : public LittleEndianNumbers<BinaryRecord> {
   void skip(std::size_t n, RecordShape shape) { next_ += n * shape.bytes(); }
   [[nodiscard]] static std::string spelling(std::uint64_t number) { return std::to_string(number); }
 
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
-    file_->fail(position(), code, sentence, place);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    file_->fail(position(), code, sentence...);
   }
 
  private:
@@ -189,7 +200,7 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
   template <class T>
   [[nodiscard]] T read(const NumberName& name) {
     if (position_ > file_->size() || file_->size() - position_ < sizeof(T)) {
-      fail(ErrorCode::FileSyntax, "the file ends within " + name.text() + ".");
+      fail(ErrorCode::FileSyntax, "the file ends within ", name.text(), ".");
     }
     std::array<char, sizeof(T)> room{};
     const T value = loadLittle<T>(file_->view(position_, sizeof(T), room.data()));
@@ -217,8 +228,9 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
     skip(n, shape);
   }
 
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
-    file_->fail(position_, code, sentence, place);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    file_->fail(position_, code, sentence...);
   }
 
  private:
@@ -254,8 +266,7 @@ void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, std::
 template <class Source>
 void requireIndexable(const Source& source, std::uint64_t n, std::string_view what) {
   if (n <= kNone) return;
-  source.fail(ErrorCode::TooLarge, "has " + std::to_string(n) + " " + std::string(what) +
-                                       "; at most " + std::to_string(kNone) + " are supported.");
+  source.fail(ErrorCode::TooLarge, "has ", n, " ", what, "; at most ", kNone, " are supported.");
 }
 
 }  // namespace hexhex::io

@@ -18,8 +18,7 @@ namespace {
 /// not contain the target's name, which may be as long as the file system allows.
 std::string temporaryName() {
   static std::atomic<unsigned> counter{0};
-  return ".hexhex-" + std::to_string(system_call::processId()) + "-" + std::to_string(counter++) +
-         ".tmp";
+  return concat(".hexhex-", system_call::processId(), "-", counter++, ".tmp");
 }
 
 std::filesystem::path folderOf(const std::filesystem::path& file) {

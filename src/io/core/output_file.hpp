@@ -181,6 +181,7 @@ class OutputFile {
   void commit();
   /// The same without a name: for another process's temporary, which stays.
   void handOver();
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
   /// Empty if the target is written directly.
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
   /// Whether commit() gave a temporary its name, also if its folder could not be synced then.

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kTextAtOnce = std::size_t{1} << 20;  // that one thread reads
 
 [[noreturn]] void failPlain(const char* what) {
-  throw Error(ErrorCode::FileSyntax, std::string("The file has ") + what + ".");
+  throw Error(ErrorCode::FileSyntax, concat("The file has ", what, "."));
 }
 
 /// The vertex that a file calls so. @throws Error
@@ -33,9 +33,8 @@ std::uint64_t vertexOf(std::uint64_t number, const PlainLayout& layout) {
 /// Reads the next points or cells. Errors are as good as any: the reader of whole files tells them.
 class PlainText {
  public:
-  PlainText(const InputFile& file, const std::string& name, const PlainLayout& layout,
-            Context& context)
-      : layout_(layout), text_(file, name, context) {}
+  PlainText(const ByteFile& file, const PlainLayout& layout, Context& context)
+      : layout_(layout), text_(file, context) {}
 
   void moveTo(const PlainRun& run) { text_.moveTo(run.position); }
   void read(std::span<Vec3> to) {
@@ -71,8 +70,7 @@ class PlainText {
 
 class PlainBytes {
  public:
-  PlainBytes(const InputFile& file, const std::string& /*name*/, const PlainLayout& layout,
-             Context& context)
+  PlainBytes(const ByteFile& file, const PlainLayout& layout, Context& context)
       : file_(file), layout_(layout), quiet_(context.threads()) {}
 
   void moveTo(const PlainRun& run) { position_ = run.position; }
@@ -125,7 +123,7 @@ class PlainBytes {
     position_ += n * bytesEach;
   }
 
-  const InputFile& file_;
+  const ByteFile& file_;
   const PlainLayout& layout_;
   Context quiet_;  // many short loops, which report no progress
   std::uint64_t position_ = 0;
@@ -154,9 +152,8 @@ void sendRun(Reader& reader, const PlainRun& run, const Send& send, LoopProgress
 }
 
 template <class Reader>
-void sendPlain(const InputFile& file, const std::string& name, const PlainLayout& layout,
-               MeshSink& sink, Stage& stage) {
-  Reader reader(file, name, layout, stage.context());
+void sendPlain(const ByteFile& file, const PlainLayout& layout, MeshSink& sink, Stage& stage) {
+  Reader reader(file, layout, stage.context());
   LoopProgress progress(stage, layout.points.count + layout.cells.count);
   sink.begin(layout.points.count, layout.cells.count);
   const auto sendPoints = [&](std::uint64_t first, std::span<const Vec3> points) {
@@ -170,10 +167,10 @@ void sendPlain(const InputFile& file, const std::string& name, const PlainLayout
   sink.end();
 }
 
-std::optional<PlainLayout> lookAt(const PlainFormat& format, const InputFile& file,
-                                  const std::string& name, Context& context) {
+std::optional<PlainLayout> lookAt(const PlainFormat& format, const ByteFile& file,
+                                  Context& context) {
   try {
-    return format.look(file, name, context);
+    return format.look(file, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled) throw;
     return {};  // the other reader tells what is wrong
@@ -184,33 +181,34 @@ std::optional<PlainLayout> lookAt(const PlainFormat& format, const InputFile& fi
 
 void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input,
                    Context& context) {
+  const auto readWhole = [&] {
+    return inStage(context, "read mesh",
+                   [&](Stage& stage) { return format.readWhole(input, stage); });
+  };
   std::error_code unknown;
   // A pipe can be opened but once.
   if (!input.bytes() && std::filesystem::is_regular_file(input.path(), unknown)) {
-    const InputFile file(input.path());
+    const InputFile opened(input.path());
+    const ByteFile file(opened, input.name());
     Stage stage(context, "read mesh");
-    const std::optional<PlainLayout> layout = lookAt(format, file, input.name(), context);
+    const std::optional<PlainLayout> layout = lookAt(format, file, context);
     try {
       if (layout) {
         input.counts()->add(kCellKind<8>, layout->cells.count);
         const auto send = layout->isText ? sendPlain<PlainText> : sendPlain<PlainBytes>;
-        return send(file, input.name(), *layout, sink, stage);
+        return send(file, *layout, sink, stage);
       }
     } catch (const WrongFile& wrong) {
       // Whatever is wrong: the other reader tells the line, and the first of several mistakes.
-      static_cast<void>(format.readWhole(input, context));
+      static_cast<void>(readWhole());
       throw wrong.error;
     }
   }
-  sendTo(sink, format.readWhole(input, context));
+  sendTo(sink, readWhole());
 }
 
-TextWindow::TextWindow(const InputFile& file, std::string name, Context& context, std::size_t size)
-    : file_(file),
-      name_(std::move(name)),
-      context_(context),
-      quiet_(context.threads()),
-      stage_(quiet_, "read") {
+TextWindow::TextWindow(const ByteFile& file, Context& context, std::size_t size)
+    : file_(file), context_(context), quiet_(context.threads()), stage_(quiet_, "read") {
   bytes_.resize(std::min<std::uint64_t>(size, file.size()));
   moveTo(0);
 }
@@ -218,7 +216,7 @@ TextWindow::TextWindow(const InputFile& file, std::string name, Context& context
 void TextWindow::moveTo(std::uint64_t position) {
   begin_ = position;
   size_ = 0;
-  scanner_.emplace(std::string_view(), name_);
+  scanner_.emplace(std::string_view(), file_.name());
   index_.emplace(scanner_->text(), stage_);
   fill();
 }
@@ -229,7 +227,7 @@ bool TextWindow::fill() {
   const std::size_t kept = size_ - behind;
   if (kept > 0) std::memmove(bytes_.data(), bytes_.data() + behind, kept);
   begin_ += behind;
-  const std::uint64_t left = file_.size() - std::min(file_.size(), begin_ + kept);
+  const std::uint64_t left = file_.size() - std::min<std::uint64_t>(file_.size(), begin_ + kept);
   const auto more = static_cast<std::size_t>(std::min<std::uint64_t>(bytes_.size() - kept, left));
   parallelBlocks(stage_, more, kTextAtOnce,
                  [&](std::size_t from, std::size_t to, std::size_t /*block*/) {
@@ -242,7 +240,7 @@ bool TextWindow::fill() {
     while (!text.empty() && !isSpace(text.back())) text.remove_suffix(1);
     if (text.empty()) text = {bytes_.data(), size_};
   }
-  scanner_.emplace(text, name_);
+  scanner_.emplace(text, file_.name());
   index_.emplace(text, stage_);
   sawComments_ = sawComments_ || text.find('#') != std::string_view::npos;
   return more > 0;

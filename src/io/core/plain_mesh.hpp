@@ -1,6 +1,6 @@
 // Files that are read piece by piece: those with vertices and hexahedra in two runs of equal
-// records, as nearly all files are. What is not of that form, or wrong, is for the readers of whole
-// files: they know all forms, and what is to be said of a mistake.
+// records, as nearly all files are. Other files, and broken ones, are left to the readers of whole
+// files, which know all forms and report every mistake.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <io/core/input_file.hpp>
+#include <io/core/number_source.hpp>
 #include <io/core/text_scanner.hpp>
 
 namespace hexhex::io {
@@ -59,9 +59,8 @@ struct PlainLayout {
 /// How one format is read in pieces.
 struct PlainFormat {
   /// Looks through a regular file; nothing, or an Error, if it is not of the form.
-  std::optional<PlainLayout> (*look)(const InputFile& file, const std::string& name,
-                                     Context& context);
-  HexMesh (*readWhole)(const Input& input, Context& context);
+  std::optional<PlainLayout> (*look)(const ByteFile& file, Context& context);
+  HexMesh (*readWhole)(const Input& input, Stage& stage);
 };
 
 /// Reads a file into a sink: piece by piece if it has the form, or else as a whole.
@@ -71,10 +70,9 @@ void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input
 /// A text that is read from front to back, with some megabytes of it in memory.
 class TextWindow {
  public:
-  /// @param file     a regular file; outlives this
   /// @param context  ends reading where it is cancelled
   /// @param size     how much is in memory: for files of bytes, the words between them need little
-  TextWindow(const InputFile& file, std::string name, Context& context, std::size_t size = kText);
+  TextWindow(const ByteFile& file, Context& context, std::size_t size = kText);
   static constexpr std::size_t kText = std::size_t{1} << 23;
   static constexpr std::size_t kWords = std::size_t{1} << 16;
 
@@ -101,7 +99,7 @@ class TextWindow {
     for (std::size_t done = 0; done < n;) {
       const std::size_t complete = std::min(n - done, tokensLeft() / tokensEach);
       if (complete == 0 && !fill()) {
-        throw Error(ErrorCode::FileSyntax, name_ + ": the file is incomplete.");
+        throw Error(ErrorCode::FileSyntax, file_.name() + ": the file is incomplete.");
       }
       readElements(*scanner_, &*index_, stage_, complete, tokensEach,
                    [&](TextScanner& scanner, std::size_t i) { read(scanner, done + i); });
@@ -109,6 +107,9 @@ class TextWindow {
     }
   }
 
+  /// For short loops, which report no progress.
+  [[nodiscard]] Stage& stage() noexcept { return stage_; }
+  [[nodiscard]] const ByteFile& file() const noexcept { return file_; }
   /// Whether there were marks of comments in what was in memory so far.
   [[nodiscard]] bool sawComments() const noexcept { return sawComments_; }
 
@@ -119,8 +120,7 @@ class TextWindow {
   /// Drops what is behind and reads on. @return whether there was more
   bool fill();
 
-  const InputFile& file_;
-  std::string name_;
+  ByteFile file_;
   Context& context_;
   Context quiet_;  ///< many short loops, which report no progress
   Stage stage_;

@@ -19,19 +19,8 @@
 namespace hexhex::io {
 namespace {
 
-// Of formats whose maps need no options.
-template <ReadPlainMap& read>
-TetMap readPlain(const Input& input, const ReadOptions& /*options*/, Context& context) {
-  return read(input, context);
-}
-template <WritePlainMap& write>
-void writePlain(const TetMap& map, const std::filesystem::path& file,
-                const WriteOptions& /*options*/, Context& context) {
-  write(map, file, context);
-}
-
-TetCells readHexexTets(const Input& input, Context& context) {
-  const TetMap map = readHexex(input, {}, context);
+TetCells readHexexTets(const Input& input, Stage& stage) {
+  const TetMap map = readHexex(input, {}, stage);
   TetCells tets;
   tets.points.assign(map.points.begin(), map.points.end());
   tets.cells.assign(map.tets.begin(), map.tets.end());
@@ -48,9 +37,9 @@ template <auto& function>
 constexpr std::remove_reference_t<decltype(function)>* kOverHdf5 = nullptr;
 #endif
 
-void writeExodusFile(const HexMesh& mesh, const std::filesystem::path& file,
-                     const WriteOptions& options, Context& context) {
-  writeExodus(mesh, file, options, context);
+void writeExodusFile(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                     Stage& stage) {
+  writeExodus(mesh, output, options, stage);
 }
 
 constexpr Format exodusFormat(std::string_view name, std::string_view extension,
@@ -67,7 +56,7 @@ constexpr Format exodusFormat(std::string_view name, std::string_view extension,
 
 constexpr std::array kFormatTable = {
     Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
-           .maps = {readHexex, writePlain<writeHexex>},
+           .maps = {readHexex, writeHexex},
            .readTets = readHexexTets},
     Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
            .readTets = readMeditTets,
@@ -83,11 +72,12 @@ constexpr std::array kFormatTable = {
            .meshes = {readVtu, writeVtu},
            .curved = {holdsLagrangeVtu, readLagrangeVtu, writeLagrangeVtu},
            .pieces = {openVtuSink, readVtuTo},
-           .writeArcs = writeArcsVtk,
-           .writePatches = writePatchesVtk,
+           .writeArcs = writeArcsVtu,
+           .writePatches = writePatchesVtu,
            .compresses = true,
+           .measures = true,
            .groups = false},
-    Format{.label = {"vtp", ".vtp"}, .writeArcs = writeArcsVtk, .writePatches = writePatchesVtk},
+    Format{.label = {"vtp", ".vtp"}, .writeArcs = writeArcsVtp, .writePatches = writePatchesVtp},
     Format{.label = {"pvtu", ".pvtu", "VTK XML in pieces (extract --parts)"},
            .meshes = {.read = readPvtu},
            .parts = {openPvtuSink, "VTK XML: NAME.pvtu, and pieces in the folder NAME"}},
@@ -106,12 +96,12 @@ constexpr std::array kFormatTable = {
            .pieces = {openVtkLegacyBinarySink, readVtkLegacyTo},
            .groups = false},
     Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
-           .maps = {readPlain<readOvmMap>, writePlain<writeOvmMap>},
+           .maps = {readOvmMap, writeOvmMap},
            .readTets = readOvmTets,
            .meshes = {readOvmHexMesh, writeOvmHexMesh},
            .groups = false},
     Format{.label = {"ovmb", ".ovmb", "OpenVolumeMesh, binary"},
-           .maps = {readPlain<readOvmbMap>, writePlain<writeOvmbMap>},
+           .maps = {readOvmbMap, writeOvmbMap},
            .readTets = readOvmbTets,
            .meshes = {readOvmbHexMesh, writeOvmbHexMesh},
            .writeArcs = writeArcsOvmb,
@@ -150,13 +140,14 @@ constexpr std::array kFormatTable = {
            .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
     Format{
         .label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
-        .meshes = {.write = writeOpenFoam},
+        .meshes = {.writeFolder = writeOpenFoam},
         .parts = {openOpenFoamPartSink, "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"}},
     Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
            .readTets = kOverHdf5<readVtkHdfTets>,
            .meshes = {kOverHdf5<readVtkHdf>, kOverHdf5<writeVtkHdf>},
            .curved = {kOverHdf5<holdsCurvedVtkHdf>, kOverHdf5<readCurvedVtkHdf>},
            .parts = {kOverHdf5<openVtkHdfPartSink>, "VTKHDF: one file"},
+           .measures = true,
            .groups = false,
            .overHdf5 = true},
     Format{
@@ -193,9 +184,9 @@ std::string_view usualName(const std::filesystem::path& file, std::string_view n
     if (content != FileContent::CurvedCells) return solver->format;
     if (!solver->curved.empty()) return solver->curved;
     throw Error(ErrorCode::FileUnsupported,
-                file.string() + ": for " + std::string(solver->program) +
-                    ", straight cells are written only. Leave out --order, or write another "
-                    "format of cells of higher order.");
+                concat(file.string(), ": for ", solver->program,
+                       ", straight cells are written only. Leave out --order, or write another "
+                       "format of cells of higher order."));
   }
   for (const auto& [other, usual] : kOtherFormatNames) {
     if (name == other) return usual;
@@ -207,8 +198,11 @@ bool holdsMaps(const Format& format) {
   return format.maps.read != nullptr || format.maps.write != nullptr;
 }
 constexpr bool writesParts(const Format& format) { return !format.parts.description.empty(); }
+bool writesMeshes(const Format& format) {
+  return format.meshes.write != nullptr || format.meshes.writeFolder != nullptr;
+}
 bool holdsMeshes(const Format& format) {
-  return format.meshes.read != nullptr || format.meshes.write != nullptr || format.overHdf5;
+  return format.meshes.read != nullptr || writesMeshes(format) || format.overHdf5;
 }
 
 /// What a format is looked for.
@@ -217,7 +211,7 @@ struct Purpose {
   const char* what;
 };
 
-/// Entry i: that of the FileContent with the number i.
+/// By FileContent.
 constexpr std::array<Purpose, 9> kPurposes = {
     {{holdsMaps, "maps"},
      {holdsMeshes, "hexahedral meshes"},
@@ -251,7 +245,7 @@ std::string listed(bool (*fits)(const Format&), Word wordOf,
     const std::string_view word = wordOf(format, content);
     if (!fits(format) || word.empty() || word == last) continue;
     last = word;
-    list += (list.empty() ? "" : ", ") + std::string(word);
+    list += concat((list.empty() ? "" : ", "), word);
   }
   return list;
 }
@@ -317,7 +311,7 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
   const Format* const format = usual.empty() ? formatWith(extension, extensionOf, content)
                                              : formatWith(usual, nameOf, content);
   if (format == nullptr && !usual.empty()) {
-    failToFind(file, '"' + std::string(usual) + '"', content, listed(content, nameOf));
+    failToFind(file, concat('"', usual, '"'), content, listed(content, nameOf));
   }
   if (format == nullptr) failToExtend(file, extension, content);
   return *format;
@@ -350,7 +344,7 @@ std::span<const FileFormat> fileFormats() {
                               format.maps.write != nullptr,
                               format.readTets != nullptr,
                               format.meshes.read != nullptr,
-                              format.meshes.write != nullptr,
+                              io::writesMeshes(format),
                               format.pieces.openSink != nullptr,
                               format.compresses && io::hasZlib(),
                               format.readTriangles != nullptr};

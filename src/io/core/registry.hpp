@@ -24,7 +24,7 @@ struct FormatLabel {
   std::string_view description = {};
 };
 
-/// A format and what is done with it; functions are null where nothing is.
+/// A format and what can be done with it; functions are null for what cannot.
 struct Format {
   FormatLabel label;
 
@@ -34,10 +34,11 @@ struct Format {
   } maps = {};
   /// Tets without a map, whether there is one or not.
   ReadTets* readTets = nullptr;
-  TriangleMesh (*readTriangles)(const Input& input, Context& context) = nullptr;
+  TriangleMesh (*readTriangles)(const Input& input, Stage& stage) = nullptr;
   struct {
     ReadMesh* read = nullptr;
     WriteMesh* write = nullptr;
+    WriteFolder* writeFolder = nullptr;
   } meshes = {};
   /// Cells of higher order, which are looked for first where meshes may have them.
   struct {
@@ -62,6 +63,7 @@ struct Format {
   WritePiecewise* writePatches = nullptr;
 
   bool compresses = false;  ///< heeds WriteOptions::compress
+  bool measures = false;    ///< holds WriteOptions::scaledJacobians
   bool groups = true;       ///< of boundary quads: heeds WriteOptions::patchAngle
   /// Writing takes requireHdf5(); in builds without HDF5 all functions are null.
   bool overHdf5 = false;

@@ -6,6 +6,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
@@ -24,16 +25,16 @@ struct PairNames {
 
 std::string vertices(const Tet& tet) {
   std::string text;
-  for (const Index vertex : tet) text += (text.empty() ? "" : " ") + std::to_string(vertex);
+  for (const Index vertex : tet) text += concat((text.empty() ? "" : " "), vertex);
   return text;
 }
 
 void requireSame(std::size_t tets, std::size_t polycube, const char* what, const PairNames& names) {
   if (tets == polycube) return;
-  throw Error(names.mismatch,
-              names.tets + " has " + std::to_string(tets) + " " + what + ", but " + names.polycube +
-                  " has " + std::to_string(polycube) +
-                  ": the two meshes must have the same vertices and tets, in the same order.");
+  throw Error(
+      names.mismatch,
+      concat(names.tets, " has ", tets, " ", what, ", but ", names.polycube, " has ", polycube,
+             ": the two meshes must have the same vertices and tets, in the same order."));
 }
 
 /// The corners of a tet may be listed in another order.
@@ -55,14 +56,13 @@ TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& na
     const Place place{PlaceKind::Tet, fault};
     if (!inRange(tets.tets[fault])) {
       throw Error(ErrorCode::IndexOutOfRange,
-                  "Tet " + std::to_string(fault) + " of " + names.tets +
-                      " names a vertex that does not exist.",
+                  concat("Tet ", fault, " of ", names.tets, " names a vertex that does not exist."),
                   place);
     }
     throw Error(names.mismatch,
-                "Tet " + std::to_string(fault) + " has the vertices " + vertices(tets.tets[fault]) +
-                    " in " + names.tets + ", but " + vertices(polycube.tets[fault]) + " in " +
-                    names.polycube + ": the two meshes must have the same tets, in the same order.",
+                concat("Tet ", fault, " has the vertices ", vertices(tets.tets[fault]), " in ",
+                       names.tets, ", but ", vertices(polycube.tets[fault]), " in ", names.polycube,
+                       ": the two meshes must have the same tets, in the same order."),
                 place);
   }
   TetMap map;

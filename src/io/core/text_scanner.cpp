@@ -245,14 +245,12 @@ std::string lowerCaseExtension(const std::filesystem::path& file) {
 }
 
 std::string exceedsLimit(std::uint64_t count, std::string_view what, std::uint64_t limit) {
-  return "announces " + std::to_string(count) + " " + std::string(what) + "; at most " +
-         std::to_string(limit) + " are supported.";
+  return concat("announces ", count, " ", what, "; at most ", limit, " are supported.");
 }
 
 std::string lacksRoom(std::string_view count, std::string_view what, std::size_t room) {
-  return "announces " + std::string(count) + " " + std::string(what) +
-         ", but the rest of the file has room for at most " + std::to_string(room) +
-         ": either the number is wrong or the file is incomplete.";
+  return concat("announces ", count, " ", what, ", but the rest of the file has room for at most ",
+                room, ": either the number is wrong or the file is incomplete.");
 }
 
 std::string quoted(std::string_view token) {
@@ -293,9 +291,7 @@ bool TextScanner::readUnusualNumber(double& value) {
 
 std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach) {
   const std::int64_t count = integer({"the number of ", what});
-  if (count < 0) {
-    fail(ErrorCode::FileSyntax, "the number of " + std::string(what) + " is negative.");
-  }
+  if (count < 0) fail(ErrorCode::FileSyntax, "the number of ", what, " is negative.");
   // The last one may lack its separator at the end of the file.
   const std::size_t room = (static_cast<std::size_t>(end_ - position_) + 1) / bytesEach;
   if (static_cast<std::uint64_t>(count) > room) {
@@ -320,8 +316,8 @@ void TextScanner::skipLineBreak() {
   const char* place = position_;
   while (place != end_ && (*place == ' ' || *place == '\r')) ++place;
   if (place == end_ || *place != '\n') {
-    fail(ErrorCode::FileSyntax, "the line has to end behind " + quoted(currentToken()) +
-                                    ", since the bytes of numbers begin on the next line.");
+    fail(ErrorCode::FileSyntax, "the line has to end behind ", quoted(currentToken()),
+         ", since the bytes of numbers begin on the next line.");
   }
   position_ = token_ = place + 1;
 }
@@ -349,15 +345,6 @@ std::uint64_t TextScanner::line() const {
   return static_cast<std::uint64_t>(std::count(begin_, last, '\n')) + 1;
 }
 
-void TextScanner::fail(ErrorCode code, std::string_view sentence, Place place) const {
-  throw Error(code, fileName_ + ", line " + std::to_string(line()) + ": " + std::string(sentence),
-              place);
-}
-
-void TextScanner::fail(ErrorCode code, std::string_view sentence) const {
-  fail(code, sentence, Place{PlaceKind::Line, line()});
-}
-
 void TextScanner::failNumber(std::string_view what) const {
   double ignored = 0;
   switch (parseNumber(currentToken(), ignored)) {
@@ -369,8 +356,8 @@ void TextScanner::failNumber(std::string_view what) const {
       failFound(ErrorCode::FileSyntax, what, ", which divides by zero.");
     case NumberProblem::TooLong:
       failFound(ErrorCode::FileUnsupported, what,
-                ", a fraction with more than " + std::to_string(kMaxRationalDigits) +
-                    " digits; round it to a decimal number.");
+                concat(", a fraction with more than ", kMaxRationalDigits,
+                       " digits; round it to a decimal number."));
     case NumberProblem::None:
     case NumberProblem::NotANumber:
       break;
@@ -384,26 +371,24 @@ void TextScanner::failInteger(std::string_view what) const {
 
 void TextScanner::failFound(ErrorCode code, std::string_view what, std::string_view problem) const {
   const std::string_view token = currentToken();
-  const std::string expected = "expected " + std::string(what) + ", found ";
-  if (token.empty()) fail(ErrorCode::FileSyntax, expected + "the end of the file.");
-  fail(code, expected + quoted(token) + std::string(problem));
+  const std::string expected = concat("expected ", what, ", found ");
+  if (token.empty()) fail(ErrorCode::FileSyntax, expected, "the end of the file.");
+  fail(code, expected, quoted(token), problem);
 }
 
 void TextScanner::failToken(std::string_view what) const {
-  fail(ErrorCode::FileSyntax,
-       "expected " + std::string(what) + ", found " + quoted(currentToken()) + ".");
+  fail(ErrorCode::FileSyntax, "expected ", what, ", found ", quoted(currentToken()), ".");
 }
 
 void TextScanner::failIfAtEnd(std::size_t done, std::size_t count, std::string_view what) {
   if (skipSpace()) return;
-  fail(ErrorCode::FileSyntax, "the file ends after " + std::to_string(done) + " of " +
-                                  std::to_string(count) + " " + std::string(what) +
-                                  ": it is incomplete.");
+  fail(ErrorCode::FileSyntax, "the file ends after ", done, " of ", count, " ", what,
+       ": it is incomplete.");
 }
 
 void TextScanner::failIfRepeated(bool present, std::string_view section) const {
   if (!present) return;
-  fail(ErrorCode::FileSyntax, "the section " + std::string(section) + " occurs a second time.");
+  fail(ErrorCode::FileSyntax, "the section ", section, " occurs a second time.");
 }
 
 namespace {

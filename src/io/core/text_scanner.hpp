@@ -16,6 +16,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/double_from_chars.hpp>
@@ -70,8 +71,8 @@ struct NumberName {
       : before(before_), of(of_), number(number_) {}
 
   [[nodiscard]] std::string text() const {
-    const std::string name = std::string(before) + std::string(of);
-    return number == kNoNumber ? name : name + " " + std::to_string(number);
+    const std::string name = concat(before, of);
+    return number == kNoNumber ? name : concat(name, " ", number);
   }
 
   std::string_view before;
@@ -126,7 +127,7 @@ class TextScanner {
 
   /// Goes on from the i-th character of the text.
   void moveTo(std::size_t i) { position_ = token_ = begin_ + i; }
-  /// How many characters of the text are behind.
+  /// How many characters have been read.
   [[nodiscard]] std::size_t position() const noexcept {
     return static_cast<std::size_t>(position_ - begin_);
   }
@@ -209,9 +210,16 @@ class TextScanner {
   [[nodiscard]] const std::string& fileName() const noexcept { return fileName_; }
 
   /// Throws an error about the current token: "<file>, line 12: <sentence>".
-  [[noreturn]] void fail(ErrorCode code, std::string_view sentence) const;
+  /// @param sentence  its parts, as of concat()
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    fail(code, Place{PlaceKind::Line, line()}, sentence...);
+  }
   /// The same with a place other than the line.
-  [[noreturn]] void fail(ErrorCode code, std::string_view sentence, Place place) const;
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Place place, Parts... sentence) const {
+    throw Error(code, concat(fileName_, ", line ", line(), ": ", sentence...), place);
+  }
   /// After readNumber returned false: throws an error that tells what was found instead of `what`.
   [[noreturn]] void failNumber(std::string_view what) const;
   /// After readInteger returned false: the same.

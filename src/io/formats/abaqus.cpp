@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include <adjacency/cell_faces.hpp>
+
 #include <hexhex/error.hpp>
 
 #include <base/stage.hpp>
@@ -294,7 +296,7 @@ class AbaqusReader {
       if (!set.empty()) elementSets_[set].items.push_back(number);
       for (std::size_t k = 0; k < type.nodes; ++k) {
         if (trimmed(rest).empty()) {
-          if (!nextData()) fail("the nodes of element " + std::to_string(number) + " are missing");
+          if (!nextData()) fail(concat("the nodes of element ", number, " are missing"));
           rest = line_;
         }
         places.push_back(integer(takeField(rest), "a node of an element"));
@@ -506,7 +508,7 @@ class AbaqusReader {
     if (result.ec == std::errc{} && result.ptr == word.data() + word.size() && !word.empty()) {
       return number;
     }
-    fail("expected " + std::string(what) + ", found " + quoted(word));
+    fail(concat("expected ", what, ", found ", quoted(word)));
   }
   [[nodiscard]] double real(std::string_view word) const {
     double value = 0;
@@ -593,18 +595,12 @@ struct QuadraticCells {
   Array<EdgeMiddle> middles;  ///< ascending
 
   explicit QuadraticCells(const LagrangeMesh& mesh) : cells(mesh.cellCount()) {
-    // Corners, then the middles of the edges around the bottom, around the top, and between.
-    std::vector<Node> nodes;
-    for (std::size_t k = 0; k < 8; ++k) nodes.push_back(corner(k, 0, 2));
-    std::array<std::array<std::size_t, 2>, 12> edges{};
-    for (std::size_t k = 0; k < 4; ++k) {
-      edges[k] = {k, (k + 1) % 4};
-      edges[k + 4] = {k + 4, (k + 1) % 4 + 4};
-      edges[k + 8] = {k, k + 4};
-    }
-    for (const auto& [a, b] : edges) append(nodes, between(nodes[a], nodes[b], 1));
-    const std::vector<std::uint32_t> places = placesOf(nodes, 2);
-
+    // As VTK has them: corners, and the middles of the edges around the bottom, around the top, and
+    // between.
+    std::vector<std::uint32_t> places = vtkNodeOrder(2);
+    places.resize(20);
+    auto edges = adjacency::kHexEdges;
+    std::swap(edges[10], edges[11]);
     const auto corners = static_cast<std::ptrdiff_t>(mesh.vertexCount);
     points.assign(mesh.points.begin(), mesh.points.begin() + corners);
     Array<Index> numbers(mesh.points.size());
@@ -631,8 +627,8 @@ struct QuadraticCells {
 
 class AbaqusWriter {
  public:
-  AbaqusWriter(OutputFile& output, Stage& stage, int threads)
-      : output_(output), lines_(output, threads), stage_(stage) {}
+  AbaqusWriter(OutputFile& output, Stage& stage)
+      : output_(output), lines_(output, stage.context().threads()), stage_(stage) {}
 
   /// @param middles  of edges, ascending; empty for straight cells
   template <class Cells>
@@ -659,9 +655,7 @@ class AbaqusWriter {
     output_.write("*NODE\n");
     const auto node = [&points](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
-      for (const double coordinate : points[i]) {
-        place = putShort(put(place, ", "), coordinate);
-      }
+      for (const double coordinate : points[i]) place = putShort(put(place, ", "), coordinate);
       return put(place, '\n');
     };
     lines_.write(points.size(), 4 * (kNumberRoom + 2), node, &progress);
@@ -740,24 +734,17 @@ class AbaqusWriter {
 
 }  // namespace
 
-void writeAbaqus(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+void writeAbaqus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                 Stage& stage) {
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  AbaqusWriter(output, stage, context.threads()).write(mesh.points, mesh.cells, groups, {});
-  output.commit();
+  AbaqusWriter(output, stage).write(mesh.points, mesh.cells, groups, {});
 }
 
-void writeQuadraticAbaqus(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                          const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);
+void writeQuadraticAbaqus(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                          Stage& stage) {
   const MeshGroups groups(straightMesh(mesh), options.patchAngle, stage);
   const QuadraticCells cells(mesh);
-  AbaqusWriter(output, stage, context.threads())
-      .write(cells.points, cells.cells, groups, cells.middles);
-  output.commit();
+  AbaqusWriter(output, stage).write(cells.points, cells.cells, groups, cells.middles);
 }
 
 }  // namespace hexhex::io

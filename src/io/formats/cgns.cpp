@@ -96,8 +96,7 @@ class CgnsFile {
     writeSet(file_.root(), " format", {format, {format.size() + 1}});
     std::array<unsigned, 3> version{};
     HDF5(H5get_libversion)(&version[0], &version[1], &version[2]);
-    std::string text = "HDF5 Version " + std::to_string(version[0]) + "." +
-                       std::to_string(version[1]) + "." + std::to_string(version[2]);
+    std::string text = concat("HDF5 Version ", version[0], ".", version[1], ".", version[2]);
     text.resize(kTextBytes);
     writeSet(file_.root(), " hdf5version", {text, {kTextBytes}});
   }
@@ -209,8 +208,8 @@ class CgnsWriter {
     Array<double> values(points_.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t i = 0; i < values.size(); ++i) values[i] = points_[i][axis];
-      static_cast<void>(file_.add(points.id(), std::string("Coordinate") + "XYZ"[axis],
-                                  "DataArray_t", {values.data(), {values.size()}}));
+      static_cast<void>(file_.add(points.id(), concat("Coordinate", "XYZ"[axis]), "DataArray_t",
+                                  {values.data(), {values.size()}}));
     }
     progress_.advance(points_.size());
   }
@@ -368,8 +367,8 @@ class CgnsPartSink final : public PartSink {
 };
 
 /// @param curved  null: cells are straight
-void writeBase(OutputFile& target, const HexMesh& mesh, const MeshGroups& groups, Stage& stage,
-               const QuadraticNodes* curved = nullptr) {
+void writeBase(const OutputFile& target, const HexMesh& mesh, const MeshGroups& groups,
+               Stage& stage, const QuadraticNodes* curved = nullptr) {
   CgnsFile tree(target);
   {
     const HdfObject base = addBase(tree);
@@ -386,42 +385,34 @@ void writeBase(OutputFile& target, const HexMesh& mesh, const MeshGroups& groups
     }
   }
   tree.close();
-  target.commit();
 }
 
-void refuseEmpty(std::size_t cells, const std::filesystem::path& file) {
+void refuseEmpty(std::size_t cells, const OutputFile& output) {
   if (cells > 0) return;
   throw Error(ErrorCode::InvalidArgument,
-              file.string() + ": the mesh is empty, which a CGNS file cannot hold.");
+              output.target().string() + ": the mesh is empty, which a CGNS file cannot hold.");
 }
 
 }  // namespace
 
-void writeCgns(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-               Context& context) {
-  Stage stage(context, "write mesh");
-  // First, so that a folder that is not writable shows at once.
-  OutputFile target(file, OutputFile::Target::Regular);
-  refuseEmpty(mesh.cells.size(), file);
-  writeBase(target, mesh, MeshGroups(mesh, options.patchAngle, stage), stage);
+void writeCgns(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
+  refuseEmpty(mesh.cells.size(), output);
+  writeBase(output, mesh, MeshGroups(mesh, options.patchAngle, stage), stage);
 }
 
-void writeQuadraticCgns(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                        const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile target(file, OutputFile::Target::Regular);
-  refuseEmpty(mesh.cellCount(), file);
+void writeQuadraticCgns(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                        Stage& stage) {
+  refuseEmpty(mesh.cellCount(), output);
   const HexMesh straight = straightMesh(mesh);
   const MeshGroups groups(straight, options.patchAngle, stage);
   QuadraticNodes nodes = {mesh, {}};
-  withThreads(context.threads(), [&] {
+  withThreads(stage.context().threads(), [&] {
     nodes.ofGroups = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
   });
-  writeBase(target, straight, groups, stage, &nodes);
+  writeBase(output, straight, groups, stage, &nodes);
 }
 
-std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file,
-                                           const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openCgnsPartSink(const std::filesystem::path& file, Context& context,
                                            ProcessTeam* /*team*/) {
   return std::make_unique<CgnsPartSink>(file, context);
 }

@@ -61,8 +61,8 @@ constexpr std::array<CgnsType, 20> kCgnsTypes = {{{2, 1, 1},
 
 class CgnsReader {
  public:
-  CgnsReader(const Input& input, ElementParts parts)
-      : input_(input), parts_(parts), file_(HdfReader::open(input)) {}
+  CgnsReader(const Input& input, ElementParts parts, Stage& stage)
+      : input_(input), parts_(parts), file_(HdfReader::openAny(input, stage)) {}
 
   ElementLists read() {
     for (const std::string& base : nodes("", "CGNSBase_t")) {
@@ -97,8 +97,9 @@ class CgnsReader {
     std::array<Index, 4> nodes;
   };
 
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    throw Error(code, input_.name() + ": " + sentence);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    throw Error(code, concat(input_.name(), ": ", sentence...));
   }
 
   // The tree: a node is a group, with a label that says what it is.
@@ -112,8 +113,8 @@ class CgnsReader {
       std::string path = parent.empty() ? "" : parent + '/';
       path += member;
       if (file_->attribute(path, "type") == "LK") {
-        fail(ErrorCode::FileUnsupported,
-             "\"" + path + "\" is a link into another file. Save the mesh as one file.");
+        fail(ErrorCode::FileUnsupported, "\"", path,
+             "\" is a link into another file. Save the mesh as one file.");
       }
       if (file_->attribute(path, "label") == label) found.push_back(path);
     }
@@ -143,9 +144,9 @@ class CgnsReader {
 
   void readZone(Zone& zone) {
     if (const std::string type = textIn(zone.path, "ZoneType_t"); type != "Unstructured") {
-      fail(ErrorCode::FileUnsupported, "the zone \"" + zone.path +
-                                           "\" is not unstructured. Convert it to lists of "
-                                           "elements first.");
+      fail(ErrorCode::FileUnsupported, "the zone \"", zone.path,
+           "\" is not unstructured. Convert it to lists of "
+           "elements first.");
     }
     zone.before = lastNumber_;
     zone.firstPoint = lists_.points.size();
@@ -158,12 +159,12 @@ class CgnsReader {
   void readPoints(Zone& zone) {
     const std::vector<std::string> grids = nodes(zone.path, "GridCoordinates_t");
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::string name = std::string("Coordinate") + "XYZ"[axis];
+      const std::string name = concat("Coordinate", "XYZ"[axis]);
       const std::vector<std::string> found =
           grids.empty() ? std::vector<std::string>() : nodes(grids[0], "DataArray_t", name);
       if (found.empty()) {
-        fail(ErrorCode::FileUnsupported,
-             "the zone \"" + zone.path + "\" has no array \"" + name + "\".");
+        fail(ErrorCode::FileUnsupported, "the zone \"", zone.path, "\" has no array \"", name,
+             "\".");
       }
       setCoordinates(lists_, zone.firstPoint, axis, file_->reals(found[0] + "/ data"), input_);
     }
@@ -175,7 +176,7 @@ class CgnsReader {
     const std::vector<std::int64_t> range = integersIn(section, "IndexRange_t", "ElementRange");
     if (kind.empty() || range.size() != 2 || range[0] < 1 || range[1] < range[0] ||
         range[1] > kMostElements) {
-      fail(ErrorCode::FileSyntax, "the section \"" + section + "\" has no range of elements.");
+      fail(ErrorCode::FileSyntax, "the section \"", section, "\" has no range of elements.");
     }
     const auto first = static_cast<std::uint64_t>(range[0]);
     const auto last = static_cast<std::uint64_t>(range[1]);
@@ -192,9 +193,9 @@ class CgnsReader {
       const bool tellsType = kind[0] == kCgnsMixed && place < values.size();
       const CgnsType* const type = typeOf(tellsType ? values[place++] : kind[0], section);
       if (type == nullptr || type->nodes > values.size() - place) {
-        fail(ErrorCode::FileSyntax, "the section \"" + section +
-                                        "\" lists too few nodes, or "
-                                        "elements of a type that a mixed one cannot have.");
+        fail(ErrorCode::FileSyntax, "the section \"", section,
+             "\" lists too few nodes, or "
+             "elements of a type that a mixed one cannot have.");
       }
       addElement(zone, section, *type, number, values.data() + place, blocks);
       place += type->nodes;
@@ -214,9 +215,8 @@ class CgnsReader {
         std::find_if(kCgnsTypes.begin(), kCgnsTypes.end(),
                      [number](const CgnsType& type) { return type.number == number; });
     if (found != kCgnsTypes.end()) return found;
-    fail(ErrorCode::FileUnsupported,
-         "the section \"" + section + "\" has elements of the type " + std::to_string(number) +
-             ", which are not supported: none of more than 27 nodes are.");
+    fail(ErrorCode::FileUnsupported, "the section \"", section, "\" has elements of the type ",
+         number, ", which are not supported: none of more than 27 nodes are.");
   }
 
   /// @param blocks  of the section
@@ -227,9 +227,8 @@ class CgnsReader {
       if (values[k] >= 1 && static_cast<std::uint64_t>(values[k]) <= zone.points) {
         return static_cast<Index>(zone.firstPoint + static_cast<std::size_t>(values[k]) - 1);
       }
-      fail(ErrorCode::IndexOutOfRange, "the section \"" + section + "\" names vertex " +
-                                           std::to_string(values[k]) + ", but its zone has " +
-                                           std::to_string(zone.points) + ", numbered from 1.");
+      fail(ErrorCode::IndexOutOfRange, "the section \"", section, "\" names vertex ", values[k],
+           ", but its zone has ", zone.points, ", numbered from 1.");
     };
     const bool needsNodes = parts_ == ElementParts::All;
     if (type.noun.empty()) {
@@ -280,9 +279,9 @@ class CgnsReader {
     const auto add = [&](std::int64_t first, std::int64_t last) {
       const auto end = static_cast<std::uint64_t>(last);
       if (first < 1 || last < first || end > most) {
-        fail(ErrorCode::IndexOutOfRange, "the condition \"" + condition +
-                                             "\" names elements or vertices that its zone does "
-                                             "not have.");
+        fail(ErrorCode::IndexOutOfRange, "the condition \"", condition,
+             "\" names elements or vertices that its zone does "
+             "not have.");
       }
       group.ranges.emplace_back(static_cast<std::uint64_t>(first), end);
       members_ += end - static_cast<std::uint64_t>(first) + 1;
@@ -325,8 +324,8 @@ class CgnsReader {
       }
       if (found > 0) continue;
       fail(ErrorCode::FileUnsupported,
-           "the file has several zones, and nothing says which vertices \"" + zone.path +
-               "\" shares with others (Abutting1to1). Merge them into one zone.");
+           "the file has several zones, and nothing says which vertices \"", zone.path,
+           "\" shares with others (Abutting1to1). Merge them into one zone.");
     }
     const NumberedSets numbered = numberSets(same, lists_.points.size());
     Array<Vec3> kept(numbered.count);
@@ -364,8 +363,8 @@ class CgnsReader {
     };
     if (other == zones_.end() || here.size() != there.size() || !isIn(here, zone) ||
         !isIn(there, *other)) {
-      fail(ErrorCode::FileSyntax,
-           "the connection \"" + path + "\" does not name vertices of two zones in pairs.");
+      fail(ErrorCode::FileSyntax, "the connection \"", path,
+           "\" does not name vertices of two zones in pairs.");
     }
     std::vector<std::pair<Index, Index>> pairs;
     for (std::size_t i = 0; i < here.size(); ++i) {
@@ -434,21 +433,13 @@ class CgnsReader {
 }  // namespace
 
 ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage) {
-  const std::string head = firstBytes(input);
-  if (head.starts_with("@(#)")) {
+  if (firstBytes(input).starts_with("@(#)")) {
     throw Error(ErrorCode::FileUnsupported,
                 input.name() +
                     ": the file is in ADF, an older form of CGNS. Convert it to HDF5: "
                     "adf2hdf FILE");
   }
-  if (head == kHdfMark) return CgnsReader(input, parts).read();
-  Array<char> room;
-  if (head.empty()) {  // a pipe
-    const std::string_view bytes = input.text(room, stage, "");
-    if (bytes.starts_with(kHdfMark)) return CgnsReader({bytes, input.name()}, parts).read();
-  }
-  throw Error(ErrorCode::FileSyntax,
-              input.name() + ": the file does not begin as HDF5 files do. Is its extension right?");
+  return CgnsReader(input, parts, stage).read();
 }
 
 }  // namespace hexhex::io

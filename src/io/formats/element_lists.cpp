@@ -12,6 +12,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/gmsh_elements.hpp>
@@ -34,9 +35,8 @@ bool isCurvedHexahedron(const ElementBlock& block) {
 }
 
 [[noreturn]] void failWithout(const CellKind& kind, const Input& input) {
-  std::string sentence = input.name() + ": the file holds no " + std::string(kind.plural) +
-                         " with " + std::to_string(kind.corners) + " nodes" +
-                         input.counts()->instead() + ".";
+  std::string sentence = concat(input.name(), ": the file holds no ", kind.plural, " with ",
+                                kind.corners, " nodes", input.counts()->instead(), ".");
   if (kind.corners == 8) sentence += input.counts()->adviceOnCurved();
   throw Error(ErrorCode::FileUnsupported, sentence);
 }
@@ -186,9 +186,7 @@ Vec3 middleOf(const Array<Vec3>& points, const Index* nodes, std::size_t face) {
   for (std::size_t k = 0; k < 4; ++k) {
     const Vec3& corner = points[nodes[corners[k]]];
     const Vec3& edge = points[nodes[8 + edgeBetween(corners[k], corners[(k + 1) % 4])]];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      middle[axis] += edge[axis] / 2 - corner[axis] / 4;
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] += edge[axis] / 2 - corner[axis] / 4;
   }
   return middle;
 }
@@ -249,8 +247,7 @@ const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes) {
       {{"hexahedra", 8}, {"tetrahedra", 4}, {"prisms", 6}, {"pyramids", 5}}};
   const bool straight =
       std::find(kStraight.begin(), kStraight.end(), std::pair(noun, nodes)) != kStraight.end();
-  return straight ? volumeCells(noun)
-                  : volumeCells(std::string(noun) + " with " + std::to_string(nodes) + " nodes");
+  return straight ? volumeCells(noun) : volumeCells(concat(noun, " with ", nodes, " nodes"));
 }
 
 void ElementLists::addName(int dimension, std::int32_t tag, std::string_view name) {
@@ -282,10 +279,9 @@ void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     lists.points[first + i][axis] = numbers[i];
     if (std::isfinite(numbers[i])) continue;
-    throw Error(
-        ErrorCode::NotFinite,
-        input.name() + ": a coordinate of node " + std::to_string(i + 1) + " is not finite.",
-        Place{PlaceKind::Vertex, first + i});
+    throw Error(ErrorCode::NotFinite,
+                concat(input.name(), ": a coordinate of node ", i + 1, " is not finite."),
+                Place{PlaceKind::Vertex, first + i});
   }
 }
 
@@ -312,8 +308,8 @@ NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) 
   NodeTags nodes(numbers);
   if (const Index repeated = nodes.repeated(); repeated != kNone) {
     throw Error(ErrorCode::FileSyntax,
-                input.name() + ": two nodes have the number " + std::to_string(numbers[repeated]) +
-                    ". If the file has several parts, export it as one mesh, without parts.");
+                concat(input.name(), ": two nodes have the number ", numbers[repeated],
+                       ". If the file has several parts, export it as one mesh, without parts."));
   }
   return nodes;
 }
@@ -324,10 +320,9 @@ void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     block.nodes[i] = nodes.find(numbers[i]);
     if (block.nodes[i] != kNone) continue;
-    throw Error(ErrorCode::IndexOutOfRange, input.name() + ": element " +
-                                                std::to_string(block.numbers[i / block.nodesEach]) +
-                                                " names node " + std::to_string(numbers[i]) +
-                                                ", which is in no " + std::string(place) + ".");
+    throw Error(ErrorCode::IndexOutOfRange,
+                concat(input.name(), ": element ", block.numbers[i / block.nodesEach],
+                       " names node ", numbers[i], ", which is in no ", place, "."));
   }
 }
 

@@ -36,9 +36,7 @@ class NodeTags {
 
   /// The node with a tag, or kNone.
   [[nodiscard]] Index find(std::uint64_t tag) const {
-    if (sorted_.empty()) {
-      return tag - first_ < count_ ? static_cast<Index>(tag - first_) : kNone;
-    }
+    if (sorted_.empty()) return tag - first_ < count_ ? static_cast<Index>(tag - first_) : kNone;
     const auto found = std::lower_bound(sorted_.begin(), sorted_.end(), Entry{tag, 0});
     return found == sorted_.end() || found->first != tag ? kNone : found->second;
   }
@@ -121,11 +119,11 @@ void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
 /// null if there is none.
 [[nodiscard]] const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes);
 
-/// What groups of elements are tagged with: what a name of this library says, or a number.
+/// The tag of a group of elements: from a name that this library gave it, or else its number.
 [[nodiscard]] std::int32_t tagOfGroup(std::string_view name, std::int64_t number);
 
-/// Tags of groups: what a name of this library says, or the number of the group in its order, if
-/// no name says it.
+/// Tags of groups: from names that this library gave them, or else numbers in their order.
+/// Tags that names contain are not given to other groups.
 class GroupTags {
  public:
   /// Before tags of others are asked for.
@@ -194,25 +192,17 @@ using ReadElementLists = ElementLists (*)(const Input&, ElementParts, Stage&);
 /// What the registry has of a format, by the function that reads its lists.
 template <ReadElementLists read>
 struct ElementFormat {
-  [[nodiscard]] static HexMesh readMesh(const Input& input, Context& context) {
-    return inStage(context, "read mesh", [&](Stage& stage) {
-      return hexMeshOf(read(input, ElementParts::All, stage), input);
-    });
+  [[nodiscard]] static HexMesh readMesh(const Input& input, Stage& stage) {
+    return hexMeshOf(read(input, ElementParts::All, stage), input);
   }
-  [[nodiscard]] static TetCells readTets(const Input& input, Context& context) {
-    return inStage(context, "read tets", [&](Stage& stage) {
-      return tetsOf(read(input, ElementParts::All, stage), input);
-    });
+  [[nodiscard]] static TetCells readTets(const Input& input, Stage& stage) {
+    return tetsOf(read(input, ElementParts::All, stage), input);
   }
-  [[nodiscard]] static bool holdsCurved(const Input& input, Context& context) {
-    return inStage(context, "read mesh", [&](Stage& stage) {
-      return areCurved(read(input, ElementParts::Types, stage));
-    });
+  [[nodiscard]] static bool holdsCurved(const Input& input, Stage& stage) {
+    return areCurved(read(input, ElementParts::Types, stage));
   }
-  [[nodiscard]] static LagrangeMesh readCurved(const Input& input, Context& context) {
-    return inStage(context, "read mesh", [&](Stage& stage) {
-      return curvedMeshOf(read(input, ElementParts::All, stage), input, stage);
-    });
+  [[nodiscard]] static LagrangeMesh readCurved(const Input& input, Stage& stage) {
+    return curvedMeshOf(read(input, ElementParts::All, stage), input, stage);
   }
 };
 

@@ -57,7 +57,7 @@ Array<Index> cellPlacesOf(const CellGroups& cells) {
   return places;
 }
 
-/// What is said of all blocks, or all sets of a kind.
+/// The lists that describe all blocks, or all sets of a kind.
 struct ExodusList {
   std::vector<std::int32_t> numbers;
   std::vector<std::string> names;
@@ -156,12 +156,12 @@ class ExodusFile {
                         {"file_size", std::int32_t{1}},  // each axis is a variable
                         {"maximum_name_length", std::int32_t{kExodusNameBytes - 1}},
                         {"int64_status", std::int32_t{0}},  // integers have 32 bits
-                        {"title", std::string("hexahedral mesh by hexhex") + '\0'}};
+                        {"title", concat("hexahedral mesh by hexhex", '\0')}};
     ofNames_ = addDimension("len_name", kExodusNameBytes);
     addTexts("coor_names", addDimension("num_dim", 3), ofNames_, kExodusNameBytes, {"x", "y", "z"});
     addTexts("info_records", addDimension("num_info", 1),
              addDimension("len_line", kExodusLineBytes), kExodusLineBytes,
-             {std::string("by hexhex ") + version()});
+             {concat("by hexhex ", version())});
   }
 
   void addPoints() {
@@ -173,8 +173,7 @@ class ExodusFile {
         };
         values.write(points_.size(), sizeof(double), put, &progress_);
       };
-      addVariable(
-          std::string("coord") + "xyz" [axis], NetcdfType::Double, { length }, write);
+      addVariable(concat("coord", "xyz"[axis]), NetcdfType::Double, {length}, write);
     }
   }
 
@@ -199,7 +198,7 @@ class ExodusFile {
       const std::uint32_t length = addDimension("num_el_in_blk" + n, count);
       addVariable("connect" + n, NetcdfType::Int,
                   {length, addDimension("num_nod_per_el" + n, each)}, write, "elem_type",
-                  "HEX" + std::to_string(each));
+                  concat("HEX", each));
     }
     addList("eb", "num_el_blk", blocks);
   }
@@ -292,18 +291,19 @@ class ExodusReader {
   }
 
  private:
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    throw Error(code, input_.name() + ": " + sentence);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    throw Error(code, concat(input_.name(), ": ", sentence...));
   }
 
   void readPoints() {
     const NetcdfValues* const together = file_.find("coord");  // all axes, in older files
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::string name = std::string("coord") + "xyz"[axis];
+      const std::string name = concat("coord", "xyz"[axis]);
       const NetcdfValues* const values = together != nullptr ? together : file_.find(name);
       if (values == nullptr) {
-        fail(ErrorCode::FileUnsupported,
-             "the file lacks the variable \"" + name + "\": it has no nodes in space.");
+        fail(ErrorCode::FileUnsupported, "the file lacks the variable \"", name,
+             "\": it has no nodes in space.");
       }
       std::vector<double> numbers = file_.reals(*values);
       if (together != nullptr) {
@@ -354,7 +354,7 @@ class ExodusReader {
     std::uint64_t next = 1;
     for (std::size_t b = 0; b < groups.size(); ++b) {
       // Blocks without elements have no variable.
-      const NetcdfValues* const values = file_.find("connect" + std::to_string(b + 1));
+      const NetcdfValues* const values = file_.find(concat("connect", b + 1));
       if (values == nullptr) continue;
       readBlock(*values, groups.tagOf(b), next);
       lists_.addName(3, groups.tagOf(b), groups.nameOf(b));
@@ -365,8 +365,8 @@ class ExodusReader {
   void readBlock(const NetcdfValues& values, std::int32_t region, std::uint64_t& next) {
     const std::string type = lowerCase(values.elementType);
     if (type == "nsided" || type == "nfaced" || values.lengths.size() != 2) {
-      fail(ErrorCode::FileUnsupported, "elements of the type \"" + values.elementType +
-                                           "\" are not supported. Leave their block out.");
+      fail(ErrorCode::FileUnsupported, "elements of the type \"", values.elementType,
+           "\" are not supported. Leave their block out.");
     }
     ElementBlock& block = lists_.blocks.emplace_back();
     const auto each = static_cast<std::size_t>(values.lengths[1]);
@@ -398,38 +398,36 @@ class ExodusReader {
       if (!name.starts_with(word)) continue;
       const VolumeCells* const type = volumeCells(noun, nodes);
       if (type != nullptr) return type;
-      fail(ErrorCode::FileUnsupported, std::string(noun) + " with " + std::to_string(nodes) +
-                                           " nodes are not known. Leave their block out.");
+      fail(ErrorCode::FileUnsupported, noun, " with ", nodes,
+           " nodes are not known. Leave their block out.");
     }
     if (name.starts_with("bex_hex")) return volumeCells("Bezier hexahedra");
     constexpr std::array<std::string_view, 9> kFlat = {"shell", "quad", "tri",    "bar",   "beam",
                                                        "truss", "edge", "sphere", "circle"};
     const auto begins = [&name](std::string_view word) { return name.starts_with(word); };
     if (std::any_of(kFlat.begin(), kFlat.end(), begins)) return nullptr;
-    fail(ErrorCode::FileUnsupported, "elements of the type " + quoted(std::string_view(name)) +
-                                         " are not supported. Leave their block out.");
+    fail(ErrorCode::FileUnsupported, "elements of the type ", quoted(std::string_view(name)),
+         " are not supported. Leave their block out.");
   }
 
   [[nodiscard]] Index nodeOf(std::int64_t number, const std::string& variable) const {
     if (number >= 1 && static_cast<std::uint64_t>(number) <= lists_.points.size()) {
       return static_cast<Index>(number - 1);
     }
-    fail(ErrorCode::IndexOutOfRange,
-         "the variable \"" + variable + "\" names node " + std::to_string(number) + ", but the " +
-             std::to_string(lists_.points.size()) + " nodes are numbered from 1.");
+    fail(ErrorCode::IndexOutOfRange, "the variable \"", variable, "\" names node ", number,
+         ", but the ", lists_.points.size(), " nodes are numbered from 1.");
   }
 
   void readSides() {
     const Groups groups = groupsOf("ss");
     for (std::size_t s = 0; s < groups.size(); ++s) {
-      const std::string end = "_ss" + std::to_string(s + 1);
+      const std::string end = concat("_ss", s + 1);
       const NetcdfValues* const found = file_.find("elem" + end);
       if (found == nullptr) continue;
       const std::vector<std::int64_t> elements = file_.integers(*found);
       const std::vector<std::int64_t> sides = file_.integers(file_.get("side" + end));
       if (elements.size() != sides.size()) {
-        fail(ErrorCode::FileSyntax,
-             "side set " + std::to_string(s + 1) + " has not as many sides as elements.");
+        fail(ErrorCode::FileSyntax, "side set ", s + 1, " has not as many sides as elements.");
       }
       const std::int32_t tag = groups.tagOf(s);
       lists_.addName(2, tag, groups.nameOf(s));
@@ -446,7 +444,7 @@ class ExodusReader {
   void readNodeSets() {
     const Groups groups = groupsOf("ns");
     for (std::size_t s = 0; s < groups.size(); ++s) {
-      const NetcdfValues* const found = file_.find("node_ns" + std::to_string(s + 1));
+      const NetcdfValues* const found = file_.find(concat("node_ns", s + 1));
       if (found == nullptr) continue;
       NodeSet& set = lists_.nodeSets.emplace_back(NodeSet{groups.nameOf(s), groups.tagOf(s), {}});
       for (const std::int64_t node : file_.integers(*found)) {
@@ -467,7 +465,7 @@ ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
   const auto readNewer = [&](const Input& file) {
     return ExodusReader({HdfReader::open(file), input.name()}, input, parts).read();
   };
-  // What is no such file at all is refused before it is read as a whole.
+  // Files of other formats are refused before they are read as a whole.
   const std::string head = firstBytes(input);
   if (head == kHdfMark) return readNewer(input);
   if (!head.empty()) requireNetcdf(head, input.name());
@@ -549,7 +547,7 @@ class NemesisFile final : public ExodusFile {
     };
     addVariable(name, NetcdfType::Int, {}, write);
   }
-  /// A list, and its length as a dimension; nothing if it is empty, which is how NetCDF says that.
+  /// A list, and its length as a dimension; nothing if it is empty, as NetCDF expects.
   void addListOf(const std::string& name, const std::string& dimension,
                  std::vector<std::int32_t> numbers) {
     if (numbers.empty()) return;
@@ -588,82 +586,86 @@ class NemesisFile final : public ExodusFile {
     addNumbers("elem_num_map", dimensionOf("num_elem"), std::move(cells));
   }
 
-  /// Inner and shared nodes, and with whom each is shared.
-  void addNodes() {
-    std::vector<bool> shared(part_.ownPoints, false);
+  /// Nodes or cells that are shared, part by part.
+  struct Shared {
     std::vector<std::int32_t> ids;
     std::vector<std::int32_t> ends;
-    std::vector<std::int32_t> nodes;
+    std::vector<std::int32_t> elements;
     std::vector<std::int32_t> parts;
-    for (const PartNeighbour& neighbour : part_.neighbours) {
-      ids.push_back(fromOne(ids.size()));
-      for (const Index v : neighbour.vertices) {
-        shared[v] = true;
-        nodes.push_back(fromOne(v));
-        parts.push_back(static_cast<std::int32_t>(neighbour.part));
-      }
-      ends.push_back(static_cast<std::int32_t>(nodes.size()));
+
+    void add(std::size_t element, std::uint32_t part) {
+      elements.push_back(fromOne(element));
+      parts.push_back(static_cast<std::int32_t>(part));
     }
+    void endPart() {
+      ids.push_back(fromOne(ids.size()));
+      ends.push_back(static_cast<std::int32_t>(elements.size()));
+    }
+  };
+
+  /// Which nodes or cells are inside, and which at the border.
+  /// @param kind  "n" or "e"
+  /// @param word  "node" or "elem"
+  void addBorder(const std::string& kind, const std::string& word,
+                 const std::vector<bool>& atBorder) {
     std::vector<std::int32_t> inner;
     std::vector<std::int32_t> border;
-    for (std::size_t v = 0; v < part_.ownPoints; ++v) {
-      (shared[v] ? border : inner).push_back(fromOne(v));
+    for (std::size_t i = 0; i < atBorder.size(); ++i) {
+      (atBorder[i] ? border : inner).push_back(fromOne(i));
     }
-    addStatus("int_n_stat", !inner.empty());
-    addStatus("bor_n_stat", !border.empty());
-    addStatus("ext_n_stat", false);
-    addListOf("node_mapi", "num_int_node", std::move(inner));
-    addListOf("node_mapb", "num_bor_node", std::move(border));
-    if (ids.empty()) return;
-    const std::uint32_t maps = addDimension("num_n_cmaps", ids.size());
-    const std::uint32_t all = addDimension("ncnt_cmap", nodes.size());
-    addNumbers("n_comm_ids", maps, std::move(ids));
-    addNumbers("n_comm_stat", maps, std::vector<std::int32_t>(part_.neighbours.size(), 1));
-    addNumbers("n_comm_data_idx", maps, std::move(ends));
-    addNumbers("n_comm_nids", all, std::move(nodes));
-    addNumbers("n_comm_proc", all, std::move(parts));
+    addStatus("int_" + kind + "_stat", !inner.empty());
+    addStatus("bor_" + kind + "_stat", !border.empty());
+    if (kind == "n") addStatus("ext_n_stat", false);
+    addListOf(word + "_mapi", "num_int_" + word, std::move(inner));
+    addListOf(word + "_mapb", "num_bor_" + word, std::move(border));
+  }
+  /// @return  the dimension of all that is shared
+  std::uint32_t addShared(const std::string& kind, Shared shared) {
+    const std::size_t count = shared.ids.size();
+    const std::uint32_t maps = addDimension("num_" + kind + "_cmaps", count);
+    const std::uint32_t all = addDimension(kind + "cnt_cmap", shared.elements.size());
+    addNumbers(kind + "_comm_ids", maps, std::move(shared.ids));
+    addNumbers(kind + "_comm_stat", maps, std::vector<std::int32_t>(count, 1));
+    addNumbers(kind + "_comm_data_idx", maps, std::move(shared.ends));
+    addNumbers(kind + "_comm_" + kind + "ids", all, std::move(shared.elements));
+    addNumbers(kind + "_comm_proc", all, std::move(shared.parts));
+    return all;
   }
 
-  /// Cells with and without a face to another part, and these faces.
+  /// With whom nodes are shared.
+  void addNodes() {
+    std::vector<bool> atBorder(part_.ownPoints, false);
+    Shared shared;
+    for (const PartNeighbour& neighbour : part_.neighbours) {
+      for (const Index v : neighbour.vertices) {
+        atBorder[v] = true;
+        shared.add(v, neighbour.part);
+      }
+      shared.endPart();
+    }
+    addBorder("n", "node", atBorder);
+    if (!shared.ids.empty()) addShared("n", std::move(shared));
+  }
+
+  /// Faces to other parts.
   void addCells() {
     const Array<Index> places = cellPlacesOf(groups_.cells);
     std::vector<bool> atBorder(part_.ownCells, false);
-    std::vector<std::int32_t> ids;
-    std::vector<std::int32_t> ends;
-    std::vector<std::int32_t> cells;
+    Shared shared;
     std::vector<std::int32_t> sides;
-    std::vector<std::int32_t> parts;
     for (const PartNeighbour& neighbour : part_.neighbours) {
       if (neighbour.faces.empty()) continue;
-      ids.push_back(fromOne(ids.size()));
       for (const PartFace& face : neighbour.faces) {
         const std::size_t place = places.empty() ? face.cell : places[face.cell];
         atBorder[place] = true;
-        cells.push_back(fromOne(place));
+        shared.add(place, neighbour.part);
         sides.push_back(kExodusSides[face.side]);
-        parts.push_back(static_cast<std::int32_t>(neighbour.part));
       }
-      ends.push_back(static_cast<std::int32_t>(cells.size()));
+      shared.endPart();
     }
-    std::vector<std::int32_t> inner;
-    std::vector<std::int32_t> border;
-    for (std::size_t c = 0; c < part_.ownCells; ++c) {
-      (atBorder[c] ? border : inner).push_back(fromOne(c));
-    }
-    addStatus("int_e_stat", !inner.empty());
-    addStatus("bor_e_stat", !border.empty());
-    addListOf("elem_mapi", "num_int_elem", std::move(inner));
-    addListOf("elem_mapb", "num_bor_elem", std::move(border));
-    if (ids.empty()) return;
-    const std::size_t count = ids.size();
-    const std::uint32_t maps = addDimension("num_e_cmaps", count);
-    const std::uint32_t all = addDimension("ecnt_cmap", cells.size());
-    addNumbers("e_comm_ids", maps, std::move(ids));
-    addNumbers("e_comm_stat", maps, std::vector<std::int32_t>(count, 1));
-    addNumbers("e_comm_data_idx", maps, std::move(ends));
-    addNumbers("e_comm_eids", all, std::move(cells));
-    addNumbers("e_comm_proc", all, std::move(parts));
-    addNumbers("e_comm_sids", all, std::move(sides));
+    addBorder("e", "elem", atBorder);
+    if (sides.empty()) return;
+    addNumbers("e_comm_sids", addShared("e", std::move(shared)), std::move(sides));
   }
 
   const MeshPart& part_;
@@ -728,7 +730,7 @@ class ExodusSink final : public PartSink {
     }
   }
   [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
-    return file_.string() + '.' + std::to_string(info_.parts) + '.' + padded(part, info_.parts);
+    return concat(file_.string(), '.', info_.parts, '.', padded(part, info_.parts));
   }
 
   Context& context_;
@@ -742,39 +744,31 @@ class ExodusSink final : public PartSink {
 
 }  // namespace
 
-std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file,
-                                             const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file, Context& context,
                                              ProcessTeam* team) {
   return std::make_unique<ExodusSink>(file, context, team);
 }
 
 // Whole meshes.
 
-void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& options, Context& context, std::uint64_t mostBytes) {
-  Stage stage(context, "write mesh");
-  // First, so that a folder that is not writable shows at once.
-  OutputFile target(file);
+void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage,
+                 std::uint64_t mostBytes) {
   requireInt32(mesh.points.size(), "An Exodus file numbers vertices");
   requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  ExodusFile(mesh, groups, stage).write(target, context.threads(), mostBytes);
-  target.commit();
+  ExodusFile(mesh, groups, stage).write(output, stage.context().threads(), mostBytes);
 }
 
-void writeQuadraticExodus(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                          const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile target(file);
+void writeQuadraticExodus(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                          Stage& stage) {
   requireInt32(mesh.points.size(), "An Exodus file numbers nodes");
   const HexMesh straight = straightMesh(mesh);
   const MeshGroups groups(straight, options.patchAngle, stage);
   GroupNodes nodes;
-  withThreads(context.threads(),
+  withThreads(stage.context().threads(),
               [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, {}, stage); });
   ExodusFile(straight, groups, stage, false, &mesh, std::move(nodes.edges))
-      .write(target, context.threads(), kMostExodusBytes);
-  target.commit();
+      .write(output, stage.context().threads(), kMostExodusBytes);
 }
 
 }  // namespace hexhex::io

@@ -25,36 +25,38 @@
 
 #include <io/core/cell_counts.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/output_file.hpp>
 #include <io/formats/element_lists.hpp>
 
 namespace hexhex::io {
 
-// What is done with a format.
-using ReadPlainMap = TetMap(const Input& input, Context& context);
-using ReadMap = TetMap(const Input& input, const ReadOptions& options, Context& context);
-using WritePlainMap = void(const TetMap& map, const std::filesystem::path& file, Context& context);
-using WriteMap = void(const TetMap& map, const std::filesystem::path& file,
-                      const WriteOptions& options, Context& context);
-/// Tets without a map, whether there is one or not.
-using ReadTets = TetCells(const Input& input, Context& context);
-using ReadMesh = HexMesh(const Input& input, Context& context);
-using WriteMesh = void(const HexMesh& mesh, const std::filesystem::path& file,
-                       const WriteOptions& options, Context& context);
-// Cells of higher order.
-using HoldsCurved = bool(const Input& input, Context& context);
-using ReadCurved = LagrangeMesh(const Input& input, Context& context);
-using WriteCurved = void(const LagrangeMesh& mesh, const std::filesystem::path& file,
+// What is done with a format. Who calls a reader or writer keeps its time and, of a writer, opens
+// the file and commits it.
+using ReadMap = TetMap(const Input& input, const ReadOptions& options, Stage& stage);
+/// Of a format that is a folder of files.
+using WriteFolder = void(const HexMesh& mesh, const std::filesystem::path& file,
                          const WriteOptions& options, Context& context);
+using WriteMap = void(const TetMap& map, OutputFile& output, const WriteOptions& options,
+                      Stage& stage);
+/// Tets without a map, whether there is one or not.
+using ReadTets = TetCells(const Input& input, Stage& stage);
+using ReadMesh = HexMesh(const Input& input, Stage& stage);
+using WriteMesh = void(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                       Stage& stage);
+// Cells of higher order.
+using HoldsCurved = bool(const Input& input, Stage& stage);
+using ReadCurved = LagrangeMesh(const Input& input, Stage& stage);
+using WriteCurved = void(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                         Stage& stage);
 /// Arcs, or arcs and patches. @param map  that the mesh was extracted from; null: not known
 using WritePiecewise = void(const PiecewiseLinearMesh& mesh, const TetMapView* map,
-                            const std::filesystem::path& file, Context& context);
+                            OutputFile& output, Stage& stage);
 // Meshes piece by piece. Sinks throw Error FileWrite also for a device or a pipe where the format
 // takes positions.
 using OpenSink = std::unique_ptr<MeshSink>(const std::filesystem::path& file, Context& context);
 using ReadPieces = void(MeshSink& sink, const Input& input, Context& context);
 // Meshes in parts. (docs/user/parts.md)
-using OpenPartSink = std::unique_ptr<PartSink>(const std::filesystem::path& file,
-                                               const WriteOptions& options, Context& context,
+using OpenPartSink = std::unique_ptr<PartSink>(const std::filesystem::path& file, Context& context,
                                                ProcessTeam* team);
 
 // `.hexex`: the exchange format of parametrized tetrahedral meshes. Text, separated by white space:
@@ -73,7 +75,7 @@ using OpenPartSink = std::unique_ptr<PartSink>(const std::filesystem::path& file
 inline constexpr std::int32_t kHexexFeatureTag = 1;
 inline constexpr std::int32_t kHexexWallTag = 2;
 ReadMap readHexex;
-WritePlainMap writeHexex;
+WriteMap writeHexex;
 
 // MEDIT's formats (Gamma Mesh Format): `.mesh`, text, and `.meshb`, bytes. Sections of vertices and
 // elements, which are numbered from 1; each has a reference, which is one integer. Comments ('#')
@@ -98,8 +100,8 @@ ReadTets readMeshbTets;
 WriteMesh writeMeshb;
 /// The same as a given version, 2 to 4, that must hold the mesh. For tests: what needs one is too
 /// large for them.
-void writeMeshbVersion(const HexMesh& mesh, const std::filesystem::path& file,
-                       std::uint32_t version, Context& context);
+void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
+                       Stage& stage);
 /// Files with one section Vertices in front of one section Hexahedra and without comments; others
 /// as a whole.
 ReadPieces readMeditTo, readMeshbTo;
@@ -135,16 +137,16 @@ OpenSink openVtuSink;
 HoldsCurved holdsLagrangeVtu;
 ReadCurved readLagrangeVtu;
 WriteCurved writeLagrangeVtu;
-/// `.vtu`, or `.vtp` if the file is named so: a line per segment. Point arrays: `hex_edge` (Int32;
+/// `.vtu`, or `.vtp`: a line per segment. Point arrays: `hex_edge` (Int32;
 /// -1 at hex vertices), `parameter` (Float64 along the hex edge; 0 at hex vertices), and generators
 /// as in meshes. Cell arrays: `hex_edge`, and `tet_kind`, `tet`, `tet_corners` for the simplex that
 /// the segment lies in.
-WritePiecewise writeArcsVtk;
+WritePiecewise writeArcsVtu, writeArcsVtp;
 /// A polygon per tet or triangle. Point arrays: `point_kind` (UInt8: 0 hex vertex, 1 of an arc, 2
 /// of a patch) and generators. Cell arrays: `hex_face`, `tet_kind`, `tet`, `tet_corners`. Field
 /// array `corner_uv` (Float64, 2 components): (u, v) of the corners of all polygons, in the order
 /// of their connectivity.
-WritePiecewise writePatchesVtk;
+WritePiecewise writePatchesVtu, writePatchesVtp;
 
 // `.pvtu`: NAME.pvtu, and in the folder NAME a piece `NAME_K.vtu` for each part: as writeVtu()
 // writes it, without scaled_jacobian, with GlobalPointIds and GlobalCellIds and, if there are
@@ -189,8 +191,8 @@ struct TriangleLabels {
   std::vector<std::int64_t> labels;
 };
 /// @param array  the name of the cell array
-/// @throws Error FileUnsupported without such an array of whole numbers, or without triangles
-using ReadLabels = TriangleLabels(const Input& input, std::string_view array, Context& context);
+/// @throws Error FileUnsupported if there is no such array of whole numbers, or no triangle
+using ReadLabels = TriangleLabels(const Input& input, std::string_view array, Stage& stage);
 ReadLabels readVtuLabels, readVtkLegacyLabels;
 
 // `.ovm` and `.ovmb`: the text and binary files of OpenVolumeMesh, with maps or hex meshes in them.
@@ -206,10 +208,10 @@ ReadLabels readVtuLabels, readVtkLegacyLabels;
 //
 // Cells that are read may list their half-faces in any order; a mesh that is inside out is turned.
 // Meshes that the format cannot hold are refused: NonManifoldFace, Orientation, RepeatedVertex.
-ReadPlainMap readOvmMap, readOvmbMap;
+ReadMap readOvmMap, readOvmbMap;
 ReadMesh readOvmHexMesh, readOvmbHexMesh;
 ReadTets readOvmTets, readOvmbTets;
-WritePlainMap writeOvmMap, writeOvmbMap;
+WriteMap writeOvmMap, writeOvmbMap;
 WriteMesh writeOvmHexMesh, writeOvmbHexMesh;
 /// Arcs as `.ovmb`. Vertices are hex vertices and inner points of arcs, edges are segments.
 /// Properties of the field: `v_type` (0 hex vertex, 1 of an arc), `v_igm_uv` (place along the arc,
@@ -305,8 +307,7 @@ using ExodusFormat = ElementFormat<readExodus>;
 /// Of an array in the layout that all readers know: 4 GB.
 inline constexpr std::uint64_t kMostExodusBytes = 0xffff'fff0;
 /// @param mostBytes  of an array before sizes have 64 bits; less in tests
-void writeExodus(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& options, Context& context,
+void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage,
                  std::uint64_t mostBytes = kMostExodusBytes);
 /// Order 2 only: blocks of HEX27. Node sets of edges have the nodes in their middle, too.
 WriteCurved writeQuadraticExodus;
@@ -352,7 +353,7 @@ OpenPartSink openMfemPartSink;
 // The file is `CASE/X.foam`, which becomes an empty file, as ParaView opens it, next to
 // `CASE/constant/polyMesh`; or the name of the folder `polyMesh` itself. Folders are created.
 // `polyMesh` is replaced as a whole, in one step; what else was in it is in the new one, too.
-WriteMesh writeOpenFoam;
+WriteFolder writeOpenFoam;
 /// A decomposed case, beside NAME.foam or in the folder that is named: for each part
 /// `processorK/constant/polyMesh`, with processor patches and the addresses of points, cells, faces
 /// and patches in the mesh that writeOpenFoam() writes with a patch angle of 0. No ghosts.

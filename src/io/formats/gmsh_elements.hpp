@@ -217,10 +217,8 @@ template <class Source>
 [[nodiscard]] std::size_t readGmshNodeCount(const Source& source, std::int64_t type) {
   const std::size_t nodes = nodesOfGmshType(type);
   if (nodes > 0) return nodes;
-  source.fail(
-      ErrorCode::FileUnsupported,
-      "elements of type " + std::to_string(type) +
-          " have a number of nodes that is not known here, so that they cannot be skipped.");
+  source.fail(ErrorCode::FileUnsupported, "elements of type ", type,
+              " have a number of nodes that is not known here, so that they cannot be skipped.");
 }
 
 /// How many blocks and elements the section of version 4 has.
@@ -256,9 +254,8 @@ template <class Source>
   const std::int64_t follow = source.integer("the number of elements that follow");
   const std::int64_t tags = source.integer("the number of tags");
   if (follow <= 0 || static_cast<std::uint64_t>(follow) > left || tags < 0) {
-    source.fail(ErrorCode::FileSyntax,
-                "a block of " + std::to_string(follow) + " elements with " + std::to_string(tags) +
-                    " tags each cannot be: " + std::to_string(left) + " elements are left.");
+    source.fail(ErrorCode::FileSyntax, "a block of ", follow, " elements with ", tags,
+                " tags each cannot be: ", left, " elements are left.");
   }
   block.count = static_cast<std::size_t>(follow);
   block.tags = static_cast<std::size_t>(tags);
@@ -289,9 +286,8 @@ template <class Source>
   static_cast<void>(source.integer("the elementary region of an element"));
   const std::uint64_t nodes = source.size("the number of nodes of an element");
   if (nodes == element.nodes) return element;
-  source.fail(ErrorCode::FileSyntax, "an element of type " + std::to_string(element.type) +
-                                         " has " + std::to_string(element.nodes) +
-                                         " nodes, found " + std::to_string(nodes) + ".");
+  source.fail(ErrorCode::FileSyntax, "an element of type ", element.type, " has ", element.nodes,
+              " nodes, found ", nodes, ".");
 }
 
 /// The type of the first hexahedra of a section, straight or curved; 0 without any.
@@ -383,9 +379,8 @@ class GmshElements {
       }
     }
     if (done != total) {
-      source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) +
-                                             " elements instead of the " + std::to_string(total) +
-                                             " of the section.");
+      source.fail(ErrorCode::FileSyntax, "the blocks have ", done, " elements instead of the ",
+                  total, " of the section.");
     }
     requireIndexable(source, cells, kind_.plural);
     resize(static_cast<std::size_t>(cells));
@@ -455,7 +450,7 @@ class GmshElements {
     return tags_.ofPhysical({dimensionOfGmshType(block.type), withoutSign(physical)});
   }
 
-  /// Makes room for all cells that there can be in versions 1 and 2, where only reading tells.
+  /// Makes room for as many cells as there can be in versions 1 and 2, which do not count them.
   template <class Source>
   void makeRoom(const Source& source, std::size_t count) {
     // The last one may be incomplete.
@@ -515,15 +510,12 @@ class GmshElements {
     }
   }
 
-  // Apart, with a record by value, so that what is read stays in registers.
+  // A function of its own that takes the record by value, so that the loop keeps it in registers.
   template <class Record>
   [[noreturn]] void failCorner(Record record, std::uint64_t tag, std::size_t cell) const {
-    record.fail(ErrorCode::IndexOutOfRange,
-                std::string(kind_.singular) + " " + std::to_string(cell) +
-                    " (counted from 0) names node " +
-                    std::to_string(static_cast<std::int64_t>(tag)) +
-                    ", which is not in the section $Nodes.",
-                Place{kind_.place, cell});
+    record.fail(ErrorCode::IndexOutOfRange, Place{kind_.place, cell}, kind_.singular, " ", cell,
+                " (counted from 0) names node ", static_cast<std::int64_t>(tag),
+                ", which is not in the section $Nodes.");
   }
 
   /// Regions of consecutive cells. Without any, there is no array.
@@ -569,9 +561,8 @@ class GmshElements {
     for (std::size_t k = 0; k < size; ++k) {
       vertices[k] = nodes_.find(nodes[k]);
       if (vertices[k] != kNone) continue;
-      source.fail(ErrorCode::IndexOutOfRange,
-                  "an element names node " + std::to_string(static_cast<std::int64_t>(nodes[k])) +
-                      ", which is not in the section $Nodes.");
+      source.fail(ErrorCode::IndexOutOfRange, "an element names node ",
+                  static_cast<std::int64_t>(nodes[k]), ", which is not in the section $Nodes.");
     }
     auto& features = mesh_.features;
     if (size == 1) features.vertices.push_back({vertices[0], tag});

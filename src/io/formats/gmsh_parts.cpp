@@ -252,9 +252,7 @@ class SectionMaker {
     }
     for (const auto& [entity, cells] : byEntity) {
       open(3, entity.second, entity.first, cells.size());
-      for (const std::size_t c : cells) {
-        addElement(part_.globalCells[c] + 1, part_.mesh.cells[c]);
-      }
+      for (const std::size_t c : cells) addElement(part_.globalCells[c] + 1, part_.mesh.cells[c]);
     }
   }
   [[nodiscard]] std::size_t groupOf(std::size_t cell) const {
@@ -294,18 +292,17 @@ class SectionMaker {
   PartSections sections_;
 };
 
-// What is between the sections of parts.
+// The text between the sections of parts.
 
 std::string gmshHead(const GmshNumbers& numbers, const PartsInfo& info, const GmshSums& sums) {
   GmshBytes bytes;
   bytes.add("$MeshFormat\n4.1 1 8\n");
   bytes.integers({1});
   bytes.add("\n$EndMeshFormat\n$PhysicalNames\n");
-  bytes.add(std::to_string(numbers.groups(2).size() + numbers.groups(3).size()) + '\n');
+  bytes.add(concat(numbers.groups(2).size() + numbers.groups(3).size(), '\n'));
   for (const unsigned dimension : {2U, 3U}) {
     for (const ElementGroup& group : numbers.groups(dimension)) {
-      bytes.add(std::to_string(dimension) + ' ' + std::to_string(group.number) + " \"" +
-                group.name + "\"\n");
+      bytes.add(concat(dimension, ' ', group.number, " \"", group.name, "\"\n"));
     }
   }
   bytes.add("$EndPhysicalNames\n$Entities\n");
@@ -500,8 +497,7 @@ class ManyGmshFiles final : public GmshSink {
   void part(MeshPart&& part) override {
     Stage stage(context_, "write mesh");
     std::string file = file_.string();
-    file.insert(file.size() - file_.extension().string().size(),
-                '_' + std::to_string(part.part + 1));
+    file.insert(file.size() - file_.extension().string().size(), concat('_', part.part + 1));
     OutputFile& output = files_.add(file);
     const PartSections sections = sectionsOf(part, false, stage);
     const GmshSums& sums = sections.sums;
@@ -519,14 +515,12 @@ class ManyGmshFiles final : public GmshSink {
 
 }  // namespace
 
-std::unique_ptr<PartSink> openGmshPartSink(const std::filesystem::path& file,
-                                           const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openGmshPartSink(const std::filesystem::path& file, Context& context,
                                            ProcessTeam* team) {
   return std::make_unique<OneGmshFile>(file, context, team);
 }
 
-std::unique_ptr<PartSink> openSplitGmshPartSink(const std::filesystem::path& file,
-                                                const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openSplitGmshPartSink(const std::filesystem::path& file, Context& context,
                                                 ProcessTeam* team) {
   return std::make_unique<ManyGmshFiles>(file, context, team);
 }

@@ -62,8 +62,8 @@ class GmshFile {
     }
     if (scanner_.readToken() != "$MeshFormat") {
       scanner_.fail(ErrorCode::FileSyntax,
-                    "a .msh file begins with \"$MeshFormat\", or \"$NOD\" in version 1, found " +
-                        quoted(scanner_.currentToken()) + ".");
+                    "a .msh file begins with \"$MeshFormat\", or \"$NOD\" in version 1, found ",
+                    quoted(scanner_.currentToken()), ".");
     }
     readVersion();
     readEncoding();
@@ -77,8 +77,8 @@ class GmshFile {
     if (!scanner_.skipSpace()) return {};
     const std::string_view token = scanner_.readToken();
     if (token.front() != '$') {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "a section begins with '$' and its name, found " + quoted(token) + ".");
+      scanner_.fail(ErrorCode::FileSyntax, "a section begins with '$' and its name, found ",
+                    quoted(token), ".");
     }
     return token.substr(1);
   }
@@ -95,8 +95,8 @@ class GmshFile {
     const std::size_t begin = scanner_.position();
     const std::size_t place = text_.find(end, begin);
     if (place == std::string_view::npos) {
-      scanner_.fail(ErrorCode::FileSyntax, "the section has no " + quoted(std::string_view(end)) +
-                                               ": the file is incomplete.");
+      scanner_.fail(ErrorCode::FileSyntax, "the section has no ", quoted(std::string_view(end)),
+                    ": the file is incomplete.");
     }
     scanner_.moveTo(place + end.size());
     return text_.substr(begin, place + end.size() - begin);
@@ -122,7 +122,7 @@ class GmshFile {
 
  private:
   [[nodiscard]] std::string endOf(std::string_view name) const {
-    return (version_ == GmshVersion::V1 ? "$END" : "$End") + std::string(name);
+    return concat((version_ == GmshVersion::V1 ? "$END" : "$End"), name);
   }
 
   /// Passes over lines of comment and sections $Comments.
@@ -149,23 +149,22 @@ class GmshFile {
       version_ = *known;
       return;
     }
-    scanner_.fail(ErrorCode::FileUnsupported,
-                  "version " + quoted(version) +
-                      " of the format is not supported; save the mesh as version 4.1 or 2.2.");
+    scanner_.fail(ErrorCode::FileUnsupported, "version ", quoted(version),
+                  " of the format is not supported; save the mesh as version 4.1 or 2.2.");
   }
 
   void readEncoding() {
     TextSource numbers(scanner_, nullptr, stage_);
     const std::int64_t type = numbers.integer("the file type");
     if (type != 0 && type != 1) {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "the file type is 0 (text) or 1 (binary), found " + std::to_string(type) + ".");
+      scanner_.fail(ErrorCode::FileSyntax, "the file type is 0 (text) or 1 (binary), found ", type,
+                    ".");
     }
     binary_ = type == 1;
     const std::int64_t size = numbers.integer("the size of numbers");
     if (size != 8) {
-      scanner_.fail(ErrorCode::FileUnsupported,
-                    "numbers of " + std::to_string(size) + " bytes are not supported, only 8.");
+      scanner_.fail(ErrorCode::FileUnsupported, "numbers of ", size,
+                    " bytes are not supported, only 8.");
     }
     if (!binary_) {
       index_.emplace(text_, stage_);
@@ -262,8 +261,8 @@ class GmshNodes {
     std::size_t done = 0;
     for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, version, done);
     if (done == total) return;
-    source.fail(ErrorCode::FileSyntax, "the blocks have " + std::to_string(done) + " of the " +
-                                           std::to_string(total) + " nodes of the section.");
+    source.fail(ErrorCode::FileSyntax, "the blocks have ", done, " of the ", total,
+                " nodes of the section.");
   }
 
   template <class Source>
@@ -285,8 +284,7 @@ class GmshNodes {
     NodeTags index(tags_);
     const Index repeated = index.repeated();
     if (repeated == kNone) return index;
-    scanner.fail(ErrorCode::FileSyntax,
-                 "two nodes have the tag " + std::to_string(tags_[repeated]) + ".");
+    scanner.fail(ErrorCode::FileSyntax, "two nodes have the tag ", tags_[repeated], ".");
   }
 
  private:
@@ -305,12 +303,11 @@ class GmshNodes {
     const bool parametric = source.integer("whether nodes have parameters") != 0;
     const std::uint64_t count = source.size("the number of nodes of a block");
     if (dimension < 0 || dimension > 3) {
-      source.fail(ErrorCode::FileSyntax,
-                  "an entity has the dimension " + std::to_string(dimension) + ".");
+      source.fail(ErrorCode::FileSyntax, "an entity has the dimension ", dimension, ".");
     }
     if (count > points_.size() - done) {
-      source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the " +
-                                             std::to_string(points_.size()) + " of the section.");
+      source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the ", points_.size(),
+                  " of the section.");
     }
     const bool tagsFirst = version == GmshVersion::V41;
     const auto readTag = [&](auto& record, std::size_t i) {
@@ -342,7 +339,7 @@ class GmshNodes {
   Array<std::uint64_t> tags_;
 };
 
-/// What is read, in sentences: of cells of higher order not yet which.
+/// The cells that are wanted, for messages; the type of curved ones is not known yet.
 template <std::size_t corners>
 constexpr CellKind kGmshKind = kCellKind<corners>;
 template <>
@@ -386,7 +383,7 @@ class GmshReader {
   }
 
   void readNodes(std::string_view name) {
-    file_.scanner().failIfRepeated(hasNodes_, "$" + std::string(name));
+    file_.scanner().failIfRepeated(hasNodes_, concat("$", name));
     hasNodes_ = true;
     GmshNodes nodes;
     if (hasEntities(file_.version())) {
@@ -400,12 +397,11 @@ class GmshReader {
   }
 
   void readElements(std::string_view name) {
-    file_.scanner().failIfRepeated(hasElements_, "$" + std::string(name));
+    file_.scanner().failIfRepeated(hasElements_, concat("$", name));
     hasElements_ = true;
     if (!hasNodes_) {
-      file_.scanner().fail(
-          ErrorCode::FileUnsupported,
-          "the section $" + std::string(name) + " stands before the nodes; exchange them.");
+      file_.scanner().fail(ErrorCode::FileUnsupported, "the section $", name,
+                           " stands before the nodes; exchange them.");
     }
     const bool counted = !hasEntities(file_.version());
     const std::size_t count = counted ? file_.scanner().readCount("elements", 8) : 0;
@@ -460,15 +456,14 @@ class GmshReader {
   }
 
   void requireCells() const {
-    const std::string holdsNone = fileName_ + ": the file holds no " + std::string(kind_.plural);
+    const std::string holdsNone = concat(fileName_, ": the file holds no ", kind_.plural);
     if (!hasElements_) {
       throw Error(ErrorCode::FileUnsupported, holdsNone + ": it has no section $Elements.");
     }
     if (hasCells() || (!hasOtherElements_ && corners != kCurved)) return;
     const std::string kind = corners == kCurved
                                  ? std::string()
-                                 : " with " + std::to_string(corners) + " nodes (type " +
-                                       std::to_string(kind_.gmshType) + ")";
+                                 : concat(" with ", corners, " nodes (type ", kind_.gmshType, ")");
     throw Error(ErrorCode::FileUnsupported, holdsNone + kind + ", but " + otherElements() + "." +
                                                 (corners == 8 ? counts_.adviceOnCurved() : ""));
   }
@@ -494,16 +489,16 @@ class GmshReader {
 
 }  // namespace
 
-HexMesh readGmsh(const Input& input, Context& context) {
-  return readWith<GmshReader<8>>(input, "read mesh", context, input.counts());
+HexMesh readGmsh(const Input& input, Stage& stage) {
+  return readWith<GmshReader<8>>(input, stage, input.counts());
 }
 
-TetCells readGmshTets(const Input& input, Context& context) {
-  return readWith<GmshReader<4>>(input, "read tets", context, input.counts());
+TetCells readGmshTets(const Input& input, Stage& stage) {
+  return readWith<GmshReader<4>>(input, stage, input.counts());
 }
 
-LagrangeMesh readCurvedGmsh(const Input& input, Context& context) {
-  return readWith<GmshReader<kCurved>>(input, "read mesh", context, input.counts());
+LagrangeMesh readCurvedGmsh(const Input& input, Stage& stage) {
+  return readWith<GmshReader<kCurved>>(input, stage, input.counts());
 }
 
 namespace {
@@ -535,9 +530,10 @@ class WindowSource {
   [[nodiscard]] static std::size_t room(RecordShape /*shape*/) {
     return std::numeric_limits<std::size_t>::max();
   }
-  /// The reader of whole files says what is wrong.
-  [[noreturn]] static void fail(ErrorCode code, const std::string& sentence) {
-    throw Error(code, sentence);
+  /// The reader of whole files reports what is wrong.
+  template <class... Parts>
+  [[noreturn]] static void fail(ErrorCode code, Parts... sentence) {
+    throw Error(code, concat(sentence...));
   }
 
  private:
@@ -545,7 +541,7 @@ class WindowSource {
 };
 
 /// Where a text first stands in a file, at or behind a place; nothing if it does not.
-std::optional<std::uint64_t> findInFile(const InputFile& file, std::uint64_t from,
+std::optional<std::uint64_t> findInFile(const ByteFile& file, std::uint64_t from,
                                         std::string_view text, Context& context) {
   constexpr std::size_t kAtOnce = std::size_t{1} << 22;
   Array<char> bytes;
@@ -560,72 +556,55 @@ std::optional<std::uint64_t> findInFile(const InputFile& file, std::uint64_t fro
   return {};
 }
 
-/// The type of the first hexahedra of a regular file; 0 without any.
-std::int64_t firstHexahedraIn(const InputFile& file, const std::string& name, Context& context) {
-  TextWindow words(file, name, context, TextWindow::kWords);
-  GmshVersion version = GmshVersion::V1;
-  bool isBinary = false;
-  constexpr std::string_view kFormat = "$MeshFormat";
-  std::uint64_t place = 0;
-  if (const auto format = findInFile(file, 0, kFormat, context)) {
-    words.moveTo(*format + kFormat.size());
-    version = gmshVersionOf(words.token()).value_or(version);
-    isBinary = words.token() == "1";
-    place = *format;
-  }
-  const std::string_view section = version == GmshVersion::V1 ? "$ELM" : "$Elements";
-  const auto elements = findInFile(file, place, section, context);
-  if (!elements) return 0;
-  words.moveTo(*elements + section.size());
-  const std::uint64_t count = hasEntities(version) ? 0 : words.count().value_or(0);
-  WindowSource numbers(words);
-  if (!isBinary) return firstGmshHexahedra(numbers, version, count);
-  if (!words.skipLineBreak()) return 0;
-  Context quiet(context.threads());
-  Stage stage(quiet, "read");
-  const ByteFile bytes(file, name);
-  BinarySource source(bytes, static_cast<std::size_t>(words.position()), stage);
-  return firstGmshHexahedra(source, version, count);
-}
+/// Reads the type of the first hexahedra of a file; 0 without any.
+class FirstHexahedra {
+ public:
+  static constexpr std::string_view kFirst = "$#/";
 
-/// The same of bytes in memory.
-std::int64_t firstHexahedraIn(std::string_view text, const std::string& name, Stage& stage) {
-  GmshFile file(text, name, stage);
-  std::int64_t type = 0;
-  while (const std::optional<std::string_view> section = file.nextSection()) {
-    if (*section != "Elements" && *section != "ELM") {
-      file.skipSection(*section);
-      continue;
+  template <class File>
+  FirstHexahedra(const File& file, const std::string& name, Stage& stage)
+      : file_(file, name), context_(stage.context()), words_(file_, context_, TextWindow::kWords) {}
+
+  std::int64_t read() {
+    GmshVersion version = GmshVersion::V1;
+    bool isBinary = false;
+    constexpr std::string_view kFormat = "$MeshFormat";
+    std::uint64_t place = 0;
+    if (const auto format = findInFile(file_, 0, kFormat, context_)) {
+      words_.moveTo(*format + kFormat.size());
+      version = gmshVersionOf(words_.token()).value_or(version);
+      isBinary = words_.token() == "1";
+      place = *format;
     }
-    const bool counted = !hasEntities(file.version());
-    const std::size_t count = counted ? file.scanner().readCount("elements", 8) : 0;
-    file.withSource(
-        [&](auto& source) { type = firstGmshHexahedra(source, file.version(), count); });
-    break;
+    const std::string_view section = version == GmshVersion::V1 ? "$ELM" : "$Elements";
+    const auto elements = findInFile(file_, place, section, context_);
+    if (!elements) return 0;
+    words_.moveTo(*elements + section.size());
+    const std::uint64_t count = hasEntities(version) ? 0 : words_.count().value_or(0);
+    WindowSource numbers(words_);
+    if (!isBinary) return firstGmshHexahedra(numbers, version, count);
+    if (!words_.skipLineBreak()) return 0;
+    BinarySource source(file_, static_cast<std::size_t>(words_.position()), words_.stage());
+    return firstGmshHexahedra(source, version, count);
   }
-  return type;
-}
+
+ private:
+  ByteFile file_;
+  Context& context_;
+  TextWindow words_;
+};
 
 }  // namespace
 
-bool holdsCurvedGmsh(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&](Stage& stage) {
-    std::int64_t type = 0;
-    try {
-      std::error_code unknown;
-      if (!input.bytes() && std::filesystem::is_regular_file(input.path(), unknown)) {
-        type = firstHexahedraIn(InputFile(input.path()), input.name(), context);
-      } else {
-        Array<char> room;
-        type = firstHexahedraIn(input.text(room, stage, "$#/"), input.name(), stage);
-      }
-    } catch (const Error& error) {
-      // Who reads it tells what is wrong.
-      if (error.code() != ErrorCode::FileSyntax && error.code() != ErrorCode::FileUnsupported)
-        throw;
-    }
-    return isGmshHexahedron(type) && type != kGmshHexahedron;
-  });
+bool holdsCurvedGmsh(const Input& input, Stage& stage) {
+  std::int64_t type = 0;
+  try {
+    type = readWith<FirstHexahedra>(input, stage);
+  } catch (const Error& error) {
+    // The reader reports what is wrong.
+    if (error.code() != ErrorCode::FileSyntax && error.code() != ErrorCode::FileUnsupported) throw;
+  }
+  return isGmshHexahedron(type) && type != kGmshHexahedron;
 }
 
 namespace {
@@ -635,39 +614,27 @@ namespace {
 constexpr RecordShape kTag{.sizes = 1};
 constexpr RecordShape kPoint{.reals = 3};
 
-/// How many nodes elements of a type have: of those that this library writes.
-std::size_t nodesOf(std::int64_t type) {
-  constexpr std::array<std::array<std::int64_t, 2>, 4> kNodes = {
-      {{kGmshPoint, 1}, {kGmshLine, 2}, {kGmshQuad, 4}, {kGmshHexahedron, 8}}};
-  for (const auto& [known, nodes] : kNodes) {
-    if (type == known) return static_cast<std::size_t>(nodes);
-  }
-  return 0;
-}
-
 /// A file with one block of nodes, which are numbered from 1, and one of hexahedra, as this library
-/// writes them.
+/// writes them. Functions throw Error for most others.
 class GmshPieces {
  public:
-  GmshPieces(const InputFile& file, const std::string& name, Context& context)
-      : quiet_(context.threads()),
-        stage_(quiet_, "read"),
-        words_(file, name, context, TextWindow::kWords),
-        bytes_(file, name),
-        source_(bytes_, 0, stage_) {}
+  GmshPieces(const ByteFile& file, Context& context)
+      : words_(file, context, TextWindow::kWords), source_(words_.file(), 0, words_.stage()) {}
 
   /// @return whether the file is of the form
   [[nodiscard]] bool look() {
     if (!lookAtFormat()) return false;
     for (std::string word = words_.token(); !word.empty(); word = words_.token()) {
       if (word == "$Nodes") {
-        if (layout.points.position != 0 || !lookInside([this] { return lookAtNodes(); }))
-          return false;
+        if (!lookInside([this] { return lookAtNodes(); })) return false;
       } else if (word == "$Elements") {
-        if (layout.cells.position != 0 || !lookInside([this] { return lookAtElements(); }))
-          return false;
+        if (!lookInside([this] { return lookAtElements(); })) return false;
       } else if (word == "$Entities") {
-        if (!lookInside([this] { return skipEntities(); })) return false;
+        // Only groups of whole elements are told by entities, which pieces do not carry.
+        GmshTags ignored;
+        if (!lookInside([&] { return readEntities(source_, GmshVersion::V41, ignored), true; })) {
+          return false;
+        }
       } else if (word != "$PhysicalNames") {
         return false;
       }
@@ -701,44 +668,20 @@ class GmshPieces {
     return true;
   }
 
-  /// Only groups of whole elements are told by entities, which pieces do not carry.
-  [[nodiscard]] bool skipEntities() {
-    std::array<std::uint64_t, 4> counts{};
-    for (std::uint64_t& count : counts) count = source_.size("the number of entities");
-    for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
-      for (std::uint64_t i = 0; i < counts[dimension]; ++i) {
-        static_cast<void>(source_.integer("the tag of an entity"));
-        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) {
-          static_cast<void>(source_.real("a coordinate of an entity"));
-        }
-        if (!skipList() || (dimension > 0 && !skipList())) return false;
-      }
-    }
-    return true;
-  }
-
-  [[nodiscard]] bool skipList() {
-    return skip(source_.size("the length of a list"), {.integers = 1});
-  }
-
-  [[nodiscard]] bool skip(std::uint64_t n, RecordShape shape) {
-    if (n > source_.room(shape)) return false;
-    source_.skip(static_cast<std::size_t>(n), shape);
-    return true;
-  }
-
   [[nodiscard]] bool lookAtNodes() {
+    const bool isFirst = layout.points.position == 0;
     const std::uint64_t blocks = source_.size("the number of blocks");
     const std::uint64_t points = source_.size("the number of nodes");
-    if (blocks != 1 || !skip(2, kTag)) return false;
-    const bool isOfVolume = source_.integer("the dimension of an entity") == 3;
-    static_cast<void>(source_.integer("the tag of an entity"));
+    source_.skip(2, kTag);  // the smallest and the largest
+    const bool isOfVolume = readGmshEntity(source_, GmshVersion::V41).first == 3;
     const bool hasParameters = source_.integer("whether nodes have parameters") != 0;
-    if (!isOfVolume || hasParameters || source_.size("the number of nodes of a block") != points)
-      return false;
-    if (points > source_.room(kTag) || !areNumbered(points)) return false;
+    const std::uint64_t count = source_.size("the number of nodes of a block");
+    if (!isFirst || blocks != 1 || !isOfVolume || hasParameters || count != points) return false;
+    requireRoom(source_, points, {.sizes = 1, .reals = 3}, "nodes");
+    if (!areNumbered(points)) return false;
     layout.points = {source_.position(), points};
-    return skip(points, kPoint);
+    source_.skip(static_cast<std::size_t>(points), kPoint);
+    return true;
   }
 
   /// Whether the tags that come next are 1, 2, 3, ...
@@ -754,36 +697,28 @@ class GmshPieces {
   }
 
   [[nodiscard]] bool lookAtElements() {
-    const std::uint64_t blocks = source_.size("the number of blocks");
-    std::uint64_t left = source_.size("the number of elements");
-    if (!skip(2, kTag)) return false;
-    for (std::uint64_t block = 0; block < blocks; ++block) {
-      const std::int64_t dimension = source_.integer("the dimension of an entity");
-      static_cast<void>(source_.integer("the tag of an entity"));
-      const std::int64_t type = source_.integer("the type of elements");
-      const std::uint64_t count = source_.size("the number of elements of a block");
-      const std::size_t nodes = nodesOf(type);
-      if (count > left) return false;
-      left -= count;
-      if (type == kGmshHexahedron) {
-        if (layout.cells.position != 0 || dimension != 3) return false;
-        layout.cells = {source_.position(), count};
+    auto [blocks, left] = readGmshCounts4(source_, GmshVersion::V41);
+    for (; blocks > 0; --blocks) {
+      const GmshBlock block = readGmshHead4(source_, GmshVersion::V41, nullptr);
+      const bool isHexahedra = block.type == kGmshHexahedron;
+      if (block.count > left || (!isHexahedra && dimensionOfGmshType(block.type) == 3))
+        return false;
+      left -= block.count;
+      if (isHexahedra) {
+        if (layout.cells.position != 0) return false;
+        layout.cells = {block.position, block.count};
       }
-      if (nodes == 0 || !skip(count, {.sizes = 1 + nodes})) return false;
+      source_.skip(block.count, block.shape());
     }
     return left == 0;
   }
 
-  Context quiet_;
-  Stage stage_;
   TextWindow words_;
-  ByteFile bytes_;
   BinarySource source_;
 };
 
-std::optional<PlainLayout> lookAtGmsh(const InputFile& file, const std::string& name,
-                                      Context& context) {
-  GmshPieces pieces(file, name, context);
+std::optional<PlainLayout> lookAtGmsh(const ByteFile& file, Context& context) {
+  GmshPieces pieces(file, context);
   if (!pieces.look()) return {};
   return pieces.layout;
 }

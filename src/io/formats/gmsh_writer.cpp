@@ -126,8 +126,7 @@ class BinaryNumbers {
 template <class Numbers>
 class Msh41Writer {
  public:
-  Msh41Writer(const std::filesystem::path& file, int threads)
-      : output_(file), lines_(output_, threads) {}
+  Msh41Writer(OutputFile& output, int threads) : output_(output), lines_(output, threads) {}
 
   /// A whole mesh.
   /// @param forEachKind  calls its argument with the GmshKind of each dimension, 0 to 3
@@ -141,7 +140,7 @@ class Msh41Writer {
     beginEntities(groups);
     forEachKind([&](const auto& kind) {
       for (const GmshEntity& entity : groups.entities[kind.dimension]) {
-        // A volume has all points, each of which is looked at once then.
+        // The box of a volume is that of all points: no need to visit its cells.
         const Box box = kind.dimension == 3 ? boxOfAll : boxOf(kind, entity, points);
         this->writeEntity(kind.dimension, entity, box);
       }
@@ -280,12 +279,7 @@ class Msh41Writer {
     lines_.write(count, (nodes + 1) * Numbers::kRoom + 1, element, progress_);
   }
 
-  void end() {
-    endSection("$EndElements\n");
-    output_.commit();
-  }
-
-  [[nodiscard]] const OutputFile& output() const noexcept { return output_; }
+  void end() { endSection("$EndElements\n"); }
 
  private:
   template <class Kind>
@@ -314,7 +308,7 @@ class Msh41Writer {
     output_.write(end);
   }
 
-  OutputFile output_;
+  OutputFile& output_;
   LineWriter lines_;
   LoopProgress* progress_ = nullptr;
   std::uint64_t boxPosition_ = 0;
@@ -339,22 +333,20 @@ void forEachKind(const HexMesh& mesh, const GmshGroups& groups, const F& f) {
 }
 
 template <class Numbers>
-void writeMsh41(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-                Context& context) {
-  Stage stage(context, "write mesh");
-  // First, so that a folder that is not writable shows at once.
-  Msh41Writer<Numbers> writer(file, context.threads());
+void writeMsh41(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                Stage& stage) {
   const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
-  writer.write(
-      mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
+  Msh41Writer<Numbers>(output, stage.context().threads())
+      .write(
+          mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
 }
 
 /// A mesh in pieces: one volume. Its box stands in front of the nodes but is known only behind
 /// them, and is written to its place in the end.
 class GmshStream : private Msh41Writer<BinaryNumbers> {
  public:
-  GmshStream(const std::filesystem::path& file, int threads) : Msh41Writer(file, threads) {
-    output().requirePositions("to which a .msh file cannot be written in pieces");
+  GmshStream(OutputFile& output, int threads) : Msh41Writer(output, threads) {
+    output.requirePositions("to which a .msh file cannot be written in pieces");
   }
 
   void begin(std::uint64_t points, std::uint64_t cells) {
@@ -390,24 +382,22 @@ class GmshStream : private Msh41Writer<BinaryNumbers> {
 
 }  // namespace
 
-void writeGmsh41Binary(const HexMesh& mesh, const std::filesystem::path& file,
-                       const WriteOptions& options, Context& context) {
-  writeMsh41<BinaryNumbers>(mesh, file, options, context);
+void writeGmsh41Binary(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                       Stage& stage) {
+  writeMsh41<BinaryNumbers>(mesh, output, options, stage);
 }
 
-void writeGmsh41Text(const HexMesh& mesh, const std::filesystem::path& file,
-                     const WriteOptions& options, Context& context) {
-  writeMsh41<TextNumbers>(mesh, file, options, context);
+void writeGmsh41Text(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                     Stage& stage) {
+  writeMsh41<TextNumbers>(mesh, output, options, stage);
 }
 
-void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
-                     const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);
+void writeGmsh22Text(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                     Stage& stage) {
   const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
   requireInt32(mesh.points.size(), "MSH 2.2 numbers nodes", "write MSH 4.1");
   requireInt32(groups.elementCount(), "MSH 2.2 numbers elements", "write MSH 4.1");
-  LineWriter lines(output, context.threads());
+  LineWriter lines(output, stage.context().threads());
   LoopProgress progress(stage, mesh.points.size() + groups.elementCount());
   output.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
   writePhysicalNames(output, groups);
@@ -436,7 +426,6 @@ void writeGmsh22Text(const HexMesh& mesh, const std::filesystem::path& file,
     }
   });
   output.write("$EndElements\n");
-  output.commit();
 }
 
 std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file,
@@ -490,15 +479,12 @@ std::vector<std::uint32_t> gmshNodeOrder(int order) {
   return placesOf(nodes, order);
 }
 
-void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                       const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  // First, so that a folder that is not writable shows at once.
-  Msh41Writer<TextNumbers> writer(file, context.threads());
+void writeLagrangeGmsh(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                       Stage& stage) {
   HexMesh straight = straightMesh(mesh);
   const GmshGroups groups(MeshGroups(straight, options.patchAngle, stage));
   GroupNodes nodes;
-  withThreads(context.threads(),
+  withThreads(stage.context().threads(),
               [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
   straight = {};
 
@@ -517,7 +503,8 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, const std::filesystem::path& fi
           return NodesInOrder{mesh.nodes.data() + groups.cells.at(i) * order.size(), order.data()};
         }});
   };
-  writer.write(mesh.points, groups, forEachKind, stage);
+  Msh41Writer<TextNumbers>(output, stage.context().threads())
+      .write(mesh.points, groups, forEachKind, stage);
 }
 
 }  // namespace hexhex::io

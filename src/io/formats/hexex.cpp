@@ -96,33 +96,28 @@ class HexexReader {
     for (Index& corner : map_.tets[tet]) {
       const std::int64_t vertex = scanner.integer({"a vertex of ", "tet", tet});
       if (vertex < 0 || vertex >= vertices) {
-        scanner.fail(ErrorCode::IndexOutOfRange,
-                     "tet " + std::to_string(tet) + " names vertex " +
-                         std::string(scanner.currentToken()) + ", but the " +
-                         std::to_string(vertices) + " vertices are numbered from 0.",
-                     Place{PlaceKind::Tet, tet});
+        scanner.fail(ErrorCode::IndexOutOfRange, Place{PlaceKind::Tet, tet}, "tet ", tet,
+                     " names vertex ", scanner.currentToken(), ", but the ", vertices,
+                     " vertices are numbered from 0.");
       }
       corner = static_cast<Index>(vertex);
     }
     for (Vec3& corner : map_.parameters[tet]) {
-      for (double& parameter : corner) {
-        parameter = scanner.number({"a parameter of ", "tet", tet});
-      }
+      for (double& parameter : corner) parameter = scanner.number({"a parameter of ", "tet", tet});
     }
   }
 
-  // No keyword announces the sections after the tets: their first line tells them apart.
+  // The sections after the tets have no keywords: their first lines distinguish them.
   void readTrailingSections() {
     std::vector<FeatureFace> walls;
     if (scanner_.countTokensOnLine() == 1) walls = readWalls();
     const std::size_t tokens = scanner_.countTokensOnLine();
     if (tokens == 3) readFeatures();
     if (tokens != 0 && scanner_.skipSpace()) {
-      scanner_.fail(
-          ErrorCode::FileSyntax,
-          "expected the end of the file, found " + quoted(scanner_.currentToken()) +
-              ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
-              "features (\"vertices edges faces\" and their lines) may follow.");
+      scanner_.fail(ErrorCode::FileSyntax, "expected the end of the file, found ",
+                    quoted(scanner_.currentToken()),
+                    ". After the last tet only walls (\"W\" and W lines \"v v v distance\") and "
+                    "features (\"vertices edges faces\" and their lines) may follow.");
     }
     if (!keepWalls_) walls.clear();
     removeRepeated(map_.features.vertices);
@@ -182,9 +177,8 @@ class HexexReader {
     for (Index& vertex : vertices) {
       const std::int64_t index = scanner_.integer(what);
       if (index < 0 || index >= count) {
-        scanner_.fail(ErrorCode::IndexOutOfRange,
-                      std::string(what) + " is " + std::string(scanner_.currentToken()) +
-                          ", but the " + std::to_string(count) + " vertices are numbered from 0.");
+        scanner_.fail(ErrorCode::IndexOutOfRange, what, " is ", scanner_.currentToken(),
+                      ", but the ", count, " vertices are numbered from 0.");
       }
       vertex = static_cast<Index>(index);
     }
@@ -210,8 +204,8 @@ void requireFeaturesInRange(const TetMap& map) {
   std::for_each(map.features.faces.begin(), map.features.faces.end(), look);
   if (map.features.empty() || largest < map.points.size()) return;
   throw Error(ErrorCode::InvalidArgument,
-              "A feature names vertex " + std::to_string(largest) + ", but the map has " +
-                  std::to_string(map.points.size()) + " vertices, numbered from 0.");
+              concat("A feature names vertex ", largest, ", but the map has ", map.points.size(),
+                     " vertices, numbered from 0."));
 }
 
 /// The format has lists, but no place for tags.
@@ -240,16 +234,15 @@ void writeFeatures(const Features& features, LineWriter& lines, OutputFile& outp
 
 }  // namespace
 
-TetMap readHexex(const Input& input, const ReadOptions& options, Context& context) {
-  return readWith<HexexReader>(input, "read map", context, options.keepWalls);
+TetMap readHexex(const Input& input, const ReadOptions& options, Stage& stage) {
+  return readWith<HexexReader>(input, stage, options.keepWalls);
 }
 
-void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "write map");
-  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+void writeHexex(const TetMap& map, OutputFile& output, const WriteOptions& /*options*/,
+                Stage& stage) {
+  withThreads(stage.context().threads(), [&] { requireWritable(map, stage); });
   requireFeaturesInRange(map);
-  OutputFile output(file);
-  LineWriter lines(output, context.threads());
+  LineWriter lines(output, stage.context().threads());
   LoopProgress progress(stage, map.points.size() + map.tets.size());
   output.write(map.points.size()).write('\n');
   lines.write(
@@ -266,7 +259,6 @@ void writeHexex(const TetMap& map, const std::filesystem::path& file, Context& c
       },
       &progress);
   writeFeatures(map.features, lines, output);
-  output.commit();
 }
 
 }  // namespace hexhex::io

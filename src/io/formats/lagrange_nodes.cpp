@@ -11,6 +11,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <base/stage.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/formats/lagrange_nodes.hpp>
@@ -48,7 +49,7 @@ class ElementFinder {
         }
       }
     }
-    std::string text = std::string("The tagged ") + what;
+    std::string text = concat("The tagged ", what);
     for (const Index vertex : element) text.append(1, ' ').append(std::to_string(vertex));
     throw Error(ErrorCode::InvalidArgument, text + " belongs to no cell of the mesh.");
   }

@@ -149,13 +149,13 @@ class MeditText {
                       "(Mesh::PrintVTK).");
       }
       scanner_.fail(ErrorCode::FileSyntax,
-                    "a MEDIT file begins with \"MeshVersionFormatted\", found " +
-                        quoted(scanner_.currentToken()) + ".");
+                    "a MEDIT file begins with \"MeshVersionFormatted\", found ",
+                    quoted(scanner_.currentToken()), ".");
     }
     static_cast<void>(source_->integer("the version of the format"));
   }
 
-  /// What is between known keywords is passed over.
+  /// Skips everything between known keywords.
   std::optional<MeditSection> nextSection() {
     while (scanner_.skipSpace()) {
       const std::string_view keyword = scanner_.readToken();
@@ -194,8 +194,8 @@ class MeditText {
   [[nodiscard]] static std::int64_t reference(TextSource& record, const char* what) {
     const std::int64_t reference = record.integer(what);
     if (std::in_range<std::int32_t>(reference)) return reference;
-    record.fail(ErrorCode::FileUnsupported, std::string(what) + " is " + std::to_string(reference) +
-                                                ", which does not fit into 32 bits.");
+    record.fail(ErrorCode::FileUnsupported, what, " is ", reference,
+                ", which does not fit into 32 bits.");
   }
 
  private:
@@ -213,7 +213,8 @@ class MeditBytes {
   /// @param file  the bytes of the file, or the open file, a regular one
   template <class File>
   MeditBytes(const File& file, const std::string& fileName, Stage& stage)
-      : bytes_(file, fileName), source_(bytes_, 0, stage) {}
+      : MeditBytes(ByteFile(file, fileName), stage) {}
+  MeditBytes(const ByteFile& file, Stage& stage) : bytes_(file), source_(bytes_, 0, stage) {}
 
   [[nodiscard]] BinarySource& source() { return source_; }
 
@@ -226,13 +227,13 @@ class MeditBytes {
                    "the file to .mesh.");
     }
     if (one != 1) {
-      source_.fail(ErrorCode::FileSyntax,
-                   "a .meshb file begins with the number 1, found " + std::to_string(one) + ".");
+      source_.fail(ErrorCode::FileSyntax, "a .meshb file begins with the number 1, found ", one,
+                   ".");
     }
     version_ = source_.integer("the version of the format");
     if (version_ < 1 || version_ > 4) {
-      source_.fail(ErrorCode::FileUnsupported, "version " + std::to_string(version_) +
-                                                   " of the format is not known, only 1 to 4.");
+      source_.fail(ErrorCode::FileUnsupported, "version ", version_,
+                   " of the format is not known, only 1 to 4.");
     }
     next_ = source_.position();
   }
@@ -247,11 +248,9 @@ class MeditBytes {
     next_ = version_ >= 3 ? source_.size(what) : static_cast<std::uint64_t>(source_.integer(what));
     // Only forwards, so that reading ends.
     if (next_ != 0 && (next_ <= begin || next_ > bytes_.size())) {
-      source_.fail(ErrorCode::FileSyntax,
-                   "the section that begins at byte " + std::to_string(begin) +
-                       " says that the next one begins at byte " + std::to_string(next_) + " of " +
-                       std::to_string(bytes_.size()) +
-                       ": either the number is wrong or the file is incomplete.");
+      source_.fail(ErrorCode::FileSyntax, "the section that begins at byte ", begin,
+                   " says that the next one begins at byte ", next_, " of ", bytes_.size(),
+                   ": either the number is wrong or the file is incomplete.");
     }
     if (section == MeditSection::Dimension) hasDimension_ = true;
     return section;
@@ -305,7 +304,7 @@ class MeditBytes {
   bool hasDimension_ = false;
 };
 
-/// Whether references say anything, looked at by several threads: not if all are 0, or all are 1.
+/// Whether references carry information: not if all are 0 or all are 1. Thread-safe.
 class SeenReferences {
  public:
   void add(std::int64_t reference) noexcept {
@@ -344,10 +343,9 @@ class MeditReader {
     while (const auto section = encoding_.nextSection()) readSection(*section);
     mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
     if (hasCells_) return std::move(mesh_);
-    throw Error(ErrorCode::FileUnsupported, fileName_ + ": the file holds no " +
-                                                std::string(kKind.plural) + ": it has no section " +
-                                                std::string(kKind.meditKeyword) +
-                                                counts_.instead() + ".");
+    throw Error(ErrorCode::FileUnsupported,
+                concat(fileName_, ": the file holds no ", kKind.plural, ": it has no section ",
+                       kKind.meditKeyword, counts_.instead(), "."));
   }
 
  private:
@@ -380,8 +378,8 @@ class MeditReader {
   void readDimension() {
     const std::int64_t dimension = encoding_.source().integer("the dimension");
     if (dimension == 3) return;
-    encoding_.source().fail(ErrorCode::FileUnsupported,
-                            "the dimension must be 3, found " + std::to_string(dimension) + ".");
+    encoding_.source().fail(ErrorCode::FileUnsupported, "the dimension must be 3, found ",
+                            dimension, ".");
   }
 
   void readVertices() {
@@ -415,9 +413,8 @@ class MeditReader {
   void readCells() {
     failIfRepeated(hasCells_, kKind.meditKeyword);
     if (!hasVertices_) {
-      encoding_.source().fail(ErrorCode::FileUnsupported,
-                              "the section " + std::string(kKind.meditKeyword) +
-                                  " stands before the section Vertices; exchange them.");
+      encoding_.source().fail(ErrorCode::FileUnsupported, "the section ", kKind.meditKeyword,
+                              " stands before the section Vertices; exchange them.");
     }
     hasCells_ = true;
     mesh_.cells.resize(encoding_.readCount(kKind.plural, encoding_.shape(corners + 1)));
@@ -479,8 +476,8 @@ class MeditReader {
         references[i] = static_cast<std::int32_t>(reference);
         if (std::in_range<std::int32_t>(reference)) return;
         record.moveTo(place);
-        record.fail(ErrorCode::FileUnsupported, "the reference of number " + std::to_string(i + 1) +
-                                                    " of this section does not fit into 32 bits.");
+        record.fail(ErrorCode::FileUnsupported, "the reference of number ", i + 1,
+                    " of this section does not fit into 32 bits.");
       });
     }
     return references;
@@ -498,34 +495,32 @@ class MeditReader {
     failVertex(record, vertex, elements, i, begin);
   }
 
-  // Apart, with records by value, so that what is read stays in registers.
+  // A function of its own that takes records by value, so that the loop keeps them in registers.
   template <class Record>
   [[noreturn]] void failVertex(Record record, std::uint64_t vertex, const CellKind& elements,
                                std::size_t i, std::size_t begin) const {
     const bool isCell = elements.place != PlaceKind::None;
     if (!Encoding::kIsText && !isCell) failFeature(record, elements, i, begin);
-    record.fail(ErrorCode::IndexOutOfRange,
-                NumberName("", elements.singular, i + 1).text() + " names vertex " +
-                    record.spelling(vertex) + ", but the " + std::to_string(mesh_.points.size()) +
-                    " vertices are numbered from 1.",
-                isCell ? Place{elements.place, i} : Place{});
+    record.fail(ErrorCode::IndexOutOfRange, isCell ? Place{elements.place, i} : Place{},
+                NumberName("", elements.singular, i + 1).text(), " names vertex ",
+                record.spelling(vertex), ", but the ", mesh_.points.size(),
+                " vertices are numbered from 1.");
   }
 
   template <class Record>
   [[noreturn]] void failFeature(Record record, const CellKind& elements, std::size_t i,
                                 std::size_t begin) const {
     record.moveTo(begin);
-    record.fail(ErrorCode::IndexOutOfRange,
-                "number " + std::to_string(i + 1) + " of the " + std::string(elements.plural) +
-                    " names a vertex that does not exist, or a reference that does not fit into 32 "
-                    "bits; the " +
-                    std::to_string(mesh_.points.size()) + " vertices are numbered from 1.");
+    record.fail(ErrorCode::IndexOutOfRange, "number ", i + 1, " of the ", elements.plural,
+                " names a vertex that does not exist, or a reference that does not fit into 32 "
+                "bits; the ",
+                mesh_.points.size(), " vertices are numbered from 1.");
   }
 
   void failIfRepeated(bool present, std::string_view section) {
     if (!present) return;
-    encoding_.source().fail(ErrorCode::FileSyntax,
-                            "the section " + std::string(section) + " occurs a second time.");
+    encoding_.source().fail(ErrorCode::FileSyntax, "the section ", section,
+                            " occurs a second time.");
   }
 
   Encoding encoding_;
@@ -540,27 +535,27 @@ class MeditReader {
 
 }  // namespace
 
-HexMesh readMedit(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditText, 8>>(input, "read mesh", context, input.counts());
+HexMesh readMedit(const Input& input, Stage& stage) {
+  return readWith<MeditReader<MeditText, 8>>(input, stage, input.counts());
 }
 
-HexMesh readMeshb(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditBytes, 8>>(input, "read mesh", context, input.counts());
+HexMesh readMeshb(const Input& input, Stage& stage) {
+  return readWith<MeditReader<MeditBytes, 8>>(input, stage, input.counts());
 }
 
-TetCells readMeditTets(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditText, 4>>(input, "read tets", context, input.counts());
+TetCells readMeditTets(const Input& input, Stage& stage) {
+  return readWith<MeditReader<MeditText, 4>>(input, stage, input.counts());
 }
 
-TetCells readMeshbTets(const Input& input, Context& context) {
-  return readWith<MeditReader<MeditBytes, 4>>(input, "read tets", context, input.counts());
+TetCells readMeshbTets(const Input& input, Stage& stage) {
+  return readWith<MeditReader<MeditBytes, 4>>(input, stage, input.counts());
 }
 
 namespace {
 
 // `.mesh` and `.meshb` piece by piece.
 
-/// Whether a section of cells that are no hexahedra is meant.
+/// Whether a section holds cells other than hexahedra.
 template <class Fits>
 bool isOtherCells(const Fits& fits) {
   return std::any_of(kVolumeCells.begin(), kVolumeCells.end(), [&](const VolumeCells& type) {
@@ -569,9 +564,8 @@ bool isOtherCells(const Fits& fits) {
 }
 
 /// A text with one section of vertices, and one of hexahedra behind it.
-std::optional<PlainLayout> lookAtText(const InputFile& file, const std::string& name,
-                                      Context& context) {
-  TextWindow text(file, name, context);
+std::optional<PlainLayout> lookAtText(const ByteFile& file, Context& context) {
+  TextWindow text(file, context);
   PlainLayout layout{.isText = true, .behindPoint = 1, .behindCell = 1};
   if (text.token() != "MeshVersionFormatted" || !text.count()) return {};
   const auto skip = [&text](PlainRun& run, std::uint64_t tokensEach) {
@@ -591,11 +585,10 @@ std::optional<PlainLayout> lookAtText(const InputFile& file, const std::string& 
 }
 
 /// The same as bytes, of version 2 or later.
-std::optional<PlainLayout> lookAtBytes(const InputFile& file, const std::string& name,
-                                       Context& context) {
+std::optional<PlainLayout> lookAtBytes(const ByteFile& file, Context& context) {
   Context quiet(context.threads());
   Stage stage(quiet, "read");
-  MeditBytes bytes(file, name, stage);
+  MeditBytes bytes(file, stage);
   PlainLayout layout{.behindPoint = 1, .behindCell = 1};
   bytes.readHead();
   const std::optional<std::size_t> integerBytes = bytes.integerBytes();
@@ -648,7 +641,7 @@ struct MeditCounts {
   std::uint64_t hexahedra = 0;
 };
 
-/// What stands beside vertices and cells.
+/// Everything beside vertices and cells.
 struct MeditGroups {
   Array<std::uint32_t> vertexReferences;  ///< empty: all are 0
   EdgeGroups edges;
@@ -667,8 +660,8 @@ struct MeditGroups {
   }
 };
 
-/// `.mesh`: a line for each element. Tagged edges stay out: viewers that read no more than what
-/// they show stumble over the section.
+/// `.mesh`: a line for each element. Tagged edges are left out: viewers that only read what they
+/// show fail on the section.
 class MeditLines {
  public:
   static constexpr bool kHoldsEdges = false;
@@ -707,7 +700,7 @@ class MeditRecords {
 
   explicit MeditRecords(OutputFile& output) : output_(output) {}
 
-  /// @param version  0: the smallest that holds such a mesh
+  /// @param version  0: the lowest that can hold the mesh
   void begin(const MeditCounts& counts, std::uint32_t version) {
     setVersion(version == 0 ? versionFor(counts) : version);
     writeBytesOf(output_, std::uint32_t{1});  // tells the byte order
@@ -771,8 +764,7 @@ class MeditRecords {
 template <class Encoding>
 class MeditWriter {
  public:
-  MeditWriter(const std::filesystem::path& file, int threads)
-      : output_(file), lines_(output_, threads), encoding_(output_) {}
+  MeditWriter(OutputFile& output, int threads) : lines_(output, threads), encoding_(output) {}
 
   /// A whole mesh.
   void write(const HexMesh& mesh, const MeditGroups& groups, std::uint32_t version, Stage& stage) {
@@ -805,10 +797,7 @@ class MeditWriter {
   void cells(std::uint64_t /*first*/, std::span<const Cell> cells) {
     writeElements(cells, {}, nullptr);
   }
-  void end() {
-    encoding_.end();
-    output_.commit();
-  }
+  void end() { encoding_.end(); }
 
  private:
   /// @param references  empty: all are 0
@@ -835,37 +824,33 @@ class MeditWriter {
     lines_.write(elements.size(), (n + 1) * Encoding::kRoom, element, progress);
   }
 
-  OutputFile output_;
   LineWriter lines_;
   Encoding encoding_;
   std::uint64_t cells_ = 0;
 };
 
 template <class Encoding>
-void writeWhole(const HexMesh& mesh, const std::filesystem::path& file, std::uint32_t version,
-                const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  // First, so that a folder that is not writable shows at once.
-  MeditWriter<Encoding> writer(file, context.threads());
+void writeWhole(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
+                const WriteOptions& options, Stage& stage) {
   const MeditGroups groups(mesh, Encoding::kHoldsEdges, options.patchAngle, stage);
-  writer.write(mesh, groups, version, stage);
+  MeditWriter<Encoding>(output, stage.context().threads()).write(mesh, groups, version, stage);
 }
 
 }  // namespace
 
-void writeMedit(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-                Context& context) {
-  writeWhole<MeditLines>(mesh, file, 0, options, context);
+void writeMedit(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                Stage& stage) {
+  writeWhole<MeditLines>(mesh, output, 0, options, stage);
 }
 
-void writeMeshb(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-                Context& context) {
-  writeWhole<MeditRecords>(mesh, file, 0, options, context);
+void writeMeshb(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                Stage& stage) {
+  writeWhole<MeditRecords>(mesh, output, 0, options, stage);
 }
 
-void writeMeshbVersion(const HexMesh& mesh, const std::filesystem::path& file,
-                       std::uint32_t version, Context& context) {
-  writeWhole<MeditRecords>(mesh, file, version, {}, context);
+void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
+                       Stage& stage) {
+  writeWhole<MeditRecords>(mesh, output, version, {}, stage);
 }
 
 std::unique_ptr<MeshSink> openMeditSink(const std::filesystem::path& file, Context& context) {

@@ -237,25 +237,19 @@ class MfemSink final : public PartSink {
 
 }  // namespace
 
-void writeMfem(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-               Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);
-  MfemWriter writer(output, context.threads());
+void writeMfem(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
+  MfemWriter writer(output, stage.context().threads());
   const QuadGroups quads = quadsOfWhole(mesh, options, stage);
   LoopProgress progress(stage, mesh.cells.size() + quads.elements.size() + mesh.points.size());
   writer.writeElements("v1.0", mesh.cells, cellReferences(mesh), quads, &progress);
   output.write(mesh.points.size()).write("\n3\n");
   writer.writePoints(
       mesh.points.size(), [&](std::size_t i) -> const Vec3& { return mesh.points[i]; }, &progress);
-  output.commit();
 }
 
-void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                       const WriteOptions& options, Context& context) {
-  Stage stage(context, "write mesh");
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  MfemWriter writer(output, context.threads());
+void writeLagrangeMfem(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                       Stage& stage) {
+  MfemWriter writer(output, stage.context().threads());
   const HexMesh straight = straightMesh(mesh);
   const QuadGroups quads = quadsOfWhole(straight, options, stage);
   LoopProgress progress(stage, straight.cells.size() + quads.elements.size() + mesh.nodes.size());
@@ -268,11 +262,9 @@ void writeLagrangeMfem(const LagrangeMesh& mesh, const std::filesystem::path& fi
   writer.writePoints(
       mesh.nodes.size(), [&](std::size_t i) -> const Vec3& { return mesh.points[mesh.nodes[i]]; },
       &progress);
-  output.commit();
 }
 
-std::unique_ptr<PartSink> openMfemPartSink(const std::filesystem::path& file,
-                                           const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openMfemPartSink(const std::filesystem::path& file, Context& context,
                                            ProcessTeam* team) {
   return std::make_unique<MfemSink>(file, context, team);
 }

@@ -156,8 +156,7 @@ class NetcdfHeadReader {
 
  private:
   [[noreturn]] void fail(const std::string& sentence) const {
-    throw Error(ErrorCode::FileSyntax,
-                fileName_ + ", byte " + std::to_string(place_) + ": " + sentence);
+    throw Error(ErrorCode::FileSyntax, concat(fileName_, ", byte ", place_, ": ", sentence));
   }
   const char* take(std::uint64_t size) {
     if (size > bytes_.size() - place_) fail("the file ends within its head.");
@@ -186,7 +185,7 @@ class NetcdfHeadReader {
     if (type == 0 || type >= kNetcdfBytes.size()) fail("values are of an unknown type.");
     return kNetcdfBytes[type];
   }
-  /// @return the one that tells the type of elements
+  /// @return the attribute with the type of elements
   std::string attributes() {
     std::string elementType;
     const std::uint64_t all = beginList(12);
@@ -293,7 +292,7 @@ const NetcdfValues& NetcdfReader::get(std::string_view name) const {
   const NetcdfValues* const found = find(name);
   if (found != nullptr) return *found;
   throw Error(ErrorCode::FileSyntax,
-              fileName_ + ": the file lacks the variable \"" + std::string(name) + "\".");
+              concat(fileName_, ": the file lacks the variable \"", name, "\"."));
 }
 
 std::vector<std::int64_t> NetcdfReader::integers(const NetcdfValues& values) const {

@@ -68,10 +68,9 @@ class PolyMeshWriter {
            return put(putNumbers(put(place, "4("), poly.faces[i]), ")\n");
          });
     // A note with which OpenFOAM's tools know the sizes without reading everything.
-    const std::string note = "    note        \"nPoints:" + std::to_string(mesh.points.size()) +
-                             "  nCells:" + std::to_string(mesh.cells.size()) +
-                             "  nFaces:" + std::to_string(poly.faces.size()) +
-                             "  nInternalFaces:" + std::to_string(poly.neighbours.size()) + "\";\n";
+    const std::string note = concat("    note        \"nPoints:", mesh.points.size(),
+                                    "  nCells:", mesh.cells.size(), "  nFaces:", poly.faces.size(),
+                                    "  nInternalFaces:", poly.neighbours.size(), "\";\n");
     const auto label = [](const Array<Index>& labels) {
       return [&labels](char* place, std::size_t i) { return put(put(place, labels[i]), '\n'); };
     };
@@ -213,7 +212,7 @@ class FaceNumbers {
       for (std::uint64_t f = run.before; f < faces.endOf(i); ++f) use(first + f - run.before);
     }
   }
-  /// That of one face of a part.
+  /// The number of one face of a part.
   [[nodiscard]] std::uint64_t of(const FaceRuns& faces, std::uint64_t face) const {
     const auto run = std::prev(std::upper_bound(
         faces.runs().begin(), faces.runs().end(), face,
@@ -286,7 +285,7 @@ bool isMarker(const std::filesystem::path& file) { return lowerCaseExtension(fil
 void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
                    const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
-  // First, so that what is not writable shows at once.
+  // First, so that a target that is not writable shows at once.
   OutputFolder folder(isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file);
   std::optional<OutputFile> marker;
   if (isMarker(file)) marker.emplace(file);
@@ -338,7 +337,7 @@ bool comesBefore(std::int32_t a, std::int32_t b) { return (a == 0) != (b == 0) ?
 /// Of a face that a part has, but whose smaller cell is in another.
 constexpr std::uint64_t kOfOther = ~std::uint64_t{0};
 
-/// What is left to be written of a part when all are known.
+/// What remains to be written of a part once all parts are known.
 struct OpenPart {
   struct Border {
     std::uint32_t part;
@@ -461,10 +460,11 @@ class PartFaces {
 };
 
 std::string processorPatch(std::uint32_t here, std::uint32_t there) {
-  return "        type            processor;\n        inGroups        1(processor);\n"
-         "        matchTolerance  0.0001;\n        transform       unknown;\n"
-         "        myProcNo        " +
-         std::to_string(here) + ";\n        neighbProcNo    " + std::to_string(there) + ";\n";
+  return concat(
+      "        type            processor;\n        inGroups        1(processor);\n"
+      "        matchTolerance  0.0001;\n        transform       unknown;\n"
+      "        myProcNo        ",
+      here, ";\n        neighbProcNo    ", there, ";\n");
 }
 
 class OpenFoamSink final : public PartSink {
@@ -482,12 +482,12 @@ class OpenFoamSink final : public PartSink {
     refuseGhosts(info.ghostLayers, "OpenFOAM's decomposed cases");
     requireInt32(info.pointCount, "OpenFOAM numbers vertices");
     // OpenFOAM counts folders to learn the number of parts.
-    const std::filesystem::path next = case_ / ("processor" + std::to_string(info.parts));
+    const std::filesystem::path next = case_ / (concat("processor", info.parts));
     std::error_code unknown;
     if (std::filesystem::exists(next, unknown)) {
       throw Error(ErrorCode::FileWrite,
-                  next.string() + " is there, of a case with more parts than " +
-                      std::to_string(info.parts) + ". Remove the old processor folders first.");
+                  concat(next.string(), " is there, of a case with more parts than ", info.parts,
+                         ". Remove the old processor folders first."));
     }
     for (const std::int32_t tag : info.quadTags) boundary_[tag];
     boundary_[0];
@@ -520,7 +520,7 @@ class OpenFoamSink final : public PartSink {
 
  private:
   [[nodiscard]] std::filesystem::path folderOf(std::uint32_t part) const {
-    return case_ / ("processor" + std::to_string(part)) / "constant" / "polyMesh";
+    return case_ / (concat("processor", part)) / "constant" / "polyMesh";
   }
 
   void writePart(const MeshPart& part, const OutputFolder& folder, Stage& stage) {
@@ -606,9 +606,8 @@ class OpenFoamSink final : public PartSink {
         addresses.push_back(here[i] != kOfOther ? addressOf(here[i]) : -addressOf(there[i]));
       }
       patchAddresses.push_back(-1);
-      patches.push_back(
-          {"procBoundary" + std::to_string(open.part) + "to" + std::to_string(border.part), begin,
-           addresses.size(), processorPatch(open.part, border.part)});
+      patches.push_back({concat("procBoundary", open.part, "to", border.part), begin,
+                         addresses.size(), processorPatch(open.part, border.part)});
     }
     PolyMeshWriter writer(folder.temporary(), context_.threads());
     writer.writeBoundary(patches);
@@ -681,8 +680,7 @@ class OpenFoamSink final : public PartSink {
 
 }  // namespace
 
-std::unique_ptr<PartSink> openOpenFoamPartSink(const std::filesystem::path& file,
-                                               const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openOpenFoamPartSink(const std::filesystem::path& file, Context& context,
                                                ProcessTeam* team) {
   return std::make_unique<OpenFoamSink>(file, context, team);
 }

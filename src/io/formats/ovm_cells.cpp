@@ -3,6 +3,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
@@ -106,7 +107,7 @@ class HexReader : OvmCellReader<8, kHexOrders> {
     }
     readGenerators();
     readFeatures(hexes_.features, hexes_.features.quads);
-    // The numbering of edges says nothing.
+    // The order of edges in the file has no meaning.
     std::vector<FeatureEdge>& edges = hexes_.features.edges;
     for (FeatureEdge& edge : edges) std::sort(edge.vertices.begin(), edge.vertices.end());
     std::sort(edges.begin(), edges.end(),
@@ -143,9 +144,8 @@ class HexReader : OvmCellReader<8, kHexOrders> {
     });
     if (fault == tets.size()) return;
     throw Error(ErrorCode::FileSyntax,
-                fileName_ + ": the generator of vertex " + std::to_string(fault) + " is tet " +
-                    std::to_string(tets[fault]) + " with the corner set " +
-                    std::to_string(corners[fault]) + ", which must be from 1 to 15.",
+                concat(fileName_, ": the generator of vertex ", fault, " is tet ", tets[fault],
+                       " with the corner set ", corners[fault], ", which must be from 1 to 15."),
                 Place{PlaceKind::Vertex, fault});
   }
 
@@ -191,8 +191,8 @@ void setGenerators(OvmProperties& properties, const HexMesh& mesh, Stage& stage)
   });
   if (fault == vertices) return;
   throw Error(ErrorCode::InvalidArgument,
-              "The generator of vertex " + std::to_string(fault) + " has the corner set " +
-                  std::to_string(corners[fault]) + ", which must be from 1 to 15.",
+              concat("The generator of vertex ", fault, " has the corner set ", corners[fault],
+                     ", which must be from 1 to 15."),
               Place{PlaceKind::Vertex, fault});
 }
 
@@ -326,18 +326,17 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
   void requireMap() const {
     if (!properties_.parametrization.empty() || topology_.cells.size() == 0) return;
     requireProper();
-    const std::string name = "\"" + std::string(kParametrizationName) + "\"";
+    const std::string name = concat("\"", kParametrizationName, "\"");
     throw Error(
         ErrorCode::FileUnsupported,
-        fileName_ + ": the file holds " + std::to_string(topology_.cells.size()) +
-            " tets, but no map: " +
-            (mesh_.hasForeignParametrization
-                 ? "its property " + name +
-                       " is not one of half-faces with three numbers each (3d, vec3d)."
-                 : "it has no property " + name + " of half-faces (3d, vec3d).") +
-            " Save the map under this name, the value of a half-face being the parameters "
-            "of the vertex opposite it in its cell, or save it as .hexex; or give the map as a "
-            "second mesh (--polycube).");
+        concat(fileName_, ": the file holds ", topology_.cells.size(), " tets, but no map: ",
+               (mesh_.hasForeignParametrization
+                    ? "its property " + name +
+                          " is not one of half-faces with three numbers each (3d, vec3d)."
+                    : "it has no property " + name + " of half-faces (3d, vec3d)."),
+               " Save the map under this name, the value of a half-face being the parameters "
+               "of the vertex opposite it in its cell, or save it as .hexex; or give the map as a "
+               "second mesh (--polycube)."));
   }
 
   void readTets() {
@@ -353,7 +352,7 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
     if (fault == map_.tets.size()) return;
     if (!readCell(fault, read)) failToBound(fault);
     throw Error(ErrorCode::NotFinite,
-                fileName_ + ": a parameter of tet " + std::to_string(fault) + " is not finite.",
+                concat(fileName_, ": a parameter of tet ", fault, " is not finite."),
                 Place{PlaceKind::Tet, fault});
   }
 
@@ -389,10 +388,9 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
       const Index halfFace = topology_.cells.handles[i];
       if (isRotation(rotations[halfFace]) || used[halfFace ^ 1U] == 0) continue;
       throw Error(ErrorCode::FileSyntax,
-                  fileName_ + ": the rotation across half-face " + std::to_string(halfFace) +
-                      " of tet " + std::to_string(i / 4) + " is " +
-                      std::to_string(rotations[halfFace]) +
-                      ", but rotations are numbered from 0 to 23, or -1 if unknown.",
+                  concat(fileName_, ": the rotation across half-face ", halfFace, " of tet ", i / 4,
+                         " is ", rotations[halfFace],
+                         ", but rotations are numbered from 0 to 23, or -1 if unknown."),
                   Place{PlaceKind::Tet, i / 4});
     }
   }
@@ -440,7 +438,7 @@ class TetWriter {
  private:
   /// How the corners of a tet are listed, against the order in which a reader finds them.
   [[nodiscard]] std::size_t listedOrder(std::size_t tet) const {
-    // Tets begin with their first half-face, and nearly all of those begin where the tet does.
+    // A tet begins with its first half-face, and nearly all half-faces begin where the tet does.
     const Index first = topology_.cells.handles[4 * tet];
     if (first % 2 == 0) return orderNumber_;
     const std::array<Index, 3> loop = loopOfHalfFace(loopOfFace<3>(topology_, first / 2), first);

@@ -21,6 +21,7 @@
 #include <hexhex/features.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/concat.hpp>
 #include <base/low_level.hpp>
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
@@ -241,7 +242,7 @@ class OvmCellReader {
   /// have good loops.
   void requireProper() const {
     const auto fail = [&](std::size_t cell, ErrorCode code, const std::string& sentence) {
-      throw Error(code, fileName_ + ": cell " + std::to_string(cell) + " " + sentence,
+      throw Error(code, concat(fileName_, ": cell ", cell, " ", sentence),
                   Place{PlaceKind::Cell, cell});
     };
     Array<char> used(2 * topology_.faces.size(), 0);
@@ -249,20 +250,20 @@ class OvmCellReader {
       const std::span<const Index> halfFaces = topology_.cells[c];
       if (halfFaces.size() != kFaces) {
         fail(c, ErrorCode::FileUnsupported,
-             "has " + std::to_string(halfFaces.size()) + " faces; here, all cells must be " +
-                 std::string(kKind.plural) + " with " + std::to_string(kFaces) + ".");
+             concat("has ", halfFaces.size(), " faces; here, all cells must be ", kKind.plural,
+                    " with ", kFaces, "."));
       }
       for (const Index halfFace : halfFaces) {
         if (!isGoodFace(halfFace / 2)) {
           fail(c, ErrorCode::FileSyntax,
-               "has face " + std::to_string(halfFace / 2) + ", which is no closed loop of " +
-                   std::to_string(kFaceCorners) + " half-edges.");
+               concat("has face ", halfFace / 2, ", which is no closed loop of ", kFaceCorners,
+                      " half-edges."));
         }
         if (std::exchange(used[halfFace], 1) != 0) {
           fail(c, ErrorCode::FileSyntax,
-               "has half-face " + std::to_string(halfFace) +
-                   " a second time, or another cell has it. Each side of a face belongs to one "
-                   "cell.");
+               concat("has half-face ", halfFace,
+                      " a second time, or another cell has it. Each side of a face belongs to one "
+                      "cell."));
         }
       }
     }
@@ -271,9 +272,8 @@ class OvmCellReader {
   /// Throws an error about a cell whose half-faces bound none.
   [[noreturn]] void failToBound(std::size_t cell) const {
     throw Error(ErrorCode::FileSyntax,
-                fileName_ + ": the half-faces of cell " + std::to_string(cell) +
-                    " do not bound a " + std::string(kKind.singular) +
-                    ", or its corner order is not from 0 to " + std::to_string(orders - 1) + ".",
+                concat(fileName_, ": the half-faces of cell ", cell, " do not bound a ",
+                       kKind.singular, ", or its corner order is not from 0 to ", orders - 1, "."),
                 Place{kKind.place, cell});
   }
 
@@ -288,10 +288,10 @@ class OvmCellReader {
     });
     forEachTag(OvmInteger::FeatureFaces, [&](std::size_t f, std::int32_t tag) {
       if (!isGoodFace(f)) {
-        throw Error(ErrorCode::FileSyntax,
-                    fileName_ + ": face " + std::to_string(f) +
-                        " is tagged as a feature, but is no closed loop of " +
-                        std::to_string(kFaceCorners) + " half-edges.");
+        throw Error(
+            ErrorCode::FileSyntax,
+            concat(fileName_, ": face ", f, " is tagged as a feature, but is no closed loop of ",
+                   kFaceCorners, " half-edges."));
       }
       faces.push_back({loops_[f], tag});
     });
@@ -366,9 +366,7 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t ver
     const std::array<Index, n> vertices = verticesOf(i);
     if (isSmallest[*std::min_element(vertices.begin(), vertices.end())] == 0) continue;
     const auto [begin, end] = wanted.equal_range(sorted(vertices));
-    for (auto found = begin; found != end; ++found) {
-      found->second.element = static_cast<Index>(i);
-    }
+    for (auto found = begin; found != end; ++found) found->second.element = static_cast<Index>(i);
   }
   for (const auto& [vertices, entry] : wanted) {
     setOvmValue(tags, entry.element, entry.feature->tag, nameOf(*entry.feature),
@@ -389,7 +387,7 @@ void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
     Array<std::int32_t>& tags = properties[OvmInteger::FeatureVertices];
     tags.assign(topology.vertexCount, 0);
     for (const auto& [vertex, tag] : features.vertices) {
-      setOvmValue(tags, vertex, tag, "feature vertex " + std::to_string(vertex),
+      setOvmValue(tags, vertex, tag, concat("feature vertex ", vertex),
                   {PlaceKind::Vertex, vertex});
     }
   }
@@ -414,8 +412,8 @@ void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
   }
   if (!regions.empty() && regions.size() != topology.cells.size()) {
     throw Error(ErrorCode::InvalidArgument,
-                "The mesh has " + std::to_string(topology.cells.size()) +
-                    " cells, but regions for " + std::to_string(regions.size()) + ".");
+                concat("The mesh has ", topology.cells.size(), " cells, but regions for ",
+                       regions.size(), "."));
   }
   properties[OvmInteger::Region].assign(regions.begin(), regions.end());
 }

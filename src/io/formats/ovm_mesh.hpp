@@ -216,7 +216,7 @@ inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
                                    Stage& stage);
 [[nodiscard]] OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage);
 
-/// Write and commit a mesh in the layout of OpenVolumeMesh's own files: for each kind of element
+/// Write a mesh in the layout of OpenVolumeMesh's own files: for each kind of element
 /// one chunk or section, handles without offset; numbers of `.ovm` have the fewest digits that read
 /// back to the same double.
 /// @param mesh  for `.ovm` with faces and cells of one valence each

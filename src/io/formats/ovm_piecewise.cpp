@@ -3,7 +3,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,6 +16,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/ovm_cells.hpp>
@@ -317,32 +317,25 @@ class PiecewiseWriter {
 
 /// @param most  what there is no more of than this
 void write(const PiecewiseLinearMesh& mesh, const TetMapView* map, PiecewiseLinearParts parts,
-           std::uint64_t most, const std::filesystem::path& file, Stage& stage) {
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  if (most > std::numeric_limits<std::int32_t>::max()) {
-    throw Error(ErrorCode::TooLarge,
-                "OpenVolumeMesh files number elements with 31 bits, which do not suffice for " +
-                    std::to_string(most) + ". Lower the scale, or write .vtu.");
-  }
+           std::uint64_t most, OutputFile& output, Stage& stage) {
+  requireInt32(most, "OpenVolumeMesh files number elements", "lower the scale, or write .vtu");
   withThreads(stage.context().threads(),
               [&] { PiecewiseWriter(mesh, map, stage).write(parts, output); });
 }
 
 }  // namespace
 
-void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
-                   const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "write arcs");
+void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map, OutputFile& output,
+                   Stage& stage) {
   // Segments are more than the points that they add.
   const std::uint64_t most =
       std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size());
-  write(mesh, map, PiecewiseLinearParts::Arcs, 2 * most, file, stage);
+  write(mesh, map, PiecewiseLinearParts::Arcs, 2 * most, output, stage);
 }
 
-void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map,
-                      const std::filesystem::path& file, Context& context) {
-  Stage stage(context, "write patches");
-  write(mesh, map, PiecewiseLinearParts::ArcsAndPatches, 2 * mesh.patches.corners.size(), file,
+void writePatchesOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map, OutputFile& output,
+                      Stage& stage) {
+  write(mesh, map, PiecewiseLinearParts::ArcsAndPatches, 2 * mesh.patches.corners.size(), output,
         stage);
 }
 

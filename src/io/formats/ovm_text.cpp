@@ -76,14 +76,12 @@ Index readHandle(TextScanner& scanner, const OvmElements& elements, std::size_t 
                  std::size_t limit) {
   std::int64_t handle = 0;
   if (!scanner.readInteger(handle)) {
-    scanner.failInteger("a " + std::string(elements.parts) + " of " + elements.one + " " +
-                        std::to_string(number));
+    scanner.failInteger(concat("a ", elements.parts, " of ", elements.one, " ", number));
   }
   if (handle < 0 || static_cast<std::uint64_t>(handle) >= limit) {
-    scanner.fail(ErrorCode::IndexOutOfRange,
-                 std::string(elements.one) + " " + std::to_string(number) + " names " +
-                     elements.parts + " " + quoted(scanner.currentToken()) + ", but there are " +
-                     std::to_string(limit) + ", numbered from 0.");
+    scanner.fail(ErrorCode::IndexOutOfRange, elements.one, " ", number, " names ", elements.parts,
+                 " ", quoted(scanner.currentToken()), ", but there are ", limit,
+                 ", numbered from 0.");
   }
   return static_cast<Index>(handle);
 }
@@ -91,14 +89,11 @@ Index readHandle(TextScanner& scanner, const OvmElements& elements, std::size_t 
 std::uint32_t readValence(TextScanner& scanner, const OvmElements& elements, std::size_t number) {
   std::int64_t valence = 0;
   if (!scanner.readInteger(valence)) {
-    scanner.failInteger("the valence of " + std::string(elements.one) + " " +
-                        std::to_string(number));
+    scanner.failInteger(concat("the valence of ", elements.one, " ", number));
   }
   if (valence < elements.leastValence || valence > kNone) {
-    scanner.fail(ErrorCode::FileSyntax, std::string(elements.one) + " " + std::to_string(number) +
-                                            " has the valence " + std::to_string(valence) +
-                                            "; at least " + std::to_string(elements.leastValence) +
-                                            " is needed.");
+    scanner.fail(ErrorCode::FileSyntax, elements.one, " ", number, " has the valence ", valence,
+                 "; at least ", elements.leastValence, " is needed.");
   }
   return static_cast<std::uint32_t>(valence);
 }
@@ -118,7 +113,7 @@ class OvmTextReader {
     readArrays(mesh_.points, kOvmElements[0], [](TextScanner& scanner, std::size_t i) {
       double coordinate = 0;
       if (scanner.readNumber(coordinate)) return coordinate;
-      scanner.failNumber("a coordinate of vertex " + std::to_string(i));
+      scanner.failNumber(concat("a coordinate of vertex ", i));
     });
     topology.vertexCount = mesh_.points.size();
     const OvmElements& edges = kOvmElements[1];
@@ -145,18 +140,16 @@ class OvmTextReader {
     if (equalsIgnoringCase(kind, "ASCII")) return;
     const bool binary = equalsIgnoringCase(kind, "BINARY");
     scanner_.fail(binary ? ErrorCode::FileUnsupported : ErrorCode::FileSyntax,
-                  "expected \"OVM ASCII\", found \"OVM\" and " + quoted(kind) +
-                      (binary ? ". Save the file as text, or as .ovmb." : "."));
+                  "expected \"OVM ASCII\", found \"OVM\" and ", quoted(kind),
+                  (binary ? ". Save the file as text, or as .ovmb." : "."));
   }
 
   /// @return the number of elements
   std::size_t readSection(const OvmElements& elements) {
     if (!equalsIgnoringCase(scanner_.readToken(), elements.section)) {
       const std::string_view found = scanner_.currentToken();
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "expected the section " + std::string(elements.section) + ", found " +
-                        (found.empty() ? "the end of the file: it is incomplete" : quoted(found)) +
-                        ".");
+      scanner_.fail(ErrorCode::FileSyntax, "expected the section ", elements.section, ", found ",
+                    (found.empty() ? "the end of the file: it is incomplete" : quoted(found)), ".");
     }
     const std::size_t count = scanner_.readCount(elements.many, elements.fewestBytes);
     if (count > kMaxOvmEntities) {
@@ -247,8 +240,8 @@ class OvmTextReader {
       const std::optional<PropertyHeader> header = parseHeader(rest.substr(0, rest.find('\n')));
       if (!header && !comment && !anythingGoes) {
         scanner_.fail(ErrorCode::FileSyntax,
-                      "expected a property (e.g. VProp) or the end of the file, found " +
-                          quoted(first) + ".");
+                      "expected a property (e.g. VProp) or the end of the file, found ",
+                      quoted(first), ".");
       }
       scanner_.takeLine();
       if (!header) continue;
@@ -282,7 +275,7 @@ class OvmTextReader {
             if (scanner.readNumber(parameter)) continue;
             const NumberProblem problem = parseNumber(scanner.currentToken(), parameter);
             if (problem != NumberProblem::NotFinite && problem != NumberProblem::Overflow) {
-              scanner.failNumber("a parameter of half-face " + std::to_string(i));
+              scanner.failNumber(concat("a parameter of half-face ", i));
             }
             parameter = std::numeric_limits<double>::quiet_NaN();
             scanner.readToken();
@@ -298,10 +291,9 @@ class OvmTextReader {
         scanner_.failInteger("a value of the property " + quoted(header.name));
       }
       if (!std::in_range<std::int32_t>(value)) {
-        scanner_.fail(ErrorCode::FileUnsupported,
-                      "the property " + quoted(header.name) + " has the value " +
-                          std::string(scanner_.currentToken()) +
-                          ", which does not fit into 32 bits with a sign.");
+        scanner_.fail(ErrorCode::FileUnsupported, "the property ", quoted(header.name),
+                      " has the value ", scanner_.currentToken(),
+                      ", which does not fit into 32 bits with a sign.");
       }
       values.push_back(static_cast<std::int32_t>(value));
     }
@@ -360,7 +352,6 @@ class OvmTextWriter {
     writeSection("Faces", mesh_.topology.faces);
     writeSection("Polyhedra", mesh_.topology.cells);
     for (const OvmProperty& property : mesh_.properties) writeProperty(property);
-    output_.commit();
   }
 
  private:
@@ -427,61 +418,57 @@ template <class Result>
 using Convert = Result (*)(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
 template <class Result>
-Result read(const Input& input, Context& context, std::string_view stageName, Parse parse,
-            Convert<Result> convert) {
-  return inStage(context, stageName, [&](Stage& stage) {
-    const auto parsed = [&] {
-      Array<char> room;  // given back before cells are made
-      // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
-      return parse(input.text(room, stage, "OoVv#"), input.name(), stage);
-    };
-    return convert(parsed(), input.name(), stage);
-  });
+Result read(const Input& input, Stage& stage, Parse parse, Convert<Result> convert) {
+  const auto parsed = [&] {
+    Array<char> room;  // given back before cells are made
+    // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
+    return parse(input.text(room, stage, "OoVv#"), input.name(), stage);
+  };
+  return convert(parsed(), input.name(), stage);
 }
 
 /// @param mesh  a map or a hex mesh
 template <class Mesh>
-void write(const Mesh& mesh, const std::filesystem::path& file, Context& context,
-           std::string_view stageName, Write writeFile) {
-  Stage stage(context, stageName);
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
-  withThreads(context.threads(), [&] { writeFile(toOvm(mesh, stage), output, stage); });
+void write(const Mesh& mesh, OutputFile& output, Stage& stage, Write writeFile) {
+  withThreads(stage.context().threads(), [&] { writeFile(toOvm(mesh, stage), output, stage); });
 }
 
 }  // namespace
 
-TetMap readOvmMap(const Input& input, Context& context) {
-  return read<TetMap>(input, context, "read map", parseOvmText, toTetMap);
+TetMap readOvmMap(const Input& input, const ReadOptions& /*options*/, Stage& stage) {
+  return read<TetMap>(input, stage, parseOvmText, toTetMap);
 }
-TetMap readOvmbMap(const Input& input, Context& context) {
-  return read<TetMap>(input, context, "read map", parseOvmb, toTetMap);
+TetMap readOvmbMap(const Input& input, const ReadOptions& /*options*/, Stage& stage) {
+  return read<TetMap>(input, stage, parseOvmb, toTetMap);
 }
-TetCells readOvmTets(const Input& input, Context& context) {
-  return read<TetCells>(input, context, "read tets", parseOvmText, toTetCells);
+TetCells readOvmTets(const Input& input, Stage& stage) {
+  return read<TetCells>(input, stage, parseOvmText, toTetCells);
 }
-TetCells readOvmbTets(const Input& input, Context& context) {
-  return read<TetCells>(input, context, "read tets", parseOvmb, toTetCells);
+TetCells readOvmbTets(const Input& input, Stage& stage) {
+  return read<TetCells>(input, stage, parseOvmb, toTetCells);
 }
-HexMesh readOvmHexMesh(const Input& input, Context& context) {
-  return read<HexMesh>(input, context, "read mesh", parseOvmText, toHexMesh);
+HexMesh readOvmHexMesh(const Input& input, Stage& stage) {
+  return read<HexMesh>(input, stage, parseOvmText, toHexMesh);
 }
-HexMesh readOvmbHexMesh(const Input& input, Context& context) {
-  return read<HexMesh>(input, context, "read mesh", parseOvmb, toHexMesh);
+HexMesh readOvmbHexMesh(const Input& input, Stage& stage) {
+  return read<HexMesh>(input, stage, parseOvmb, toHexMesh);
 }
 
-void writeOvmMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
-  write(map, file, context, "write map", writeOvmText);
+void writeOvmMap(const TetMap& map, OutputFile& output, const WriteOptions& /*options*/,
+                 Stage& stage) {
+  write(map, output, stage, writeOvmText);
 }
-void writeOvmbMap(const TetMap& map, const std::filesystem::path& file, Context& context) {
-  write(map, file, context, "write map", writeOvmb);
+void writeOvmbMap(const TetMap& map, OutputFile& output, const WriteOptions& /*options*/,
+                  Stage& stage) {
+  write(map, output, stage, writeOvmb);
 }
-void writeOvmHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
-                     const WriteOptions& /*options*/, Context& context) {
-  write(mesh, file, context, "write mesh", writeOvmText);
+void writeOvmHexMesh(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
+                     Stage& stage) {
+  write(mesh, output, stage, writeOvmText);
 }
-void writeOvmbHexMesh(const HexMesh& mesh, const std::filesystem::path& file,
-                      const WriteOptions& /*options*/, Context& context) {
-  write(mesh, file, context, "write mesh", writeOvmb);
+void writeOvmbHexMesh(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
+                      Stage& stage) {
+  write(mesh, output, stage, writeOvmb);
 }
 
 }  // namespace hexhex::io

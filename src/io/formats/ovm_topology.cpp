@@ -2,6 +2,7 @@
 // First, as its HalfFace and CornerOrder are names of entities and properties: adjacency has types
 // of these names, which they would shadow.
 // clang-format off
+#include <base/concat.hpp>
 #include <io/formats/ovm_cells.hpp>
 // clang-format on
 
@@ -28,9 +29,8 @@ namespace hexhex::io {
 
 void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what) {
   if (count <= limit) return;
-  throw Error(ErrorCode::TooLarge, "The mesh has " + std::to_string(count) + " " + what +
-                                       "; files of OpenVolumeMesh hold at most " +
-                                       std::to_string(limit) + ".");
+  throw Error(ErrorCode::TooLarge, concat("The mesh has ", count, " ", what,
+                                          "; files of OpenVolumeMesh hold at most ", limit, "."));
 }
 
 namespace {
@@ -48,10 +48,10 @@ void requireDifferentVertices(std::span<const Cell> cells, Stage& stage) {
   const std::size_t fault =
       firstFault(stage, cells.size(), [cells](std::size_t c) { return !hasVertexTwice(cells[c]); });
   if (fault == cells.size()) return;
-  throw Error(ErrorCode::RepeatedVertex,
-              "Cell " + std::to_string(fault) +
-                  " has a vertex twice; files of OpenVolumeMesh cannot hold that.",
-              Place{PlaceKind::Cell, fault});
+  throw Error(
+      ErrorCode::RepeatedVertex,
+      concat("Cell ", fault, " has a vertex twice; files of OpenVolumeMesh cannot hold that."),
+      Place{PlaceKind::Cell, fault});
 }
 
 /// Throws if this is a face of more than two cells, or of two that are not beside each other.
@@ -61,7 +61,7 @@ void requireManifold(std::span<const Cell> cells,
   if (halfFaces.size() == 1) return;
   const adjacency::CellFace<Cell>& a = halfFaces[0];
   const adjacency::CellFace<Cell>& b = halfFaces[1];
-  const std::string names = "cells " + std::to_string(a.cell) + " and " + std::to_string(b.cell);
+  const std::string names = concat("cells ", a.cell, " and ", b.cell);
   const Place place{PlaceKind::Cell, a.cell};
   if (halfFaces.size() > 2) {
     throw Error(ErrorCode::NonManifoldFace,

@@ -76,7 +76,7 @@ constexpr std::size_t kCells = 3;
 
 /// "an edge"
 std::string anyOf(std::size_t entity) {
-  return (entity == kEdges ? "an " : "a ") + std::string(kOvmElements[entity].one);
+  return concat((entity == kEdges ? "an " : "a "), kOvmElements[entity].one);
 }
 
 /// Calls f with a number of the width that a file has.
@@ -120,8 +120,8 @@ class ElementReader {
     const std::size_t entity = cursor.read<std::uint8_t>("the header of a TOPO chunk");
     if (entity < kEdges || entity > kCells) {
       cursor.failAt(position, ErrorCode::FileSyntax,
-                    "a TOPO chunk must be about edges (1), faces (2) or cells (3), found " +
-                        std::to_string(entity) + ".");
+                    "a TOPO chunk must be about edges (1), faces (2) or cells (3), found ", entity,
+                    ".");
     }
     const auto count = static_cast<std::size_t>(readNextSpan(span, entity).count);
     readEncoding(cursor);
@@ -136,10 +136,10 @@ class ElementReader {
   void requireAll() const {
     for (std::size_t entity = 0; entity < 4; ++entity) {
       if (done_[entity] == frame_.counts[entity]) continue;
-      throw Error(ErrorCode::FileSyntax, frame_.fileName + ": the file header announces " +
-                                             std::to_string(frame_.counts[entity]) + " " +
-                                             kOvmElements[entity].many + ", but the file holds " +
-                                             std::to_string(done_[entity]) + ".");
+      throw Error(
+          ErrorCode::FileSyntax,
+          concat(frame_.fileName, ": the file header announces ", frame_.counts[entity], " ",
+                 kOvmElements[entity].many, ", but the file holds ", done_[entity], "."));
     }
   }
 
@@ -150,14 +150,12 @@ class ElementReader {
     const OvmbSpan span = readOvmbSpan(cursor);
     const std::string many = kOvmElements[entity].many;
     if (span.first != done_[entity]) {
-      cursor.failAt(position, ErrorCode::FileSyntax,
-                    "expected " + many + " from number " + std::to_string(done_[entity]) +
-                        " on, found number " + std::to_string(span.first) + ".");
+      cursor.failAt(position, ErrorCode::FileSyntax, "expected ", many, " from number ",
+                    done_[entity], " on, found number ", span.first, ".");
     }
     if (span.count > frame_.counts[entity] - span.first) {
-      cursor.failAt(position, ErrorCode::FileSyntax,
-                    "there are more " + many + " than the " +
-                        std::to_string(frame_.counts[entity]) + " that the file header announces.");
+      cursor.failAt(position, ErrorCode::FileSyntax, "there are more ", many, " than the ",
+                    frame_.counts[entity], " that the file header announces.");
     }
     done_[entity] += span.count;
     return span;
@@ -173,8 +171,8 @@ class ElementReader {
     if (fault == span.count) return;
     const std::uint64_t vertex = span.first + fault;
     cursor.failAt(begin + 3 * fault * sizeof(Stored), ErrorCode::NotFinite,
-                  "a coordinate of vertex " + std::to_string(vertex) + " is not finite.",
-                  Place{PlaceKind::Vertex, vertex});
+                  Place{PlaceKind::Vertex, vertex}, "a coordinate of vertex ", vertex,
+                  " is not finite.");
   }
 
   void readEncoding(ByteCursor& cursor) {
@@ -196,8 +194,8 @@ class ElementReader {
   /// @return room for the handles, of which the rest of the chunk has as many, as below
   std::span<Index> readEdges(const ByteCursor& cursor, std::size_t count) {
     if (encoding_.valence != 2) {
-      cursor.fail(ErrorCode::FileSyntax, "edges must have the valence 2, found " +
-                                             std::to_string(encoding_.valence) + ".");
+      cursor.fail(ErrorCode::FileSyntax, "edges must have the valence 2, found ", encoding_.valence,
+                  ".");
     }
     if (cursor.remaining() != 2 * count * encoding_.handleBytes) {
       cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its edges.");
@@ -211,12 +209,12 @@ class ElementReader {
   std::span<Index> readLists(ByteCursor& cursor, std::size_t count, std::size_t entity) {
     const std::string many = kOvmElements[entity].many;
     if (count * std::max(encoding_.valence, encoding_.valenceBytes) > cursor.remaining()) {
-      cursor.fail(ErrorCode::FileSyntax,
-                  "a TOPO chunk is too short for its " + std::to_string(count) + " " + many + ".");
+      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk is too short for its ", count, " ", many,
+                  ".");
     }
     if (encoding_.valence > 0 && encoding_.valence < kOvmElements[entity].leastValence) {
-      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has " + many + " of valence " +
-                                             std::to_string(encoding_.valence) + ".");
+      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has ", many, " of valence ",
+                  encoding_.valence, ".");
     }
     std::uint64_t handles = std::uint64_t{count} * encoding_.valence;
     if (encoding_.valence == 0) {
@@ -227,7 +225,7 @@ class ElementReader {
     }
     // The first comparison keeps the product from overflowing.
     if (handles > cursor.remaining() || cursor.remaining() != handles * encoding_.handleBytes) {
-      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its " + many + ".");
+      cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its ", many, ".");
     }
     return appendLists(entity == kFaces ? mesh_.topology.faces : mesh_.topology.cells, count,
                        static_cast<std::size_t>(handles));
@@ -243,9 +241,8 @@ class ElementReader {
       return valences_[i] >= least;
     });
     if (fault == valences_.size()) return;
-    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileSyntax,
-                  anyOf(entity) + " has the valence " + std::to_string(valences_[fault]) +
-                      "; at least " + std::to_string(least) + " is needed.");
+    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileSyntax, anyOf(entity),
+                  " has the valence ", valences_[fault], "; at least ", least, " is needed.");
   }
 
   /// Appends lists with so many handles in total, and returns the room for them.
@@ -297,10 +294,9 @@ class ElementReader {
     const std::size_t fault =
         firstFault(stage_, handles.size(), [&](std::size_t i) { return storedAt(i) < room; });
     const std::uint64_t stored = storedAt(fault);
-    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::IndexOutOfRange,
-                  anyOf(entity) + " names " + kOvmElements[entity].parts + " " +
-                      std::to_string(stored) + " + " + std::to_string(offset) + ", but there are " +
-                      std::to_string(limit) + ", numbered from 0.");
+    cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::IndexOutOfRange, anyOf(entity),
+                  " names ", kOvmElements[entity].parts, " ", stored, " + ", offset,
+                  ", but there are ", limit, ", numbered from 0.");
   }
 
   static constexpr std::size_t kGrain = 16384;
@@ -364,14 +360,14 @@ void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
   static_cast<void>(readByte("the version of the file"));
   const unsigned version = readByte("the version of the header");
   require(version == 1, ErrorCode::FileUnsupported,
-          "the header has version " + std::to_string(version) + "; only version 1 is supported.");
+          concat("the header has version ", version, "; only version 1 is supported."));
   const unsigned dimension = readByte("the dimension");
   require(dimension == 3, ErrorCode::FileUnsupported,
-          "the dimension must be 3, found " + std::to_string(dimension) + ".");
+          concat("the dimension must be 3, found ", dimension, "."));
   // Valences decide what the cells are; this is but a hint.
   const unsigned kind = readByte("the kind of the mesh");
   require(kind <= 2, ErrorCode::FileSyntax,
-          "the kind of the mesh must be 0, 1 or 2, found " + std::to_string(kind) + ".");
+          concat("the kind of the mesh must be 0, 1 or 2, found ", kind, "."));
   const std::size_t reserved = cursor.position();
   if (cursor.read<std::uint32_t>("the reserved part") != 0) {
     cursor.failAt(reserved, ErrorCode::FileSyntax, "the reserved part of the header is not zero.");
@@ -380,10 +376,8 @@ void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
     const std::size_t position = cursor.position();
     count = cursor.read<std::uint64_t>("the header");
     if (count > kMaxOvmEntities) {
-      cursor.failAt(position, ErrorCode::TooLarge,
-                    "the header announces " + std::to_string(count) +
-                        " elements of a kind; at most " + std::to_string(kMaxOvmEntities) +
-                        " are supported.");
+      cursor.failAt(position, ErrorCode::TooLarge, "the header announces ", count,
+                    " elements of a kind; at most ", kMaxOvmEntities, " are supported.");
     }
   }
 }
@@ -399,8 +393,8 @@ ChunkHeader readChunkHeader(ByteCursor& cursor) {
   header.flags = cursor.read<std::uint8_t>(kWhat);
   header.length = cursor.read<std::uint64_t>(kWhat);
   if (header.padding > 7 || header.padding > header.length || header.flags > kMandatory) {
-    cursor.failAt(header.position, ErrorCode::FileSyntax,
-                  "the chunk " + quoted(header.type) + " has an impossible header.");
+    cursor.failAt(header.position, ErrorCode::FileSyntax, "the chunk ", quoted(header.type),
+                  " has an impossible header.");
   }
   return header;
 }
@@ -411,7 +405,7 @@ std::string_view takePayload(const ChunkHeader& header, ByteCursor& cursor) {
   const std::string_view padding = body.substr(payload.size());
   if (std::any_of(padding.begin(), padding.end(), [](char byte) { return byte != 0; })) {
     cursor.failAt(cursor.position() - header.padding, ErrorCode::FileSyntax,
-                  "the padding at the end of the chunk " + quoted(header.type) + " is not zero.");
+                  "the padding at the end of the chunk ", quoted(header.type), " is not zero.");
   }
   return payload;
 }
@@ -422,11 +416,10 @@ bool isKnown(const ChunkHeader& header, const ByteCursor& cursor) {
   const bool known = std::find(kTypes.begin(), kTypes.end(), header.type) != kTypes.end() &&
                      header.version == 0 && header.compression == 0;
   if (known || (header.flags & kMandatory) == 0) return known;
-  cursor.failAt(header.position, ErrorCode::FileUnsupported,
-                "the chunk " + quoted(header.type) + " (version " + std::to_string(header.version) +
-                    ", compression " + std::to_string(header.compression) +
-                    ") is not supported, and marked as mandatory. Save the file with an earlier "
-                    "version of OpenVolumeMesh, uncompressed.");
+  cursor.failAt(header.position, ErrorCode::FileUnsupported, "the chunk ", quoted(header.type),
+                " (version ", header.version, ", compression ", header.compression,
+                ") is not supported, and marked as mandatory. Save the file with an earlier "
+                "version of OpenVolumeMesh, uncompressed.");
 }
 
 /// @param bytes, fileName  must outlive the frame
@@ -453,8 +446,8 @@ OvmbFrame splitOvmb(std::string_view bytes, const std::string& fileName) {
     frame.chunks.push_back({header.type, payload});
   }
   if (cursor.remaining() > 0) {
-    cursor.fail(ErrorCode::FileSyntax,
-                "there are " + std::to_string(cursor.remaining()) + " bytes after the end chunk.");
+    cursor.fail(ErrorCode::FileSyntax, "there are ", cursor.remaining(),
+                " bytes after the end chunk.");
   }
   return frame;
 }
@@ -498,9 +491,8 @@ Entry readEntry(ByteCursor& cursor) {
   const std::size_t position = cursor.position();
   const auto entity = cursor.read<std::uint8_t>("the directory of properties");
   if (entity > static_cast<std::uint8_t>(OvmEntity::Mesh)) {
-    cursor.failAt(position, ErrorCode::FileSyntax,
-                  "a property belongs to an entity of kind " + std::to_string(entity) +
-                      "; only 0 to 6 exist.");
+    cursor.failAt(position, ErrorCode::FileSyntax, "a property belongs to an entity of kind ",
+                  entity, "; only 0 to 6 exist.");
   }
   const auto text = [&cursor](std::string_view what) {
     return cursor.take(cursor.read<std::uint32_t>(what), what);
@@ -525,10 +517,8 @@ constexpr Subject kValues = {"the values", "have"};
 const char* takeAll(std::uint64_t bytes, const Entry& entry, const Subject& subject,
                     ByteCursor& cursor) {
   if (cursor.remaining() != bytes) {
-    cursor.fail(ErrorCode::FileSyntax, subject.name + (" of the property " + quoted(entry.name)) +
-                                           " " + subject.verb + " " +
-                                           std::to_string(cursor.remaining()) +
-                                           " bytes instead of " + std::to_string(bytes) + ".");
+    cursor.fail(ErrorCode::FileSyntax, subject.name, (" of the property " + quoted(entry.name)),
+                " ", subject.verb, " ", cursor.remaining(), " bytes instead of ", bytes, ".");
   }
   return cursor.take(bytes, subject.name).data();
 }
@@ -560,16 +550,14 @@ class PropertyReader {
     const std::size_t position = cursor.position();
     const auto number = cursor.read<std::uint32_t>("the header of a PROP chunk");
     if (number >= entries_.size()) {
-      cursor.failAt(position, ErrorCode::FileSyntax,
-                    "a PROP chunk is about property " + std::to_string(number) + ", but only " +
-                        std::to_string(entries_.size()) + " are listed before it.");
+      cursor.failAt(position, ErrorCode::FileSyntax, "a PROP chunk is about property ", number,
+                    ", but only ", entries_.size(), " are listed before it.");
     }
     const Entry& entry = entries_[number];
     const std::size_t count = mesh_.topology.count(entry.entity);
     if (span.first > count || span.count > count - span.first) {
-      cursor.fail(ErrorCode::FileSyntax, "values of the property " + quoted(entry.name) +
-                                             " lie outside of its " + std::to_string(count) +
-                                             " elements.");
+      cursor.fail(ErrorCode::FileSyntax, "values of the property ", quoted(entry.name),
+                  " lie outside of its ", count, " elements.");
     }
     const auto decodeInto = [&](auto* values) {
       if (values == nullptr) return;
@@ -626,10 +614,9 @@ class PropertyReader {
         return std::in_range<std::int32_t>(valueAt(i));
       });
       if (fault == values.size()) return;
-      cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileUnsupported,
-                    "the property " + quoted(entry.name) + " has the value " +
-                        std::to_string(valueAt(fault)) +
-                        ", which does not fit into 32 bits with a sign.");
+      cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileUnsupported, "the property ",
+                    quoted(entry.name), " has the value ", valueAt(fault),
+                    ", which does not fit into 32 bits with a sign.");
     });
   }
 

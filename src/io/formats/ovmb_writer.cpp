@@ -12,10 +12,10 @@ namespace hexhex::io {
 
 namespace {
 
-// What is written between two looks at the caller's wish to cancel: some milliseconds' work.
+// Elements written between two checks for cancellation: a few milliseconds' work.
 constexpr std::size_t kSlice = std::size_t{1} << 18;
 
-/// What the directory says of a type of values.
+/// A type of values, as the directory has it.
 struct ElementType {
   std::string_view name;
   std::size_t bytes;
@@ -54,7 +54,6 @@ class OvmbWriter {
     writeTopology(OvmEntity::Cell, cells.length, cells.offsets, cells.handles, OvmEntity::HalfFace);
     for (std::uint32_t i = 0; i < mesh_.properties.size(); ++i) writeProperty(i);
     writeChunk("EOF ", 0, [] {});
-    output_.commit();
   }
 
  private:

@@ -54,10 +54,7 @@ class PvtuSink final : public PartSink {
         team_(team),
         folder_(
             file.parent_path() / stem_,
-            [stem = stem_](std::uint32_t part) {
-              return stem + '_' + std::to_string(part) + ".vtu";
-            },
-            team) {
+            [stem = stem_](std::uint32_t part) { return concat(stem, '_', part, ".vtu"); }, team) {
     if (isFirst(team)) index_.emplace(file);
   }
 
@@ -71,6 +68,7 @@ class PvtuSink final : public PartSink {
     folder_.run([&] {
       OutputFile output(folder_.fileOf(part.part));
       writeVtkXml(output, data, false, stage);
+      output.commit();
     });
   }
 
@@ -99,24 +97,21 @@ class PvtuSink final : public PartSink {
     }
   }
 
-  /// What is the same in all pieces.
+  /// The part that all pieces share.
   [[nodiscard]] std::string headOf(const VtkDataSet& data) const {
     const bool little = std::endian::native == std::endian::little;
     std::string head =
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" "
         "version=\"1.0\" byte_order=\"";
     head += little ? "LittleEndian" : "BigEndian";
-    head += "\" header_type=\"UInt64\">\n  <PUnstructuredGrid GhostLevel=\"" +
-            std::to_string(info_.ghostLayers) + "\">\n";
+    head += concat("\" header_type=\"UInt64\">\n  <PUnstructuredGrid GhostLevel=\"",
+                   info_.ghostLayers, "\">\n");
     const auto addSection = [&](const std::string& name, VtkSection section) {
       head += "    <" + name + globalNumbersOf(section) + ">\n";
       for (const VtkArray& array : data.arrays()) {
         if (array.section != section) continue;
-        head += "      <PDataArray type=\"" + std::string(array.type) + "\" Name=\"" +
-                std::string(array.name) + "\"";
-        if (array.components != 1) {
-          head += " NumberOfComponents=\"" + std::to_string(array.components) + "\"";
-        }
+        head += concat("      <PDataArray type=\"", array.type, "\" Name=\"", array.name, "\"");
+        if (array.components != 1) head += concat(" NumberOfComponents=\"", array.components, "\"");
         head += "/>\n";
       }
       head += "    </" + name + ">\n";
@@ -129,7 +124,7 @@ class PvtuSink final : public PartSink {
   static std::string globalNumbersOf(VtkSection section) {
     if (section == VtkSection::Points) return {};
     const bool ofPoints = section == VtkSection::PointData;
-    return " GlobalIds=\"" + std::string(ofPoints ? kVtkGlobalPoints : kVtkGlobalCells) + '"';
+    return concat(" GlobalIds=\"", ofPoints ? kVtkGlobalPoints : kVtkGlobalCells, '"');
   }
 
   std::string stem_;
@@ -143,8 +138,7 @@ class PvtuSink final : public PartSink {
 
 }  // namespace
 
-std::unique_ptr<PartSink> openPvtuSink(const std::filesystem::path& file,
-                                       const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openPvtuSink(const std::filesystem::path& file, Context& context,
                                        ProcessTeam* team) {
   return std::make_unique<PvtuSink>(file, context, team);
 }
@@ -174,7 +168,7 @@ void requireFiles(const Input& input, const std::vector<std::filesystem::path>& 
     std::error_code missing;
     const std::filesystem::path file = std::filesystem::canonical(piece, missing);
     const std::filesystem::file_status status = std::filesystem::status(file, missing);
-    // Whoever opens it will tell why it cannot be read.
+    // Opening it will report why it cannot be read.
     if (missing || std::filesystem::is_directory(status)) continue;
     files.push_back(file);
     if (std::filesystem::is_regular_file(status)) continue;
@@ -200,7 +194,7 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
     if (tag.name != "Piece" || tag.closing || !inGrid) continue;
     const std::string source = unescaped(tag.attribute("Source"));
     if (source.empty() || source.find('\0') != std::string::npos) {
-      tags.fail(ErrorCode::FileSyntax, "a piece without Source, the name of its file.", tag);
+      tags.fail(ErrorCode::FileSyntax, tag, "a piece without Source, the name of its file.");
     }
     pieces.push_back(input.path().parent_path() / source);
   }
@@ -213,7 +207,7 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
   return pieces;
 }
 
-/// A piece with the global numbers of its points and hexahedra, if it tells both.
+/// A piece with the global numbers of its points and hexahedra, if it has both.
 struct Piece {
   HexMesh mesh;
   Array<std::int64_t> points;
@@ -329,9 +323,8 @@ class Gluer {
     if (numbers[i] >= 0 && numbers[i] < std::int64_t{kNone}) {
       return static_cast<std::uint64_t>(numbers[i]);
     }
-    source.fail(ErrorCode::FileUnsupported, std::string("a ") + what + " has the global number " +
-                                                std::to_string(numbers[i]) +
-                                                "; numbers from 0 to 2^32 - 2 are read.");
+    source.fail(ErrorCode::FileUnsupported, "a ", what, " has the global number ", numbers[i],
+                "; numbers from 0 to 2^32 - 2 are read.");
   }
 
   /// From points of the last piece to those of all.
@@ -365,10 +358,11 @@ class Gluer {
     const Array<std::size_t> firsts = firstsAtSamePosition(coordinates, firstPoints_, &ambiguous);
     if (ambiguous < points_.size()) {
       const Vec3& at = points_[ambiguous].position;
-      fail("pieces have no global numbers of points and cells, and at the point (" +
-           std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) +
-           ") a piece has several points, so that nobody knows which of them another piece's is. "
-           "Write the pieces with GlobalPointIds and GlobalCellIds.");
+      fail(concat(
+          "pieces have no global numbers of points and cells, and at the point (", at[0], ", ",
+          at[1], ", ", at[2],
+          ") a piece has several points, so that nobody knows which of them another piece's is. "
+          "Write the pieces with GlobalPointIds and GlobalCellIds."));
     }
     std::uint64_t next = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -397,22 +391,21 @@ class Gluer {
     nameIn(features_.quads);
   }
 
-  /// Sorts by number. Whoever has a number is the same everywhere, and none is missing.
+  /// Sorts by number. Elements with the same number must be equal, and no number is missing.
   template <class Element>
   void keepOnce(std::vector<Element>& elements, const char* what) const {
     std::stable_sort(elements.begin(), elements.end(),
                      [](const Element& a, const Element& b) { return a.number < b.number; });
     for (std::size_t i = 1; i < elements.size(); ++i) {
       if (elements[i].number != elements[i - 1].number || elements[i] == elements[i - 1]) continue;
-      fail("two pieces have different " +
-           std::string(what == std::string_view("vertex") ? "vertices" : "cells") +
-           " with the global number " + std::to_string(elements[i].number) + '.');
+      fail(concat("two pieces have different ",
+                  what == std::string_view("vertex") ? "vertices" : "cells",
+                  " with the global number ", elements[i].number, '.'));
     }
     elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
     for (std::size_t i = 0; i < elements.size(); ++i) {
       if (elements[i].number == i) continue;
-      fail("the " + std::string(what) + " with the global number " + std::to_string(i) +
-           " is in no piece.");
+      fail(concat("the ", what, " with the global number ", i, " is in no piece."));
     }
   }
   template <class Feature>
@@ -455,16 +448,14 @@ GluedMesh readVtkPieces(const std::string& name, std::size_t count, const OpenVt
   return gluer.take();
 }
 
-HexMesh readPvtu(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&](Stage& stage) {
-    const std::vector<std::filesystem::path> files = findPieces(input, stage);
-    std::optional<Input> piece;  // outlives its source
-    const auto open = [&](std::size_t i) {
-      piece.emplace(files[i]);
-      return openVtuFile(*piece, stage);
-    };
-    return readVtkPieces(input.name(), files.size(), open, stage).mesh;
-  });
+HexMesh readPvtu(const Input& input, Stage& stage) {
+  const std::vector<std::filesystem::path> files = findPieces(input, stage);
+  std::optional<Input> piece;  // outlives its source
+  const auto open = [&](std::size_t i) {
+    piece.emplace(files[i]);
+    return openVtuFile(*piece, stage);
+  };
+  return readVtkPieces(input.name(), files.size(), open, stage).mesh;
 }
 
 }  // namespace hexhex::io

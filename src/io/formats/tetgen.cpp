@@ -36,9 +36,7 @@ class TetgenRows {
     width_ = width;
     if (tellsWidth && tokens > 1) width_ = scanner_.readCount("numbers of a row", 1);
     // How many other numbers follow: attributes and a mark of the boundary.
-    for (std::size_t i = before; i < tokens; ++i) {
-      more_ += scanner_.readCount("further numbers", 1);
-    }
+    for (std::size_t i = before; i < tokens; ++i) more_ += scanner_.readCount("further numbers", 1);
     return count_;
   }
 
@@ -55,8 +53,7 @@ class TetgenRows {
       if (i == 0) first_ = number;
       if (number != first_ + static_cast<std::int64_t>(i) || first_ < 0 || first_ > 1) {
         scanner_.fail(ErrorCode::FileSyntax,
-                      "rows are numbered one after the other, from 0 or 1; found " +
-                          std::to_string(number) + ".");
+                      "rows are numbered one after the other, from 0 or 1; found ", number, ".");
       }
       read(i);
       for (std::size_t k = 0; k < more_; ++k) readFurther(i, k);
@@ -77,8 +74,8 @@ class TetgenRows {
     const std::int64_t number = scanner_.integer({"a vertex of ", what, i});
     const std::int64_t index = number - points.first_;
     if (index < 0 || static_cast<std::uint64_t>(index) >= points.count_) {
-      scanner_.fail(ErrorCode::IndexOutOfRange,
-                    "there is no point " + std::to_string(number) + " in the .node file.");
+      scanner_.fail(ErrorCode::IndexOutOfRange, "there is no point ", number,
+                    " in the .node file.");
     }
     return static_cast<Index>(index);
   }
@@ -146,25 +143,23 @@ TetCells parseTetgen(const TetgenText& nodes, const TetgenText& faces, const Inp
   return mesh;
 }
 
-TetCells readTetgen(const Input& input, Context& context) {
-  return inStage(context, "read tets", [&](Stage& stage) {
-    if (input.path().empty()) {
-      throw Error(ErrorCode::FileUnsupported,
-                  input.name() + ": tets in memory have no file .node of points beside them.");
-    }
-    std::filesystem::path nodes = input.path();
-    nodes.replace_extension(".node");
-    const Array<char> text = readWholeFile(nodes, stage, "#0123456789");
-    std::filesystem::path faces = nodes;
-    faces.replace_extension(".face");
-    Array<char> faceText;
-    std::error_code unknown;
-    if (std::filesystem::exists(faces, unknown)) {
-      faceText = readWholeFile(faces, stage, "#0123456789");
-    }
-    return parseTetgen({asText(text), nodes.string()}, {asText(faceText), faces.string()}, input,
-                       stage);
-  });
+TetCells readTetgen(const Input& input, Stage& stage) {
+  if (input.path().empty()) {
+    throw Error(ErrorCode::FileUnsupported,
+                input.name() + ": tets in memory have no file .node of points beside them.");
+  }
+  std::filesystem::path nodes = input.path();
+  nodes.replace_extension(".node");
+  const Array<char> text = readWholeFile(nodes, stage, "#0123456789");
+  std::filesystem::path faces = nodes;
+  faces.replace_extension(".face");
+  Array<char> faceText;
+  std::error_code unknown;
+  if (std::filesystem::exists(faces, unknown)) {
+    faceText = readWholeFile(faces, stage, "#0123456789");
+  }
+  return parseTetgen({asText(text), nodes.string()}, {asText(faceText), faces.string()}, input,
+                     stage);
 }
 
 }  // namespace hexhex::io

@@ -147,19 +147,17 @@ class UnvReader {
     if (isBeam(typeNumber)) skipNumbers(3);
     constexpr std::uint64_t kMost = 64;
     if (count > kMost) {
-      scanner_->fail(ErrorCode::FileSyntax,
-                     "element " + std::to_string(element) + " has " + std::to_string(count) +
-                         " nodes; no element of this format has more than 64.");
+      scanner_->fail(ErrorCode::FileSyntax, "element ", element, " has ", count,
+                     " nodes; no element of this format has more than 64.");
     }
     const UnvType type = unvType(typeNumber, count);
     // In which order other programs list 27 nodes is their own affair.
     if (type.kind == UnvKind::Volume &&
         (type.cells == nullptr || count > kNodesInVtkOrder.size())) {
-      scanner_->fail(ErrorCode::FileUnsupported,
-                     "elements of the type " + std::to_string(typeNumber) + " with " +
-                         std::to_string(count) +
-                         " nodes are not known. Save hexahedra of order 2 "
-                         "with 20 nodes (in Gmsh: Mesh.SecondOrderIncomplete = 1).");
+      scanner_->fail(ErrorCode::FileUnsupported, "elements of the type ", typeNumber, " with ",
+                     count,
+                     " nodes are not known. Save hexahedra of order 2 "
+                     "with 20 nodes (in Gmsh: Mesh.SecondOrderIncomplete = 1).");
     }
     std::array<std::uint64_t, kMost> nodes{};
     for (std::size_t k = 0; k < count; ++k) nodes[k] = number("a node of an element");
@@ -241,9 +239,7 @@ class UnvReader {
     addFlat(quads_, nodes, lists_.quads);
     std::vector<TagName> names;  // a group may have elements of several kinds
     for (const NodeSet& group : lists_.nodeSets) {
-      for (const int dimension : {1, 2, 3}) {
-        names.push_back({dimension, group.number, group.name});
-      }
+      for (const int dimension : {1, 2, 3}) names.push_back({dimension, group.number, group.name});
     }
     lists_.addNamesInUse(names);
     for (std::size_t s = 0; s < nodeSets_.size(); ++s) {

@@ -72,25 +72,24 @@ int findOrder(const VtkSource& source) {
   for (std::size_t c = 0; c < types.size(); ++c) {
     if (types[c] != kVtkLagrangeHexahedron) continue;
     const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
-    // Readers of cells say what is wrong with corners that end before they begin, or too late.
+    // Corners that end before they begin, or too late, are reported by the reader of cells.
     const auto stored = static_cast<std::int64_t>(source.connectivity.count);
     if (begin < 0 || ends[c] < begin || ends[c] > stored) break;
     const std::int64_t count = ends[c] - begin;
     const bool first = nodes == 0;
     if (first && orderOf(static_cast<std::uint64_t>(count)) > 0) nodes = count;
     if (count == nodes) continue;
-    source.fail(ErrorCode::FileUnsupported,
-                "cell " + std::to_string(c) + " has " + std::to_string(count) + " nodes" +
-                    (first ? ", but Lagrange hexahedra of an order p from 1 to 9, the same in all "
-                             "directions, have (p + 1)^3."
-                           : ", but the cells before it have " + std::to_string(nodes) +
-                                 ". Cells of different orders are not supported."),
-                Place{PlaceKind::Cell, c});
+    source.fail(ErrorCode::FileUnsupported, Place{PlaceKind::Cell, c}, "cell ", c, " has ", count,
+                " nodes",
+                (first ? ", but Lagrange hexahedra of an order p from 1 to 9, the same in all "
+                         "directions, have (p + 1)^3."
+                       : concat(", but the cells before it have ", nodes,
+                                ". Cells of different orders are not supported.")));
   }
   return nodes == 0 ? 1 : orderOf(static_cast<std::uint64_t>(nodes));
 }
 
-/// From the order of VTK to that of LagrangeMesh.
+/// From VTK's order to that of LagrangeMesh.
 void reorderNodes(LagrangeMesh& mesh, VtkEdges upright, Stage& stage) {
   constexpr std::size_t kGrain = std::size_t{1} << 10;
   const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order, upright);
@@ -203,34 +202,26 @@ void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright) {
   putCornersFirst(mesh);
 }
 
-bool holdsLagrangeVtu(const Input& input, Context& context) {
-  return inStage(context, "read mesh",
-                 [&input](Stage& stage) { return holdsVtkLagrange(*openVtuFile(input, stage)); });
+bool holdsLagrangeVtu(const Input& input, Stage& stage) {
+  return holdsVtkLagrange(*openVtuFile(input, stage));
 }
 
-bool holdsCurvedVtkLegacy(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    return quadraticKind(*openVtkLegacyFile(input, false, stage)) != nullptr;
-  });
+bool holdsCurvedVtkLegacy(const Input& input, Stage& stage) {
+  return quadraticKind(*openVtkLegacyFile(input, false, stage)) != nullptr;
 }
 
-LagrangeMesh readCurvedVtkLegacy(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    const auto source = openVtkLegacyFile(input, true, stage);
-    if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
-    return readVtkLagrange(*source, input.name(), stage);
-  });
+LagrangeMesh readCurvedVtkLegacy(const Input& input, Stage& stage) {
+  const auto source = openVtkLegacyFile(input, true, stage);
+  if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
+  return readVtkLagrange(*source, input.name(), stage);
 }
 
-LagrangeMesh readLagrangeVtu(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    return readVtkLagrange(*openVtuFile(input, stage), input.name(), stage);
-  });
+LagrangeMesh readLagrangeVtu(const Input& input, Stage& stage) {
+  return readVtkLagrange(*openVtuFile(input, stage), input.name(), stage);
 }
 
-void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& file,
-                      const WriteOptions& options, Context& context) {
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+void writeLagrangeVtu(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                      Stage& stage) {
   const std::size_t perCell = mesh.nodesPerCell();
   // Files of version 1.0, which meshio takes: VTK 9 turns the edges of their Lagrange cells round.
   // Order 2 has a type that more programs know, whose nodes stand as VTK 9 has those of others.
@@ -243,7 +234,7 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
   VtkDataSet data(mesh.points.size(), mesh.cellCount());
   data.curved = true;
   addPoints(data, std::span(&nodes, 1));
-  addQuality(data, mesh, options, context);
+  data.add(VtkSection::CellData, kVtkQuality, options.scaledJacobians);
   addTags(data, mesh.features, mesh.regions);  // vertices are the first nodes
   data.addComputed<std::int64_t>(VtkSection::Cells, "connectivity", mesh.nodes.size(),
                                  [&](std::size_t i) {
@@ -254,7 +245,6 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, const std::filesystem::path& fil
                                  [perCell](std::size_t i) { return perCell * (i + 1); });
   data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
                                  [type](std::size_t) { return type; });
-  Stage stage(context, "write mesh");
   writeVtkXml(output, data, false, stage);
 }
 

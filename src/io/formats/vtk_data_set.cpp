@@ -5,6 +5,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <io/formats/vtk_data_set.hpp>
 
 namespace hexhex::io {
@@ -21,9 +22,8 @@ Array<std::int32_t> vertexTags(const std::vector<FeatureVertex>& features, std::
       tags[feature.vertex] = feature.tag;
       continue;
     }
-    throw Error(ErrorCode::InvalidArgument, "A feature names vertex " +
-                                                std::to_string(feature.vertex) +
-                                                ", which is not one of the mesh.");
+    throw Error(ErrorCode::InvalidArgument, concat("A feature names vertex ", feature.vertex,
+                                                   ", which is not one of the mesh."));
   }
   return tags;
 }
@@ -54,9 +54,7 @@ void addLists(VtkDataSet& data, VtkSection section, std::string_view name, std::
               std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
   if (lack(lists, values)) return;
   data.add<T>(section, name, components, data.points, [lists, values](const VtkBytes& output) {
-    for (const PointPiece& list : lists) {
-      output((list.*values).data(), (list.*values).size_bytes());
-    }
+    for (const PointPiece& list : lists) output((list.*values).data(), (list.*values).size_bytes());
   });
 }
 
@@ -191,13 +189,12 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
   addTagsOf(data, features, kVtkTriangleTags, features.faces, regions);
 }
 
-VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece& piece,
-                      Context& context) {
+VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece& piece) {
   piece.vertices = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
   piece.setCells(0, std::span<const Hex>(mesh.cells));
   VtkDataSet data = meshDataSet(piece, mesh.points.size(), mesh.cells.size(),
                                 std::tuple_size_v<Hex>, kVtkHexahedron);
-  addQuality(data, mesh, options, context);
+  data.add(VtkSection::CellData, kVtkQuality, options.scaledJacobians);
   addTags(data, mesh.features, mesh.regions);
   return data;
 }

@@ -184,16 +184,8 @@ struct VtkPiece {
 /// @param lists  of points, one behind the other; outlive the data set
 void addPoints(VtkDataSet& data, std::span<const PointPiece> lists);
 
-/// Adds the cell array scaled_jacobian: what the options say or, if that is nothing, what is
-/// computed.
-template <class Mesh>
-void addQuality(VtkDataSet& data, const Mesh& mesh, const WriteOptions& options, Context& context) {
-  constexpr std::string_view kName = "scaled_jacobian";
-  if (!options.scaledJacobians.empty()) {
-    return data.add(VtkSection::CellData, kName, options.scaledJacobians);
-  }
-  data.addOwn(VtkSection::CellData, kName, scaledJacobians(mesh, context));
-}
+/// The cell array of WriteOptions::scaledJacobians.
+inline constexpr std::string_view kVtkQuality = "scaled_jacobian";
 
 /// Adds tags and regions: the point array feature_vertex (Int32), the field arrays feature_edges,
 /// feature_triangles and feature_quads (Int64: vertices and the tag), and the cell array region
@@ -206,9 +198,9 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
 /// What `.vtu` and `.vtkhdf` hold of a hex mesh, as writeVtu() describes it.
 /// @param piece  outlives the data set, as the mesh and the options do
 [[nodiscard]] VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options,
-                                    VtkPiece& piece, Context& context);
+                                    VtkPiece& piece);
 
-/// Writes and commits a file of VTK's XML, array by array. One thread does it, straight from
+/// Writes a file of VTK's XML, array by array. One thread does it, straight from
 /// memory: that is as fast as the file system takes bytes, which lets one thread at a time write to
 /// a file. Blocks of compressed arrays come from all threads; the bytes do not depend on their
 /// number.

@@ -87,14 +87,14 @@ class VtkLegacyFile final : public VtkSource {
     require(hasCells_, "CELLS");
     require(hasTypes_, "CELL_TYPES");
     if (types.count == cells) return;
-    scanner_.fail(ErrorCode::FileSyntax, "the file has " + std::to_string(cells) + " cells but " +
-                                             std::to_string(types.count) + " types of cells.");
+    scanner_.fail(ErrorCode::FileSyntax, "the file has ", cells, " cells but ", types.count,
+                  " types of cells.");
   }
 
   /// Reads the regions of cells if they follow as this library writes them.
   void readRegions() {
     const std::string begin =
-        "CELL_DATA " + std::to_string(cells) + "\nSCALARS region int 1\nLOOKUP_TABLE default";
+        concat("CELL_DATA ", cells, "\nSCALARS region int 1\nLOOKUP_TABLE default");
     if (!scanner_.skipSpace() || !text().substr(scanner_.position()).starts_with(begin)) return;
     const std::size_t numbers = scanner_.position() + begin.size();
     arrays.push_back({VtkSection::CellData, std::string(kVtkRegions), VtkNumbers::Integers, 1,
@@ -135,9 +135,8 @@ class VtkLegacyFile final : public VtkSource {
     if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");
     if (readKeyword() != "dataset") scanner_.failToken("\"DATASET\"");
     if (readKeyword() != "unstructured_grid") {
-      scanner_.fail(ErrorCode::FileUnsupported,
-                    "the data set must be an UNSTRUCTURED_GRID, found " +
-                        quoted(scanner_.currentToken()) + ".");
+      scanner_.fail(ErrorCode::FileUnsupported, "the data set must be an UNSTRUCTURED_GRID, found ",
+                    quoted(scanner_.currentToken()), ".");
     }
     if (!binary_) index_.emplace(text(), stage_);
   }
@@ -173,8 +172,8 @@ class VtkLegacyFile final : public VtkSource {
 
   void require(bool present, std::string_view keyword) const {
     if (present) return;
-    scanner_.fail(ErrorCode::FileSyntax, "the file ends without the section " +
-                                             std::string(keyword) + ": it is incomplete.");
+    scanner_.fail(ErrorCode::FileSyntax, "the file ends without the section ", keyword,
+                  ": it is incomplete.");
   }
 
   void readPoints() {
@@ -234,11 +233,9 @@ class VtkLegacyFile final : public VtkSource {
       if (cell == cells) break;
       const std::int64_t count = place < numbers ? numberAt(place) : -1;
       if (count < 0 || static_cast<std::uint64_t>(count) > numbers - place - 1) {
-        scanner_.fail(ErrorCode::FileSyntax,
-                      "cell " + std::to_string(cell) + " of " + std::to_string(cells) +
-                          " goes beyond the " + std::to_string(numbers) +
-                          " numbers that the section CELLS announces.",
-                      Place{PlaceKind::Cell, cell});
+        scanner_.fail(ErrorCode::FileSyntax, Place{PlaceKind::Cell, cell}, "cell ", cell, " of ",
+                      cells, " goes beyond the ", numbers,
+                      " numbers that the section CELLS announces.");
       }
       place += 1 + static_cast<std::size_t>(count);
     }
@@ -266,17 +263,16 @@ class VtkLegacyFile final : public VtkSource {
     }
     if (keyword == "color_scalars") return array(scanner_.readCount("components", 1), colour);
     if (keyword == "lookup_table") return skipNumbers(4 * scanner_.readCount("colours", 4), colour);
-    scanner_.fail(ErrorCode::FileSyntax, "expected a keyword of point or cell data, found " +
-                                             quoted(std::string_view(keyword)) + ".");
+    scanner_.fail(ErrorCode::FileSyntax, "expected a keyword of point or cell data, found ",
+                  quoted(std::string_view(keyword)), ".");
   }
 
   void beginArrays(bool ofCells) {
     ofCells_ = ofCells;
     const std::int64_t count = scanner_.integer("the number of values");
     if (count >= 0 && static_cast<std::uint64_t>(count) == elements()) return;
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "the arrays are for " + std::to_string(count) + (ofCells ? " cells" : " points") +
-                      ", but the file has " + std::to_string(elements()) + ".");
+    scanner_.fail(ErrorCode::FileSyntax, "the arrays are for ", count,
+                  (ofCells ? " cells" : " points"), ", but the file has ", elements(), ".");
   }
 
   /// "SCALARS name type components", where the last may be missing, and the name of a table of
@@ -360,10 +356,9 @@ class VtkLegacyFile final : public VtkSource {
     const std::size_t begin = scanner_.position();
     const std::size_t left = text().size() - begin;
     if (count > left / bytesEach) {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    std::to_string(count) + " numbers of " + std::to_string(bytesEach) +
-                        " bytes are announced, but only " + std::to_string(left) +
-                        " bytes are left: the file is incomplete.");
+      scanner_.fail(ErrorCode::FileSyntax, count, " numbers of ", bytesEach,
+                    " bytes are announced, but only ", left,
+                    " bytes are left: the file is incomplete.");
     }
     scanner_.moveTo(begin + count * bytesEach);
     return begin;
@@ -390,9 +385,8 @@ class VtkLegacyFile final : public VtkSource {
 
   VtkColumn readIntegers(std::size_t count, const NumberType& type, const char* what) {
     if (!isOf<std::int32_t>(type.scalar) && !isOf<std::int64_t>(type.scalar)) {
-      scanner_.fail(ErrorCode::FileUnsupported, std::string(what) + " cannot be of type " +
-                                                    std::string(type.name) +
-                                                    ", only int or vtktypeint64.");
+      scanner_.fail(ErrorCode::FileUnsupported, what, " cannot be of type ", type.name,
+                    ", only int or vtktypeint64.");
     }
     return readNumbers(count, type, VtkNumbers::Integers, [what](std::size_t) { return what; });
   }
@@ -443,10 +437,10 @@ namespace {
 /// Arrays may follow.
 class VtkPieces {
  public:
-  VtkPieces(const InputFile& file, const std::string& name, Context& context, bool isText)
+  VtkPieces(const ByteFile& file, Context& context, bool isText)
       : file_(file),
         context_(context),
-        text_(file, name, context, isText ? TextWindow::kText : TextWindow::kWords) {
+        text_(file, context, isText ? TextWindow::kText : TextWindow::kWords) {
     layout.isText = isText;
   }
 
@@ -524,15 +518,14 @@ class VtkPieces {
     return all;
   }
 
-  const InputFile& file_;
+  const ByteFile& file_;
   Context& context_;
   TextWindow text_;
 };
 
-std::optional<PlainLayout> lookAtVtk(const InputFile& file, const std::string& name,
-                                     Context& context) {
+std::optional<PlainLayout> lookAtVtk(const ByteFile& file, Context& context) {
   for (const bool isText : {false, true}) {
-    VtkPieces pieces(file, name, context, isText);
+    VtkPieces pieces(file, context, isText);
     if (pieces.look()) return pieces.layout;
   }
   return {};
@@ -592,8 +585,7 @@ struct VtkBigBytes {
 template <class Numbers, std::size_t corners = 8>
 class LegacyWriter {
  public:
-  LegacyWriter(const std::filesystem::path& file, int threads)
-      : name_(file.string()), output_(file), lines_(output_, threads) {}
+  LegacyWriter(OutputFile& output, int threads) : output_(output), lines_(output, threads) {}
 
   /// Everything up to the points.
   /// @throws Error TooLarge for points that 32-bit indices cannot number
@@ -601,10 +593,10 @@ class LegacyWriter {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
       throw Error(ErrorCode::TooLarge,
-                  name_ +
-                      ": legacy binary .vtk files have vertex numbers of 31 bits, which do not "
-                      "suffice for " +
-                      std::to_string(points) + " points; write .vtu.");
+                  concat(output_.target(),
+                         ": legacy binary .vtk files have vertex numbers of 31 bits, which do not "
+                         "suffice for ",
+                         points, " points; write .vtu."));
     }
     cellCount_ = cells;
     output_.write("# vtk DataFile Version 2.0\n");
@@ -641,11 +633,7 @@ class LegacyWriter {
     rows(cellCount_, row);
     output_.write(Numbers::kEndOfSection);
   }
-  void commit() { output_.commit(); }
-  void end() {
-    types();
-    commit();
-  }
+  void end() { types(); }
 
   /// Everything up to the types of cells. What is written from now on advances the progress.
   void write(std::span<const Vec3> allPoints, std::span<const std::array<Index, corners>> allCells,
@@ -668,25 +656,21 @@ class LegacyWriter {
         [&row](char* place, std::size_t i) { return Numbers::numbers(place, row(i)); }, progress_);
   }
 
-  std::string name_;
-  OutputFile output_;
+  OutputFile& output_;
   LineWriter lines_;
   std::uint64_t cellCount_ = 0;
   LoopProgress* progress_ = nullptr;
 };
 
 template <class Numbers>
-void writeMesh(const HexMesh& mesh, const std::filesystem::path& file,
-               const WriteOptions& /*options*/, Context& context) {
-  Stage stage(context, "write mesh");
-  LegacyWriter<Numbers> writer(file, context.threads());
+void writeMesh(const HexMesh& mesh, OutputFile& output, Stage& stage) {
+  LegacyWriter<Numbers> writer(output, stage.context().threads());
   LoopProgress progress(stage, mesh.points.size() + 2 * mesh.cells.size() + mesh.regions.size());
   writer.write(mesh.points, mesh.cells, progress);
   if (!mesh.regions.empty()) {
     writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
                     [&mesh](std::size_t c) { return std::array{mesh.regions[c]}; });
   }
-  writer.commit();
 }
 
 /// Names of arrays are tokens: other characters are written as "%20", as VTK does it.
@@ -708,41 +692,38 @@ std::string encodedName(std::string_view name) {
 }
 
 template <class Numbers>
-void writeMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
-              Context& context) {
-  Stage stage(context, "write map");
+void writeMap(const TetMap& map, OutputFile& output, const WriteOptions& options, Stage& stage) {
   const std::string name = encodedName(options.mapArray);
-  LegacyWriter<Numbers, 4> writer(file, context.threads());
-  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+  LegacyWriter<Numbers, 4> writer(output, stage.context().threads());
+  withThreads(stage.context().threads(), [&] { requireWritable(map, stage); });
   const std::size_t tets = map.tets.size();
   LoopProgress progress(stage, map.points.size() + 3 * tets);
   writer.write(map.points, map.tets, progress);
   writer.cellData(
-      "\nFIELD FieldData 1\n" + name + " 12 " + std::to_string(tets) + " double\n",
+      concat("\nFIELD FieldData 1\n", name, " 12 ", tets, " double\n"),
       [&map](std::size_t t) { return std::bit_cast<std::array<double, 12>>(map.parameters[t]); });
-  writer.commit();
 }
 
 }  // namespace
 
-void writeVtkLegacy(const HexMesh& mesh, const std::filesystem::path& file,
-                    const WriteOptions& options, Context& context) {
-  writeMesh<VtkText>(mesh, file, options, context);
+void writeVtkLegacy(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
+                    Stage& stage) {
+  writeMesh<VtkText>(mesh, output, stage);
 }
 
-void writeVtkLegacyBinary(const HexMesh& mesh, const std::filesystem::path& file,
-                          const WriteOptions& options, Context& context) {
-  writeMesh<VtkBigBytes>(mesh, file, options, context);
+void writeVtkLegacyBinary(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
+                          Stage& stage) {
+  writeMesh<VtkBigBytes>(mesh, output, stage);
 }
 
-void writeVtkLegacyMap(const TetMap& map, const std::filesystem::path& file,
-                       const WriteOptions& options, Context& context) {
-  writeMap<VtkText>(map, file, options, context);
+void writeVtkLegacyMap(const TetMap& map, OutputFile& output, const WriteOptions& options,
+                       Stage& stage) {
+  writeMap<VtkText>(map, output, options, stage);
 }
 
-void writeVtkLegacyMapBinary(const TetMap& map, const std::filesystem::path& file,
-                             const WriteOptions& options, Context& context) {
-  writeMap<VtkBigBytes>(map, file, options, context);
+void writeVtkLegacyMapBinary(const TetMap& map, OutputFile& output, const WriteOptions& options,
+                             Stage& stage) {
+  writeMap<VtkBigBytes>(map, output, options, stage);
 }
 
 std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {

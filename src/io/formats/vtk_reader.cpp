@@ -109,8 +109,8 @@ void VtkSource::see(std::string_view name, bool ofCells, std::size_t components)
     ++unnamed;
     return;
   }
-  seen.push_back('"' + std::string(name) + (ofCells ? "\" (cells, " : "\" (points, ") +
-                 std::to_string(components) + (components == 1 ? " component)" : " components)"));
+  seen.push_back(concat('"', name, (ofCells ? "\" (cells, " : "\" (points, "), components,
+                        (components == 1 ? " component)" : " components)")));
 }
 
 VtkColumn textColumn(VtkNumbers numbers, std::size_t count) {
@@ -189,22 +189,17 @@ class CellTable {
     return isOrdered(i) && (!isWanted(i) || end(i) - begin(i) == wanted_.corners);
   }
 
-  /// Throws what is wrong with a cell that is not good.
+  /// Throws an error about a cell that is not good.
   [[noreturn]] void fail(std::size_t i) const {
     const std::string cell = std::to_string(first_ + i);
     const Place place{PlaceKind::Cell, first_ + i};
     if (!isOrdered(i)) {
-      source_.fail(ErrorCode::FileSyntax,
-                   "the corners of cell " + cell + " end at " + std::to_string(end(i)) +
-                       ", which is before they begin or beyond the " +
-                       std::to_string(source_.connectivity.count) + " corners in the file.",
-                   place);
+      source_.fail(ErrorCode::FileSyntax, place, "the corners of cell ", cell, " end at ", end(i),
+                   ", which is before they begin or beyond the ", source_.connectivity.count,
+                   " corners in the file.");
     }
-    source_.fail(ErrorCode::FileSyntax,
-                 "cell " + cell + " is a " + std::string(wanted_.singular) + " with " +
-                     std::to_string(end(i) - begin(i)) + " instead of " +
-                     std::to_string(wanted_.corners) + " corners.",
-                 place);
+    source_.fail(ErrorCode::FileSyntax, place, "cell ", cell, " is a ", wanted_.singular, " with ",
+                 end(i) - begin(i), " instead of ", wanted_.corners, " corners.");
   }
 
  private:
@@ -271,11 +266,9 @@ void readRun(const VtkSource& source, std::size_t corners, std::uint64_t first, 
     for (std::size_t k = 0; k < corners; ++k) {
       // A negative number is a large one here.
       if (static_cast<std::uint64_t>(from[k]) >= source.points) {
-        source.fail(ErrorCode::IndexOutOfRange,
-                    "cell " + std::to_string(first + cell) + " names point " +
-                        std::to_string(from[k]) + ", but the " + std::to_string(source.points) +
-                        " points are numbered from 0.",
-                    Place{PlaceKind::Cell, first + cell});
+        source.fail(ErrorCode::IndexOutOfRange, Place{PlaceKind::Cell, first + cell}, "cell ",
+                    first + cell, " names point ", from[k], ", but the ", source.points,
+                    " points are numbered from 0.");
       }
       *to++ = static_cast<Vertex>(from[k]);
     }
@@ -322,19 +315,18 @@ const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
 std::string arraysIn(const VtkSource& source) {
   std::string found;
   for (const std::string& array : source.seen) found += (found.empty() ? "" : ", ") + array;
-  if (source.unnamed > 0) found += ", and " + std::to_string(source.unnamed) + " more";
+  if (source.unnamed > 0) found += concat(", and ", source.unnamed, " more");
   return found.empty() ? "none" : found;
 }
 
 [[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
-  source.fail(ErrorCode::FileUnsupported,
-              "the file holds " + std::to_string(tets) + " tets, but no map: no cell array \"" +
-                  std::string(name) +
-                  "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
-                  "this name with 3, for a map with one chart. Arrays in the file: " +
-                  arraysIn(source) +
-                  ". Name the map's array (--map-array), or give the map as a second mesh "
-                  "(--polycube).");
+  source.fail(ErrorCode::FileUnsupported, "the file holds ", tets,
+              " tets, but no map: no cell array \"", name,
+              "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
+              "this name with 3, for a map with one chart. Arrays in the file: ",
+              arraysIn(source),
+              ". Name the map's array (--map-array), or give the map as a second mesh "
+              "(--polycube).");
 }
 
 /// The parameters of tets from a number per cell of the file.
@@ -376,9 +368,8 @@ void readVtkPoints(const VtkSource& source, std::uint64_t first, std::span<Vec3>
   source.copy(source.coordinates, 3 * first, 3 * points.size(), points.front().data());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (isFinite(points[i])) continue;
-    source.fail(ErrorCode::NotFinite,
-                "a coordinate of point " + std::to_string(first + i) + " is not finite.",
-                Place{PlaceKind::Vertex, first + i});
+    source.fail(ErrorCode::NotFinite, Place{PlaceKind::Vertex, first + i}, "a coordinate of point ",
+                first + i, " is not finite.");
   }
 }
 
@@ -461,11 +452,9 @@ void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
 }
 
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
-  source.fail(ErrorCode::FileUnsupported,
-              "the file holds no " + std::string(cells.plural) + ": none of its " +
-                  std::to_string(source.cells) + " cells has the type " +
-                  std::to_string(cells.vtkType) + source.counts->instead() + "." +
-                  (cells.corners == 8 ? source.counts->adviceOnCurved() : ""));
+  source.fail(ErrorCode::FileUnsupported, "the file holds no ", cells.plural, ": none of its ",
+              source.cells, " cells has the type ", cells.vtkType, source.counts->instead(), ".",
+              (cells.corners == 8 ? source.counts->adviceOnCurved() : ""));
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
@@ -539,9 +528,8 @@ TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage) {
   const std::size_t fault = firstFault(stage, map.tets.size(),
                                        [&](std::size_t t) { return isFinite(map.parameters[t]); });
   if (fault < map.tets.size()) {
-    source.fail(ErrorCode::NotFinite,
-                "a parameter of tet " + std::to_string(fault) + " is not finite.",
-                Place{PlaceKind::Tet, fault});
+    source.fail(ErrorCode::NotFinite, Place{PlaceKind::Tet, fault}, "a parameter of tet ", fault,
+                " is not finite.");
   }
   map.features = readVtkTetFeatures(source);
   return map;
@@ -561,11 +549,9 @@ TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& st
     array = source.find(VtkSection::CellData, name, 1, VtkNumbers::Integers);
   } while (array == nullptr && source.readOn());
   if (array == nullptr) {
-    source.fail(ErrorCode::FileUnsupported,
-                "no cell array \"" + std::string(name) +
-                    "\" of whole numbers, which are to be the labels of " +
-                    std::to_string(numbers.size()) +
-                    " triangles. Arrays in the file: " + arraysIn(source) + ".");
+    source.fail(ErrorCode::FileUnsupported, "no cell array \"", name,
+                "\" of whole numbers, which are to be the labels of ", numbers.size(),
+                " triangles. Arrays in the file: ", arraysIn(source), ".");
   }
   const VtkColumn column = source.load(*array);
   for (const std::size_t number : numbers) {
@@ -578,7 +564,7 @@ namespace {
 
 // What writers of this library add to a mesh: generators, tags and regions in arrays.
 
-/// An array that is used if it is as this library writes it.
+/// An array of this name, if it has the form in which this library writes it.
 std::optional<VtkColumn> findGenerators(const VtkSource& source, std::string_view name,
                                         VtkScalar scalar) {
   const VtkSourceArray* const array =
@@ -604,10 +590,10 @@ void forEachNumber(const VtkSource& source, const VtkSourceArray& array, const F
       if (!std::in_range<std::int32_t>(numbers[i])) {
         source.fail(
             ErrorCode::FileUnsupported,
-            "the array \"" + array.name + "\" has the value " + std::to_string(numbers[i]) +
-                ", which does not fit into 32 bits.",
             Place{array.section == VtkSection::CellData ? PlaceKind::Cell : PlaceKind::Vertex,
-                  begin + i});
+                  begin + i},
+            "the array \"", array.name, "\" has the value ", numbers[i],
+            ", which does not fit into 32 bits.");
       }
       f(static_cast<std::size_t>(begin) + i, static_cast<std::int32_t>(numbers[i]));
     }
@@ -636,9 +622,8 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
   if (array == nullptr) return features;
   const VtkColumn column = source.load(*array);
   if (column.count % array->components != 0) {
-    source.fail(ErrorCode::FileSyntax,
-                "the array \"" + array->name + "\" has " + std::to_string(column.count) +
-                    " numbers, which are no rows of " + std::to_string(array->components) + ".");
+    source.fail(ErrorCode::FileSyntax, "the array \"", array->name, "\" has ", column.count,
+                " numbers, which are no rows of ", array->components, ".");
   }
   std::vector<std::int64_t> numbers(static_cast<std::size_t>(column.count));
   source.copy(column, 0, numbers.size(), numbers.data());
@@ -652,11 +637,10 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
     }
     features[i].tag = static_cast<std::int32_t>(row[kVertices]);
     if (good) continue;
-    source.fail(ErrorCode::IndexOutOfRange,
-                "row " + std::to_string(i) + " of the array \"" + array->name +
-                    "\" (counted from 0) names a point that does not exist, or a tag that does "
-                    "not fit into 32 bits. If a program has changed the points since, remove the "
-                    "array.");
+    source.fail(ErrorCode::IndexOutOfRange, "row ", i, " of the array \"", array->name,
+                "\" (counted from 0) names a point that does not exist, or a tag that does "
+                "not fit into 32 bits. If a program has changed the points since, remove the "
+                "array.");
   }
   return features;
 }
@@ -696,10 +680,9 @@ std::vector<TagName> readNames(const VtkSource& source) {
     names[i].tag = static_cast<std::int32_t>(numbers[2 * i + 1]);
   }
   if (isGood) return names;
-  source.fail(ErrorCode::FileSyntax,
-              "the arrays \"" + texts->name + "\" and \"" + tags->name +
-                  "\" do not fit each other: for each name, which ends with a zero, a dimension "
-                  "from 0 to 3 and a tag. Write the file anew, or remove both.");
+  source.fail(ErrorCode::FileSyntax, "the arrays \"", texts->name, "\" and \"", tags->name,
+              "\" do not fit each other: for each name, which ends with a zero, a dimension "
+              "from 0 to 3 and a tag. Write the file anew, or remove both.");
 }
 
 /// The array of regions: this library's, meshio's of files of other formats, or Gmsh's.
@@ -858,51 +841,36 @@ void sendPieces(const VtkSource& source, MeshSink& sink, Stage& stage) {
 
 }  // namespace
 
-HexMesh readVtu(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    return readVtkHexMesh(*openVtuFile(input, stage), stage);
-  });
+HexMesh readVtu(const Input& input, Stage& stage) {
+  return readVtkHexMesh(*openVtuFile(input, stage), stage);
 }
 
-TetCells readVtuTets(const Input& input, Context& context) {
-  return inStage(context, "read tets",
-                 [&input](Stage& stage) { return readVtkTets(*openVtuFile(input, stage), stage); });
+TetCells readVtuTets(const Input& input, Stage& stage) {
+  return readVtkTets(*openVtuFile(input, stage), stage);
 }
 
-TetMap readVtuMap(const Input& input, const ReadOptions& options, Context& context) {
-  return inStage(context, "read map", [&](Stage& stage) {
-    return readVtkMap(*openVtuFile(input, stage), options.mapArray, stage);
-  });
+TetMap readVtuMap(const Input& input, const ReadOptions& options, Stage& stage) {
+  return readVtkMap(*openVtuFile(input, stage), options.mapArray, stage);
 }
 
-TriangleLabels readVtuLabels(const Input& input, std::string_view array, Context& context) {
-  return inStage(context, "read labels", [&](Stage& stage) {
-    return readVtkLabels(*openVtuFile(input, stage), array, stage);
-  });
+TriangleLabels readVtuLabels(const Input& input, std::string_view array, Stage& stage) {
+  return readVtkLabels(*openVtuFile(input, stage), array, stage);
 }
 
-TriangleLabels readVtkLegacyLabels(const Input& input, std::string_view array, Context& context) {
-  return inStage(context, "read labels", [&](Stage& stage) {
-    return readVtkLabels(*openVtkLegacyFile(input, false, stage), array, stage);
-  });
+TriangleLabels readVtkLegacyLabels(const Input& input, std::string_view array, Stage& stage) {
+  return readVtkLabels(*openVtkLegacyFile(input, false, stage), array, stage);
 }
 
-HexMesh readVtkLegacy(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&input](Stage& stage) {
-    return readVtkHexMesh(*openVtkLegacyFile(input, true, stage), stage);
-  });
+HexMesh readVtkLegacy(const Input& input, Stage& stage) {
+  return readVtkHexMesh(*openVtkLegacyFile(input, true, stage), stage);
 }
 
-TetCells readVtkLegacyTets(const Input& input, Context& context) {
-  return inStage(context, "read tets", [&input](Stage& stage) {
-    return readVtkTets(*openVtkLegacyFile(input, false, stage), stage);
-  });
+TetCells readVtkLegacyTets(const Input& input, Stage& stage) {
+  return readVtkTets(*openVtkLegacyFile(input, false, stage), stage);
 }
 
-TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Context& context) {
-  return inStage(context, "read map", [&](Stage& stage) {
-    return readVtkMap(*openVtkLegacyFile(input, false, stage), options.mapArray, stage);
-  });
+TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Stage& stage) {
+  return readVtkMap(*openVtkLegacyFile(input, false, stage), options.mapArray, stage);
 }
 
 void readVtuTo(MeshSink& sink, const Input& input, Context& context) {

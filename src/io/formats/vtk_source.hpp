@@ -63,7 +63,7 @@ struct VtkSourceArray {
   VtkNumbers numbers = VtkNumbers::Others;
   std::size_t components = 1;
   bool appended = false;  ///< to the head of an XML file, as this library writes arrays
-  /// Finds the numbers: of this kind, and so many if it is told.
+  /// Finds the numbers; they must be of this kind and, if a count is given, that many.
   std::function<VtkColumn(VtkNumbers, std::optional<std::uint64_t> count)> load = {};
 };
 
@@ -125,8 +125,14 @@ class VtkSource {
   void copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const;
 
   /// Throws an error about the file.
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence, Place place = {}) const {
-    throw Error(code, fileName_ + ": " + sentence, place);
+  /// @param sentence  its parts, as of concat()
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    fail(code, Place{}, sentence...);
+  }
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Place place, Parts... sentence) const {
+    throw Error(code, concat(fileName_, ": ", sentence...), place);
   }
 
  protected:
@@ -254,7 +260,7 @@ using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)
 /// holds u0 v0 w0 u1 v1 w1 u2 v2 w2 u3 v3 w3, the parameters of a tet's corners in their order; one
 /// of 3 numbers per point holds its u v w, for maps with one chart.
 /// @param mapArray  its name
-/// @throws Error FileUnsupported without such an array; NotFinite
+/// @throws Error FileUnsupported if there is no such array; NotFinite
 [[nodiscard]] TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage);
 
 /// Reads triangles with a whole number each.

@@ -142,15 +142,11 @@ class VtkHdfWriter {
 
 }  // namespace
 
-void writeVtkHdf(const HexMesh& mesh, const std::filesystem::path& file,
-                 const WriteOptions& options, Context& context) {
-  // First, so that a folder that is not writable shows at once.
-  OutputFile target(file, OutputFile::Target::Regular);
+void writeVtkHdf(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                 Stage& stage) {
   VtkPiece piece;
-  const VtkDataSet data = hexDataSet(mesh, options, piece, context);
-  Stage stage(context, "write mesh");
-  VtkHdfWriter(target, data, stage).write();
-  target.commit();
+  const VtkDataSet data = hexDataSet(mesh, options, piece);
+  VtkHdfWriter(output, data, stage).write();
 }
 
 namespace {
@@ -258,7 +254,7 @@ class TagRows {
     rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
     const hid_t type = HDF5(H5T_NATIVE_INT64_g);
     const HdfObject set =
-        file.dataset(grid, "FieldData/" + std::string(name), type, file.space({rows_.size(), n}));
+        file.dataset(grid, concat("FieldData/", name), type, file.space({rows_.size(), n}));
     set.require(
         HDF5(H5Dwrite)(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows_.front().data()));
   }
@@ -375,8 +371,7 @@ class VtkHdfSink final : public PartSink {
 
 }  // namespace
 
-std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file,
-                                             const WriteOptions& /*options*/, Context& context,
+std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file, Context& context,
                                              ProcessTeam* team) {
   return std::make_unique<VtkHdfSink>(file, context, team);
 }
@@ -414,19 +409,15 @@ class VtkHdfSource final : public VtkSource {
 
 class VtkHdfReader {
  public:
-  explicit VtkHdfReader(const Input& input) : input_(input) {
-    if (firstBytes(input) != kHdfMark) {
-      fail(ErrorCode::FileSyntax,
-           "the file does not begin as HDF5 files do. Is its extension right?");
-    }
-    file_ = HdfReader::open(input);
+  VtkHdfReader(const Input& input, Stage& stage)
+      : input_(input), file_(HdfReader::openAny(input, stage)) {
     const std::vector<std::string> top = file_->members("/");
     if (std::find(top.begin(), top.end(), "VTKHDF") == top.end()) {
       fail(ErrorCode::FileSyntax, "the file has no group VTKHDF.");
     }
     if (const std::string type = file_->attribute("VTKHDF", "Type"); type != "UnstructuredGrid") {
-      fail(ErrorCode::FileUnsupported, "the file's type is " + quoted(std::string_view(type)) +
-                                           ", only UnstructuredGrid is supported.");
+      fail(ErrorCode::FileUnsupported, "the file's type is ", quoted(std::string_view(type)),
+           ", only UnstructuredGrid is supported.");
     }
     const std::string steps = pathOf("Steps/Values");
     if (file_->has(steps) && rowsOf(steps) > 1) {
@@ -461,9 +452,8 @@ class VtkHdfReader {
   /// The one partition of a file, with everything.
   [[nodiscard]] std::unique_ptr<VtkSource> openOnly() const {
     if (partitions() == 1) return open(0, true);
-    fail(ErrorCode::FileUnsupported,
-         "the file has " + std::to_string(partitions()) +
-             " partitions, of which straight hexahedra are read only. Save it as one.");
+    fail(ErrorCode::FileUnsupported, "the file has ", partitions(),
+         " partitions, of which straight hexahedra are read only. Save it as one.");
   }
 
   [[nodiscard]] HexMesh readHexes(Stage& stage) const {
@@ -484,8 +474,9 @@ class VtkHdfReader {
  private:
   using Begins = std::vector<std::uint64_t>;  ///< rows of each partition, and the end of the last
 
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    throw Error(code, input_.name() + ": " + sentence);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    throw Error(code, concat(input_.name(), ": ", sentence...));
   }
   [[nodiscard]] std::uint64_t rowsOf(const std::string& path) const {
     const std::vector<std::uint64_t> shape = file_->shape(path);
@@ -506,8 +497,8 @@ class VtkHdfReader {
     }
     const bool all = begins.size() == rowsOf(pathOf(counts)) + 1;
     if (all && begins.size() > 1 && begins.back() == rows) return begins;
-    fail(ErrorCode::FileSyntax, "the dataset \"" + path + "\" does not have as many rows as \"" +
-                                    pathOf(counts) + "\" says.");
+    fail(ErrorCode::FileSyntax, "the dataset \"", path, "\" does not have as many rows as \"",
+         pathOf(counts), "\" says.");
   }
 
   /// The rows of a partition. A dataset is read once.
@@ -521,9 +512,8 @@ class VtkHdfReader {
     if (place == known.end()) place = known.emplace(path, ((*file_).*read)(path)).first;
     const std::vector<T>& all = place->second;
     if (all.size() != components * begins.back()) {
-      fail(ErrorCode::FileSyntax, "the dataset \"" + path + "\" has " + std::to_string(all.size()) +
-                                      " numbers instead of " +
-                                      std::to_string(components * begins.back()) + ".");
+      fail(ErrorCode::FileSyntax, "the dataset \"", path, "\" has ", all.size(),
+           " numbers instead of ", components * begins.back(), ".");
     }
     const std::uint64_t count = begins[part + 1] - begins[part];
     VtkColumn column = columnOf(std::span<const T>(all).subspan(
@@ -593,30 +583,23 @@ class VtkHdfReader {
 
 }  // namespace
 
-HexMesh readVtkHdf(const Input& input, Context& context) {
-  return inStage(context, "read mesh",
-                 [&](Stage& stage) { return VtkHdfReader(input).readHexes(stage); });
+HexMesh readVtkHdf(const Input& input, Stage& stage) {
+  return VtkHdfReader(input, stage).readHexes(stage);
 }
 
-TetCells readVtkHdfTets(const Input& input, Context& context) {
-  return inStage(context, "read tets", [&](Stage& stage) {
-    const VtkHdfReader reader(input);
-    return readVtkTets(*reader.openOnly(), stage);
-  });
+TetCells readVtkHdfTets(const Input& input, Stage& stage) {
+  const VtkHdfReader reader(input, stage);
+  return readVtkTets(*reader.openOnly(), stage);
 }
 
-bool holdsCurvedVtkHdf(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&](Stage& /*stage*/) {
-    const VtkHdfReader reader(input);
-    return reader.partitions() == 1 && holdsVtkLagrange(*reader.openOnly());
-  });
+bool holdsCurvedVtkHdf(const Input& input, Stage& stage) {
+  const VtkHdfReader reader(input, stage);
+  return reader.partitions() == 1 && holdsVtkLagrange(*reader.openOnly());
 }
 
-LagrangeMesh readCurvedVtkHdf(const Input& input, Context& context) {
-  return inStage(context, "read mesh", [&](Stage& stage) {
-    const VtkHdfReader reader(input);
-    return readVtkLagrange(*reader.openOnly(), input.name(), stage);
-  });
+LagrangeMesh readCurvedVtkHdf(const Input& input, Stage& stage) {
+  const VtkHdfReader reader(input, stage);
+  return readVtkLagrange(*reader.openOnly(), input.name(), stage);
 }
 
 }  // namespace hexhex::io

@@ -278,10 +278,8 @@ class VtuFile final : public VtkSource {
   void requireIndexable() const override {
     for (const std::uint64_t count : {points, cells}) {
       if (count <= kNone) continue;
-      tags_.fail(ErrorCode::TooLarge,
-                 "the file holds " + std::to_string(count) + " points or cells; at most " +
-                     std::to_string(kNone) + " are supported.",
-                 pieces_[0].tag);
+      tags_.fail(ErrorCode::TooLarge, pieces_[0].tag, "the file holds ", count,
+                 " points or cells; at most ", kNone, " are supported.");
     }
   }
 
@@ -314,24 +312,21 @@ class VtuFile final : public VtkSource {
   void readFileTag(const XmlTag& tag) {
     hasFileTag_ = true;
     if (tag.attribute("type") != "UnstructuredGrid") {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the file's type is " + quoted(tag.attribute("type")) +
-                     ", only UnstructuredGrid is supported.",
-                 tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the file's type is ",
+                 quoted(tag.attribute("type")), ", only UnstructuredGrid is supported.");
     }
     const std::string_view compressor = tag.attribute("compressor");
     compressed_ = !compressor.empty();
     if (compressed_ && compressor != kZlibCompressor) {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the file is compressed with " + quoted(compressor) +
-                     ". Save it uncompressed or with zlib (vtkZLibDataCompressor).",
-                 tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the file is compressed with ",
+                 quoted(compressor),
+                 ". Save it uncompressed or with zlib (vtkZLibDataCompressor).");
     }
     const bool little = std::endian::native == std::endian::little;
     const std::string_view order = tag.attribute("byte_order");
     if (!order.empty() && order != (little ? "LittleEndian" : "BigEndian")) {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the byte order " + quoted(order) + " is not that of this machine.", tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the byte order ", quoted(order),
+                 " is not that of this machine.");
     }
     const std::string_view header = tag.attribute("header_type");
     lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
@@ -349,12 +344,10 @@ class VtuFile final : public VtkSource {
     std::uint64_t count = 0;
     const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
     if (result.ec != std::errc{} || result.ptr != value.data() + value.size()) {
-      tags_.fail(
-          ErrorCode::FileSyntax,
-          "expected a whole number as " + std::string(attribute) + ", found " + quoted(value) + ".",
-          tag);
+      tags_.fail(ErrorCode::FileSyntax, tag, "expected a whole number as ", attribute, ", found ",
+                 quoted(value), ".");
     }
-    requireRoom(count, tag, std::string(attribute) + " is");
+    requireRoom(count, tag, concat(attribute, " is"));
     return count;
   }
 
@@ -362,10 +355,8 @@ class VtuFile final : public VtkSource {
   /// Besides, products of this count cannot overflow then.
   void requireRoom(std::uint64_t count, const XmlTag& tag, const std::string& what) const {
     if (count / (compressed_ ? kLargestZlibRatio : 1) <= fileSize()) return;
-    tags_.fail(ErrorCode::FileSyntax,
-               what + " " + std::to_string(count) +
-                   ", more than the file has room for: it is wrong or the file is incomplete.",
-               tag);
+    tags_.fail(ErrorCode::FileSyntax, tag, what, " ", count,
+               ", more than the file has room for: it is wrong or the file is incomplete.");
   }
 
   void readArrayTag(const XmlTag& tag, VtkSection section) {
@@ -394,15 +385,13 @@ class VtuFile final : public VtkSource {
     const std::string_view encoding = tag.attribute("encoding");
     appendedBase64_ = encoding == "base64";
     if (!appendedBase64_ && encoding != "raw") {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the appended data are encoded as " + quoted(encoding) +
-                     ", which is neither raw nor base64.",
-                 tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the appended data are encoded as ",
+                 quoted(encoding), ", which is neither raw nor base64.");
     }
     const std::size_t mark = text().find('_', tag.end);
     if (mark == std::string_view::npos) {
-      tags_.fail(ErrorCode::FileSyntax, "the appended data are missing: the file is incomplete.",
-                 tag);
+      tags_.fail(ErrorCode::FileSyntax, tag,
+                 "the appended data are missing: the file is incomplete.");
     }
     appended_ = mark + 1;
   }
@@ -421,7 +410,7 @@ class VtuFile final : public VtkSource {
             return array.section == section && (name.empty() || array.name == name);
           });
       if (found == piece.arrays.rend()) {
-        fail(ErrorCode::FileSyntax, "the file has no array of " + std::string(what) + ".");
+        fail(ErrorCode::FileSyntax, "the file has no array of ", what, ".");
       }
       std::optional<std::uint64_t> count;
       if (each > 0) count = piece.numbersOf(section, each);
@@ -478,10 +467,8 @@ class VtuFile final : public VtkSource {
     copy(corners, 0, numbers.size(), numbers.data());
     for (const std::int64_t number : numbers) {
       if (number >= 0 && static_cast<std::uint64_t>(number) < pieces_[p].points) continue;
-      tags_.fail(ErrorCode::IndexOutOfRange,
-                 "a cell of this piece names point " + std::to_string(number) + ", but its " +
-                     std::to_string(pieces_[p].points) + " points are numbered from 0.",
-                 pieces_[p].tag);
+      tags_.fail(ErrorCode::IndexOutOfRange, pieces_[p].tag, "a cell of this piece names point ",
+                 number, ", but its ", pieces_[p].points, " points are numbered from 0.");
     }
   }
 
@@ -554,7 +541,7 @@ class VtuFile final : public VtkSource {
     points = kept_.size();
   }
 
-  /// Cells that another piece has, too, become VTK's empty ones.
+  /// Cells that another piece owns become VTK's empty cells.
   void leaveOutGhosts() {
     const VtkSourceArray* const ghosts =
         find(VtkSection::CellData, kVtkGhosts, 1, VtkNumbers::Integers);
@@ -575,15 +562,14 @@ class VtuFile final : public VtkSource {
       return parse(tag, numbers == VtkNumbers::Others ? VtkNumbers::Integers : numbers, count);
     }
     if (format != "appended" && format != "binary") {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the data format " + quoted(format) + " is none of appended, binary and ascii.",
-                 tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the data format ", quoted(format),
+                 " is none of appended, binary and ascii.");
     }
     const std::string_view type = tag.attribute("type");
     const VtkScalar* const scalar = lookUp(kScalars, type);
     if (scalar == nullptr || vtkNumbersOf(type) != numbers) {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "the number type " + quoted(type) + " is not supported for this array.", tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the number type ", quoted(type),
+                 " is not supported for this array.");
     }
     VtkColumn column;
     column.scalar = *scalar;
@@ -596,10 +582,8 @@ class VtuFile final : public VtkSource {
     }
     column.count = bytes / bytesOf(column.scalar);
     if (count && column.count != *count) {
-      tags_.fail(ErrorCode::FileSyntax,
-                 "this array should hold " + std::to_string(*count) + " numbers, but it holds " +
-                     std::to_string(column.count) + ".",
-                 tag);
+      tags_.fail(ErrorCode::FileSyntax, tag, "this array should hold ", *count,
+                 " numbers, but it holds ", column.count, ".");
     }
     return column;
   }
@@ -621,8 +605,8 @@ class VtuFile final : public VtkSource {
         return static_cast<std::uint64_t>(bytes);
       }
     }
-    tags_.fail(ErrorCode::FileSyntax,
-               "the data of this array lie beyond the end of the file: it is incomplete.", tag);
+    tags_.fail(ErrorCode::FileSyntax, tag,
+               "the data of this array lie beyond the end of the file: it is incomplete.");
   }
 
   /// The bytes of an array that is base64 in its tag or appended, or compressed.
@@ -633,19 +617,19 @@ class VtuFile final : public VtkSource {
       const std::uint64_t offset = readCount(tag, "offset");
       const std::uint64_t room = appended_ ? text().size() - *appended_ : 0;
       if (offset > room) {
-        tags_.fail(ErrorCode::FileSyntax,
-                   "the data of this array lie beyond the end of the file: it is incomplete.", tag);
+        tags_.fail(ErrorCode::FileSyntax, tag,
+                   "the data of this array lie beyond the end of the file: it is incomplete.");
       }
       encoded = text().substr(appended_ ? *appended_ + offset : text().size());
       base64 = appendedBase64_;
     }
     if (compressed_ && !hasZlib()) {
-      tags_.fail(ErrorCode::FileUnsupported,
-                 "this program was built without zlib, which compressed arrays need.", tag);
+      tags_.fail(ErrorCode::FileUnsupported, tag,
+                 "this program was built without zlib, which compressed arrays need.");
     }
     return decodeVtuArray(
         encoded, {base64, compressed_, lengthBytes_}, stage_,
-        [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, sentence, tag); });
+        [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, tag, sentence); });
   }
 
   /// The numbers of a text. Without a count: as many as there are.
@@ -657,10 +641,8 @@ class VtuFile final : public VtkSource {
     scanner.moveTo(tag.end);
     const std::size_t room = content.size() / 2 + 1;
     if (count && *count > room) {
-      tags_.fail(ErrorCode::FileSyntax,
-                 "this array should hold " + std::to_string(*count) +
-                     " numbers, but there is only room for " + std::to_string(room) + ".",
-                 tag);
+      tags_.fail(ErrorCode::FileSyntax, tag, "this array should hold ", *count,
+                 " numbers, but there is only room for ", room, ".");
     }
     VtkColumn column = textColumn(numbers, count ? *count : room);
     const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";

@@ -31,25 +31,21 @@ constexpr std::string_view kTail = "\n  </AppendedData>\n</VTKFile>\n";
 
 /// The tag of one array. `offset` counts from the beginning of the data.
 std::string tagOf(const VtkArray& array, std::uint64_t offset) {
-  std::string tag = "        <DataArray type=\"" + std::string(array.type) + "\" Name=\"" +
-                    std::string(array.name) + "\"";
+  std::string tag =
+      concat("        <DataArray type=\"", array.type, "\" Name=\"", array.name, "\"");
   // Left out where it is 1: some readers would make a matrix with one column of it.
-  if (array.components != 1) {
-    tag += " NumberOfComponents=\"" + std::to_string(array.components) + "\"";
-  }
-  // Nothing else tells the length of a field array.
-  if (array.section == VtkSection::FieldData) {
-    tag += " NumberOfTuples=\"" + std::to_string(array.rows) + "\"";
-  }
-  return tag + " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+  if (array.components != 1) tag += concat(" NumberOfComponents=\"", array.components, "\"");
+  // The length of a field array stands nowhere else.
+  if (array.section == VtkSection::FieldData) tag += concat(" NumberOfTuples=\"", array.rows, "\"");
+  return concat(tag, " format=\"appended\" offset=\"", offset, "\"/>\n");
 }
 
-/// Says of an array of global numbers that it is one.
+/// The attribute that marks an array of global numbers.
 std::string globalNumbersIn(const VtkDataSet& data, VtkSection section) {
   for (const VtkArray& array : data.arrays()) {
     if (array.section != section) continue;
     if (array.name == kVtkGlobalPoints || array.name == kVtkGlobalCells) {
-      return " GlobalIds=\"" + std::string(array.name) + '"';
+      return concat(" GlobalIds=\"", array.name, '"');
     }
   }
   return {};
@@ -77,7 +73,7 @@ std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offset
   if (data.curved || data.arrays().front().section == VtkSection::FieldData) {
     addSection("FieldData", VtkSection::FieldData);
   }
-  head += "    <Piece NumberOfPoints=\"" + std::to_string(data.points) + "\"";
+  head += concat("    <Piece NumberOfPoints=\"", data.points, "\"");
   const auto addCount = [&head](std::string_view what, std::uint64_t count) {
     head.append(" NumberOf").append(what).append("=\"").append(std::to_string(count)).append("\"");
   };
@@ -161,7 +157,7 @@ class CompressedArray {
     }
   }
 
-  /// Writes what is left, once all bytes have come.
+  /// Writes the remaining bytes.
   /// @return the position in the file of what is written next
   [[nodiscard]] std::uint64_t finish() {
     compress();
@@ -203,7 +199,7 @@ class CompressedArray {
   std::vector<Array<char>> compressed_;
 };
 
-// What is written between two looks at the caller's wish to cancel: some milliseconds' work.
+// Bytes written between two checks for cancellation: a few milliseconds' work.
 constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
 
 /// Passes bytes on, in slices.
@@ -228,7 +224,7 @@ void writePlain(OutputFile& output, const VtkDataSet& data, LoopProgress& progre
   }
 }
 
-/// The head, which says where arrays begin, comes last, to the place that is kept free for it.
+/// The head, with the offsets of the arrays, is written last, to the space reserved for it.
 void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
                      LoopProgress& progress) {
   std::vector<std::uint64_t> offsets(data.arrays().size(), 0);
@@ -265,7 +261,7 @@ void requirePlainName(std::string_view name) {
 /// by side, each from its own position on, which follows from the counts alone.
 class VtuStream {
  public:
-  VtuStream(const std::filesystem::path& file, int /*threads*/) : output_(file) {
+  VtuStream(OutputFile& output, int /*threads*/) : output_(output) {
     output_.requirePositions(
         "but the arrays of a .vtu file that comes in pieces are written side by side");
   }
@@ -289,11 +285,10 @@ class VtuStream {
   void end() {
     for (FilePart& part : parts_) part.flush();
     output_.writeBytesAt(end_, kTail.data(), kTail.size());
-    output_.commit();
   }
 
  private:
-  /// Only the first piece tells which arrays there are, and so where they begin.
+  /// The first piece determines which arrays there are, and so where they begin.
   void beginFile() {
     if (data_) return;
     data_.emplace(
@@ -320,7 +315,7 @@ class VtuStream {
     }
   }
 
-  OutputFile output_;
+  OutputFile& output_;
   std::uint64_t pointCount_ = 0;
   std::uint64_t cellCount_ = 0;
   VtkPiece piece_;
@@ -346,26 +341,18 @@ void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stag
     writePlain(output, data, progress);
   }
   output.write(kTail);
-  output.commit();
 }
 
-void writeVtu(const HexMesh& mesh, const std::filesystem::path& file, const WriteOptions& options,
-              Context& context) {
-  OutputFile output(file);  // first, so that a folder that is not writable shows at once
+void writeVtu(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
   if (options.compress) requireCompressible(output);
   VtkPiece piece;
-  const VtkDataSet data = hexDataSet(mesh, options, piece, context);
-  Stage stage(context, "write mesh");
-  writeVtkXml(output, data, options.compress, stage);
+  writeVtkXml(output, hexDataSet(mesh, options, piece), options.compress, stage);
 }
 
-void writeVtuMap(const TetMap& map, const std::filesystem::path& file, const WriteOptions& options,
-                 Context& context) {
-  Stage stage(context, "write map");
+void writeVtuMap(const TetMap& map, OutputFile& output, const WriteOptions& options, Stage& stage) {
   requirePlainName(options.mapArray);
-  OutputFile output(file);
   if (options.compress) requireCompressible(output);
-  withThreads(context.threads(), [&] { requireWritable(map, stage); });
+  withThreads(stage.context().threads(), [&] { requireWritable(map, stage); });
   VtkPiece piece;
   piece.vertices.points = map.points;
   piece.setCells(0, std::span<const Tet>(map.tets));
@@ -384,8 +371,6 @@ std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file, Context
 }
 
 namespace {
-
-bool isPolyData(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".vtp"; }
 
 /// The vertices of hexahedra and the inner points of arcs.
 std::vector<PointPiece> pointsOf(const PiecewiseLinearMesh& mesh) {
@@ -440,18 +425,14 @@ Array<std::int32_t> segmentEnds(const PiecewiseLinearMesh& mesh) {
   return ends;
 }
 
-}  // namespace
-
-void writeArcsVtk(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
-                  const std::filesystem::path& path, Context& context) {
-  Stage stage(context, "write arcs");
-  OutputFile output(path);  // first, so that a folder that is not writable shows at once
+/// @param elements  Lines, or Cells
+void writeArcs(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile& output,
+               Stage& stage) {
   const Arcs& arcs = mesh.arcs;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t segments = arcs.segmentTet.size();
   const std::vector<PointPiece> points = pointsOf(mesh);
-  VtkDataSet data(vertices + arcs.points.size(), segments,
-                  isPolyData(path) ? VtkSection::Lines : VtkSection::Cells);
+  VtkDataSet data(vertices + arcs.points.size(), segments, elements);
   data.curved = true;
   addPoints(data, points);
   data.addComputed<std::int32_t>(
@@ -472,18 +453,16 @@ void writeArcsVtk(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
   writeVtkXml(output, data, false, stage);
 }
 
-void writePatchesVtk(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
-                     const std::filesystem::path& path, Context& context) {
-  Stage stage(context, "write patches");
-  OutputFile output(path);
+/// @param elements  Polys, or Cells
+void writePatches(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile& output,
+                  Stage& stage) {
   const Patches& patches = mesh.patches;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t shared = vertices + mesh.arcs.points.size();
   const std::size_t polygons = patches.polygonTet.size();
   std::vector<PointPiece> points = pointsOf(mesh);
   points.push_back({0, patches.points, patches.generatorTet, patches.generatorCorners});
-  VtkDataSet data(shared + patches.points.size(), polygons,
-                  isPolyData(path) ? VtkSection::Polys : VtkSection::Cells);
+  VtkDataSet data(shared + patches.points.size(), polygons, elements);
   data.curved = true;
   addPoints(data, points);
   data.addComputed<std::uint8_t>(
@@ -499,6 +478,25 @@ void writePatchesVtk(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
                                  [&patches](std::size_t i) { return patches.cornerBegin[i + 1]; });
   addTypes(data, kVtkPolygon);
   writeVtkXml(output, data, false, stage);
+}
+
+}  // namespace
+
+void writeArcsVtu(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
+                  Stage& stage) {
+  writeArcs(mesh, VtkSection::Cells, output, stage);
+}
+void writeArcsVtp(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
+                  Stage& stage) {
+  writeArcs(mesh, VtkSection::Lines, output, stage);
+}
+void writePatchesVtu(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
+                     Stage& stage) {
+  writePatches(mesh, VtkSection::Cells, output, stage);
+}
+void writePatchesVtp(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
+                     Stage& stage) {
+  writePatches(mesh, VtkSection::Polys, output, stage);
 }
 
 }  // namespace hexhex::io

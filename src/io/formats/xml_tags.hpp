@@ -82,10 +82,11 @@ class XmlTags {
   }
 
   /// Throws an error about the line that the tag begins in: "<file>, line 12: <sentence>".
-  [[noreturn]] void fail(ErrorCode code, std::string_view sentence, const XmlTag& tag) const {
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, const XmlTag& tag, Parts... sentence) const {
     TextScanner scanner(text_, fileName_);
     scanner.moveTo(tag.begin);
-    scanner.fail(code, sentence);
+    scanner.fail(code, sentence...);
   }
   /// For what stands between tags: a scanner of the text up to this position.
   [[nodiscard]] TextScanner scannerTo(std::size_t end) const {
@@ -96,7 +97,7 @@ class XmlTags {
   void skipBehind(std::string_view mark, const XmlTag& tag) {
     const std::size_t found = text_.find(mark, tag.begin);
     if (found == std::string_view::npos) {
-      fail(ErrorCode::FileSyntax, "the file ends inside of what begins with '<' here.", tag);
+      fail(ErrorCode::FileSyntax, tag, "the file ends inside of what begins with '<' here.");
     }
     position_ = found + mark.size();
   }
@@ -114,7 +115,7 @@ class XmlTags {
         return i;
       }
     }
-    fail(ErrorCode::FileSyntax, "the file ends inside of the tag that begins here.", tag);
+    fail(ErrorCode::FileSyntax, tag, "the file ends inside of the tag that begins here.");
   }
 
   std::string_view text_;

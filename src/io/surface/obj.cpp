@@ -60,8 +60,8 @@ class ObjReader {
     if (result.ec == std::errc{} && result.ptr == end && place >= 0 && place < count) {
       return static_cast<Index>(place);
     }
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "a corner of a face is " + quoted(token) + ", which names no vertex before it.");
+    scanner_.fail(ErrorCode::FileSyntax, "a corner of a face is ", quoted(token),
+                  ", which names no vertex before it.");
   }
 
   TextScanner scanner_;
@@ -101,8 +101,8 @@ class OffReader {
   void readHead() {
     const std::string_view word = scanner_.readToken();
     if (!word.ends_with("OFF")) {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "an .off file begins with \"OFF\", found " + quoted(word) + ".");
+      scanner_.fail(ErrorCode::FileSyntax, "an .off file begins with \"OFF\", found ", quoted(word),
+                    ".");
     }
     if (word.find_first_of("4n") != std::string_view::npos || scanner_.peekToken() == "BINARY") {
       scanner_.fail(ErrorCode::FileUnsupported,
@@ -116,9 +116,8 @@ class OffReader {
     for (std::size_t i = 0; i < count; ++i) {
       const std::int64_t vertex = scanner_.integer("a corner of a face");
       if (!std::in_range<Index>(vertex) || static_cast<Index>(vertex) >= mesh_.points.size()) {
-        scanner_.fail(ErrorCode::IndexOutOfRange,
-                      "a corner of a face is " + std::to_string(vertex) + ", but there are " +
-                          std::to_string(mesh_.points.size()) + " vertices, counted from 0.");
+        scanner_.fail(ErrorCode::IndexOutOfRange, "a corner of a face is ", vertex,
+                      ", but there are ", mesh_.points.size(), " vertices, counted from 0.");
       }
       corners_.push_back(static_cast<Index>(vertex));
     }
@@ -133,12 +132,8 @@ class OffReader {
 
 }  // namespace
 
-TriangleMesh readObj(const Input& input, Context& context) {
-  return readWith<ObjReader>(input, "read triangles", context);
-}
+TriangleMesh readObj(const Input& input, Stage& stage) { return readWith<ObjReader>(input, stage); }
 
-TriangleMesh readOff(const Input& input, Context& context) {
-  return readWith<OffReader>(input, "read triangles", context);
-}
+TriangleMesh readOff(const Input& input, Stage& stage) { return readWith<OffReader>(input, stage); }
 
 }  // namespace hexhex::io

@@ -82,8 +82,9 @@ class PlyBytes {
     return ordered<double>(what);
   }
 
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    cursor_.fail(code, sentence);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    cursor_.fail(code, sentence...);
   }
 
  private:
@@ -105,8 +106,9 @@ class PlyText {
  public:
   explicit PlyText(TextScanner& scanner) : scanner_(scanner) {}
   double number(PlyType /*type*/, const char* what) { return scanner_.number(what); }
-  [[noreturn]] void fail(ErrorCode code, const std::string& sentence) const {
-    scanner_.fail(code, sentence);
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    scanner_.fail(code, sentence...);
   }
 
  private:
@@ -118,8 +120,8 @@ class PlyHead {
  public:
   explicit PlyHead(TextScanner& scanner) : scanner_(scanner) {
     if (scanner_.readToken() != "ply") {
-      scanner_.fail(ErrorCode::FileSyntax, "a .ply file begins with \"ply\", found " +
-                                               quoted(scanner_.currentToken()) + ".");
+      scanner_.fail(ErrorCode::FileSyntax, "a .ply file begins with \"ply\", found ",
+                    quoted(scanner_.currentToken()), ".");
     }
     while (true) {
       const std::string_view word = scanner_.readToken();
@@ -139,9 +141,9 @@ class PlyHead {
       encoding = scanner_.readToken();
       if (encoding != "ascii" && encoding != "binary_little_endian" &&
           encoding != "binary_big_endian") {
-        scanner_.fail(ErrorCode::FileUnsupported, "the format " + hexhex::io::quoted(encoding) +
-                                                      " is none of ascii, binary_little_endian "
-                                                      "and binary_big_endian.");
+        scanner_.fail(ErrorCode::FileUnsupported, "the format ", hexhex::io::quoted(encoding),
+                      " is none of ascii, binary_little_endian "
+                      "and binary_big_endian.");
       }
     } else if (word == "element") {
       PlyElement& element = elements.emplace_back();
@@ -153,8 +155,8 @@ class PlyHead {
     } else if (word == "property") {
       return readProperty();
     } else if (word != "comment" && word != "obj_info") {
-      scanner_.fail(ErrorCode::FileSyntax,
-                    "expected a line of the head or \"end_header\", found " + quoted(word) + ".");
+      scanner_.fail(ErrorCode::FileSyntax, "expected a line of the head or \"end_header\", found ",
+                    quoted(word), ".");
     }
     static_cast<void>(scanner_.takeLine());
   }
@@ -178,8 +180,8 @@ class PlyHead {
     for (const auto& [name, type] : kPlyTypes) {
       if (word == name) return type;
     }
-    scanner_.fail(ErrorCode::FileSyntax,
-                  "expected the type of a property, found " + quoted(word) + ".");
+    scanner_.fail(ErrorCode::FileSyntax, "expected the type of a property, found ", quoted(word),
+                  ".");
   }
 
   TextScanner& scanner_;
@@ -228,8 +230,8 @@ class PlyBody {
       if (!(number >= 0 && number < static_cast<double>(mesh_.points.size()) &&
             number == std::floor(number))) {
         numbers_.fail(ErrorCode::IndexOutOfRange,
-                      "a corner of a face before is no vertex: there are " +
-                          std::to_string(mesh_.points.size()) + ", counted from 0.");
+                      "a corner of a face before is no vertex: there are ", mesh_.points.size(),
+                      ", counted from 0.");
       }
       corners_.push_back(static_cast<Index>(number));
     }
@@ -260,8 +262,6 @@ class PlyReader {
 
 }  // namespace
 
-TriangleMesh readPly(const Input& input, Context& context) {
-  return readWith<PlyReader>(input, "read triangles", context);
-}
+TriangleMesh readPly(const Input& input, Stage& stage) { return readWith<PlyReader>(input, stage); }
 
 }  // namespace hexhex::io

@@ -54,7 +54,7 @@ class StlReader {
         for (double& x : point) x = double{cursor.read<float>("a coordinate")};
         if (isFinite(point)) continue;
         cursor.failAt(cursor.position() - kNormal, ErrorCode::NotFinite,
-                      "a corner of triangle " + std::to_string(t) + " is not finite.");
+                      concat("a corner of triangle ", t, " is not finite."));
       }
       static_cast<void>(cursor.take(2, "the bytes behind a triangle"));
     }
@@ -72,27 +72,23 @@ class StlReader {
         for (double& x : point) x = scanner.number("a coordinate of a corner");
       } else if (word == "endloop") {
         if (corners != 3) {
-          scanner.fail(ErrorCode::FileSyntax,
-                       "a facet has " + std::to_string(corners) + " corners in place of three.");
+          scanner.fail(ErrorCode::FileSyntax, "a facet has ", corners,
+                       " corners in place of three.");
         }
         corners = 0;
       } else if (word == "solid" || word == "facet" || word == "endsolid") {
         static_cast<void>(scanner.takeLine());
       } else if (word != "outer" && word != "loop" && word != "endfacet") {
-        scanner.fail(ErrorCode::FileSyntax,
-                     "expected a word of the format STL, found " + quoted(word) + ".");
+        scanner.fail(ErrorCode::FileSyntax, "expected a word of the format STL, found ",
+                     quoted(word), ".");
       }
     }
-    if (corners != 0) {
-      scanner.fail(ErrorCode::FileSyntax, "the file ends within a facet.");
-    }
+    if (corners != 0) scanner.fail(ErrorCode::FileSyntax, "the file ends within a facet.");
     nameTriangles();
   }
 
   void nameTriangles() {
-    for (Index v = 0; v < mesh_.points.size(); v += 3) {
-      mesh_.triangles.push_back({v, v + 1, v + 2});
-    }
+    for (Index v = 0; v < mesh_.points.size(); v += 3) mesh_.triangles.push_back({v, v + 1, v + 2});
   }
 
   std::string_view text_;
@@ -102,8 +98,6 @@ class StlReader {
 
 }  // namespace
 
-TriangleMesh readStl(const Input& input, Context& context) {
-  return readWith<StlReader>(input, "read triangles", context);
-}
+TriangleMesh readStl(const Input& input, Stage& stage) { return readWith<StlReader>(input, stage); }
 
 }  // namespace hexhex::io

@@ -11,10 +11,10 @@
 
 namespace hexhex::io {
 
-[[nodiscard]] TriangleMesh readStl(const Input& input, Context& context);
-[[nodiscard]] TriangleMesh readObj(const Input& input, Context& context);
-[[nodiscard]] TriangleMesh readOff(const Input& input, Context& context);
-[[nodiscard]] TriangleMesh readPly(const Input& input, Context& context);
+[[nodiscard]] TriangleMesh readStl(const Input& input, Stage& stage);
+[[nodiscard]] TriangleMesh readObj(const Input& input, Stage& stage);
+[[nodiscard]] TriangleMesh readOff(const Input& input, Stage& stage);
+[[nodiscard]] TriangleMesh readPly(const Input& input, Stage& stage);
 
 inline void addPolygon(TriangleMesh& mesh, std::span<const Index> corners) {
   for (std::size_t i = 2; i < corners.size(); ++i) {
