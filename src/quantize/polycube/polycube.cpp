@@ -40,7 +40,7 @@ namespace {
 
 /// Maximum number of refinements.
 constexpr int kMostRefinements = 3;
-/// Budget of mapFromFlags() in solver steps times tets: one or two minutes.
+/// Budget of mapFromFlags() in solver steps times tets: about half a minute.
 constexpr double kMostWork = 5e7;
 /// Minimum budget in solver steps, for large meshes.
 constexpr double kStepsOfAll = 1000;
