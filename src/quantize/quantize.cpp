@@ -130,7 +130,7 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
   WorkSteps steps(context, "quantize", kSteps);
   QuantizedMap result;
   withThreads(context.threads(), [&] {
-    // Validates the caller's arrays, which reports errors, before they are sorted.
+    // Invalid arrays cannot be sorted; makeSeamless() reports what is wrong with them.
     if (map.parameters.size() != map.tets.size() || !quantization::areInRange(map)) {
       static_cast<void>(quantization::makeSeamless(map, {}, context));
     }

@@ -1,4 +1,5 @@
-// Optimizes labels by graph cuts.
+// Optimizes labels by graph cuts: alpha expansion (Boykov, Veksler, Zabih 2001, "Fast Approximate
+// Energy Minimization via Graph Cuts").
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@ struct Region {
   std::vector<std::uint8_t> forbidden;
 };
 
-/// Alpha expansion (Boykov, Veksler, Zabih 2001): for each label in turn, the triangles that take
-/// it are those that minimize the total cost, until nothing changes.
+/// For each label in turn, the triangles that take it are those that minimize the total cost, until
+/// nothing changes.
 class Expansion {
  public:
   Expansion(const Surface& surface, const LabelCosts& costs);

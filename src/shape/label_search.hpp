@@ -1,4 +1,5 @@
-// Optimizes labels by random local changes.
+// Optimizes labels by random local changes: simulated annealing (Kirkpatrick et al. 1983). Evocube
+// (Dumery et al. 2022) evolves whole labellings instead.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +20,13 @@ struct CheckedLabels {
   std::uint64_t moves = 0;  ///< number of attempted moves
 };
 
-/// Simulated annealing (Kirkpatrick et al. 1983): at faults and borders, labels of a small disk are
-/// drawn or cut anew under random conditions; improvements are kept, and sometimes changes for the
-/// worse. Evocube (Dumery et al. 2022) evolves whole labellings instead.
+/// At faults and borders, labels of a small disk are drawn or cut anew under random conditions;
+/// improvements are kept, and sometimes changes for the worse.
 class LabelSearch {
  public:
   LabelSearch(const Surface& surface, const LabelCosts& costs, Random random);
 
-  /// Runs until labels are valid and some moves have improved their shape, or moves are used up.
+  /// Ends after a number of moves, which is smaller once labels are valid.
   /// @param mostMoves  limit while labels are invalid
   [[nodiscard]] CheckedLabels improve(const Labels& start, std::uint64_t mostMoves,
                                       Context& context);

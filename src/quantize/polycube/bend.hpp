@@ -1,4 +1,5 @@
-// Maps the tets of a polycube so that labelled triangles lie in their planes, without flips.
+// Maps the tets of a polycube so that labelled triangles lie in their planes, without flips
+// (Garanzha et al. 2021, src/untangle).
 #pragma once
 
 #include <cstddef>

@@ -259,8 +259,8 @@ void PolycubeBorders::requireRoom(BoundarySide first,
                {PlaceKind::Vertex, sides_.tail(first)});
 }
 
-/// Checks the number of left turns (quarters) along the border of each flat face: four times the
-/// Euler characteristic of the face.
+/// Along the border of a flat face, the number of left quarter turns, less that of right ones, is
+/// four times the Euler characteristic of the face.
 std::optional<PolycubeBorders::Turns> PolycubeBorders::wrongTurns(
     const std::vector<lattice::Direction>& directions) const {
   DisjointSets faces(sides_.size() / 3);

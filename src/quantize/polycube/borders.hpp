@@ -41,8 +41,8 @@ class PolycubeBorders {
   using PlaneAt = std::function<std::int64_t(int axis, Index vertex)>;
 
   /// Directions and dihedral angles of the edges of the polycube, given its planes. Where faces
-  /// would overlap around corners, planes are reordered; if that does not suffice, again from the
-  /// order in which the edges run in space.
+  /// would overlap around corners, planes are reordered: starting with the order given or, if that
+  /// fails, with the one in space.
   /// @throws Error FlippedTet if neither order admits an injective map
   [[nodiscard]] std::vector<PolycubeEdge> edges(const PlaneAt& planeAt) const;
 

@@ -1,4 +1,4 @@
-// Rotations of tets that align the boundary with its labels.
+// Rotations of tets that align the boundary with its labels, after Gregson et al. 2011.
 #pragma once
 
 #include <vector>
