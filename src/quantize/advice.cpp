@@ -1,4 +1,4 @@
-// What to do with a map that is no integer-grid map, but may become one.
+// Advice for maps that are not integer-grid maps, but can be made such.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -22,7 +22,7 @@ std::string digitsOf(double value, int digits) {
 }  // namespace quantization
 
 bool mayBeSeamless(ErrorCode code) noexcept {
-  // Rounding to integers flips tets of a map that is not integer.
+  // A map that is not integer may get flipped tets from rounding to integers.
   return code == ErrorCode::FlippedTet || code == ErrorCode::TransitionResidual ||
          code == ErrorCode::BoundaryOffLattice || code == ErrorCode::SingularityOffLattice ||
          code == ErrorCode::HalfIntegerFixedPoint;

@@ -1,11 +1,11 @@
-// How many hexahedra there may be.
+// The maximum number of hexahedra.
 #pragma once
 
 #include <hexhex/error.hpp>
 
 namespace hexhex::quantization {
 
-/// More hexahedra have more vertices than indices.
+/// Larger meshes have more vertices than Index can number.
 inline constexpr double kMostCells = 4e9;
 
 inline void requireNumberable(double cells) {

@@ -21,19 +21,20 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Integers to try, and with which blocks.
+/// An attempt: at which density integers are sought, and for which blocks.
 struct Candidate {
   enum Kind : std::uint8_t {
-    AsWanted,   ///< about as many cells as are wanted
-    WithSplit,  ///< the same with tets split where they are flipped: cells are cheaper than tets
-    Denser,     ///< clearly more cells, to name a number that works
+    AsWanted,   ///< close to the requested number of cells
+    WithSplit,  ///< the same, but tets that stay flipped may be split: more cells cost less than
+                ///< more tets
+    Denser,     ///< many more cells, to report a number that works
   } kind;
-  double density;  ///< cells, of those wanted
-  bool reduced;    ///< whether walls that nothing needs are taken away
+  double density;  ///< number of cells, relative to the request
+  bool reduced;    ///< whether needless walls are removed
   const char* why;
 };
 
-/// Around the number of cells that are wanted.
+/// Densities close to the requested number of cells.
 constexpr std::array<Candidate, 10> kNear = {{
     {Candidate::AsWanted, 1, true, "as wanted"},
     {Candidate::AsWanted, 1, false, "with all walls, which hold each block where it is"},
@@ -47,22 +48,23 @@ constexpr std::array<Candidate, 10> kNear = {{
     {Candidate::AsWanted, 1.2, true, "a fifth more cells"},
     {Candidate::AsWanted, 1.6, true, "a sixth finer: as far as may pass for what is wanted"},
 }};
-/// How many times as many tets there may be after splits; more rarely helps.
+/// Maximum growth of the number of tets by splits; more rarely helps.
 constexpr double kSplitGrowth = 1.25;
-/// That mends few of them: hardly any map of which a larger share stays flipped, and if it is as
-/// large after some attempts, other integers near to these do not help, either.
+/// Splits hardly ever help if more than kMostMended of the tets stay flipped. If more than
+/// kHopelessShare still are after kFewAttempts, similar integers do not help either.
 constexpr double kMostMended = 0.01;
 constexpr double kHopelessShare = 0.1;
 constexpr std::uint64_t kFewAttempts = 3;
-/// Steps of the solver in all, times tets, after which no further attempt begins: some seconds.
-/// Larger maps get so many steps, too, and take longer. To begin takes as long as some steps.
+/// No attempt starts after this many solver steps times tets in total (some seconds). Large maps
+/// get kMostSteps steps all the same, and take longer. The setup of an attempt takes as long as
+/// kStepsOfBeginning steps.
 constexpr double kMostSearchWork = 4e6;
 constexpr double kMostSteps = 400;
 constexpr double kStepsOfBeginning = 30;
 constexpr double kDenser = 1.5;
 constexpr int kMostDensities = 10;
 
-/// All that may be tried, in order.
+/// All attempts, in order.
 std::vector<Candidate> candidatesFor(double cellsWanted) {
   std::vector<Candidate> all(kNear.begin(), kNear.end());
   for (Candidate candidate : kNear) {
@@ -138,7 +140,7 @@ class Search {
     return !isHopeless;
   }
 
-  /// Traced when they are needed first, and then kept.
+  /// The block structure, traced on first use.
   const BlockStructure& blocks(bool reduced) {
     std::optional<BlockStructure>& blocks = blocks_[reduced ? 1 : 0];
     if (!blocks) blocks.emplace(seamless_, reduced, context_);
@@ -178,7 +180,7 @@ class Search {
     return bent;
   }
 
-  /// What a failure leaves to be said of.
+  /// Keeps what the message about a failure needs.
   void remember(const BentMap& bent, const Candidate& candidate, const Choice& choice,
                 const MotorcycleComplex& complex) {
     if (bent.flippedTets.empty()) return;
@@ -203,7 +205,7 @@ class Search {
     report_.addedTets = bent.tets.size() - seamless_.corners.size();
   }
 
-  /// @param whatWorks  what a search for larger numbers of cells has found
+  /// @param whatWorks  outcome of the search at higher densities, for the message
   [[noreturn]] void fail(const std::string& whatWorks) const {
     const std::string message = "The map cannot be bent onto integers for about " +
                                 std::to_string(std::llround(report_.cellsWanted)) + " cells: ";
@@ -234,14 +236,15 @@ class Search {
   std::array<std::optional<BlockStructure>, 2> blocks_;  ///< with all walls; without needless ones
   IntegerSolver solver_ = integerSolver();
   QuantizeReport report_;
-  /// Whether tets may be split, blocks are reduced, and the integers: those of the next density are
-  /// often the same.
+  /// Attempts so far: with splits, with reduced blocks, integers. Densities close to each other
+  /// often lead to the same integers.
   std::set<std::tuple<bool, bool, std::vector<std::int64_t>>> tried_;
-  double steps_ = 0;         ///< of the solver
-  double mostCells_ = 0;     ///< that were tried
-  double leastFlipped_ = 1;  ///< the least share of tets that an attempt has left so
+  double steps_ = 0;         ///< of the solver, in all attempts
+  double mostCells_ = 0;     ///< the highest number attempted
+  double leastFlipped_ = 1;  ///< the lowest share of flipped tets after an attempt
   Index flippedTet_ = kNone;
-  /// Of the same attempt, in words: the last before larger numbers of cells, if any.
+  /// Where and why that tet is flipped, in words. The tet is that of the last attempt close to the
+  /// requested density, or else of the first one that has flipped tets.
   std::string flippedWhere_;
   std::string flippedWhy_;
 };

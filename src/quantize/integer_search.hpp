@@ -1,4 +1,4 @@
-// The search for integers that a seamless map can be bent onto.
+// Searches for integers that a seamless map can be bent onto.
 #pragma once
 
 #include <quantize/bend/bend.hpp>
@@ -9,16 +9,16 @@
 
 namespace hexhex::quantization {
 
-/// A map that has been bent, and how it came to that.
+/// A bent map with a report on the search.
 struct FoundMap {
   BentMap bent;
-  IrregularEdges irregularEdges;  ///< of the map as it was
-  QuantizeReport report;          ///< but for the shapes of tets
+  IrregularEdges irregularEdges;  ///< of the seamless map
+  QuantizeReport report;          ///< without the distortions
 };
 
-/// Cuts a map into blocks, and tries integers for these until it can be bent onto some.
-/// @param map  that was made seamless; its parameters are not used
-/// @throws Error that says what keeps tets flipped, and a number of cells that works
+/// Cuts a map into blocks, and tries integers for them until the map can be bent onto some.
+/// @param map  the original of the seamless map; its parameters are not used
+/// @throws Error with the reason why tets stay flipped, and a number of cells that works
 [[nodiscard]] FoundMap findBentMap(SeamlessMap seamless, const TetMapView& map,
                                    const QuantizeOptions& options, Context& context);
 

@@ -1,5 +1,6 @@
-// Quantization: a seamless map, the boxes of its motorcycle complex, integers for their edges, and
-// the map bent onto these.
+// Quantization of a seamless map: traces its motorcycle complex, finds integers for the arcs, and
+// bends the map onto these (Brückler et al. 2022, Volume Parametrization Quantization for
+// Hexahedral Meshing).
 #include <string>
 
 #include <hexhex/quantize.hpp>
@@ -22,10 +23,11 @@
 namespace hexhex::quantization {
 namespace {
 
-/// As a share of its size, an almost seamless map may be so far from a seamless one.
+/// Maximum deviation of an almost seamless map from the nearest seamless one, relative to the map's
+/// size.
 constexpr double kAlmost = 0.01;
-/// Planes so near to each other, as a share of the map's size, are taken as one if walls between
-/// them leave no room for tets: in turn. Cells are seldom smaller than the last.
+/// Where walls leave no room for tets between them, planes up to this distance apart, relative to
+/// the map's size, are merged; values are tried in turn. Cells are rarely smaller than the last.
 constexpr std::array<double, 6> kApart = {0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 
 void checkOptions(const QuantizeOptions& options) {
@@ -49,7 +51,7 @@ void checkOptions(const QuantizeOptions& options) {
   }
 }
 
-/// Whether tets name points that exist, and regions are as many.
+/// Whether vertices of tets exist and there are as many regions as tets, if any.
 bool areInRange(const TetMapView& map) {
   if (!map.regions.empty() && map.regions.size() != map.tets.size()) return false;
   return std::all_of(map.tets.begin(), map.tets.end(), [&map](const Tet& tet) {
@@ -57,8 +59,8 @@ bool areInRange(const TetMapView& map) {
   });
 }
 
-/// Takes more and more planes as one until walls leave room between them.
-/// @param[out] order  whose number each tet of the result has
+/// Merges planes at increasing distances until the tets between walls are thick enough.
+/// @param[out] order  the caller's number of each tet while sorted
 QuantizedMap quantizeSorted(const TetMapView& given, const QuantizeOptions& options,
                             std::vector<Index>& order, Context& context) {
   std::optional<Error> tooThin;
@@ -68,13 +70,13 @@ QuantizedMap quantizeSorted(const TetMapView& given, const QuantizeOptions& opti
       SeamlessMap seamless = makeSeamless(
           map, {options.tolerance, options.tolerance, options.wallTag, apart}, context);
       requirePositiveTets(seamless);
-      std::vector<TetParameters>().swap(map.parameters);  // which are large
+      std::vector<TetParameters>().swap(map.parameters);  // frees memory
       return finishQuantization(findBentMap(std::move(seamless), map, options, context), map,
                                 context);
     } catch (const TooThinForWalls& error) {
       if (!tooThin) tooThin = error;
     } catch (const Error& error) {
-      // Tets may have been flipped when planes became one.
+      // Merging planes can flip tets; the first error is more helpful then.
       if (!tooThin || error.code() != ErrorCode::FlippedTet) throw;
     }
   }
@@ -128,7 +130,7 @@ QuantizedMap quantize(const TetMapView& map, const QuantizeOptions& options, Con
   WorkSteps steps(context, "quantize", kSteps);
   QuantizedMap result;
   withThreads(context.threads(), [&] {
-    // What is wrong with the caller's arrays is found in them.
+    // Invalid arrays cannot be sorted; makeSeamless() reports what is wrong with them.
     if (map.parameters.size() != map.tets.size() || !quantization::areInRange(map)) {
       static_cast<void>(quantization::makeSeamless(map, {}, context));
     }

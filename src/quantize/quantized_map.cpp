@@ -16,7 +16,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// The scaled Jacobian of the inverse map of a tet: of the edges that a small cube gets in space.
+/// The scaled Jacobian of the inverse map of a tet, that is, of the image of a small cube in space.
 double inverseJacobian(const std::array<Vec3, 4>& points, const TetParameters& u) {
   std::array<Vec3, 3> x{};
   std::array<Vec3, 3> p{};
@@ -24,7 +24,7 @@ double inverseJacobian(const std::array<Vec3, 4>& points, const TetParameters& u
     x[i] = minus(points[i + 1], points[0]);
     p[i] = minus(u[i + 1], u[0]);
   }
-  // Columns of X P^-1, but for the factor det P.
+  // The columns of X P^-1, up to the factor det P.
   const std::array<Vec3, 3> rows = {cross(p[1], p[2]), cross(p[2], p[0]), cross(p[0], p[1])};
   std::array<Vec3, 3> columns{};
   double product = 1;
@@ -57,7 +57,7 @@ MapDistortion distortionOf(const std::vector<Vec3>& points, const std::vector<Te
 
 namespace {
 
-/// Singular curves must be what they were.
+/// @throws Error Internal if the singular curves have changed
 void requireSingularities(const IrregularEdges& expected, const TetMap& map, Context& context) {
   Stage stage(context, "singular curves");
   auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);

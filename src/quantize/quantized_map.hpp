@@ -1,5 +1,5 @@
-// A bent map as the caller gets it: with features and regions of the map that it came from, and
-// checked.
+// Turns a bent map into the result of quantization: carries features and regions over from the
+// input, and validates it.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ namespace hexhex::quantization {
                                          const std::vector<Tet>& tets,
                                          const std::vector<TetParameters>& parameters);
 
-/// @param given  whose features and regions come along
-/// @throws Error Internal if the map does not pass the exact check, or has other singular edges
+/// @param given  the input, with features and regions
+/// @throws Error Internal if the map fails the exact check, or its singular edges have changed
 [[nodiscard]] QuantizedMap finishQuantization(FoundMap found, const TetMapView& given,
                                               Context& context);
 

@@ -11,9 +11,9 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Puts the smallest vertex of a tet first, and the smallest of the others second.
+/// Moves the smallest vertex of a tet to the front, and then the smallest of the others.
 void sortCorners(Tet& tet, TetParameters& u) {
-  // Even permutations only: two swaps each.
+  // Two swaps each, so that the permutation is even.
   const auto swap = [&](std::size_t a, std::size_t b) {
     std::swap(tet[a], tet[b]);
     std::swap(u[a], u[b]);

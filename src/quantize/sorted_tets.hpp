@@ -1,5 +1,4 @@
-// A map with tets and corners in an order that depends on vertices alone: so that the outcome does
-// not depend on the caller's.
+// A canonical order of tets and corners, so that results do not depend on the input's order.
 #pragma once
 
 #include <vector>
@@ -9,15 +8,15 @@
 
 namespace hexhex::quantization {
 
-/// @param map  whose tets name points that exist
-/// @param[out] order  whose number each tet had
+/// @param map  vertices of tets must be in range
+/// @param[out] order  the caller's number of each sorted tet
 [[nodiscard]] TetMap inCanonicalOrder(const TetMapView& map, std::vector<Index>& order);
 
-/// An error that names a tet of the sorted map, by the caller's number.
+/// Translates the place of an error from the sorted map to the caller's numbers.
 [[nodiscard]] Error inCallersTerms(const Error& error, const TetMapView& map,
                                    const std::vector<Index>& order);
 
-/// Gives tets the caller's numbers; parts that were split off come behind.
+/// Restores the caller's order of tets; tets added by splits stay behind the others.
 void restoreOrder(const std::vector<Index>& order, TetMap& map);
 
 }  // namespace hexhex::quantization

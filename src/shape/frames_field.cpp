@@ -18,30 +18,31 @@ using Tensors = Eigen::Matrix<double, 9, Eigen::Dynamic>;
 
 constexpr std::size_t kTetGrain = 256;
 
-/// Times of diffusion: from a share of the object's squared size, by this factor, to the square of
-/// an edge's length.
+/// Diffusion times decrease by a factor from this fraction of the object's squared diagonal down to
+/// the squared edge length.
 constexpr double kLongest = 0.02;
 constexpr double kShorter = 0.4;
-/// Rounds for each time, but for the last one.
+/// Rounds per time, and for the last time.
 constexpr int kRounds = 4;
 constexpr int kLastRounds = 20;
-/// Rounds end when the energy changes by less than this share.
+/// Rounds end when the energy changes by less than this fraction.
 constexpr double kAtRest = 1e-4;
-/// Middles of neighbours are so many lengths of an edge apart at least: others would be one tet.
+/// Lower bound on the distance between centroids of neighbours, in edge lengths: smaller ones would
+/// weld the two tets together.
 constexpr double kLeastDistance = 0.1;
-/// Of the mean volume: less is noise.
+/// Lower bound on volumes, relative to their mean: less is noise.
 constexpr double kLeastVolume = 1e-3;
 
-/// What a tet's tensor may be: anything, one of a circle, or one alone.
+/// Restricts a tet's tensor to a circle (if an axis is given), or to a single one.
 struct Condition {
   std::optional<Frame> fixed;
   std::optional<Vector3d> axis;
   FrameTensor middle = FrameTensor::Zero();
-  FrameTensor cosine = FrameTensor::Zero();  ///< of length one
-  FrameTensor sine = FrameTensor::Zero();    ///< of length one
+  FrameTensor cosine = FrameTensor::Zero();  ///< normalized
+  FrameTensor sine = FrameTensor::Zero();    ///< normalized
 
   [[nodiscard]] bool isFree() const { return !fixed && !axis; }
-  /// The part of a change that keeps the condition.
+  /// Projects a change to those that keep the condition.
   [[nodiscard]] FrameTensor allowed(const FrameTensor& change) const {
     if (isFree()) return change;
     return cosine * cosine.dot(change) + sine * sine.dot(change);
@@ -105,7 +106,7 @@ class FieldMaker {
     return condition;
   }
 
-  /// Volumes of tets, and how strongly neighbours pull: by area and distance.
+  /// Computes volumes of tets and weights of neighbours, area / distance.
   void measure() {
     const adjacency::TetTopology& topology = tets_.topology();
     masses_.resize(tets_.size());
@@ -143,7 +144,8 @@ class FieldMaker {
     return (high - low).norm();
   }
 
-  /// Sum over both sides of all triangles inside, and over the tet's four for one of them.
+  /// The Laplacian of tensors at a tet. Weights are halved, as the energy counts each triangle from
+  /// both sides.
   [[nodiscard]] FrameTensor differences(const Tensors& tensors, std::size_t t) const {
     FrameTensor sum = FrameTensor::Zero();
     for (std::size_t h = 4 * t; h < 4 * t + 4; ++h) {
@@ -154,7 +156,7 @@ class FieldMaker {
     return sum;
   }
 
-  /// Calls visit(tet) and adds up what it returns, in the same order with any number of threads.
+  /// Adds up visit(tet) over all tets, in the same order for any number of threads.
   template <class Visit>
   double sumOver(const Visit& visit) {
     std::vector<double> parts(blockCount(tets_.size(), kTetGrain));
@@ -173,8 +175,8 @@ class FieldMaker {
     });
   }
 
-  /// An implicit step of diffusion under all conditions: the smallest sum of inertia times squared
-  /// changes and time times squared differences, by preconditioned conjugate gradients.
+  /// An implicit step of diffusion under all conditions: minimizes inertia times squared changes
+  /// plus time times squared differences, by preconditioned conjugate gradients.
   void diffuse(double time, double inertia, double tolerance, int mostSteps) {
     const auto column = [](std::size_t t) { return static_cast<Eigen::Index>(t); };
     Tensors there = tensors_;
@@ -219,7 +221,7 @@ class FieldMaker {
     tensors_ = std::move(there);
   }
 
-  /// To the nearest frames.
+  /// Projects tensors to the nearest frames.
   void project() {
     parallelFor(stage_, frames_.size(), kTetGrain, [&](std::size_t t) {
       const Condition& condition = conditions_[t];
@@ -253,7 +255,7 @@ class FieldMaker {
   std::vector<Condition> conditions_;
   std::vector<double> masses_;    ///< per tet
   std::vector<double> pulls_;     ///< per half-face
-  std::vector<double> allPulls_;  ///< per tet: the sum of these
+  std::vector<double> allPulls_;  ///< per tet: the sum of its pulls
   std::vector<Frame> frames_;
   Tensors tensors_;
 };

@@ -1,9 +1,9 @@
-// A smooth field of frames, aligned with the boundary and its features.
+// A smooth field of frames that is aligned with the boundary and its features.
 //
-// Frames are harmonic quartics (frames_tensor). The smoothest field of tensors that meets the
-// conditions of the boundary is a linear problem; its projection to frames is a start. From there
-// tensors diffuse and are projected, in turns, over shorter and shorter times: a fine scale alone
-// would keep the singular curves of the start where they are.
+// Frames are harmonic quartics (frames_tensor.hpp). The smoothest field of tensors under the
+// boundary conditions is a linear problem; its projection to frames is the initial field. Then
+// diffusion and projection alternate, with decreasing diffusion times: starting with a short time
+// would leave the singular curves where they are.
 //
 // D. Palmer, D. Bommes, J. Solomon, "Algebraic Representations for Volumetric Frame Fields", ACM
 // Transactions on Graphics 39 (2020).
@@ -17,9 +17,9 @@
 
 namespace hexhex::shape {
 
-/// One frame per tet. Of tets with a boundary triangle, an axis is its normal; of tets with a
-/// feature, an axis is its direction.
-/// @param tets  with room
+/// Computes one frame per tet. If the tet has a boundary triangle, one axis is its normal; if it
+/// has a feature edge, one axis is its direction.
+/// @param tets  after makeRoom()
 [[nodiscard]] std::vector<Frame> frameField(const FrameTets& tets, Stage& stage);
 
 }  // namespace hexhex::shape

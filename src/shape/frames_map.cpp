@@ -26,21 +26,22 @@ namespace {
 
 using adjacency::HalfFace;
 
-/// Searches for rotations, each with random numbers of its own.
+/// Number of searches for rotations, each with its own random numbers.
 constexpr std::uint64_t kSearches = 4;
-/// Times at which tets are refined around flips, and the solver begins anew.
+/// Number of refinements around flips, each followed by a new attempt.
 constexpr int kMostRefinements = 1;
-/// Weight of the pull towards frames: so that no part collapses, and then less.
+/// Weights of the term that pulls gradients towards frames: while untangling, high enough to keep
+/// parts from collapsing, and then lower.
 constexpr double kPull = 0.5;
 constexpr double kLastPull = 0.1;
 
-/// Of random numbers: fields of the same tets differ in what these make of their curves.
+/// Seeds of rematching: it may turn the same field into different singular curves.
 constexpr std::array<std::uint64_t, 2> kSeeds = {0, 1000};
-/// More tets than this are not refined; nor those whose field is that of no mesh, which finer tets
-/// have not changed on any part yet.
+/// Larger meshes are not refined, nor those whose field admits no mesh: there, refinement has not
+/// helped any part yet.
 constexpr std::size_t kMostRefined = 8000;
 
-/// Tets with a field that turns as little as it can from one to the next.
+/// Tets with a smooth frame field, and the rotations that turn least between neighbours.
 FrameTets tetsWithField(const TetMapView& given, double featureAngle, bool isRefined,
                         Stage& stage) {
   FrameTets tets(
@@ -53,7 +54,7 @@ FrameTets tetsWithField(const TetMapView& given, double featureAngle, bool isRef
   return tets;
 }
 
-/// A map that may come out of a field.
+/// Attempts to make a map from a field.
 class FramesMapper {
  public:
   FramesMapper(const quantization::LabelledMesh& given, FrameTets tets, std::uint64_t seed,
@@ -76,14 +77,15 @@ class FramesMapper {
   }
 
  private:
-  /// Rotations of the field, and a decision on whether there is a map.
+  /// Optimizes rotations of the field.
+  /// @throws Error TransitionResidual if the field admits no mesh
   void rematch() {
     const EdgeWalks walks(tets_);
     const std::vector<lattice::Rotation> nearest = tets_.rotations;
     std::vector<FieldDefect> fewest = defectsOf(tets_, walks);
     std::vector<lattice::Rotation> best = nearest;
     for (std::uint64_t seed = 0; seed < kSearches && !(seed > 0 && fewest.empty()); ++seed) {
-      // From the best that there is, or all over again, in turns.
+      // Starts anew or from the best so far, in turns.
       tets_.rotations = seed % 2 == 0 ? nearest : best;
       rematchFrames(tets_, walks, seed_ + seed, stage_);
       std::vector<FieldDefect> defects = defectsOf(tets_, walks);
@@ -96,7 +98,7 @@ class FramesMapper {
     smoothFrames(tets_, stage_);
   }
 
-  /// Splits regular edges between vertices that are bound to curves or to the boundary.
+  /// Splits regular edges between vertices that are bound to curves or the boundary.
   void splitAtCurves() {
     while (true) {
       const EdgeWalks walks(tets_);
@@ -151,8 +153,8 @@ class FramesMapper {
     return roundUnknowns(problem);
   }
 
-  /// Tets around edges that have more or fewer hexahedra in the map than in the field: all are
-  /// positive, but they go around the edge once too often.
+  /// Tets at edges with more or fewer quarter turns in the map than in the field: they are
+  /// positive, but wind around the edge once too often.
   [[nodiscard]] std::vector<Index> woundTets(const untangle::Problem& problem,
                                              const EdgeWalks& walks) const {
     const std::vector<TetParameters> parameters = parametersOf(problem);
@@ -187,7 +189,7 @@ class FramesMapper {
     }
   }
 
-  /// Splits the longest edge, at one of their vertices, of tets near flips.
+  /// For each tet near a flip, splits the longest edge at a vertex of a flipped tet.
   void refineAt(const std::vector<Index>& flipped) {
     std::vector<bool> isNear(tets_.mesh().points.size());
     for (const Index t : flipped) {
@@ -220,7 +222,7 @@ class FramesMapper {
     return map;
   }
 
-  /// In the caller's terms, if they know both vertices; else a tet there.
+  /// The edge or vertex if the caller's mesh has it, otherwise a tet there.
   [[nodiscard]] Place placeOf(const VertexPair& edge) const {
     const std::size_t known = given_.input.view.points.size();
     if (edge[0] < known && edge[1] < known) {
@@ -267,7 +269,7 @@ class FramesMapper {
 
 quantization::LabelledMesh read(const TetMesh& tets, Stage& stage) {
   quantization::LabelledMesh mesh = quantization::readUnlabelled(tets, stage);
-  // Walks around edges come back only on manifolds.
+  // Walks around edges terminate only on manifolds.
   igm::DefectCollector defects;
   igm::collectTopologyDefects(mesh.topology, stage, defects);
   defects.throwIfAny();

@@ -15,11 +15,11 @@ using adjacency::HalfFace;
 using Kind = EdgeTurning::Kind;
 
 constexpr std::size_t kMatchGrain = 1024;
-/// A boundary edge turns about an axis if its cosine with that is the largest of all axes', or at
-/// least this.
+/// A boundary edge is aligned with the frame axis that has the largest cosine with it, and with any
+/// axis whose cosine is at least this.
 constexpr double kAligned = 0.6;
 
-/// A rotation of the grid as turns around an edge know it.
+/// The class of a rotation of the grid around an edge.
 struct RotationKind {
   Kind kind = Kind::Regular;    ///< a quarter turn is Three
   lattice::Direction axis = 0;  ///< of a quarter turn, counterclockwise
@@ -54,14 +54,14 @@ Eigen::Vector3d directionOf(const FrameTets& tets, const VertexPair& edge) {
   return (tets.point(edge[1]) - tets.point(edge[0])).normalized();
 }
 
-/// Singular edges at a vertex, by kind.
+/// Numbers of singular edges at a vertex, by kind.
 struct Ends {
   int threes = 0;
   int fives = 0;
   int others = 0;
 };
 
-/// Triangles whose edges are all singular.
+/// Reports triangles whose edges are all singular.
 void addFlat(const FrameTets& tets, const EdgeWalks& walks, const std::vector<bool>& isSingular,
              std::vector<FieldDefect>& defects) {
   for (HalfFace h = 0; h < tets.topology().mate.size(); ++h) {
@@ -120,8 +120,8 @@ EdgeTurning turningAt(const FrameTets& tets, const EdgeWalks& walks, std::size_t
   const RotationKind& kind = knownKind(around);
   EdgeTurning turning{kind.kind, 1};
   if (kind.kind != Kind::Three) return turning;
-  // Charts that are put together around the edge end at the angle 3/4 where they begin: the way
-  // back to the first one is a quarter turn on.
+  // Unfolded around an edge of valence 3, charts close after 3/4 of a turn, so the transition back
+  // to the first one is a quarter turn.
   const Eigen::Vector3d along = directionOf(tets, walks[edge]);
   double sum = 0;
   lattice::Direction axis = kind.axis;
@@ -160,9 +160,10 @@ int boundaryValence(const FrameTets& tets, const EdgeWalks& walks, std::size_t e
 }
 
 bool isNode(int threes, int fives) {
-  // Hexahedra around a vertex make triangles on a small sphere, at each corner of which are as many
-  // as hexahedra at that edge. Of the spheres with three to five everywhere, there are these (of
-  // all triangulations with up to ten corners, and there is one with twelve but none with eleven).
+  // Hexahedra around a vertex cut a small sphere into triangles, and the degree of a corner there
+  // is the valence of an edge. Of triangulated spheres with degrees 3 to 5, there are these (all
+  // triangulations with up to ten corners were checked; there is one with twelve, and none with
+  // eleven).
   using Counts = std::pair<int, int>;
   constexpr std::array<Counts, 11> kNodes = {
       {{0, 0}, {2, 0}, {4, 0}, {0, 2}, {2, 2}, {1, 3}, {0, 4}, {0, 6}, {2, 6}, {0, 8}, {0, 12}}};

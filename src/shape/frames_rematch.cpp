@@ -17,26 +17,27 @@ namespace {
 using adjacency::HalfFace;
 using Kind = EdgeTurning::Kind;
 
-/// Sweeps that take changes for the worse, fewer and fewer; and at most so many that do not.
+/// Number of sweeps that accept some changes for the worse, fewer and fewer, and maximum number of
+/// sweeps that accept none.
 constexpr int kWarmSweeps = 40;
 constexpr int kColdSweeps = 40;
-/// Costs in lengths of edges, or of the edge itself.
-constexpr double kPerRadian = 0.4;  // across a triangle
+/// Costs in mean edge lengths or, for edges, relative to the edge's length.
+constexpr double kPerRadian = 0.4;  // of the rotation across a triangle
 constexpr double kHalfTurn = 8;
 constexpr double kCompound = 10;
-constexpr double kSkew = 2;     // of a proper edge that follows another axis than its own
-constexpr double kAlong = 0.6;  // cosines below are skew
+constexpr double kSkew = 2;     // of a proper edge aligned with another axis than its own
+constexpr double kAlong = 0.6;  // lower cosines count as skew
 constexpr double kZipper = 4;
-constexpr double kFlat = 2;    // a triangle whose edges are all singular, counted for each of them
-constexpr double kNode = 0.3;  // each curve but two
-constexpr double kBoundaryNode = 2.5;  // each curve but one
-/// Of boundary edges: where they have no valence, or one that is farther than this from their angle
-/// in quarter turns.
+constexpr double kFlat = 2;    // a triangle with three singular edges, counted at each of them
+constexpr double kNode = 0.3;  // per curve beyond the second
+constexpr double kBoundaryNode = 2.5;  // per curve beyond the first
+/// Costs of boundary edges without valence, and of those whose valence differs by more than
+/// kNearValence from their angle in quarter turns.
 constexpr double kNoValence = 10;
 constexpr double kOtherValence = 3;
 constexpr double kNearValence = 0.75;
 constexpr double kWarmth = 0.3;
-/// Costs of an edge, in its lengths, from where it is worth a search.
+/// Edges with a higher cost per length are searched.
 constexpr double kBad = 2.5;
 
 /// Singular edges at a vertex.
@@ -52,7 +53,7 @@ struct Curves {
   }
 };
 
-/// Of a boundary edge in space.
+/// The interior dihedral angle at a boundary edge.
 double innerAngle(const FrameTets& tets, const EdgeWalks& walks, std::size_t edge) {
   const Eigen::Vector3d first = tets.normal(walks.start(edge)).normalized();
   const Eigen::Vector3d last = tets.normal(walks.outs(edge).back()).normalized();
@@ -104,13 +105,13 @@ class Rematcher {
  private:
   struct Edge {
     double length = 0;
-    double quarters = 2;  ///< of a feature: its angle inside, in quarter turns, at least one
+    double quarters = 2;  ///< of a boundary edge: its interior angle in quarter turns, at least one
     double cost = 0;
     bool isSingular = false;
     Kind kind = Kind::Regular;
   };
 
-  /// Of an edge, after a rotation of a triangle at it has changed.
+  /// Recomputes an edge after the rotation across one of its triangles has changed.
   void update(std::size_t edge) {
     Edge& at = edges_[edge];
     if (walks_.isBoundary(edge)) {
@@ -131,7 +132,7 @@ class Rematcher {
     at.cost = at.length * costOf(turning);
   }
 
-  /// By how far the hexahedra at a boundary edge are from its angle in space.
+  /// Cost per length of a boundary edge.
   static double boundaryCost(int valence, double quarters) {
     if (valence == 0) return kNoValence;
     return std::abs(valence - quarters) < kNearValence ? 0 : kOtherValence;
@@ -159,7 +160,7 @@ class Rematcher {
     return kPerRadian * unit_ * std::acos(std::clamp((like - 1) / 2, -1.0, 1.0));
   }
 
-  /// Triangles at a singular edge whose other edges are singular, too.
+  /// Number of triangles at an edge whose edges are all singular.
   [[nodiscard]] int flatFacesAt(Index edge) const {
     if (!edges_[edge].isSingular) return 0;
     int count = 0;
@@ -188,8 +189,8 @@ class Rematcher {
   }
 
   /// Tries all rotations across a triangle.
-  /// @param warmth  exponential noise of that mean is taken off the cost of changes
-  /// @return whether another one is better
+  /// @param warmth  mean of the exponential noise subtracted from costs
+  /// @return whether the rotation changes
   bool improve(HalfFace h, double warmth) {
     const std::array<Index, 3> edges = walks_.edgesOf(h);
     const lattice::Rotation old = tets_.rotations[h];
@@ -198,7 +199,7 @@ class Rematcher {
     for (int r = 0; r < lattice::Rotation::kCount; ++r) {
       if (lattice::Rotation(r) == old) continue;
       const double noise = warmth > 0 ? -warmth * std::log(1 - draw()) : 0;
-      // No other cost is negative.
+      // A bound: all other costs are nonnegative.
       tets_.rotations[h] = lattice::Rotation(r);
       if (faceCost(h) - noise >= least) continue;
       set(h, lattice::Rotation(r), edges);
@@ -231,7 +232,7 @@ class Rematcher {
     return isBad;
   }
 
-  /// Triangles inside of which two vertices are next to a defect.
+  /// Inner triangles with at least two vertices next to a defect.
   [[nodiscard]] std::vector<HalfFace> facesNearDefects() const {
     const std::vector<bool> isBad = badVertices();
     std::vector<bool> isNear = isBad;
@@ -259,10 +260,10 @@ class Rematcher {
   std::vector<bool> isOuter_;
   std::vector<Edge> edges_;
   std::vector<Curves> curves_;  ///< per vertex
-  double unit_ = 0;             ///< the mean length of edges
+  double unit_ = 0;             ///< mean edge length
 };
 
-/// Whether a tet's frame has a condition to meet.
+/// Whether a tet's frame must meet a condition.
 bool isConstrained(const FrameTets& tets, Index t) {
   bool isBound = false;
   for (int face = 0; face < 4; ++face) {

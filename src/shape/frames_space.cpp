@@ -22,14 +22,14 @@ using quantization::CutGraph;
 using quantization::IntegerForm;
 using quantization::VertexConditions;
 
-/// Unknowns are rounded to such a share of the map's size.
+/// Unknowns are rounded to multiples of this fraction of the map's size.
 constexpr double kGrid = 0x1p-40;
-/// Sums of these are multiples of that share of it.
+/// Parameters, sums of unknowns with rational factors, are multiples of this fraction of the grid.
 constexpr double kFraction = 0x1p-6;
 
 Vec3 asArray(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
 
-/// Each tet as it lies in its frame.
+/// The corners of each tet, in coordinates of its frame.
 std::vector<TetParameters> inFrames(const FrameTets& tets) {
   std::vector<TetParameters> parameters(tets.size());
   for (Index t = 0; t < tets.size(); ++t) {
@@ -40,7 +40,7 @@ std::vector<TetParameters> inFrames(const FrameTets& tets) {
   return parameters;
 }
 
-/// Parameters of all sectors as sums of unknowns.
+/// Expresses the parameters of all sectors by free unknowns.
 class SeamlessSpace {
  public:
   SeamlessSpace(const FrameTets& tets, const EdgeWalks& walks, const CutGraph& graph)
@@ -73,10 +73,10 @@ class SeamlessSpace {
   }
 
  private:
-  /// Triangles of the boundary lie in planes.
+  /// Boundary triangles lie in planes.
   static quantization::Alignment alignmentOf(const FrameTets& tets, const CutGraph& graph);
 
-  /// Adds a multiple of shared unknowns to a coordinate.
+  /// Adds a multiple of a form in shared unknowns to a coordinate.
   void add(std::size_t coordinate, const IntegerForm& form, double factor) {
     for (const auto& [variable, coefficient] : form.terms()) {
       for (const auto& [free, share] : shared_[variable]) {
@@ -107,12 +107,12 @@ class SeamlessSpace {
 
   quantization::SharedUnknowns unknowns_;
   std::vector<std::vector<std::pair<Index, double>>> shared_;
-  std::vector<int> numbers_;  ///< of shared unknowns that are free, among all
+  std::vector<int> numbers_;  ///< per shared unknown: its number among all if free, else -1
   int count_ = 0;
   std::vector<std::map<int, double>> rows_;  ///< per sector and axis
 };
 
-/// From space to the common chart: of a tet.
+/// The Jacobian of a tet, from space to the common chart.
 Eigen::Matrix3d jacobianOf(const untangle::Element& element, const TetParameters& u) {
   Eigen::Matrix3d j = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < 3; ++i) {

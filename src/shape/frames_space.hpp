@@ -1,10 +1,11 @@
-// All maps with the singular curves of a field, which are seamless whatever their unknowns are.
+// The linear space of seamless maps with the singular curves of a field.
 //
-// The tets are cut open to a common chart. Conditions of a seamless map (what vertices on singular
-// curves, on the boundary and on both sides of the cut have in common) are linear with integer
-// coefficients; solved exactly, they leave free coordinates of vertices, free planes and free
+// The tets are cut open to a common chart. The conditions of a seamless map (for vertices on
+// singular curves, on the boundary and on both sides of the cut) are linear with integer
+// coefficients. Solved exactly, they leave free coordinates of vertices, free planes and free
 // translations across pieces of the cut. Parameters are sums of these, nearly always with factors
-// that are halves or integers: rounded to a grid, they make a map that is seamless to the last bit.
+// that are integers or halves: if unknowns are rounded to a grid, the map is seamless to the last
+// bit.
 #pragma once
 
 #include <vector>
@@ -18,14 +19,14 @@
 
 namespace hexhex::shape {
 
-/// The problem of the map whose gradients are nearest to the frames: its elements are the tets,
-/// their targets what takes space to coordinates of the frame.
-/// @pre around each edge, charts turn about an axis
+/// The problem of the map whose gradients are closest to the frames. Elements are the tets; their
+/// targets map space to coordinates of the frame.
+/// @pre around each edge, charts agree or turn about an axis
 [[nodiscard]] untangle::Problem seamlessProblem(const FrameTets& tets, const EdgeWalks& walks,
                                                 Stage& stage);
 
-/// Rounds unknowns such that parameters are exact.
-/// @return tets that are not positive then, decided exactly
+/// Rounds unknowns so that parameters are exact.
+/// @return tets that are exactly nonpositive then
 [[nodiscard]] std::vector<Index> roundUnknowns(untangle::Problem& problem);
 
 [[nodiscard]] std::vector<TetParameters> parametersOf(const untangle::Problem& problem);

@@ -22,7 +22,7 @@ constexpr double kPi = std::numbers::pi;
 using Quartic = Eigen::Matrix<double, kMonomials, 1>;
 using Exponents = std::array<int, 3>;
 
-/// The fourth powers of vectors, and what is harmonic among them.
+/// Quartic forms of three variables, and the subspace of harmonic ones.
 class QuarticSpace {
  public:
   QuarticSpace() {
@@ -41,7 +41,7 @@ class QuarticSpace {
     for (int axis = 0; axis < 3; ++axis) findTurns(axis);
   }
 
-  /// v^4, such that products of these are (v . w)^4.
+  /// The form v^4, scaled so that dot products are (v . w)^4.
   [[nodiscard]] Quartic power(const Vector3d& v) const {
     Eigen::Matrix<double, 3, 5> powers;
     powers.col(0).setOnes();
@@ -57,7 +57,7 @@ class QuarticSpace {
   [[nodiscard]] FrameTensor harmonic(const Quartic& quartic) const {
     return harmonics_.transpose() * quartic;
   }
-  /// How tensors change as frames turn about an axis of space.
+  /// The derivative of tensors as frames turn about an axis of space.
   [[nodiscard]] const Eigen::Matrix<double, 9, 9>& turn(int axis) const {
     return turns_[static_cast<std::size_t>(axis)];
   }
@@ -67,7 +67,7 @@ class QuarticSpace {
     return numbers_[5 * static_cast<std::size_t>(e[0]) + static_cast<std::size_t>(e[1])];
   }
 
-  /// All but the multiples of x^2 + y^2 + z^2.
+  /// The orthogonal complement of the multiples of x^2 + y^2 + z^2.
   void findHarmonics() {
     Eigen::Matrix<double, kMonomials, 6> multiples = Eigen::Matrix<double, kMonomials, 6>::Zero();
     int column = 0;
@@ -109,7 +109,7 @@ class QuarticSpace {
   }
 
   std::vector<Exponents> exponents_;
-  std::vector<double> roots_;  ///< of how often each monomial comes
+  std::vector<double> roots_;  ///< square roots of multinomial coefficients
   std::array<int, 25> numbers_{};
   Eigen::Matrix<double, kMonomials, 9> harmonics_;
   std::array<Eigen::Matrix<double, 9, 9>, 3> turns_;
@@ -125,7 +125,7 @@ struct Sample {
   FrameTensor tensor;
 };
 
-/// So many frames all over the place that one of them is in the valley of any tensor's nearest.
+/// Enough frames that one of them is in the basin of attraction of the frame nearest to any tensor.
 const std::vector<Sample>& samples() {
   static const std::vector<Sample> kSamples = [] {
     constexpr int kCount = 60;
@@ -133,7 +133,7 @@ const std::vector<Sample>& samples() {
     const auto draw = [&] { return static_cast<double>(random()) * 0x1p-32; };
     std::vector<Sample> all;
     for (int i = 0; i < kCount; ++i) {
-      // Evenly over all rotations (Shoemake 1992).
+      // Uniform over all rotations (Shoemake 1992).
       const double share = draw();
       const double first = 2 * kPi * draw();
       const double second = 2 * kPi * draw();
@@ -159,7 +159,7 @@ FrameTensor tensorOf(const Frame& frame) {
 Frame nearestFrame(const FrameTensor& tensor, const Frame& start) {
   constexpr int kMostSteps = 30;
   constexpr double kLevel = 1e-9;       // of the gradient
-  constexpr double kConvexity = 0.05;   // Hessian matrices are made so convex at least
+  constexpr double kConvexity = 0.05;   // lower bound on the convexity of regularized Hessians
   constexpr double kLargestTurn = 0.5;  // in radians
   const double size = tensor.norm();
   Frame frame = start;

@@ -1,8 +1,8 @@
-// Frames of three axes, up to order and sign of these, as nine numbers.
+// Frames of three axes, up to order and sign of the axes, as tensors of nine numbers.
 //
-// The quartic (x . a)^4 + (x . b)^4 + (x . c)^4 of a frame's axes, without what all frames share,
-// is a point of a space of nine dimensions: the harmonic quartics. What is near to each other there
-// is so in space, whatever axes are called.
+// The quartic (x . a)^4 + (x . b)^4 + (x . c)^4 of the axes of a frame, without the part that all
+// frames share, is a harmonic quartic, i.e. a point of a nine-dimensional space. Distances there
+// are those between frames, whatever the order and sign of axes.
 //
 // J. Huang et al., "Boundary Aligned Smooth 3D Cross-Frame Field", ACM Transactions on Graphics 30
 // (2011); D. Palmer, D. Bommes, J. Solomon, "Algebraic Representations for Volumetric Frame
@@ -13,28 +13,29 @@
 
 namespace hexhex::shape {
 
-/// Axes are columns: an orthogonal matrix of determinant 1.
+/// An orthogonal matrix of determinant 1; columns are axes.
 using Frame = Eigen::Matrix3d;
 using FrameTensor = Eigen::Matrix<double, 9, 1>;
 
-/// All frames have tensors of one length.
+/// The tensors of all frames have the same norm.
 [[nodiscard]] FrameTensor tensorOf(const Frame& frame);
 
-/// A frame whose tensor is nearest to this one, or nearly so.
-/// @param start  one that it may be near to
+/// The frame whose tensor is closest, up to local optima of Newton's method.
+/// @param start  an initial guess, in addition to fixed samples
 [[nodiscard]] Frame nearestFrame(const FrameTensor& tensor, const Frame& start);
 
-/// A frame whose first axis is this one.
-/// @param angle  of the second axis, about the first one
+/// The frame with a given first axis.
+/// @param angle  of the second axis about the first one
 [[nodiscard]] Frame frameAbout(const Eigen::Vector3d& axis, double angle);
 
-/// The tensors of all frames with one axis in common: a circle, which takes a quarter turn.
+/// The tensors of all frames with a common axis: a circle, parametrized by a quarter turn of
+/// frames.
 struct TensorCircle {
   explicit TensorCircle(const Eigen::Vector3d& axis);
 
   FrameTensor middle;
-  FrameTensor cosine;  ///< towards that of frameAbout(axis, 0)
-  FrameTensor sine;    ///< at an eighth of a turn: perpendicular to that, and as long
+  FrameTensor cosine;  ///< towards the tensor of frameAbout(axis, 0)
+  FrameTensor sine;    ///< towards an angle of pi / 8: perpendicular, of the same norm
 };
 
 }  // namespace hexhex::shape

@@ -30,8 +30,8 @@ void forEachBoundaryEdge(const adjacency::TetTopology& topology, const Visit& vi
   }
 }
 
-/// The corner behind which a walk around the edge of these two corners goes on, counterclockwise
-/// as seen from b: c, where a, b, c and the fourth corner make an even permutation.
+/// The corner c opposite the face through which a walk around edge ab leaves the tet,
+/// counterclockwise as seen from b: a, b, c and the fourth corner are an even permutation.
 int leftCorner(int a, int b) {
   std::array<int, 4> order = {a, b, 0, 0};
   int n = 2;
@@ -60,7 +60,7 @@ bool FrameTets::isFeature(const VertexPair& edge) const {
 
 Eigen::Vector3d FrameTets::normal(HalfFace h) const {
   const Tet& tet = mesh_.tets[adjacency::tetOf(h)];
-  // Corners of a face are in the order that looks inwards.
+  // Corners of a face are counterclockwise as seen from inside.
   const auto corner = [&](std::size_t k) {
     return point(tet[static_cast<std::size_t>(lattice::kFaceCorners[h % 4][k])]);
   };
@@ -92,7 +92,7 @@ void FrameTets::buildTopology(Stage& stage) {
   adjacency::addStars(topology_, stage);
   double sum = 0;
   for (Index t = 0; t < size(); ++t) sum += volume(t);
-  // Six regular tets fill about as much as a cube.
+  // About six tets fill a cube.
   edgeLength_ = std::cbrt(6 * sum / static_cast<double>(size()));
 }
 
@@ -148,8 +148,8 @@ void FrameTets::refine(Stage& stage) {
 }
 
 void FrameTets::makeRoom(Stage& stage) {
-  // Middles of edges are inside, or on the boundary but not on features, or, of triangles between
-  // three features, on one of these: so there are fewer and fewer.
+  // Midpoints are inside, or on the boundary off features, or, for triangles with three feature
+  // edges, on one of these, so the loop ends.
   while (true) {
     std::vector<tetmap::EdgeInTet> edges = boundaryCurves().tightEdges(mesh_.tets);
     const std::vector<tetmap::EdgeInTet> more = edgesBetweenFeatures();
@@ -175,7 +175,7 @@ void FrameTets::split(std::vector<tetmap::EdgeInTet> edges, Stage& stage) {
           tetmap::carryTet(cut, parents_);
           if (frames.empty()) continue;
           tetmap::carryTet(cut, frames);
-          // Between both parts, charts agree.
+          // Charts of both parts agree.
           tetmap::carryFaces(cut, lattice::Rotation(), rotations);
         }
         splitFeature(edge, middle);

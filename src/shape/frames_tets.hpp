@@ -1,5 +1,5 @@
-// Tets that frames live on: split where frames would have no room, with frames and rotations
-// carried along.
+// The tets of a frame field, split where a frame would have to meet two conditions; frames and
+// rotations are carried along.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace hexhex::shape {
 
 using tetmap::VertexPair;
 
-/// Tets that are positive in space.
+/// All tets have positive volume.
 class FrameTets {
  public:
   /// @param mesh  a manifold of positive tets
@@ -29,11 +29,11 @@ class FrameTets {
   [[nodiscard]] const TetMesh& mesh() const noexcept { return mesh_; }
   [[nodiscard]] const adjacency::TetTopology& topology() const noexcept { return topology_; }
   [[nodiscard]] std::size_t size() const noexcept { return mesh_.tets.size(); }
-  /// Of a tet of the mesh given, the number of which this is a part.
+  /// The tet of the given mesh that contains a tet.
   [[nodiscard]] Index parentOf(Index tet) const { return parents_[tet]; }
   [[nodiscard]] std::span<const Index> parents() const noexcept { return parents_; }
   [[nodiscard]] const tetmap::AddedVertices& added() const noexcept { return added_; }
-  /// Edges of the boundary at which it turns by more than the angle, ascending.
+  /// Boundary edges with more than the feature angle between normals, ascending.
   [[nodiscard]] const std::vector<VertexPair>& features() const noexcept { return features_; }
   [[nodiscard]] bool isFeature(const VertexPair& edge) const;
 
@@ -41,25 +41,24 @@ class FrameTets {
     const Vec3& p = mesh_.points[vertex];
     return {p[0], p[1], p[2]};
   }
-  /// Outwards, as long as twice the area.
+  /// The outward normal, with twice the area as length.
   [[nodiscard]] Eigen::Vector3d normal(adjacency::HalfFace h) const;
   [[nodiscard]] double volume(Index tet) const;
-  /// Of an edge, on the average.
+  /// An estimate of the mean edge length.
   [[nodiscard]] double edgeLength() const noexcept { return edgeLength_; }
-  /// Per vertex.
+  /// Per vertex, whether it is on the boundary.
   [[nodiscard]] std::vector<bool> boundaryVertices() const;
 
-  /// Splits tets until each has one constraint at most: a triangle of the boundary, or a feature,
-  /// and that besides.
+  /// Splits tets until each has at most one boundary triangle and one feature edge.
   void makeRoom(Stage& stage);
-  /// Splits all edges that are longer than they are on the average.
+  /// Splits all edges longer than edgeLength().
   void refine(Stage& stage);
   /// Splits edges, the longest first. Parts of a tet inherit its frame.
   void split(std::vector<tetmap::EdgeInTet> edges, Stage& stage);
 
-  std::vector<Frame> frames;  ///< per tet; none before there is a field
-  /// Per half-face: from parameters of the tet here to those of its neighbour. Inverse to each
-  /// other on both sides.
+  std::vector<Frame> frames;  ///< per tet; empty until there is a field
+  /// Per half-face: from parameters of its tet to those of the neighbour. Inverse to that of the
+  /// mate.
   std::vector<lattice::Rotation> rotations;
 
  private:
@@ -68,7 +67,7 @@ class FrameTets {
   void splitFeature(const VertexPair& edge, Index middle);
   void splitTets(const std::vector<Index>& tets, Stage& stage);
   [[nodiscard]] tetmap::BoundaryCurves boundaryCurves() const;
-  /// Of boundary triangles between three features, one each.
+  /// One edge of each boundary triangle with three feature edges.
   [[nodiscard]] std::vector<tetmap::EdgeInTet> edgesBetweenFeatures() const;
 
   TetMesh mesh_;
@@ -79,7 +78,7 @@ class FrameTets {
   double edgeLength_ = 0;
 };
 
-/// The tets around each edge in order: counterclockwise, seen from the edge's larger vertex.
+/// The tets around each edge in order, counterclockwise as seen from the edge's second vertex.
 class EdgeWalks {
  public:
   explicit EdgeWalks(const FrameTets& tets);
@@ -87,8 +86,8 @@ class EdgeWalks {
   [[nodiscard]] std::size_t size() const noexcept { return edges_.size(); }
   [[nodiscard]] const VertexPair& operator[](std::size_t edge) const { return edges_[edge]; }
   [[nodiscard]] bool isBoundary(std::size_t edge) const { return starts_[edge] != kNone; }
-  /// Of a boundary edge: the half-face outside of the first tet. The last one of outs() is outside
-  /// of the last tet.
+  /// The half-face where the walk around a boundary edge enters its first tet; the last one of
+  /// outs() is on the boundary, too. kNone for inner edges.
   [[nodiscard]] adjacency::HalfFace start(std::size_t edge) const { return starts_[edge]; }
   /// The half-faces through which the walk leaves its tets.
   [[nodiscard]] std::span<const adjacency::HalfFace> outs(std::size_t edge) const {

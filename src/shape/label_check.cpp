@@ -9,12 +9,12 @@ namespace hexhex::shape {
 
 namespace {
 
-/// A border turns back where it does so by more than that, in mean edges: less is the mesh's noise.
+/// A border turns back if it does so by more than this, in mean edges; less is noise of the mesh.
 constexpr double kNoise = 0.7;
-/// Beyond this cosine a triangle is nearly perpendicular to its label: 87 degrees.
+/// Below this cosine, a triangle is nearly perpendicular to its label: 87 degrees.
 constexpr double kPerpendicular = 0.05;
 
-/// @param shape  that of steep triangles and of borders
+/// @param shape  energy of steep triangles and of the length of borders
 double energyOf(const LabelReport& report, double shape) {
   const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
   double energy = report.deviation + shape;
@@ -106,7 +106,7 @@ void LabelCheck::visitCorners(Verdict& verdict) {
       verdict.places.push_back(Surface::triangleOf(border));
       seen.push_back(vertex);
     } else {
-      ++verdict.report.corners;  // three times
+      ++verdict.report.corners;  // each is counted three times
     }
     const double cost = costs_.ofCorner(Surface::triangleOf(border));
     verdict.energy += cost / 3;
@@ -119,7 +119,7 @@ void LabelCheck::visitCorners(Verdict& verdict) {
   verdict.report.corners += verdict.report.badCorners;
 }
 
-/// The sides of a chart's border, with the chart to their left.
+/// Collects the sides of a loop of borders, with the chart to their left.
 void LabelCheck::walkLoop(const Labels& labels, Side first) {
   loop_.clear();
   Side side = first;
@@ -133,7 +133,7 @@ void LabelCheck::walkLoop(const Labels& labels, Side first) {
   } while (side != first);
 }
 
-/// Those of the loop, none if it has no corners.
+/// Adds the pieces of the current loop; none if it has no corners.
 void LabelCheck::addPieces() {
   const std::size_t before = pieces_.size();
   const std::size_t size = loop_.size();
@@ -152,14 +152,14 @@ void LabelCheck::addPieces() {
   }
 }
 
-/// Where it runs, and where back.
+/// Determines the axis of a piece, and the points where it turns back.
 void LabelCheck::visitPiece(const Labels& labels, Piece& piece, Verdict& verdict) {
   const lattice::Direction here = labels[Surface::triangleOf(piece.first)];
   const lattice::Direction beyond = labels[surface_.beyond(piece.first)];
   piece.hasDirection = lattice::axisOf(here) != lattice::axisOf(beyond);
   if (!piece.hasDirection) return;
   const auto axis = static_cast<std::size_t>(3 - lattice::axisOf(here) - lattice::axisOf(beyond));
-  // The same border is seen from both sides.
+  // Each border is visited from both sides, but counts once.
   const bool counts =
       chartOf_[Surface::triangleOf(piece.first)] < chartOf_[surface_.beyond(piece.first)];
   const auto turnBack = [&](Side side) {
@@ -168,7 +168,7 @@ void LabelCheck::visitPiece(const Labels& labels, Piece& piece, Verdict& verdict
     verdict.places.push_back(Surface::triangleOf(side));
   };
   double x = 0;
-  double extreme = 0;  // farthest in the direction of the run, as long as there is one
+  double extreme = 0;  // the farthest position in the direction of the run
   double low = 0;
   double high = 0;
   int run = 0;
@@ -202,7 +202,7 @@ void LabelCheck::visitLoop(const Labels& labels, Verdict& verdict) {
   addPieces();
   const std::size_t corners = pieces_.size() - before;
   if (corners < 4) {
-    // The fewer, the worse: a step towards four is to pay off.
+    // Graded, so that each step towards four corners pays off.
     verdict.report.badLoops += corners < 1 ? 3 : corners < 2 ? 2 : 1;
     charts_[chart].isBad = true;
     verdict.places.push_back(triangle);
@@ -213,8 +213,8 @@ void LabelCheck::visitLoop(const Labels& labels, Verdict& verdict) {
   loops_.push_back({chart, before, pieces_.size()});
 }
 
-/// All pieces between two planes run from the lower to the upper one, or back: whichever their
-/// places in space say together.
+/// Directs all pieces between two planes from the lower one to the upper one, or back, as most of
+/// their length runs in space.
 void LabelCheck::setDirections(const Labels& labels) {
   const auto key = [](const Piece& piece) { return std::minmax(piece.planes[0], piece.planes[1]); };
   std::vector<std::size_t> order(pieces_.size());
@@ -265,9 +265,9 @@ void LabelCheck::addPlaces(const Loop& loop, Verdict& verdict) const {
   }
 }
 
-/// Around a corner of three charts: seen from outside, their normals are a right-handed system or a
-/// left-handed one. In the former, all edges run to where the inside of the polycube is along their
-/// axis, or none; in the latter, one or two.
+/// Corners of three charts: seen from outside, the normals are a right-handed or left-handed
+/// system. If right-handed, either all or none of the edges run along their axis to the inside of
+/// the polycube; if left-handed, one or two.
 void LabelCheck::visitRoom(const Labels& labels, Verdict& verdict) {
   struct Edge {
     Index corner;
@@ -302,7 +302,7 @@ void LabelCheck::visitRoom(const Labels& labels, Verdict& verdict) {
   }
 }
 
-/// Whether one plane is known to be below another one: some edges lead up from it to that.
+/// Whether edges that lead upwards connect one plane to another one above.
 bool LabelCheck::isBelow(Index low, Index high) {
   std::vector<bool> isSeen(charts_.size());
   stack_ = {low};
@@ -321,8 +321,9 @@ bool LabelCheck::isBelow(Index low, Index high) {
   return false;
 }
 
-/// From an edge straight across its face, there is another edge that faces it, in a plane beyond.
-/// Where a hole and the border around it lie on one chart, say, nothing is between them.
+/// Requires each edge of a face to have an opposite edge across the face, in a plane that may lie
+/// beyond it. If a hole and the border around it adjoin the same chart, for example, there is no
+/// width in between.
 void LabelCheck::visitWidths(const Labels& labels, Verdict& verdict) {
   for (const Piece& piece : pieces_) {
     if (!piece.hasDirection) continue;
@@ -357,7 +358,7 @@ void LabelCheck::visitWidths(const Labels& labels, Verdict& verdict) {
   }
 }
 
-/// Twice vertices - edges + triangles. Vertices and edges of borders are as many.
+/// Twice the Euler characteristic. Along borders, there are as many vertices as edges.
 void LabelCheck::setCharacteristics() {
   for (const Index chart : chartOf_) --charts_[chart].twiceCharacteristic;
   for (const Side border : borders_) {
@@ -374,7 +375,7 @@ void LabelCheck::visitCharts(Verdict& verdict) const {
     const Chart& chart = charts_[i];
     const std::int64_t handles = (2 * (2 - chart.loops) - chart.twiceCharacteristic) / 4;
     if (chart.loops == 0) {
-      verdict.report.badLoops += 3;  // a closed surface that faces one way
+      verdict.report.badLoops += 3;  // a closed surface with a single label
       verdict.places.push_back(chart.first);
     } else if (handles > 0) {
       verdict.report.wrongTurns += static_cast<std::uint64_t>(handles);

@@ -1,4 +1,4 @@
-// Whether labels may be those of a polycube, and where not.
+// Checks whether labels may be those of a polycube, and finds faults.
 #pragma once
 
 #include <array>
@@ -11,18 +11,20 @@
 
 namespace hexhex::shape {
 
-/// What there is to be said of labels.
+/// The outcome of a check.
 struct Verdict {
   LabelReport report;
-  double energy = 0;          ///< the less, the better
-  std::vector<Index> places;  ///< triangles at what is wrong
+  double energy = 0;          ///< lower is better
+  std::vector<Index> places;  ///< triangles at faults
 };
 
-/// Each face of a polycube is bounded by loops of at least four edges, which turn by four right
-/// angles; three faces meet in a corner, never opposite ones at an edge; edges run along an axis
-/// without turning back, and two that connect the same planes in the same order; and no faces
-/// overlap around a corner. A face is a disk with holes, of some width everywhere. (Sufficient
-/// conditions are not known: Sokolov, Ray 2015.)
+/// Necessary conditions for labels of a polycube; sufficient ones are not known (Sokolov, Ray
+/// 2015).
+///
+/// Each chart is a disk with holes and a positive width everywhere, bounded by loops of at least
+/// four edges that turn by four right angles. Three charts meet at a corner, and opposite labels
+/// never at an edge. Edges run along an axis without turning back, and all edges between two planes
+/// run in the same direction. No faces overlap around a corner.
 class LabelCheck {
  public:
   LabelCheck(const Surface& surface, const LabelCosts& costs);
@@ -30,19 +32,19 @@ class LabelCheck {
   [[nodiscard]] Verdict operator()(const Labels& labels);
 
  private:
-  /// Of a loop around a chart, from one corner to the next.
+  /// The part of a loop around a chart between two corners.
   struct Piece {
-    std::size_t begin;  ///< in the loop
-    std::size_t end;    ///< behind the last side; the loop goes round
+    std::size_t begin;  ///< first side, in the loop
+    std::size_t end;    ///< after the last side, modulo the loop's size
     Side first = kNone;
-    std::array<Index, 2> planes{};  ///< the charts at its ends, in one of which each lies
-    double rise = 0;                ///< along its axis, in space
+    std::array<Index, 2> planes{};  ///< the charts across its two ends, in whose planes these lie
+    double rise = 0;                ///< extent along its axis, in space
     lattice::Direction direction = 0;
-    bool hasDirection = false;  ///< not between opposite labels
+    bool hasDirection = false;  ///< false between opposite labels
   };
   struct Loop {
     Index chart;
-    std::size_t begin;  ///< of its pieces
+    std::size_t begin;  ///< first piece
     std::size_t end;
   };
 
@@ -69,19 +71,19 @@ class LabelCheck {
   struct Chart {
     Index first = 0;  ///< triangle
     int loops = 0;
-    int turns = 0;  ///< right angles to the left, of all loops
+    int turns = 0;  ///< number of right angles to the left, over all loops
     bool isBad = false;
     std::int64_t twiceCharacteristic = 0;
     std::vector<Index> above = {};  ///< charts that edges lead up to
   };
   std::vector<Chart> charts_;
   std::vector<Index> chartOf_;      ///< per triangle
-  std::vector<Side> sideAt_;        ///< one per vertex of the surface
+  std::vector<Side> sideAt_;        ///< one per vertex, with that tail
   std::vector<Side> borders_;       ///< sides between labels
   std::vector<Index> borderCount_;  ///< per vertex
   std::vector<bool> isDone_;        ///< per side
   std::vector<Side> loop_;
-  std::vector<Loop> loops_;  ///< with corners
+  std::vector<Loop> loops_;  ///< those with corners
   std::vector<Piece> pieces_;
   std::vector<Index> stack_;
 };

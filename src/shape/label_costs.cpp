@@ -1,19 +1,19 @@
-// After Livesu et al., "PolyCut: Monotone graph-cuts for polycube base-complex construction"
-// (2013).
+// M. Livesu et al., "PolyCut: Monotone graph-cuts for polycube base-complex construction" (2013).
 #include <shape/label_costs.hpp>
 
 namespace hexhex::shape {
 
 namespace {
 
-/// A bell over 1 minus the cosine of an angle: half way at about 40 degrees.
+/// A Gaussian of 1 minus the cosine of an angle. With a width of 0.2, it is 1/2 at about 40
+/// degrees.
 double bell(double distance, double width) {
   return std::exp(-0.5 * (distance / width) * (distance / width));
 }
 
 std::int64_t asInteger(double cost) { return std::llround(kCostUnit * cost); }
 
-/// More than a right angle: such triangles are upside down in the polycube.
+/// Extra cost of more than a right angle: such triangles are upside down in the polycube.
 double costBeyond(double distance, double area) {
   return distance > 1 ? 3 * (distance - 1) * area + 0.5 : 0;
 }
@@ -32,7 +32,7 @@ LabelCosts::LabelCosts(const Surface& surface)
           asInteger(area * (1 - bell(distance, 0.2)) + costBeyond(distance, area));
     }
   }
-  constexpr double kLeast = 0.02;  // on the sharpest edge: borders are short there, too
+  constexpr double kLeast = 0.02;  // for sharp edges, so that borders are short there, too
   for (Side side = 0; side < surface.tails.size(); ++side) {
     const double turn =
         1 - dot(surface.normals[Surface::triangleOf(side)], surface.normals[surface.beyond(side)]);
@@ -42,7 +42,7 @@ LabelCosts::LabelCosts(const Surface& surface)
 }
 
 void LabelCosts::avoidCornersAt(const Vec3& point) {
-  constexpr double kMost = 0.3;  // what a turning point costs
+  constexpr double kMost = 0.3;  // the cost of a turning point
   constexpr double kReach = 4;   // in mean edges
   for (Index t = 0; t < ofCorners_.size(); ++t) {
     const double distance = length(minus(surface_.centres[t], point)) / surface_.meanEdge;

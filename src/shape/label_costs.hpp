@@ -1,4 +1,4 @@
-// What a label costs a triangle, and two labels an edge between triangles.
+// Costs of labels per triangle, and of pairs of labels per edge.
 #pragma once
 
 #include <algorithm>
@@ -13,35 +13,36 @@
 
 namespace hexhex::shape {
 
-/// Per triangle of the boundary: which way it is to face in the polycube.
+/// Per boundary triangle: the direction that it faces in the polycube.
 using Labels = std::vector<lattice::Direction>;
 
 [[nodiscard]] inline double cosine(const Vec3& unit, lattice::Direction label) {
   return lattice::signOf(label) * unit[static_cast<std::size_t>(lattice::axisOf(label))];
 }
 
-/// How much labels are to agree instead of following each triangle.
+/// How much labels agree with each other instead of following the normal of each triangle.
 struct Compactness {
   double weight = 1;
-  double straightness = 0;  ///< how much borders are to run along the third axis
+  double straightness = 0;  ///< how strongly borders are aligned with the third axis
 };
 
 class LabelCosts {
  public:
-  /// @param surface  outlives this
+  /// @param surface  must outlive this
   explicit LabelCosts(const Surface& surface);
 
-  /// Of the angle between a triangle and its label.
+  /// The cost of the angle between a triangle and its label.
   [[nodiscard]] std::int64_t ofTriangle(Index triangle, lattice::Direction label) const {
     return ofTriangles_[triangle][label];
   }
-  /// Of the labels on both sides.
+  /// The cost of the labels on both sides of an edge.
   [[nodiscard]] std::int64_t ofSide(Side side, lattice::Direction here, lattice::Direction beyond,
                                     const Compactness& compactness) const;
-  /// How natural a border is there: from 0 where the surface turns to the side's length.
+  /// The cost of a border along a side, in mean edges: the side's length on flat parts, nearly 0
+  /// where the surface turns.
   [[nodiscard]] double weight(Side side) const { return weights_[side]; }
 
-  /// From now on, corners between labels cost something near to a point where no map was found.
+  /// Makes corners of charts costly near a point where no map was found.
   void avoidCornersAt(const Vec3& point);
   [[nodiscard]] double ofCorner(Index triangle) const { return ofCorners_[triangle]; }
 
@@ -52,7 +53,7 @@ class LabelCosts {
   std::vector<double> ofCorners_;  ///< per triangle
 };
 
-/// Costs are integers: so many are one mean area, or one mean edge on a flat place.
+/// Unit of integer costs: the cost of a mean area, or of a mean edge on a flat part.
 inline constexpr double kCostUnit = 1e5;
 
 }  // namespace hexhex::shape

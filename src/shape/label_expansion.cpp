@@ -8,7 +8,7 @@ namespace hexhex::shape {
 
 namespace {
 
-/// Per triangle: more than any compactness outweighs.
+/// Per triangle; not outweighed by any compactness.
 constexpr auto kForbidden = static_cast<std::int64_t>(50 * kCostUnit);
 
 std::int64_t penalty(const Region& region, std::size_t i, lattice::Direction label) {
@@ -24,7 +24,7 @@ Expansion::Expansion(const Surface& surface, const LabelCosts& costs)
 void Expansion::run(Labels& labels, const Region& region, const Compactness& compactness,
                     int sweeps, Random& random) {
   std::array<lattice::Direction, lattice::kDirections> order = {0, 1, 2, 3, 4, 5};
-  int idle = 0;  // labels in a row that changed nothing
+  int idle = 0;  // number of labels in a row that changed nothing
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
     for (const lattice::Direction label : order) {
@@ -46,7 +46,7 @@ bool Expansion::expand(Labels& labels, const Region& region, const Compactness& 
   for (std::size_t i = 0; i < region.triangles.size(); ++i) {
     const Index t = region.triangles[i];
     if (labels[t] == label) continue;
-    // At the source means: takes the label.
+    // Nodes on the source's side take the label.
     flow_.addTerminal(nodes_[t], costs_.ofTriangle(t, labels[t]) + penalty(region, i, labels[t]) -
                                      costs_.ofTriangle(t, label) - penalty(region, i, label));
     addSides(labels, t, compactness, label);
@@ -74,10 +74,12 @@ void Expansion::addSides(const Labels& labels, Index triangle, const Compactness
     if (nodes_[beyond] == kNone) {
       flow_.addTerminal(node, cost(labels[triangle], labels[beyond]) - cost(label, labels[beyond]));
     } else if (triangle < beyond) {
-      // E(keep, keep) + (E(take, keep) - E(keep, keep)) x - E(take, keep) y + rest (1 - x) y
+      // With x and y for whether the triangle here and the one beyond take the label, the cost is
+      // E(keep, keep) + (E(take, keep) - E(keep, keep)) x - E(take, keep) y + rest (1 - x) y.
       const std::int64_t onlyHere = cost(label, labels[beyond]);
       const std::int64_t onlyBeyond = cost(labels[triangle], label);
-      // Straightness may break the triangle inequality; then keeping costs less than it says.
+      // Straightness may violate the triangle inequality; truncating this cost keeps the energy
+      // submodular.
       const std::int64_t none =
           std::min(cost(labels[triangle], labels[beyond]), onlyHere + onlyBeyond);
       flow_.addTerminal(node, none - onlyHere);

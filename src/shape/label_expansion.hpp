@@ -1,4 +1,5 @@
-// Better labels by graph cuts.
+// Optimizes labels by graph cuts: alpha expansion (Boykov, Veksler, Zabih 2001, "Fast Approximate
+// Energy Minimization via Graph Cuts").
 #pragma once
 
 #include <cstdint>
@@ -12,20 +13,20 @@
 
 namespace hexhex::shape {
 
-/// Where labels may change.
+/// The triangles whose labels may change.
 struct Region {
   std::vector<Index> triangles;
-  /// Per triangle: bit i where label i is as good as forbidden. Empty: nowhere.
+  /// Per triangle: bit i is set if label i is (practically) forbidden. Empty if no labels are.
   std::vector<std::uint8_t> forbidden;
 };
 
-/// Alpha expansion (Boykov, Veksler, Zabih 2001): as long as it helps, each label in turn takes all
-/// triangles of a region that lower the costs together.
+/// For each label in turn, the triangles that take it are those that minimize the total cost, until
+/// nothing changes.
 class Expansion {
  public:
   Expansion(const Surface& surface, const LabelCosts& costs);
 
-  /// @param sweeps  over all labels, at most
+  /// @param sweeps  maximum number of passes over all labels
   /// @param random  for the order of labels
   void run(Labels& labels, const Region& region, const Compactness& compactness, int sweeps,
            Random& random);
@@ -40,7 +41,7 @@ class Expansion {
   const Surface& surface_;
   const LabelCosts& costs_;
   MaxFlow flow_;
-  std::vector<Index> nodes_;      ///< per triangle: in the network, or kNone
+  std::vector<Index> nodes_;      ///< per triangle: its node in the network, or kNone
   std::vector<Index> triangles_;  ///< per node
 };
 

@@ -8,18 +8,19 @@ namespace hexhex::shape {
 
 namespace {
 
-/// Once labels are valid, the rest is shape: borders become shorter, triangles face their labels.
+/// Once labels are valid, moves up to this total improve shape: shorter borders, smaller angles
+/// between triangles and labels.
 constexpr std::uint64_t kMovesIfValid = 300;
-/// After so many moves, the search returns to the best labels so far.
+/// Interval of moves at which the search returns to the best labels so far.
 constexpr std::uint64_t kMovesUntilReturn = 400;
 constexpr std::size_t kLargestDisk = 3000;
-/// Of disks, in mean edges.
+/// Radii of disks, in mean edges.
 constexpr double kLeastRadius = 1.5;
 constexpr double kLargestRadius = 25;
-/// A worsening of one wrong loop, corner or border is 1.
+/// Initial temperature. A bad loop or corner contributes 1 to the energy.
 constexpr double kTemperature = 0.15;
 
-/// Between two positive numbers, uniform on a logarithmic scale.
+/// Draws from an interval of positive numbers, uniformly on a logarithmic scale.
 double drawBetween(double low, double high, Random& random) {
   return low * std::exp(random.share() * std::log(high / low));
 }
@@ -82,9 +83,9 @@ std::vector<Index> LabelSearch::disk(Index centre, double radius) {
   return disk;
 }
 
-/// A triangle where something is wrong, or one at a border, or near to such.
+/// Draws a triangle at a fault or at a border, or close to one.
 Index LabelSearch::drawPlace(const Labels& labels, const Verdict& verdict) {
-  constexpr int kTries = 60;  // for a border
+  constexpr int kTries = 60;  // to find a border
   Index place = 0;
   if (!verdict.places.empty() && random_.share() < 0.85) {
     place = verdict.places[random_.below(verdict.places.size())];
@@ -104,7 +105,7 @@ Index LabelSearch::drawPlace(const Labels& labels, const Verdict& verdict) {
   return near[random_.below(near.size())];
 }
 
-/// Any label; those near to the normal are more likely.
+/// Draws a label; those close to the normal are more likely.
 lattice::Direction LabelSearch::drawLabel(Index triangle) {
   const auto weight = [&](lattice::Direction label) {
     return std::max(0.03, 0.35 + cosine(surface_.normals[triangle], label));
@@ -124,7 +125,7 @@ Compactness LabelSearch::drawCompactness() {
   return {weight, random_.share() < 0.5 ? 0 : drawBetween(0.5, 10, random_)};
 }
 
-/// @param labels  of which some may change
+/// Applies a random move to the labels.
 void LabelSearch::move(Labels& labels, const Verdict& verdict) {
   const Index place = drawPlace(labels, verdict);
   const double largest = std::max(
@@ -141,7 +142,7 @@ void LabelSearch::move(Labels& labels, const Verdict& verdict) {
   }
 }
 
-/// A whole chart gets the label of one beside it, or another one from a cut.
+/// Relabels a whole chart, with the label of a neighbour or by a cut that forbids its own label.
 void LabelSearch::changeChart(Labels& labels, Index place) {
   unmarkAll();
   mark(place);
@@ -168,7 +169,8 @@ void LabelSearch::changeChart(Labels& labels, Index place) {
   }
 }
 
-/// @param chart  whose triangles are marked
+/// Cuts a chart and a few rings around it anew, without the chart's label.
+/// @param chart  must be marked
 void LabelSearch::cutWithout(Labels& labels, std::vector<Index> chart) {
   const std::size_t inside = chart.size();
   Region region = {std::move(chart), {}};
@@ -188,7 +190,9 @@ void LabelSearch::cutWithout(Labels& labels, std::vector<Index> chart) {
   expansion_.run(labels, region, drawCompactness(), 2, random_);
 }
 
-/// @param kind  0 to 1: without conditions, with a label forced in the middle, or one forbidden
+/// Cuts a disk anew.
+/// @param kind  0 to 1: low values set no conditions, medium ones force a label near the centre,
+///              high ones forbid one there
 void LabelSearch::cutAgain(Labels& labels, Index place, double radius, double kind) {
   Region region = {disk(place, radius), {}};
   if (kind > 0.26) {

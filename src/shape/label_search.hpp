@@ -1,4 +1,5 @@
-// Better labels by random changes in small places.
+// Optimizes labels by random local changes: simulated annealing (Kirkpatrick et al. 1983). Evocube
+// (Dumery et al. 2022) evolves whole labellings instead.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +17,17 @@ namespace hexhex::shape {
 struct CheckedLabels {
   Labels labels;
   Verdict verdict;
-  std::uint64_t moves = 0;  ///< that were tried
+  std::uint64_t moves = 0;  ///< number of attempted moves
 };
 
-/// Where something is wrong, or at a border, the labels of a small disk are drawn or cut anew,
-/// under random conditions; what is better stays, and sometimes what is not (simulated annealing,
-/// Kirkpatrick et al. 1983). Evocube (Dumery et al. 2022) evolves whole labellings instead.
+/// At faults and borders, labels of a small disk are drawn or cut anew under random conditions;
+/// improvements are kept, and sometimes changes for the worse.
 class LabelSearch {
  public:
   LabelSearch(const Surface& surface, const LabelCosts& costs, Random random);
 
-  /// Until labels are valid and little is to be gained, or as long as it lasts.
-  /// @param mostMoves  if labels do not become valid
+  /// Ends after a number of moves, which is smaller once labels are valid.
+  /// @param mostMoves  limit while labels are invalid
   [[nodiscard]] CheckedLabels improve(const Labels& start, std::uint64_t mostMoves,
                                       Context& context);
 
@@ -36,13 +36,13 @@ class LabelSearch {
   [[nodiscard]] Index drawPlace(const Labels& labels, const Verdict& verdict);
   [[nodiscard]] lattice::Direction drawLabel(Index triangle);
   [[nodiscard]] Compactness drawCompactness();
-  /// Connected triangles around one whose centres are less far away.
+  /// The connected triangles around one with centroids closer than the radius.
   [[nodiscard]] std::vector<Index> disk(Index centre, double radius);
   void changeChart(Labels& labels, Index place);
   void cutWithout(Labels& labels, std::vector<Index> chart);
   void cutAgain(Labels& labels, Index place, double radius, double kind);
 
-  /// Marks a triangle. @return whether it was not marked
+  /// @return whether the triangle was not marked before
   bool mark(Index triangle);
   void unmarkAll() { ++stamp_; }
 

@@ -11,23 +11,23 @@ namespace hexhex::shape {
 
 namespace {
 
-/// From labels that follow the surface closely to a few large charts.
+/// From labels that follow the surface closely to few large charts.
 constexpr std::array<Compactness, 4> kStarts = {{{1, 0}, {3, 0}, {8, 1}, {20, 1}}};
 constexpr int kSweeps = 3;
-/// Concurrent searches per round, from the best labels so far. A later round runs only if no labels
-/// are valid.
+/// Number of concurrent searches per round, each from one of the best labels so far. A later round
+/// runs only if no labels are valid.
 constexpr std::size_t kLabelSearches = 2;
 constexpr int kLabelRounds = 2;
-/// Moves of a search.
+/// Limits of the number of moves of a search.
 constexpr double kFewestMoves = 400;
 constexpr double kMostMoves = 1500;
-/// Time of a move per triangle, in steps of the solver per tet; and the share of the work left that
-/// all searches together may take.
+/// Cost of a move per triangle, relative to a solver step per tet, and the share of the remaining
+/// work available to all searches.
 constexpr double kWorkOfMove = 0.5;
 constexpr double kShareOfMoves = 0.5;
 
 Labels nearestLabels(const Surface& surface) {
-  constexpr double kTie = 1e-9;  // the first of several axes that are as near
+  constexpr double kTie = 1e-9;  // ties go to the first axis
   Labels labels(surface.triangleCount());
   for (Index t = 0; t < labels.size(); ++t) {
     for (lattice::Direction label = 1; label < lattice::kDirections; ++label) {
@@ -38,7 +38,7 @@ Labels nearestLabels(const Surface& surface) {
   return labels;
 }
 
-/// Valid labels come first, then those with less energy; duplicates go.
+/// Sorts valid labels first, then by energy, and removes duplicates.
 void sortByMerit(std::vector<CheckedLabels>& all) {
   const auto isBetter = [](const CheckedLabels& a, const CheckedLabels& b) {
     const bool isValid = a.verdict.report.isValid();

@@ -1,4 +1,4 @@
-// Labels of a boundary: which way each triangle is to face in a polycube.
+// Searches for polycube labels of a boundary.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace hexhex::shape {
 
-/// The best labels found: valid if possible, with the least deformation of the object.
+/// The best labels found: valid if possible, with little distortion of the object.
 ///
-/// Cuts the whole boundary with several degrees of compactness, then improves the best results by
-/// local changes. Each search has its own random numbers, so that the result is the same for any
-/// number of threads.
-/// @param[in,out] workLeft  as of quantization::mapFromLabels()
+/// Labels the whole boundary by cuts with several degrees of compactness, then improves the best
+/// results by local changes. Each search has its own random numbers, so the result is the same for
+/// any number of threads.
+/// @param[in,out] workLeft  as in quantization::mapFromLabels()
 [[nodiscard]] CheckedLabels labelsOf(const Surface& surface, const LabelCosts& costs,
                                      std::uint64_t seed, double& workLeft, Stage& stage);
 

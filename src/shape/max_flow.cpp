@@ -59,7 +59,8 @@ bool MaxFlow::advance(Index end) {
   return false;
 }
 
-/// As much as the path, the supply and the demand allow; ends the path before what is used up.
+/// Pushes as much as the path, the supply and the demand allow, and truncates the path before the
+/// first saturated arc.
 void MaxFlow::push(Index source, Index end) {
   std::int64_t amount = std::min(supply_[source], -supply_[end]);
   for (const Index a : path_) amount = std::min(amount, arcs_[a].capacity);

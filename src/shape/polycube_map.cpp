@@ -19,9 +19,9 @@
 namespace hexhex::shape {
 namespace {
 
-/// No more labels are tried once so much is spent on all together, about twenty seconds.
+/// Budget for all attempts together, about twenty seconds.
 constexpr double kMostWork = 4e7;
-/// At least so many steps of the solver, however many tets there are.
+/// Minimum budget in solver steps, for large meshes.
 constexpr double kStepsOfAll = 300;
 
 std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std::size_t tets) {
@@ -34,7 +34,7 @@ std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std
   return flags;
 }
 
-/// "2 too few corners around charts, 1 points where borders turn back", say.
+/// For example "2 too few corners around charts, 1 points where borders turn back".
 std::string faultsOf(const LabelReport& report) {
   std::string text;
   const auto add = [&](std::uint64_t count, const char* what) {
@@ -50,7 +50,7 @@ std::string faultsOf(const LabelReport& report) {
   return text;
 }
 
-/// @param isSpent  whether the bound of the work ended the search
+/// @param isSpent  whether the search ended because the budget was used up
 [[noreturn]] void fail(const Error& problem, const PositiveTets& tets, const LabelReport& report,
                        bool isSpent) {
   const std::string labels = report.isValid()
@@ -69,7 +69,7 @@ CheckedLabels label(const Surface& surface, const LabelCosts& costs, std::uint64
   return labelsOf(surface, costs, seed, workLeft, stage);
 }
 
-/// Where an error is.
+/// The centroid of the place of an error.
 Vec3 pointAt(const TetMesh& mesh, const Place& place) {
   std::vector<Vec3> points;
   if (place.kind == PlaceKind::Vertex || place.kind == PlaceKind::Edge) {
@@ -95,11 +95,11 @@ TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, doubl
   LabelCosts costs(surface);
   std::optional<Error> problem;
   LabelReport best;
-  // Most labels without a map fail at one or two corners, near to where tets stay flipped.
+  // Labels without a map mostly fail at one or two corners, close to where tets stay flipped.
   for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
     const CheckedLabels found = label(surface, costs, seed + attempt, workLeft, context);
     const bool isValid = found.verdict.report.isValid();
-    // Labels that are not valid may have a map, but hardly where valid ones had none.
+    // Invalid labels may have a map, but hardly where valid ones had none.
     if (problem && best.isValid() && !isValid) continue;
     report.labels = found.verdict.report;
     report.labelMoves = found.moves;

@@ -1,4 +1,4 @@
-// A polycube of an object, and its map.
+// Labels an object as a polycube, and maps it.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace hexhex::shape {
 
-/// Labels of which a map is tried, one after the other, each with a seed of its own.
+/// Maximum number of labellings to try, each with its own seed.
 inline constexpr std::uint64_t kMostAttempts = 6;
 
-/// What may be spent on a part of so many tets: see quantization::mapFromLabels().
+/// The budget for a part with this many tets, as in quantization::mapFromLabels().
 [[nodiscard]] double workFor(std::size_t tets);
 
-/// Labels for the boundary, and a map from these.
-/// @param workLeft  at which no more labels are tried
-/// @param[out] report  rotation, labels and their moves
-/// @return with the points that are not given in the object's own position
+/// Labels the boundary and makes a map from the labels.
+/// @param workLeft  budget; no further labelling starts once it is used up
+/// @param[out] report  rotation, labels and number of moves
+/// @return a map; vertices added to the mesh are in the object's own position
 /// @throws Error NotMeshable, as mapFromTets() does
 [[nodiscard]] TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed,
                                  double workLeft, ShapeReport& report, Context& context);

@@ -13,7 +13,7 @@ PositiveTets::PositiveTets(const TetMesh& given) : mesh_(given), isSwapped_(give
   for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
     Tet& tet = mesh_.tets[t];
     const auto exists = [&](Index v) { return v < mesh_.points.size(); };
-    if (!std::all_of(tet.begin(), tet.end(), exists)) continue;  // an error later on
+    if (!std::all_of(tet.begin(), tet.end(), exists)) continue;  // reported later
     const auto edge = [&](std::size_t i) {
       return minus(mesh_.points[tet[i]], mesh_.points[tet[0]]);
     };

@@ -1,4 +1,4 @@
-// Tets whose corners are in an order that makes them positive in space.
+// Tets with corners ordered so that volumes are positive.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class PositiveTets {
   void turn(const Rotation& rotation) {
     for (Vec3& point : mesh_.points) point = turned(rotation, point);
   }
-  /// Of a place in these tets.
+  /// Translates a place in these tets to the given ones.
   [[nodiscard]] Place givenPlace(const Place& place) const {
     if (place.kind != PlaceKind::Face || !isSwapped_[place.index] || place.second < 2) return place;
     return {place.kind, place.index, 5 - place.second};
@@ -30,7 +30,7 @@ class PositiveTets {
   std::vector<bool> isSwapped_;
 };
 
-/// The boundary of tets that are a manifold.
+/// The boundary of a manifold of tets.
 /// @throws Error FlippedTet for flat tets, Orientation for folded ones; those of broken meshes
 [[nodiscard]] Surface readSurface(const PositiveTets& tets, Context& context);
 

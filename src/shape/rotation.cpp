@@ -12,12 +12,13 @@ namespace hexhex::shape {
 namespace {
 
 constexpr Rotation kIdentity = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-/// That are drawn: within 20 degrees of any, up to the symmetries of a cube, with certainty.
+/// Number of random rotations: practically always, one is within 20 degrees of any rotation, up to
+/// the symmetries of a cube.
 constexpr int kDrawn = 150;
 constexpr std::size_t kRefined = 6;
-/// Where the object is as good as it is, nobody wants it turned.
+/// Minimum relative gain that is worth turning the object.
 constexpr double kWorthwhile = 0.985;
-/// Enough to find a rotation by: more triangles than this are sampled.
+/// Larger surfaces are sampled with about this many triangles.
 constexpr std::size_t kSampled = 4096;
 
 struct Quaternion {
@@ -60,7 +61,7 @@ std::vector<WeightedNormal> sampledNormals(const Surface& surface) {
   return normals;
 }
 
-/// 1 where all faces along axes, at most sqrt(3).
+/// The mean 1-norm of normals: 1 if all are along axes, at most sqrt(3).
 double costOf(const Rotation& rotation, const std::vector<WeightedNormal>& normals) {
   double sum = 0;
   double weights = 0;
@@ -77,7 +78,7 @@ struct Candidate {
   Rotation rotation = kIdentity;
 };
 
-/// Small random turns, smaller and smaller, as long as they help.
+/// Applies small random turns of decreasing size while they help.
 void refine(Candidate& candidate, const std::vector<WeightedNormal>& normals, Random& random) {
   constexpr double kSmallest = 1e-6;
   constexpr int kPatience = 8;
@@ -97,7 +98,7 @@ void refine(Candidate& candidate, const std::vector<WeightedNormal>& normals, Ra
   }
 }
 
-/// Uniform among all rotations (Marsaglia 1972: a point of the 4-ball, pushed onto its sphere).
+/// Uniform among all rotations (Marsaglia 1972: points of the 4-ball, projected onto its sphere).
 Rotation drawRotation(Random& random) {
   while (true) {
     const Quaternion q = {random.realUpTo(1), random.realUpTo(1), random.realUpTo(1),

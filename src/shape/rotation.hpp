@@ -1,4 +1,5 @@
-// How an object is turned so that as much of its boundary as possible faces along axes.
+// The rotation of an object that aligns its boundary with axes best (Gregson, Sheffer, Zhang 2011,
+// "All-Hex Mesh Generation via Volumetric PolyCube Deformation").
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,7 @@
 
 namespace hexhex::shape {
 
-/// The identity, unless another rotation is better by more than what a turned object costs its
-/// user. After Gregson, Sheffer, Zhang (2011), whose measure is that of the 1-norms of normals.
+/// Minimizes the mean 1-norm of normals; the identity unless another rotation is clearly better.
 [[nodiscard]] Rotation bestRotation(const Surface& surface, std::uint64_t seed);
 
 }  // namespace hexhex::shape

@@ -1,4 +1,4 @@
-// A map for a part that has none: a polycube's, or one along a frame field.
+// Makes a map for a part that has none: of a polycube, or along a frame field.
 #include <string>
 
 #include <hexhex/shape.hpp>
@@ -36,7 +36,7 @@ void requireInRange(const ShapeOptions& options) {
                   std::to_string(options.featureAngle) + ".");
 }
 
-/// What more tets take is minutes and gigabytes: for frames, and for a polycube.
+/// Maximum numbers of tets for frames and for polycubes; more take minutes and gigabytes.
 constexpr std::size_t kMostForFrames = 250'000;
 constexpr std::size_t kMostTets = 500'000;
 
@@ -66,7 +66,7 @@ TetMap framesMap(const PositiveTets& tets, const ShapeOptions& options, Context&
   }
 }
 
-/// Edges that the part has no tag for get one of their own.
+/// Adds untagged sharp edges with a new tag.
 void addSharpEdges(const std::vector<FeatureEdge>& sharp, Features& features) {
   std::int32_t tag = 1;
   std::set<std::array<Index, 2>> known;
@@ -87,7 +87,7 @@ ShapedMap finish(const TetMesh& given, TetMap map, const ShapeOptions& options, 
   Stage stage(context, "features");
   std::copy(given.points.begin(), given.points.end(), map.points.begin());
   report.addedTets = map.tets.size() - given.tets.size();
-  // Frames take all features for edges of the mesh.
+  // With frames, all features are edges of the mesh.
   const FoundFeatures features = featuresOf(map, options.featureAngle * std::numbers::pi / 180,
                                             report.method == ShapeMethod::Frames, stage);
   report.featureEdges = features.count;

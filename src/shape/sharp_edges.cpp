@@ -14,7 +14,7 @@ namespace hexhex::shape {
 
 namespace {
 
-/// The axis that a boundary triangle is perpendicular to in the map.
+/// The axis perpendicular to a boundary triangle in the map.
 int axisInMap(const TetMap& map, adjacency::HalfFace h) {
   const TetParameters& corners = map.parameters[adjacency::tetOf(h)];
   const auto& face = lattice::kFaceCorners[h % 4];
@@ -22,7 +22,7 @@ int axisInMap(const TetMap& map, adjacency::HalfFace h) {
   return static_cast<int>(dominantAxis(cross(minus(at(1), at(0)), minus(at(2), at(0)))));
 }
 
-/// Whether the corners of a triangle have one coordinate, as far as quantize() looks.
+/// Whether the corners of a triangle share a coordinate, within the tolerance of quantize().
 bool isLevel(const TetParameters& corners, adjacency::HalfFace h, double tolerance) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double low = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Edges of an object, and which of them are edges of its map.
+// Feature edges of an object, and which of them are edges of its polycube.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@
 namespace hexhex::shape {
 
 struct FoundFeatures {
-  std::size_t count = 0;  ///< edges of the tet mesh where its surface turns
+  std::size_t count = 0;  ///< number of feature edges of the tet mesh
   std::vector<FeatureEdge>
-      aligned;                 ///< those between triangles of the map on different axes, ascending
-  std::size_t innerFaces = 0;  ///< with a tag, or between regions
+      aligned;  ///< those between triangles perpendicular to different axes in the map, ascending
+  std::size_t innerFaces = 0;    ///< tagged faces, and those between regions
   std::size_t alignedFaces = 0;  ///< of these: those that quantize() takes for planes
-  double alignedArea = 1;        ///< their share of the area
+  double alignedArea = 1;        ///< fraction of their area
 };
 
-/// @param map    whose boundary triangles are perpendicular to axes
-/// @param angle  in radians, that the surface turns by at a feature
-/// @param areAligned  whether all are edges of the map
+/// @param map  boundary triangles must be perpendicular to axes
+/// @param angle  minimum angle between normals at a feature, in radians
+/// @param areAligned  whether all features are edges of the map
 [[nodiscard]] FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned,
                                        Stage& stage);
 

@@ -9,7 +9,7 @@ namespace hexhex::shape {
 
 namespace {
 
-/// Of a triangle without an area or an edge without a length, any will do.
+/// Any unit vector will do for edges of no length and triangles of no area.
 Vec3 normalized(const Vec3& v) {
   const double size = length(v);
   if (size == 0) return {0, 0, 1};
@@ -65,7 +65,7 @@ Surface surfaceOf(const adjacency::TetTopology& topology, const std::vector<Vec3
 }
 
 bool isManifold(const Surface& surface) {
-  // Fans: from a side to the one before it in the triangle beyond, around the tail.
+  // Counts the sides around each vertex by walking from a side to the next one with the same tail.
   std::vector<Index> sidesAt(surface.pointCount);
   std::vector<Side> firstAt(surface.pointCount, kNone);
   std::vector<std::array<Index, 2>> edges;

@@ -1,4 +1,4 @@
-// The boundary of a tet mesh as labels see it: triangles, where they face, and who is beside whom.
+// The boundary of a tet mesh: triangles with adjacency, normals and areas.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace hexhex::shape {
 
-/// 3 * triangle + 0 to 2: the sides of a boundary triangle.
+/// A side of a boundary triangle: 3 * triangle + local index, 0 to 2.
 using Side = Index;
 
-/// Rows: the axes that it turns to x, y and z.
+/// Rows are the directions that are turned to x, y and z.
 using Rotation = std::array<Vec3, 3>;
 
 [[nodiscard]] inline Vec3 turned(const Rotation& rotation, const Vec3& v) {
@@ -32,14 +32,14 @@ using Rotation = std::array<Vec3, 3>;
 
 struct Surface {
   // Per side, counterclockwise as seen from outside:
-  std::vector<Index> tails;      ///< the vertex that it begins at
-  std::vector<Side> twins;       ///< the side of the triangle beyond, from head to tail
+  std::vector<Index> tails;  ///< the vertex where it starts
+  std::vector<Side> twins;  ///< the same edge as a side of the adjacent triangle, from head to tail
   std::vector<double> lengths;   ///< in space
-  std::vector<Vec3> directions;  ///< from tail to head, of length 1
+  std::vector<Vec3> directions;  ///< from tail to head, normalized
 
   // Per triangle:
   std::vector<adjacency::HalfFace> faces;
-  std::vector<Vec3> normals;  ///< outwards, of length 1
+  std::vector<Vec3> normals;  ///< outward, normalized
   std::vector<Vec3> centres;
   std::vector<double> areas;
 
@@ -51,7 +51,7 @@ struct Surface {
 
   [[nodiscard]] std::size_t triangleCount() const noexcept { return faces.size(); }
   [[nodiscard]] static Index triangleOf(Side side) noexcept { return side / 3; }
-  /// Of the same triangle, from the head on.
+  /// The next side of the same triangle, which starts at the head.
   [[nodiscard]] static Side next(Side side) noexcept { return side / 3 * 3 + (side + 2) % 3; }
   [[nodiscard]] Index head(Side side) const noexcept { return tails[next(side)]; }
   [[nodiscard]] Index beyond(Side side) const noexcept { return triangleOf(twins[side]); }
@@ -59,11 +59,11 @@ struct Surface {
   void turn(const Rotation& rotation);
 };
 
-/// @param topology  with stars, of tets that are positive in space
+/// @param topology  with stars, of tets with positive volume
 [[nodiscard]] Surface surfaceOf(const adjacency::TetTopology& topology,
                                 const std::vector<Vec3>& points);
 
-/// Whether around each edge there are two triangles, and around each vertex one fan of them.
+/// Whether each edge has two triangles and each vertex a single fan of them.
 [[nodiscard]] bool isManifold(const Surface& surface);
 
 }  // namespace hexhex::shape

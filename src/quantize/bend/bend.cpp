@@ -32,7 +32,7 @@ double determinantOf(const std::array<Vec3, 3>& edges) {
   return tripleProduct(edges[0], edges[1], edges[2]);
 }
 
-/// One mesh and its unknowns: rebuilt after each round of splitting.
+/// One mesh and its unknowns; rebuilt after each round of splitting.
 class Round {
  public:
   Round(BendState& state, Stage& stage) : state_(state), stage_(stage) {
@@ -47,12 +47,13 @@ class Round {
   [[nodiscard]] const adjacency::TetTopology& topology() const noexcept { return topology_; }
   [[nodiscard]] const VertexUnknowns& unknowns() const noexcept { return unknowns_; }
 
-  /// How the integers alone bind these tets, regardless of which vertices may currently move.
+  /// What keeps these tets flat given the integers alone, regardless of which vertices may
+  /// currently move.
   [[nodiscard]] Tightness tightness(std::span<const Index> tets) const {
     return findTightness(findUnknowns(state_.problem, topology_, stage_), topology_, tets);
   }
 
-  /// From now on, moves only vertices near these tets.
+  /// Restricts further moves to vertices near these tets.
   void moveOnlyNear(std::span<const Index> tets) {
     std::vector<bool> isNear(topology_.pointCount, false);
     std::vector<Index> region(tets.begin(), tets.end());
@@ -67,15 +68,15 @@ class Round {
     }
   }
 
-  /// Bends the tets and rounds their corners. Fills `bent` and the results in the map.
+  /// Bends the tets and rounds their corners. Sets `bent` of the state and the results in the map.
   /// @param isFresh  whether to ignore the current `bent` and start anew
-  /// @return whether continuing from the result is useless: tets are positive, but wound around
-  ///         edges
+  /// @return whether continuing from the result is useless: all tets are positive, but overlap
+  ///         around edges
   bool run(bool isFresh, int polishing, BentMap& map) {
     untangle::Problem problem = describe(isFresh);
     untangle::Solver solver(problem, stage_);
     if (isFresh) solver.start();
-    // After a split, most of the map is good: a small penalty keeps it so, and often suffices.
+    // After a split, most of the map is good: a small penalty preserves that, and often suffices.
     untangle::Result result = solver.run({.epsilon = isFresh ? 1 : 1e-3, .polishing = polishing});
     map.iterations += result.steps;
     if (!isFresh && !result.flipped.empty()) {
@@ -98,9 +99,9 @@ class Round {
     return state_.bent[t][static_cast<std::size_t>(topology_.localCorner(t, v))];
   }
 
-  /// Numbers the unknowns. All tets are elements scaled to the volume of the bent map, which
-  /// follows from its integers alone: at low densities that is several times the reference's
-  /// volume, and tets would compete for their size.
+  /// Numbers the unknowns and sets up the elements. Their target volumes are scaled so that they
+  /// add up to that of the bent map, which the integers alone determine: at low densities that is
+  /// several times the reference's, and tets would compete for volume.
   untangle::Problem describe(bool isFresh) {
     untangle::Problem problem;
     numbers_.assign(topology_.pointCount, {-1, -1, -1});
@@ -150,8 +151,8 @@ class Round {
             element.corners[2].at(x.data()), element.corners[3].at(x.data())};
   }
 
-  /// Rounds unknowns, and computes all corners from them.
-  /// @return tets that are not positive, exactly
+  /// Rounds unknowns and computes all corners from them.
+  /// @return tets that are exactly nonpositive
   std::vector<Index> round(untangle::Problem& problem) {
     constexpr double kUnit = 1 << kFractionBits;
     for (double& value : problem.x) value = std::nearbyint(value * kUnit) / kUnit;
@@ -205,8 +206,8 @@ BentMap bend(BendProblem problem, const BendOptions& options, Stage& stage) {
     isFresh = round.run(isFresh, options.polishing, map);
     if (map.flippedTets.empty() && !isLocal) break;
     if (!map.flippedTets.empty()) map.tightness = round.tightness(map.flippedTets);
-    // Flipped tets get a second try, more exactly and without the rest, before they are split; the
-    // whole map is polished at the end.
+    // Before they are split, flipped tets get a second try in which only vertices near them move;
+    // the whole map is optimized at the end.
     if (map.flippedTets.empty() || !(isLocal || isFresh)) continue;
     const auto edges =
         edgesToSplit(state.problem, round.topology(), round.unknowns(), map.flippedTets);

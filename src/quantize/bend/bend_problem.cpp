@@ -10,7 +10,8 @@ namespace hexhex::quantization {
 namespace {
 
 /// Walls may cut a tet into parts in several blocks. The tet's chart is that of the part that kept
-/// its number, which precedes the others; returns the way from each part's integer chart to it.
+/// its number, which precedes the others.
+/// @return per part: from its block's integer chart to the tet's chart
 std::vector<lattice::LatticeMotion> waysToOriginal(const MotorcycleComplex& complex,
                                                    const BlockIntegers& integers) {
   const WallMesh& mesh = complex.mesh;
@@ -41,9 +42,9 @@ lattice::Transition toTransition(const lattice::LatticeMotion& change) {
   return {change.rotation, {toInt32(t[0]), toInt32(t[1]), toInt32(t[2])}};
 }
 
-/// Lengths far below one cell are rounded up to one, so a block may be thinner than its integers
-/// say by orders of magnitude. The solver is left to make up for this ratio and its inverse: up to
-/// these, maps get closer to the seamless one; it cannot follow a ratio of 10^4.
+/// Lengths far below one cell are rounded up to one, so a block may be thinner than its integers by
+/// orders of magnitude. Ratios up to this one (and its inverse) are left to the solver, as maps
+/// then stay closer to the seamless one; it cannot handle a ratio of 10^4.
 constexpr double kMostStretch = 4;
 
 /// Per block and axis: the integer length divided by the real one.
@@ -70,7 +71,7 @@ std::vector<Vec3> blockRatios(const MotorcycleComplex& complex, const BlockInteg
 }
 
 /// Factors by which the reference of each tet is stretched along its axes: the mean over its parts,
-/// without the factor that is left to the solver.
+/// divided by what is left to the solver.
 std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
                                const std::vector<lattice::LatticeMotion>& ways,
                                const std::vector<Vec3>& ratios, std::size_t originals) {
@@ -97,7 +98,8 @@ std::vector<Vec3> tetStretches(const MotorcycleComplex& complex,
   return stretches;
 }
 
-/// The plane across an axis of an integer chart through a given point, in the chart beyond.
+/// The plane across an axis of an integer chart through a given point, in the chart that `way`
+/// leads to.
 BoundaryPlane toPlane(std::size_t axis, const lattice::LatticePoint& node,
                       const lattice::LatticeMotion& way) {
   const AxisPlane plane = AxisPlane{axis, node[axis]}.beyond(way);

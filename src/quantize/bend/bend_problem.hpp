@@ -1,4 +1,5 @@
-// From integers on arcs to integers between the charts of a map's tets: the target of bending.
+// Turns integers of arcs into integer transitions between the charts of a map's tets, the target of
+// bending.
 #pragma once
 
 #include <quantize/bend/bend.hpp>
@@ -6,7 +7,7 @@
 
 namespace hexhex::quantization {
 
-/// @param scale  of the seamless map, for the shapes that tets should keep
+/// @param scale  factor of the seamless map that gives the target shapes of tets
 [[nodiscard]] BendProblem bendProblem(const SeamlessMap& map, const MotorcycleComplex& complex,
                                       const BlockIntegers& integers, double scale);
 

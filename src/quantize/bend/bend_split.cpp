@@ -13,7 +13,8 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Number of coordinates of an edge's inner points that are fixed by what surrounds the edge.
+/// Number of coordinates of an edge's inner points that boundary planes and transitions around the
+/// edge fix.
 int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topology, Index tet,
                lattice::CornerMask edge) {
   tetmap::FixedAxes fixed;  // in the chart of the tet
@@ -39,7 +40,7 @@ int fixedCount(const BendProblem& problem, const adjacency::TetTopology& topolog
   return std::popcount(fixed.axes());
 }
 
-/// Edges whose midpoints are freer than both of their ends.
+/// Edges whose midpoints have fewer fixed coordinates than both of their ends.
 std::vector<tetmap::EdgeInTet> freeingEdges(const BendProblem& problem,
                                             const adjacency::TetTopology& topology,
                                             const VertexUnknowns& unknowns,
@@ -59,7 +60,7 @@ std::vector<tetmap::EdgeInTet> freeingEdges(const BendProblem& problem,
   return edges;
 }
 
-/// Gives both parts of a tet its data. They have the same chart.
+/// Carries the data of a tet over to both of its parts, which share its chart.
 void carryCut(BendState& state, const tetmap::Cut& cut) {
   BendProblem& problem = state.problem;
   tetmap::carryCorners(cut, problem.reference);

@@ -1,5 +1,5 @@
-// How many times does a map turn around each edge? Positive tets alone do not ensure that it is
-// locally injective: they may wind twice around an interior edge, which would make it singular.
+// The number of turns of a map around each edge. Positive tets alone do not make it locally
+// injective: they may wind twice around an interior edge, which is then singular.
 #pragma once
 
 #include <span>
@@ -11,6 +11,7 @@
 
 namespace hexhex::quantization {
 
+/// The edges with an irregular number of turns.
 /// @tparam Corners  as in quartersAround()
 template <class Corners>
 [[nodiscard]] IrregularEdges irregularEdges(const adjacency::EdgeFans& edges,
@@ -26,13 +27,13 @@ template <class Corners>
   return irregular;
 }
 
-/// Both halves of a split edge inherit its turns.
-/// @param middle  a new vertex
+/// Passes the turns of a split edge on to both halves.
+/// @param middle  the new vertex
 void splitIrregular(const tetmap::VertexPair& edge, Index middle, IrregularEdges& irregular);
 
-/// Tets at edges around which a map turns differently than expected, ascending. Boundary triangles
-/// must lie in planes of the grid, so that turns are multiples of a right angle. Needs the
-/// topology's stars.
+/// Tets at edges around which a map makes a different number of turns than expected, ascending.
+/// Boundary triangles must lie in grid planes, so that turns are multiples of a right angle. Needs
+/// the topology's stars.
 [[nodiscard]] std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
                                                   const IrregularEdges& expected,
                                                   std::span<const TetParameters> map, Stage& stage);

@@ -11,7 +11,7 @@ namespace {
 
 enum class Binding : std::uint8_t { Plane, Curve, Point, None };
 
-/// What is fixed at the corners of a tet, in its chart.
+/// The fixed coordinates of a tet's corners, in its chart.
 class BoundCorners {
  public:
   BoundCorners(const VertexUnknowns& unknowns, const adjacency::TetTopology& topology, Index tet) {
@@ -57,7 +57,7 @@ class BoundCorners {
   [[nodiscard]] int shared(const std::array<std::size_t, 4>& corners) const {
     return std::popcount(sharedAxes(corners));
   }
-  /// Whether two edges without a common corner run along the same axis.
+  /// Whether two edges without a common corner are fixed to lines along the same axis.
   [[nodiscard]] bool areParallel(std::size_t a, std::size_t b, std::size_t c, std::size_t d) const {
     return std::popcount(sharedAxes({a, b, b, b}) & sharedAxes({c, d, d, d})) > 1;
   }

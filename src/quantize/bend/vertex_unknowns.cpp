@@ -16,7 +16,7 @@ constexpr std::size_t kVertexUnknownsGrain = 256;
 
 using Equations = tetmap::PointEquations<tetmap::KnownRest>;
 
-/// Requires the image of the point to lie in a plane.
+/// Adds the equation that the image of the point lies in a plane.
 void addPlane(const lattice::Transition& toPlane, const BoundaryPlane& plane,
               Equations& equations) {
   const auto axis = static_cast<std::uint8_t>(plane.axis);
@@ -24,8 +24,9 @@ void addPlane(const lattice::Transition& toPlane, const BoundaryPlane& plane,
                      {std::int64_t{toPlane.translation[axis]} - plane.coordinate});
 }
 
-/// Finds the coordinates that are determined; false if these do not leave a point, a line along an
-/// axis or a plane across one, at integers.
+/// Finds the fixed coordinates.
+/// @return false unless the solutions are a point, a line along an axis, a plane across one or the
+///         whole space, at integers
 bool solve(Equations equations, lattice::AxisSet& fixed, Vec3& position) {
   const Equations::Solution solution = std::move(equations).solve();
   bool good = std::all_of(solution.left.begin(), solution.left.end(),
@@ -41,7 +42,7 @@ bool solve(Equations equations, lattice::AxisSet& fixed, Vec3& position) {
   return good;
 }
 
-/// Collects what the star of one vertex demands.
+/// Collects the conditions that the star of a vertex imposes.
 class StarReader {
  public:
   StarReader(const BendProblem& problem, const adjacency::TetTopology& topology,

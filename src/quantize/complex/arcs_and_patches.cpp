@@ -35,12 +35,12 @@ std::vector<WallEdge> wallEdges(const WallMesh& mesh) {
   return edges;
 }
 
-/// The complex's edges, and the arc to which each belongs.
+/// Finds the complex's edges, and the arc to which each belongs.
 class ArcFinder {
  public:
   ArcFinder(MotorcycleComplex& complex, DisjointSets& sides) : complex_(complex), sides_(sides) {}
 
-  /// Finds the complex's edges, and joins sides of triangles that lie in one plane.
+  /// Finds the complex's edges, and joins triangle sides that lie in one plane.
   void collect() {
     const std::vector<WallEdge> edges = wallEdges(complex_.mesh);
     adjacency::forEachRun(
@@ -71,12 +71,11 @@ class ArcFinder {
     return edgesAt_[vertex].size() != 2 || complex_.mesh.featureVertices.contains(vertex);
   }
 
-  /// Position of a directed edge in its arc: the arc, whether the edge runs along it or against it,
-  /// and the distance of the edge's tail from the arc's first node.
+  /// Position of a directed edge in its arc.
   struct Position {
-    Index arc = kNone;  ///< kNone: not an edge of the complex
+    Index arc = kNone;  ///< kNone if it is not an edge of the complex
     bool isForward = true;
-    std::int64_t offset = 0;  ///< of its tail, along the arc
+    std::int64_t offset = 0;  ///< distance of its tail from the arc's first node
   };
   [[nodiscard]] Position positionOf(Index tail, Index head) const {
     const auto found = byKey_.find({std::min(tail, head), std::max(tail, head)});
@@ -92,10 +91,10 @@ class ArcFinder {
     std::int64_t length = 0;
     Index arc = kNone;
     Index first = kNone;      ///< the end closer to the arc's first node
-    std::int64_t offset = 0;  ///< of that end
+    std::int64_t offset = 0;  ///< of that end, along the arc
   };
 
-  /// Adds an edge, given all triangles of walls at it.
+  /// Adds an edge, given all wall triangles at it.
   void addEdge(std::span<const WallEdge> same) {
     const WallMesh& mesh = complex_.mesh;
     std::size_t triangles = 0;
@@ -114,7 +113,7 @@ class ArcFinder {
     edges_.push_back(edge);
   }
 
-  /// Given two triangles at an edge, joins them if they lie in a plane.
+  /// Joins the two triangles at an edge if they lie in one plane.
   bool joinIfFlat(std::span<const WallEdge> same) {
     for (const WallEdge& each : same) {
       const adjacency::HalfFace other =
@@ -163,7 +162,7 @@ class ArcFinder {
   std::vector<std::vector<Index>> edgesAt_;
 };
 
-/// The sides of patches, with their borders.
+/// Finds patch sides and their borders.
 class PatchFinder {
  public:
   PatchFinder(MotorcycleComplex& complex, const ArcFinder& arcs, DisjointSets& sides)
@@ -207,7 +206,7 @@ class PatchFinder {
     side.arc = at.arc;
     while (along[side.axis] == 0) ++side.axis;
     side.sign = along[side.axis] > 0 ? 1 : -1;
-    // The arc's node where the side starts is this far behind.
+    // The distance back to the node where this side of the arc starts.
     const std::int64_t length = complex_.arcs[at.arc].length;
     const std::int64_t behind = at.isForward ? at.offset : length - at.offset;
     side.start = side.end = from;

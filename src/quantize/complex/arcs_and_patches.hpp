@@ -1,5 +1,4 @@
-// What separates the blocks of a motorcycle complex: rectangles where two blocks touch, and the
-// edges and corners of these.
+// The arcs and patches of a motorcycle complex: rectangles where two blocks touch, and their edges.
 #pragma once
 
 #include <vector>
@@ -8,10 +7,10 @@
 
 namespace hexhex::quantization {
 
-/// Fills in arcs, patches and corners on features, given walls and the charts of blocks.
+/// Computes arcs, patches and feature corners, given walls and the charts of blocks.
 void findArcsAndPatches(MotorcycleComplex& complex);
 
-/// Per vertex of the complex's mesh: whether arcs end there.
+/// Per vertex of the complex's mesh: whether it is a node, where arcs end.
 [[nodiscard]] std::vector<bool> findNodes(MotorcycleComplex& complex);
 
 }  // namespace hexhex::quantization

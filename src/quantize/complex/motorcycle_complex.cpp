@@ -13,12 +13,11 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Paths around a ring that lead this power of two less far along an axis than others do so only by
-/// noise.
+/// Displacements around a ring that are smaller than others by this power of two are noise.
 constexpr int kNoiseBits = 24;
 
-/// Numbers the blocks, i.e. the parts between walls, each in one chart.
-/// @return a tet where a block does not close up because it is a ring; or kNone
+/// Numbers the blocks, that is, the components between walls, and unifies their charts.
+/// @return a tet in a ring, i.e. a block whose charts do not close up, or kNone
 Index findBlocks(MotorcycleComplex& complex) {
   const WallMesh& mesh = complex.mesh;
   const auto forEachNeighbour = [&](Index tet, const auto& visit) {
@@ -43,7 +42,7 @@ Index findBlocks(MotorcycleComplex& complex) {
   return kNone;
 }
 
-/// Cuts across a block that returns to itself and so is no box.
+/// Cuts across a ring: a block that returns to itself, and so is no box.
 class RingCutter {
  public:
   /// @param inRing  a tet of the block
@@ -62,7 +61,7 @@ class RingCutter {
                   "A part of the map returns to itself turned over; it has no motorcycle complex.",
                   {PlaceKind::Tet, mesh_.original[inRing_]});
     }
-    // The chart is cut open somewhere: the plane may be a way around the ring further on.
+    // The chart of the ring is cut open somewhere, so the plane may lie one turn further.
     for (const std::int64_t shift : {std::int64_t{0}, moves[axis], -moves[axis]}) {
       if (startAt({axis, somePlace()[axis] + shift}, moves)) return;
     }
@@ -72,7 +71,7 @@ class RingCutter {
   }
 
  private:
-  /// Maximum displacement along each axis by a way around the block.
+  /// Maximum displacement along each axis by a closed path around the ring.
   [[nodiscard]] lattice::LatticePoint findMoves() const {
     lattice::LatticePoint most{};
     for (const Index t : tets_) {
@@ -92,7 +91,7 @@ class RingCutter {
     return static_cast<std::size_t>(std::max_element(moves.begin(), moves.end()) - moves.begin());
   }
 
-  /// A node, to avoid short arcs.
+  /// The position of a node if there is one, to avoid short arcs.
   [[nodiscard]] lattice::LatticePoint somePlace() const {
     const std::vector<bool> isNode = findNodes(complex_);
     lattice::LatticePoint place = complex_.toBlock[inRing_](mesh_.at(inRing_, 0));
@@ -104,8 +103,8 @@ class RingCutter {
     return place;
   }
 
-  /// Cuts along a plane of the block's chart. If ways around lead along several axes, a single wall
-  /// could wind forever: two walls that start at one point end at each other.
+  /// Cuts along a plane of the block's chart. If closed paths lead along several axes, a single
+  /// wall could wind forever; perpendicular walls from the same point then end at each other.
   /// @return false if no tet reaches both sides of the plane
   bool startAt(const AxisPlane& plane, const lattice::LatticePoint& moves) {
     WallTracer tracer(mesh_);
@@ -127,7 +126,8 @@ class RingCutter {
     return false;
   }
 
-  /// The centre of the intersection of a plane and a tet, in the tet's chart, if they intersect.
+  /// The centroid of the intersections of a plane with the edges of a tet, in the tet's chart; the
+  /// origin if there are none.
   [[nodiscard]] lattice::LatticePoint pointIn(Index t, const AxisPlane& plane) const {
     Vec3 sum{};
     double count = 0;

@@ -1,5 +1,5 @@
-// The motorcycle complex (Brückler et al. 2022): the blocks into which walls cut a seamless map,
-// and the arcs and patches between them. It decomposes the map into boxes whose sides meet in
+// The motorcycle complex (Brückler et al. 2022, "The 3D Motorcycle Complex for Structured Volume
+// Decomposition"): walls cut a seamless map into boxes, which meet in patches and arcs, possibly at
 // T-junctions.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 namespace hexhex::quantization {
 
-/// Between two nodes: collinear edges where walls meet that do not form one plane.
+/// Collinear edges between two nodes at which walls meet that do not form one plane.
 struct Arc {
   std::array<Index, 2> nodes{};
   std::int64_t length = 0;  ///< in lattice units
   bool isFeature = false;   ///< must remain an arc
 };
 
-/// A corner of the mesh on a feature, and what fixes it: two coordinates on an arc, all three at a
+/// A corner of the mesh on a feature. Two of its coordinates are fixed on an arc, all three at a
 /// node.
 struct FeatureCorner {
   Index tet = 0;
@@ -29,17 +29,17 @@ struct FeatureCorner {
   lattice::LatticePoint node{};  ///< a node of the arc, in its block's chart
 };
 
-/// An arc on the border of a patch's side: where it runs in the block's chart.
+/// An arc on the border of a patch, in the chart of the block.
 struct ArcSide {
   Index arc = 0;
   std::uint8_t axis = 0;  ///< along which it runs
-  std::int8_t sign = 1;   ///< up or down that axis
+  std::int8_t sign = 1;   ///< of its direction along the axis
   lattice::LatticePoint start{};
   lattice::LatticePoint end{};
   [[nodiscard]] auto operator<=>(const ArcSide&) const = default;
 };
 
-/// A rectangle between two blocks, or between a block and the outside, as seen from the first.
+/// A rectangle between two blocks, or between a block and the outside, as seen from one block.
 struct PatchSide {
   Index block = 0;
   adjacency::HalfFace first = 0;  ///< one of its triangles
@@ -61,14 +61,14 @@ struct MotorcycleComplex {
     const adjacency::HalfFace mate = mesh.mate[patches[side].first];
     return mate == kNone ? kNone : patchOf[mate];
   }
-  /// From the chart of a tet's block to the chart beyond one of its faces.
+  /// From the chart of a tet's block to the block chart beyond one of its faces.
   [[nodiscard]] lattice::LatticeMotion across(adjacency::HalfFace h) const {
     return toBlock[adjacency::tetOf(mesh.mate[h])] * mesh.change[h] *
            toBlock[adjacency::tetOf(h)].inverse();
   }
 };
 
-/// A box, from its lowest to its highest corner.
+/// An axis-aligned box.
 struct Extent {
   lattice::LatticePoint low{};
   lattice::LatticePoint high{};
@@ -87,9 +87,9 @@ struct Extent {
   }
 };
 
-/// Walls, with blocks between them that are all boxes.
-/// @param reduced  without walls between two blocks that together are one box
-/// @throws Error if the map cannot be cut like this
+/// Traces walls so that all blocks between them are boxes.
+/// @param reduced  whether to remove walls between two blocks that together are one box
+/// @throws Error if the map has no motorcycle complex
 [[nodiscard]] MotorcycleComplex traceComplex(const SeamlessMap& map, bool reduced,
                                              Context& context);
 

@@ -123,7 +123,7 @@ bool WallMesh::leavesKeptEdge(const MovedCorner& moved) const {
     if (i == moved.corner || !featureEdges.contains(tetmap::pairOf(tet[i], tet[moved.corner])))
       continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      // An edge along an axis has one coordinate that differs.
+      // An axis-aligned edge has one coordinate that differs.
       const bool isAlong = at(moved.tet, i)[k] != at(moved.tet, moved.corner)[k];
       if (moved.by[k] != 0 && !isAlong) return true;
     }
@@ -140,7 +140,7 @@ bool WallMesh::mayMove(const MovedCorner& moved) const {
   if (after.toDouble() < kLeastShare * before.toDouble()) return false;
   for (int face = 0; face < 4; ++face) {
     if (face == moved.corner || !isWall[adjacency::halfFaceOf(moved.tet, face)]) continue;
-    // In the plane of a wall it may move.
+    // Moves within the plane of a wall are allowed.
     const auto& c = lattice::kFaceCorners[static_cast<std::size_t>(face)];
     const auto corner = [&](std::size_t k) { return u[static_cast<std::size_t>(c[k])]; };
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// A seamless map's tets, split so that walls run along triangles.
+// The tets of a seamless map, split so that walls consist of triangles.
 #pragma once
 
 #include <array>
@@ -14,27 +14,26 @@
 
 namespace hexhex::quantization {
 
-/// Not on a face of the tet that it is a part of.
+/// For faces inside the original tet.
 inline constexpr std::uint8_t kInside = 4;
 
-/// Walls that pass very close to each other leave no room for tets between them.
+/// Thrown where walls are so close to each other that tets between them would be flat.
 class TooThinForWalls : public Error {
  public:
   using Error::Error;
 };
 
-/// Grows as edges are split; existing tets keep their charts, and their numbers go to one of the
-/// parts into which they are split.
+/// Splitting edges adds tets; parts keep the chart of the split tet, and one part keeps its number.
 class WallMesh : public tetmap::MutableTets {
  public:
   explicit WallMesh(const SeamlessMap& map);
 
-  /// Whether a vertex is not one of the map's.
+  /// Whether a vertex was added by a split.
   [[nodiscard]] bool isNew(Index vertex) const noexcept { return vertex >= originalVertices_; }
   [[nodiscard]] const lattice::LatticePoint& at(Index tet, std::size_t corner) const noexcept {
     return corners[tet][corner];
   }
-  /// Releases spare capacity, and what only splitting needs.
+  /// Releases spare capacity, and data that only splitting needs.
   void shrink();
 
   /// Marks a triangle, on both sides.
@@ -43,19 +42,19 @@ class WallMesh : public tetmap::MutableTets {
     if (mate[h] != kNone) isWall[mate[h]] = true;
   }
 
-  /// Makes an edge a feature edge from which walls start.
+  /// Marks an edge as feature edge, from which walls are to start.
   void keepEdge(Index v, Index w);
 
   /// Splits an edge, and all tets around it, where a coordinate in its tet's chart has a value
   /// between those at its ends. The other coordinates are rounded to the lattice.
   /// @return the new vertex
-  /// @throws TooThinForWalls if rounding leaves nothing of a part
+  /// @throws TooThinForWalls if rounding makes a part flat
   Index split(const adjacency::TetEdge& at, std::size_t axis, std::int64_t value);
 
-  /// Moves a vertex along an axis of its tet's chart into a nearby plane, so that no flat tets
-  /// arise where a wall passes it.
-  /// @return false, with nothing moved, if the vertex would leave a wall, a curve or a kept edge,
-  ///         or a tet would become much smaller
+  /// Moves a vertex along an axis of its tet's chart into a nearby plane, so that a wall there
+  /// creates no flat tets.
+  /// @return false, without a change, if the vertex would leave a wall, a curve or a kept edge, or
+  ///         a tet would become much smaller
   bool moveInto(Index tet, std::uint8_t corner, std::size_t axis, std::int64_t value);
 
   std::vector<lattice::LatticeTet> corners;
@@ -65,7 +64,7 @@ class WallMesh : public tetmap::MutableTets {
   std::set<tetmap::VertexPair> featureEdges;  ///< kept in place only by walls
   std::set<Index> featureVertices;
   std::vector<bool> isHeld;                ///< per vertex: on an edge where walls have yet to start
-  std::vector<Index> original;             ///< per tet: the tet of the map of which it is a part
+  std::vector<Index> original;             ///< per tet: the tet of the map that contains it
   std::vector<std::uint8_t> originalFace;  ///< per half-face: which face of that, or kInside
 
  private:
@@ -82,7 +81,7 @@ class WallMesh : public tetmap::MutableTets {
   void carryCut(const tetmap::Cut& cut, const lattice::LatticePoint& middle);
 
   Index originalVertices_;
-  std::vector<Index> moved_;  ///< per tet: its index in a list, while one is made; else kNone
+  std::vector<Index> moved_;  ///< scratch of moveInto(), per tet: its index in the star, else kNone
 };
 
 }  // namespace hexhex::quantization

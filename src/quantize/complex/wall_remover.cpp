@@ -9,7 +9,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Thicknesses matter only if they differ by this power of two, on the lattice of 2^52 units.
+/// Thicknesses count as equal below this power of two, in lattice units (2^52 per map).
 constexpr int kThicknessBits = 28;
 
 class WallRemover {
@@ -44,7 +44,7 @@ class WallRemover {
     std::vector<std::pair<std::int64_t, Index>> removable;
     for (Index p = 0; p < complex_.patches.size(); ++p) {
       const std::int64_t thick = thicknessBeside(p);
-      // Without the noise that would decide in symmetric maps.
+      // Drops noise, which would decide in symmetric maps.
       if (thick > 0) removable.emplace_back(thick >> kThicknessBits, p);
     }
     std::sort(removable.begin(), removable.end());
@@ -67,7 +67,7 @@ class WallRemover {
   }
 
  private:
-  /// Thickness of the thinner block beside a wall that may be removed, otherwise 0.
+  /// Thickness of the thinner of the two blocks beside a removable wall, otherwise 0.
   [[nodiscard]] std::int64_t thicknessBeside(Index p) const {
     const Index other = complex_.acrossPatch(p);
     if (other == kNone || other < p || isFeature_[p]) return 0;
@@ -83,16 +83,16 @@ class WallRemover {
     std::size_t axis;
   };
 
-  /// Where only the wall ends at an arc, the patches on its two sides become one without it. Marks
-  /// them as joined.
-  /// @return false, with nothing done, if the result might not be a rectangle
+  /// Where no other wall ends at an arc of the removed one, the patches beyond it on both sides
+  /// merge. Marks them as joined.
+  /// @return false, without a change, if the result might not be a rectangle
   bool joinPatchesAround(Index wall) {
     std::vector<Index> joined;
     for (const ArcSide& at : complex_.patches[wall].border) {
       std::set<Index> sheets;
       for (const SideAtArc& side : sidesAt_[at.arc]) sheets.insert(sheetOf(side.patch));
-      if (sheets.size() == 2) return false;  // around a curve with two cells
-      if (sheets.size() > 3) continue;       // other walls separate them
+      if (sheets.size() == 2) return false;  // at a curve with two cells around it
+      if (sheets.size() > 3) continue;       // separated by other walls
       for (const SideAtArc& side : sidesAt_[at.arc]) {
         const Index sheet = sheetOf(side.patch);
         if (sheet == sheetOf(wall)) continue;
@@ -131,9 +131,9 @@ class WallRemover {
 
   MotorcycleComplex& complex_;
   std::vector<Extent> blocks_;
-  std::vector<Extent> extents_;  ///< per side of a patch
-  std::vector<bool> isFeature_;  ///< per side of a patch: it must stay
-  std::vector<bool> isJoined_;   ///< per side of a patch: joined to another one by removing a wall
+  std::vector<Extent> extents_;                  ///< per side of a patch
+  std::vector<bool> isFeature_;                  ///< per side of a patch: must stay
+  std::vector<bool> isJoined_;                   ///< per side of a patch: merged with another patch
   std::vector<std::vector<SideAtArc>> sidesAt_;  ///< per arc
 };
 

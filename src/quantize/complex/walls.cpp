@@ -9,9 +9,10 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// A wall that crosses an edge within this fraction of an end moves that end instead.
+/// A wall that crosses an edge within this fraction from an end moves the end into its plane
+/// instead of splitting the edge.
 constexpr double kClose = 0.25;
-/// Distances that differ by less have the same priority, on the lattice of 2^52 units.
+/// Distances have the same priority up to this difference, in lattice units (2^52 per map).
 constexpr double kDistanceUnits = 0x1p28;
 
 Vec3 toVector(const lattice::LatticePoint& u) {
@@ -45,8 +46,8 @@ AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall) {
 
 namespace {
 
-/// Turns around an edge until it meets a plane through the edge, starting on the given `side` of
-/// it.
+/// Turns around an edge until it meets a plane through the edge, starting on the given side of the
+/// plane.
 PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
                     adjacency::EdgeTurn<WallMesh> turn) {
   PlaneMeeting meeting;
@@ -77,7 +78,7 @@ PlaneMeeting turnTo(const WallMesh& mesh, AxisPlane plane, int side,
   }
 }
 
-/// Meets the plane half a turn from a wall, around one of its edges.
+/// Meets the plane of a wall half a turn away from the wall, around one of its edges.
 PlaneMeeting meetOpposite(const WallMesh& mesh, adjacency::HalfFace wall, Index v, Index w) {
   const Index tet = adjacency::tetOf(wall);
   const adjacency::TetEdge edge = mesh.edge(tet, v, w);
@@ -150,7 +151,7 @@ adjacency::HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
     const auto& [tet, corner0, corner1] = meeting.crossed;
     const int moved = moveEnd(meeting.crossed, meeting.plane);
     if (moved < 0) split(meeting.crossed, meeting.plane);
-    // Always as a half-face of the previous tet: a turn continues from its mate.
+    // Must be a half-face of the previous tet, as a turn continues from its mate.
     face = moved == corner0 ? mesh_.mate[adjacency::halfFaceOf(tet, corner1)]
                             : adjacency::halfFaceOf(tet, corner0);
   }
@@ -160,8 +161,8 @@ adjacency::HalfFace WallTracer::wallAt(const PlaneMeeting& meeting) {
 
 void WallTracer::push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
                       const std::array<double, 2>& distances) {
-  // Distance is a linear function that grows by one per unit away from the edge (the update of fast
-  // marching).
+  // Extrapolates distance as a linear function with unit gradient, the update of fast marching
+  // (Sethian 1996).
   const Index tet = adjacency::tetOf(wall);
   const auto point = [&](Index vertex) {
     return toVector(mesh_.at(tet, mesh_.cornerOf(tet, vertex)));
@@ -184,7 +185,7 @@ void WallTracer::push(adjacency::HalfFace wall, const std::array<Index, 2>& edge
 
 void WallTracer::push(const std::array<Index, 2>& edge, const std::array<double, 2>& distances,
                       Index tet) {
-  // Without the noise that would decide the order in symmetric maps.
+  // Removes noise, which would decide the order in symmetric maps.
   const double distance = std::round((distances[0] + distances[1]) / kDistanceUnits);
   fronts_.push({distance, order_++, edge, distances, tet});
 }
@@ -198,7 +199,7 @@ void WallTracer::startAt(const adjacency::TetEdge& edge, int face) {
   while (along[axis] == 0) ++axis;
   const std::size_t a = (axis + 1) % 3;
   const std::size_t b = (axis + 2) % 3;
-  // The first grid direction that a turn from `face` meets, unless `face` lies in one.
+  // Starts with the first grid direction on a turn from `face`, or with `face` if it lies in one.
   adjacency::HalfFace wall = adjacency::halfFaceOf(edge.tet, face);
   const lattice::LatticePoint behind =
       mesh_.at(edge.tet, static_cast<std::size_t>(adjacency::otherFaceAtEdge(edge.mask(), face))) -
@@ -224,7 +225,7 @@ void WallTracer::startAt(const adjacency::TetEdge& edge, int face) {
   };
   const Index first = thirdOf(wall);
   if (!mesh_.isBoundary(wall)) push(wall, ends, {0, 0});
-  // Quarter turn by quarter turn, always starting on the far side of the wall.
+  // Continues by quarter turns, each from the far side of the previous wall.
   bool isStart = true;
   while (true) {
     const adjacency::HalfFace from = isStart && mesh_.isBoundary(wall) ? wall : mesh_.mate[wall];
@@ -249,7 +250,7 @@ void WallTracer::startAt(const adjacency::TetEdge& edge, int face) {
 }
 
 bool WallTracer::startIn(Index tet, const AxisPlane& plane) {
-  // Splits edges until the plane runs along triangles of parts of the tet.
+  // Splits edges until the plane consists of triangles of the tet's parts.
   std::vector<Index> parts = {tet};
   for (std::size_t next = 0; next < parts.size(); ++next) {
     const Index t = parts[next];
@@ -323,7 +324,7 @@ void WallTracer::grow(const Front& front) {
   if (one.kind == PlaneMeeting::Kind::Boundary || other.kind == PlaneMeeting::Kind::Boundary)
     return;
   if (one.kind == PlaneMeeting::Kind::Face && mesh_.isWall[one.face]) return;
-  // It ends where another wall passes.
+  // The wall ends where another one passes through.
   if (one.wallBefore && other.wallBefore) return;
   push(wallAt(one), front.vertices, front.distances);
 }
@@ -335,13 +336,13 @@ adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall,
 }
 
 void WallTracer::startAlong(Index v, Index w, Index tet) {
-  // Walls of other edges may have split it.
+  // Other walls may have split the edge.
   mesh_.forEachPart(v, w, tet, [this](adjacency::TetEdge edge) {
     const std::array<Index, 2> ends = {mesh_.tets[edge.tet][edge.corner0],
                                        mesh_.tets[edge.tet][edge.corner1]};
     adjacency::EdgeTurn turn(mesh_, edge.tet, edge.mask(),
                              adjacency::otherFaceAtEdge(edge.mask(), -1));
-    // From the boundary inward.
+    // Turns from the boundary inward.
     turn.goToBoundary();
     startAt(mesh_.edge(turn.tet(), ends[0], ends[1]), adjacency::localOf(turn.out()));
   });

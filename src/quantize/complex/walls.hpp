@@ -19,15 +19,15 @@ struct AxisPlane {
   [[nodiscard]] int sideOf(const lattice::LatticePoint& u) const noexcept {
     return (u[axis] > value ? 1 : 0) - (u[axis] < value ? 1 : 0);
   }
-  /// The same plane in the chart beyond.
+  /// The same plane in the chart that `change` leads to.
   [[nodiscard]] AxisPlane beyond(const lattice::LatticeMotion& change) const noexcept;
 };
 
 /// Where a turn around an edge meets a plane.
 struct PlaneMeeting {
   enum class Kind : std::uint8_t { Boundary, Face, Inside } kind = Kind::Boundary;
-  adjacency::HalfFace face = kNone;  ///< lies in the plane
-  adjacency::TetEdge crossed{};      ///< crossed by the plane inside its tet
+  adjacency::HalfFace face = kNone;  ///< in the plane
+  adjacency::TetEdge crossed{};      ///< crosses the plane inside its tet
   AxisPlane plane{};                 ///< in that tet's chart
   bool wallBefore = false;           ///< whether the turn passed a wall
 };
@@ -37,22 +37,22 @@ class WallTracer {
  public:
   explicit WallTracer(WallMesh& mesh) : mesh_(mesh) {}
 
-  /// Starts walls in all grid directions from a (former) edge of a tet, parallel to an axis: a
+  /// Starts walls in all grid directions from a (possibly split) edge parallel to an axis: a
   /// singular edge, or one that is to become part of the complex.
   void startAlong(Index v, Index w, Index tet);
 
   /// Starts a wall at an aligned triangle.
   void startAt(adjacency::HalfFace feature);
 
-  /// Starts a wall along a plane that crosses a tet, or runs along its side.
+  /// Starts a wall along a plane that crosses a tet or contains one of its faces.
   /// @return false if the plane does neither
   bool startIn(Index tet, const AxisPlane& plane);
 
-  /// Grows all walls until each ends at others or at the boundary.
+  /// Grows all walls until they end at others or at the boundary.
   void grow();
 
  private:
-  /// The edge of a wall, and the distance of both its ends from where the wall began.
+  /// An edge of a wall, with the distances of its ends from where the wall began.
   struct Front {
     double distance = 0;
     std::uint64_t order = 0;
@@ -66,13 +66,12 @@ class WallTracer {
   /// @param face  of the edge's tet, at the edge: on the boundary if the edge is
   void startAt(const adjacency::TetEdge& edge, int face);
   void grow(const Front& front);
-  /// Moves an end of an edge into a plane that crosses the edge nearby.
-  /// @return the end's corner, or -1 if neither end is close or may move
+  /// Moves an end of an edge into a plane that crosses the edge close to it.
+  /// @return the moved corner, or -1 if neither end is close or may move
   int moveEnd(const adjacency::TetEdge& edge, const AxisPlane& plane);
-  /// Splits an edge where a plane crosses it. If the edge ends at a vertex made by another wall,
-  /// also splits all edges of the tets around it that the plane crosses: otherwise two walls that
-  /// cross one edge would split, alternately and without end, what the other has made beside that
-  /// edge.
+  /// Splits an edge where a plane crosses it. If it ends at a vertex made by another wall, also
+  /// splits all other edges that the plane crosses in tets around the edge: otherwise two walls
+  /// that cross an edge could split each other's results without end.
   void split(const adjacency::TetEdge& edge, const AxisPlane& plane);
   adjacency::HalfFace wallAt(const PlaneMeeting& meeting);
   void push(adjacency::HalfFace wall, const std::array<Index, 2>& edge,
@@ -85,15 +84,15 @@ class WallTracer {
   std::uint64_t order_ = 0;
 };
 
-/// The axis perpendicular to a triangle of a wall, in the chart of the half-face's tet.
+/// The plane of a wall's triangle, in the chart of the half-face's tet.
 [[nodiscard]] AxisPlane planeOf(const WallMesh& mesh, adjacency::HalfFace wall);
 
-/// The wall that continues a wall's triangle beyond its edge (v, w), on the same side; kNone if
-/// there is none or the edge is on the boundary.
+/// The triangle that continues a wall in its plane beyond an edge (v, w), on the same side; kNone
+/// if there is none or the edge is on the boundary.
 [[nodiscard]] adjacency::HalfFace wallOpposite(const WallMesh& mesh, adjacency::HalfFace wall,
                                                Index v, Index w);
 
-/// A mesh whose walls are the motorcycle complex of a map.
+/// Traces the walls of a map's motorcycle complex.
 [[nodiscard]] WallMesh traceWalls(const SeamlessMap& map, const adjacency::EdgeFans& edges);
 
 }  // namespace hexhex::quantization

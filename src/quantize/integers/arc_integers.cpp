@@ -45,7 +45,7 @@ BlockIntegers::BlockIntegers(const MotorcycleComplex& complex,
 
 void BlockIntegers::findPositions(const MotorcycleComplex& complex,
                                   const std::vector<std::int64_t>& integers) {
-  // Steps along arcs, from node to node of a block.
+  // A step along an arc from node to node of a block.
   struct Step {
     lattice::LatticePoint to;
     std::size_t axis;
@@ -77,7 +77,7 @@ void BlockIntegers::findPositions(const MotorcycleComplex& complex,
       }
     }
     if (positions.size() != steps[block].size()) failClosed("a block's arcs are not connected.");
-    // The first position in lexicographic order is a corner of the box.
+    // Starting at the lexicographically first node, a corner of the box, positions are nonnegative.
     cells_ +=
         static_cast<double>(size[0]) * static_cast<double>(size[1]) * static_cast<double>(size[2]);
   }

@@ -10,10 +10,10 @@
 
 namespace hexhex::quantization {
 
-/// Opposite sides of a patch must be equally long.
+/// The equations that make opposite sides of each patch equally long.
 [[nodiscard]] std::vector<ArcEquation> arcEquations(const MotorcycleComplex& complex);
 
-/// Converts the real positions of the nodes on a block's border to integer positions.
+/// Maps positions of the nodes on the border of a block to integer positions.
 class BlockIntegers {
  public:
   /// @param integers  per arc

@@ -8,12 +8,12 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Lengths up to this fraction of the map's size, or this multiple of the move that made it
-/// seamless, are noise.
+/// Lengths are noise up to this fraction of the map's size, or this multiple of the displacement
+/// that made it seamless.
 constexpr double kArcNoise = 1e-9;
 constexpr double kArcNoiseShare = 16;
 constexpr double kLengthUnits = 0x1p20;
-/// The search for a scale ends when the number of cells is within this factor of the target.
+/// The search for a scale ends once the number of cells is within this factor of the target.
 constexpr double kNearEnough = 1.03;
 constexpr int kScaleSteps = 6;
 
@@ -22,7 +22,7 @@ constexpr int kScaleSteps = 6;
 BlockStructure::BlockStructure(const SeamlessMap& map, bool reduced, Context& context)
     : map_(map), complex_(traceComplex(map, reduced, context)) {
   program_.equations = arcEquations(complex_);
-  // Walls that only noise separates may become one.
+  // Walls separated by noise only may coincide.
   const double noise = std::max(kArcNoise * map.size, kArcNoiseShare * map.maxDisplacement);
   for (const Arc& arc : complex_.arcs) {
     program_.least.push_back(static_cast<double>(arc.length) < noise * map.unit ? 0 : 1);
@@ -42,13 +42,13 @@ std::optional<Choice> BlockStructure::choose(double cells, const IntegerSolver& 
     context.throwIfCancelled();
     program.lengths.clear();
     for (const Arc& arc : complex_.arcs) {
-      // Without the noise that would decide between equally good integers.
+      // Removes noise, which would decide between equally good integers.
       const double length = static_cast<double>(arc.length) / map_.unit * scale;
       program.lengths.push_back(std::round(length * kLengthUnits) / kLengthUnits);
     }
     Choice choice{scale, solver.solve(program, context), 0};
     if (choice.integers.empty()) {
-      // Rounding sometimes succeeds where arcs are longer.
+      // Rounding may succeed for longer arcs.
       scale *= 1.2;
       continue;
     }

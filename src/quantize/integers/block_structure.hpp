@@ -11,14 +11,14 @@
 
 namespace hexhex::quantization {
 
-/// Integers for all arcs at one scale.
+/// Integers of all arcs at one scale.
 struct Choice {
   double scale = 0;  ///< of the seamless map
   std::vector<std::int64_t> integers;
   double cells = 0;
 };
 
-/// A motorcycle complex, and the constraints on its arcs' integers. Immutable.
+/// A motorcycle complex with the constraints on integers of its arcs. Immutable.
 class BlockStructure {
  public:
   /// @param map  must outlive this
@@ -27,7 +27,8 @@ class BlockStructure {
 
   [[nodiscard]] const MotorcycleComplex& complex() const noexcept { return complex_; }
 
-  /// Integers whose number of cells is close to the target, if there are any.
+  /// Searches for integers with a number of cells close to the target.
+  /// @return nothing if the solver finds none
   [[nodiscard]] std::optional<Choice> choose(double cells, const IntegerSolver& solver,
                                              Context& context) const;
 

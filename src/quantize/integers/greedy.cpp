@@ -1,5 +1,5 @@
-// Integers for arcs without a solver: rounds the nearest real solution, then improves it greedily
-// by steps along integer solutions of the equations.
+// Integers of arcs without a solver: rounds the nearest real solution, then improves it greedily
+// along integer solutions of the equations.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Cost of a number below its bound: exceeds that of any distance.
+/// Cost of a number below its bound, per unit; exceeds the cost of any distance.
 constexpr double kTooSmall = 1e6;
 
 double cost(std::int64_t integer, double length, int least) {
@@ -19,17 +19,17 @@ double cost(std::int64_t integer, double length, int least) {
   return distance + kTooSmall * static_cast<double>(std::max<std::int64_t>(least - integer, 0));
 }
 
-/// A change of arcs that preserves all equations.
+/// A change of integers that preserves all equations.
 struct Move {
   std::vector<std::pair<Index, std::int64_t>> arcs;
 };
 
-/// The smallest moves of single free variables, and what follows from them.
+/// The smallest change of each free variable, with what follows for other variables.
 std::vector<Move> movesOf(const IntegerSystem& system, std::size_t arcCount) {
   std::vector<Move> moves;
   for (const Index free : system.freeVariables()) {
     std::vector<double> direction(arcCount);
-    // Two or four times as much if another variable would be a fraction.
+    // Doubles the step while it would make another variable fractional.
     for (std::int64_t step = 1; step <= 4; step *= 2) {
       direction[free] = static_cast<double>(step);
       const std::vector<std::int64_t> values = system.roundedTo(direction, 1);
@@ -60,7 +60,7 @@ std::vector<std::int64_t> solveByRounding(const IntegerProgram& program, const C
   }
   if (integers.empty()) return {};
   const std::vector<Move> moves = movesOf(system, n);
-  // Takes the best step repeatedly until none improves the cost.
+  // Steepest descent: applies the best move until none reduces the cost.
   while (true) {
     context.throwIfCancelled();
     double bestGain = 1e-9;

@@ -1,4 +1,4 @@
-// HiGHS in this process, through its C interface.
+// Loads HiGHS at run time and calls it through its C interface.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,14 +21,13 @@ namespace hexhex::quantization {
 #if defined(HEXHEX_LOADS_HIGHS)
 namespace {
 
-/// The search ends within this relative distance of the minimum ...
+/// The search ends at this relative distance from the optimum ...
 constexpr double kGap = 0.01;
-/// ... or after it has asked this often whether to continue, about a second: programs of real maps
-/// take some thirty questions. A time limit would make the result depend on the machine.
+/// ... or after this many interrupt callbacks, about a second; programs of real maps take some
+/// thirty. A time limit would make the result depend on the machine.
 constexpr int kMostQuestions = 10000;
 
-/// The functions of HiGHS 1 that are used, as declared in interfaces/highs_c_api.h (HighsInt is
-/// int).
+/// The functions used of HiGHS 1, as declared in interfaces/highs_c_api.h (HighsInt is int).
 struct Highs {
   using Model = void*;
   struct Answer {
@@ -57,7 +56,7 @@ struct Highs {
                      double* rowDuals) = nullptr;
 };
 
-// Values from that header.
+// Constants of that header.
 constexpr int kError = -1;
 constexpr int kContinuous = 0;
 constexpr int kInteger = 1;
@@ -71,7 +70,8 @@ constexpr int kMipInterrupt = 6;
 void* open(const std::string& file) {
   void* const loaded = dlopen(file.c_str(), RTLD_NOW);
   const std::string problem = loaded == nullptr ? dlerror() : "";
-  // Without HiGHS, the integers differ: that must not depend on what happens to fail.
+  // Only a missing library is acceptable: without HiGHS the integers differ, so they must not
+  // depend on whether loading it happens to fail.
   const bool isChosen = std::getenv("HEXHEX_HIGHS") != nullptr;
   if (loaded == nullptr && (isChosen || problem.find("No such file") == std::string::npos)) {
     throw Error(ErrorCode::FileUnsupported,
@@ -82,9 +82,9 @@ void* open(const std::string& file) {
   return loaded;
 }
 
-/// @return nullptr if it is not installed. Stays loaded
+/// @return nullptr if it is not installed; never unloaded
 void* openAny() {
-  // Loading a library without memory fails and may crash; this is how much it takes.
+  // Fails early with bad_alloc: loading needs this much memory, and may crash without it.
   static_cast<void>(Array<char>(std::size_t{1} << 25));
   if (const char* const chosen = std::getenv("HEXHEX_HIGHS")) return open(chosen);
   for (const char* const file : {HEXHEX_HIGHS_FILES "libhighs.so.1", "libhighs.so"}) {
@@ -125,14 +125,14 @@ Highs load() {
   return highs;
 }
 
-/// Loaded when the first program is solved.
+/// Loads HiGHS on first use.
 const Highs& highsLibrary() {
   static const Highs loaded = load();
   return loaded;
 }
 
-/// The program in the form that HiGHS takes. The first half of the columns are the integers, the
-/// other half their distances from the lengths.
+/// The program in the form of HiGHS. The first half of the columns are the integers, the second
+/// half their distances from the lengths.
 struct Rows {
   explicit Rows(const IntegerProgram& program) {
     const auto n = static_cast<int>(program.lengths.size());
@@ -153,14 +153,14 @@ struct Rows {
     }
   }
 
-  std::vector<double> lower;  ///< per row: bounds of the sum
+  std::vector<double> lower;  ///< per row: bounds of its sum
   std::vector<double> upper;
-  std::vector<int> begin = {0};  ///< per row: where its entries begin
+  std::vector<int> begin = {0};  ///< per row: its first entry
   std::vector<int> columns;      ///< per entry
   std::vector<double> factors;
 
  private:
-  /// Ends a row: bounds of the entries added last.
+  /// Ends a row, with the bounds of its sum.
   void add(double lowest, double highest) {
     lower.push_back(lowest);
     upper.push_back(highest);
@@ -168,7 +168,7 @@ struct Rows {
   }
 };
 
-/// One program in HiGHS.
+/// Solves one program.
 class Solution {
  public:
   Solution(const Highs& highs, const Context& context)

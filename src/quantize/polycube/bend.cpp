@@ -10,17 +10,18 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// In the end, coordinates are multiples of a power of two that is far below what counts: products
-/// of them are exact.
+/// Final coordinates are rounded to multiples of 1 / kRounding, far below the distance of planes,
+/// so that products of them are exact.
 constexpr double kRounding = 0x1p20;
-/// Of boundary triangles and edges, beside tets of their size.
+/// Weight of boundary triangles and edges relative to tets of their size.
 constexpr double kBoundaryWeight = 3;
-/// How strongly tets are pulled to their rotations: so that no part collapses, and then less.
+/// Weights of the rotation term of tets: while untangling, high enough to keep parts from
+/// collapsing, and then lower.
 constexpr double kPull = 0.5;
 constexpr double kLastPull = 0.1;
 
-/// Rounds coordinates: from there on all is exact.
-/// @return tets that are not positive
+/// Rounds coordinates, which makes all later decisions exact.
+/// @return tets without positive volume
 std::vector<std::size_t> roundAll(const LabelledMesh& mesh, PolycubeProblem& problem) {
   for (double& x : problem.solved().x) x = std::nearbyint(x * kRounding) / kRounding;
   std::vector<std::size_t> flipped;
@@ -38,8 +39,8 @@ std::vector<std::size_t> roundAll(const LabelledMesh& mesh, PolycubeProblem& pro
   return flipped;
 }
 
-/// Tets of which a labelled triangle faces the other way than its label says. Those of positive
-/// tets do if their own sides of the planes are the wrong ones.
+/// Tets that lie on the outer side of the plane of a labelled triangle, which thus faces opposite
+/// to its label.
 std::vector<std::size_t> tetsOnOtherSides(const LabelledMesh& mesh,
                                           const PolycubeProblem& problem) {
   std::vector<std::size_t> tets;
@@ -54,7 +55,7 @@ std::vector<std::size_t> tetsOnOtherSides(const LabelledMesh& mesh,
   return tets;
 }
 
-/// Rounds a map, and looks at it without the solver.
+/// Rounds a map and validates it exactly, independently of the solver.
 void finish(const LabelledMesh& mesh, std::span<const PolycubeEdge> edges, BentTets& bent,
             Stage& stage) {
   bent.flipped = roundAll(mesh, bent.problem);

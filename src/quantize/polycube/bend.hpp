@@ -1,4 +1,5 @@
-// Bends the tets of a polycube onto planes, without flips.
+// Maps the tets of a polycube so that labelled triangles lie in their planes, without flips
+// (Garanzha et al. 2021, src/untangle).
 #pragma once
 
 #include <cstddef>
@@ -11,27 +12,28 @@
 
 namespace hexhex::quantization {
 
-/// Coordinates along the object's longest side are at least so large: planes that are nearer than 1
-/// to each other count as one.
+/// Minimum extent of the scaled object along its longest side. Planes less than 1 apart count as
+/// one.
 inline constexpr double kPolycubeUnits = 0x1p20;
 
-/// Where tets were bent to, and which elements of the problem are not good there.
+/// The outcome of bendTets().
 struct BentTets {
   PolycubeProblem problem;
   std::vector<std::size_t> flipped;
-  bool isWound = false;  ///< none is flipped, but these are tets that overlap around edges
-  int steps = 0;         ///< of the solver
+  bool isWound = false;  ///< whether `flipped` lists positive tets that overlap around edges
+  int steps = 0;         ///< solver steps taken
 };
 
-/// Objects need one or the other: planes that stay, or move with the tets. Whether a map is good is
-/// decided exactly, after its coordinates have been rounded, and without the solver.
-/// @param start  with tets only, near to where the rotations turn them
-/// @param mostSteps  of the solver, until nothing is flipped, more or less
+/// Untangles the tets, either with planes fixed or with planes that move along; some objects need
+/// the former, some the latter. The result is rounded and then validated exactly, without the
+/// solver.
+/// @param start  the problem with tets only, solved for the planes
+/// @param mostSteps  approximate limit of solver steps until nothing is flipped
 [[nodiscard]] BentTets bendTets(const LabelledMesh& mesh, const PolycubeProblem& start,
                                 std::span<const PolycubeEdge> edges, bool fixPlanes, int mostSteps,
                                 Stage& stage);
 
-/// Of the corners of tets.
+/// The positions of the corners of each tet in the map.
 [[nodiscard]] std::vector<TetParameters> parametersOf(const LabelledMesh& mesh,
                                                       const PolycubeProblem& problem);
 

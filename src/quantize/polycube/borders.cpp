@@ -57,7 +57,7 @@ void PolycubeBorders::requireOtherAxes(BoundarySide border) const {
               placeOf(verticesOf(sides_, border)));
 }
 
-/// A closed surface faces all ways.
+/// The normals of a closed surface point in all directions, so one label cannot suffice.
 void PolycubeBorders::requireBorderOnEachPiece() const {
   DisjointSets pieces(mesh_.topology.pointCount);
   for (BoundarySide side = 0; side < sides_.size(); ++side) {
@@ -73,7 +73,7 @@ void PolycubeBorders::requireBorderOnEachPiece() const {
   }
 }
 
-/// Around a corner, there are two directions along each axis.
+/// A corner has at most two edges along each axis.
 void PolycubeBorders::requireFewBorders() const {
   std::vector<std::array<Index, 3>> alongAxes(mesh_.topology.pointCount);
   for (const BoundarySide border : borders_) {
@@ -88,7 +88,7 @@ void PolycubeBorders::requireFewBorders() const {
   }
 }
 
-/// Each loop around a face of a polycube turns by right angles.
+/// The border of a polycube face turns by right angles, hence has at least four edges.
 void PolycubeBorders::requireFourEdges() const {
   std::vector<bool> isSeen(sides_.size());
   for (const BoundarySide first : borders_) {
@@ -111,14 +111,14 @@ void PolycubeBorders::requireFourEdges() const {
   }
 }
 
-/// Of the same loop, from the head on.
+/// The next border side in the same loop, which starts at the head.
 BoundarySide PolycubeBorders::nextBorder(BoundarySide border) const {
   BoundarySide side = BoundarySides::next(border);
   while (!isBorder(side)) side = BoundarySides::next(sides_.twin(side));
   return side;
 }
 
-/// Counterclockwise, from the same tail.
+/// The next border side with the same tail, counterclockwise.
 BoundarySide PolycubeBorders::nextBorderAtTail(BoundarySide border) const {
   const auto turned = [this](BoundarySide side) {
     return sides_.twin(BoundarySides::next(BoundarySides::next(side)));
@@ -128,7 +128,7 @@ BoundarySide PolycubeBorders::nextBorderAtTail(BoundarySide border) const {
   return side;
 }
 
-/// From corner to corner, each from both of its sides.
+/// Each edge of the polycube, from corner to corner, contributes from both of its sides.
 std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) const {
   std::map<std::array<std::int64_t, 3>, Gap> gaps;
   for (const BoundarySide first : borders_) {
@@ -163,7 +163,7 @@ std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) 
   return list;
 }
 
-/// Upwards is where most of its edges run upwards in space.
+/// Orients the edges of a gap as most of their length runs in space.
 void PolycubeBorders::turnAsInSpace(Gap& gap) const {
   const auto rise = [this](const std::vector<BoundarySide>& borders) {
     double sum = 0;
@@ -192,7 +192,7 @@ std::size_t PolycubeBorders::countOverlaps(
                     [&](BoundarySide corner) { return !hasRoom(corner, directions); }));
 }
 
-/// Of all borders that begin at a corner, the first.
+/// Identifies a corner by the smallest border side that starts at it.
 BoundarySide PolycubeBorders::cornerAt(BoundarySide border) const {
   BoundarySide least = border;
   for (BoundarySide side = nextBorderAtTail(border); side != border;
@@ -202,9 +202,9 @@ BoundarySide PolycubeBorders::cornerAt(BoundarySide border) const {
   return least;
 }
 
-/// Planes that are near to each other may be in the wrong order, as a map that turns towards labels
-/// need not be injective. Two of them change places, the nearest ones first, where faces overlap
-/// around fewer corners then.
+/// The map that gave the planes follows the labels but need not be injective, so planes close to
+/// each other may be in the wrong order. Swaps pairs of planes, the closest first, while that
+/// reduces the number of corners with overlapping faces.
 std::vector<lattice::Direction> PolycubeBorders::directions(std::vector<Gap> gaps) const {
   std::vector<lattice::Direction> directions(sides_.size());
   for (const Gap& gap : gaps) setDirections(gap, directions);
@@ -220,13 +220,13 @@ std::vector<lattice::Direction> PolycubeBorders::directions(std::vector<Gap> gap
     turnOver(gap);
     return false;
   };
-  // It ends, as there are fewer such corners each time.
+  // Terminates, as each swap reduces the number of such corners.
   while (std::any_of(gaps.begin(), gaps.end(), improves)) {
   }
   return directions;
 }
 
-/// Walks around a corner, along edges and over faces.
+/// Walks around a corner, along edges and across faces.
 bool PolycubeBorders::hasRoom(BoundarySide first,
                               const std::vector<lattice::Direction>& directions) const {
   std::array<bool, lattice::kDirections> isTaken{};
@@ -259,14 +259,15 @@ void PolycubeBorders::requireRoom(BoundarySide first,
                {PlaceKind::Vertex, sides_.tail(first)});
 }
 
-/// Quarter turns to the left around a flat face: four times its Euler characteristic.
+/// Along the border of a flat face, the number of left quarter turns, less that of right ones, is
+/// four times the Euler characteristic of the face.
 std::optional<PolycubeBorders::Turns> PolycubeBorders::wrongTurns(
     const std::vector<lattice::Direction>& directions) const {
   DisjointSets faces(sides_.size() / 3);
   for (BoundarySide side = 0; side < sides_.size(); ++side) {
     if (!isBorder(side)) faces.unite(triangleOf(side), triangleOf(sides_.twin(side)));
   }
-  // Vertices and edges of borders are as many; others are left to count.
+  // Along borders there are as many vertices as edges, so only inner ones count.
   std::vector<int> twiceCharacteristic(sides_.size() / 3);
   std::vector<int> turns(sides_.size() / 3);
   std::vector<bool> isSeen(mesh_.topology.pointCount);
@@ -325,8 +326,8 @@ std::vector<PolycubeEdge> PolycubeBorders::edges(const PlaneAt& planeAt) const {
   }
   std::vector<PolycubeEdge> edges;
   for (const BoundarySide border : borders_) {
-    if (sides_.head(border) < sides_.tail(border)) continue;  // once from each side
-    // From the edge, the face goes to the left.
+    if (sides_.head(border) < sides_.tail(border)) continue;  // each edge once
+    // The face lies to the left of its border.
     const bool isConvex =
         labelBeyond(border) == lattice::opposite(lattice::cross(label(border), along[border]));
     edges.push_back({verticesOf(sides_, border),

@@ -1,12 +1,11 @@
-// Where the labels of a polycube change: the edges of the polycube, and how far around them its
-// inside reaches.
+// The edges of a polycube, where labels change, and the dihedral angles at them.
 //
-// At an edge between two labels, a map whose boundary faces where labels say makes one quarter turn
-// or three, if their axes differ. Which of these follows from the direction in which the edge runs
-// along the third axis, that is, from the places of the planes at its ends. There, at corners of
-// the polycube, edges and faces leave along axes; a map with positive tets is injective around a
-// corner only if no two of them leave in the same direction. (The map of a corner's link is then an
-// immersion of a disk into a sphere whose boundary is a simple curve, hence injective.)
+// At an edge between two labels of different axes, a map that fits the labels makes one quarter
+// turn or three. Which of the two follows from the direction of the edge along the third axis, that
+// is, from the order of the planes at its ends. At a corner of the polycube, all edges and faces
+// leave along axes; a map with positive tets is injective around the corner only if no two of them
+// leave in the same direction. (The map of the corner's link is then an immersion of a disk into a
+// sphere whose boundary is a simple curve, hence injective.)
 #pragma once
 
 #include <array>
@@ -24,26 +23,27 @@ namespace hexhex::quantization {
 struct PolycubeEdge {
   tetmap::VertexPair vertices;  ///< ascending
   std::array<lattice::Direction, 2>
-      labels;                ///< to the left of it, as seen from outside, and to the right
+      labels;                ///< to the left of the edge and to the right, as seen from outside
   lattice::Direction along;  ///< from the first vertex to the second
-  int quarters;              ///< turns that a map makes around it
+  int quarters;              ///< interior dihedral angle in the map, in quarter turns: 1 or 3
 };
 
-/// "+x", say.
+/// For example "+x".
 [[nodiscard]] std::string nameOf(lattice::Direction label);
 
 class PolycubeBorders {
  public:
   /// @param mesh  must outlive this
-  /// @throws Error InvalidArgument where labels are those of no polycube, wherever planes lie
+  /// @throws Error InvalidArgument if no polycube has these labels, whatever its planes
   explicit PolycubeBorders(const LabelledMesh& mesh);
 
-  /// The coordinate along an axis of a plane with a vertex in it.
+  /// The coordinate along an axis of the plane that contains a vertex.
   using PlaneAt = std::function<std::int64_t(int axis, Index vertex)>;
 
-  /// How the edges of the polycube run in maps with such planes, or with planes in another order if
-  /// faces overlap around corners otherwise: the one that edges have in space, perhaps.
-  /// @throws Error FlippedTet where no map with such planes is injective
+  /// Directions and dihedral angles of the edges of the polycube, given its planes. Where faces
+  /// would overlap around corners, planes are reordered: starting with the order given or, if that
+  /// fails, with the one in space.
+  /// @throws Error FlippedTet if neither order admits an injective map
   [[nodiscard]] std::vector<PolycubeEdge> edges(const PlaneAt& planeAt) const;
 
  private:
@@ -54,7 +54,7 @@ class PolycubeBorders {
     return label(sides_.twin(side));
   }
   [[nodiscard]] bool isBorder(BoundarySide side) const { return label(side) != labelBeyond(side); }
-  /// Along which a border runs.
+  /// The axis of a border.
   [[nodiscard]] int axisAlong(BoundarySide side) const {
     return 3 - lattice::axisOf(label(side)) - lattice::axisOf(labelBeyond(side));
   }
@@ -66,29 +66,29 @@ class PolycubeBorders {
   void requireFewBorders() const;
   void requireFourEdges() const;
   void requireBorderOnEachPiece() const;
-  /// Between two planes of an axis: the border sides that run from one to the other.
+  /// Borders that run between the same two planes of an axis.
   struct Gap {
     std::int64_t width = 0;
     std::vector<BoundarySide> upwards;
     std::vector<BoundarySide> downwards;
-    std::vector<BoundarySide> corners;  ///< at their ends, by the first border that begins there
+    std::vector<BoundarySide> corners;  ///< at their ends, as returned by cornerAt()
   };
-  /// The narrowest first.
+  /// Ascending by width.
   [[nodiscard]] std::vector<Gap> gaps(const PlaneAt& planeAt) const;
   void setDirections(const Gap& gap, std::vector<lattice::Direction>& directions) const;
   [[nodiscard]] BoundarySide cornerAt(BoundarySide border) const;
-  /// Corners at its ends around which faces overlap.
+  /// Number of corners of the gap around which faces overlap.
   [[nodiscard]] std::size_t countOverlaps(const Gap& gap,
                                           const std::vector<lattice::Direction>& directions) const;
   [[nodiscard]] bool hasRoom(BoundarySide first,
                              const std::vector<lattice::Direction>& directions) const;
-  /// Per side of a border: where it runs.
+  /// The direction of each border side.
   [[nodiscard]] std::vector<lattice::Direction> directions(std::vector<Gap> gaps) const;
   void turnAsInSpace(Gap& gap) const;
   void requireRoom(BoundarySide first, const std::vector<lattice::Direction>& directions) const;
   struct Turns {
-    BoundarySide at;  ///< of a face
-    int found;        ///< quarters to the left
+    BoundarySide at;  ///< a side of the face
+    int found;        ///< number of quarter turns to the left
     int expected;
   };
   [[nodiscard]] std::optional<Turns> wrongTurns(

@@ -25,7 +25,7 @@ BoundarySides::BoundarySides(const adjacency::TetTopology& topology) : topology_
 }
 
 Index BoundarySides::corner(BoundarySide side, std::size_t ahead) const noexcept {
-  // Corners of a face are in the order that looks inwards.
+  // Corners of a face are counterclockwise as seen from inside.
   const adjacency::HalfFace h = face(side);
   const auto& corners = lattice::kFaceCorners[h % 4];
   return topology_.tets[adjacency::tetOf(h)][static_cast<std::size_t>(corners[(side + ahead) % 3])];

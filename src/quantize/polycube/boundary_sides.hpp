@@ -1,4 +1,4 @@
-// Walks along the boundary of a tet mesh.
+// Half-edges of the boundary of a tet mesh.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace hexhex::quantization {
 
-/// 3 * triangle + 0 to 2.
+/// 3 * triangle + local index, 0 to 2.
 using BoundarySide = std::size_t;
 
 /// The sides of boundary triangles, counterclockwise as seen from outside.
@@ -22,11 +22,11 @@ class BoundarySides {
   }
   [[nodiscard]] Index head(BoundarySide side) const noexcept { return corner(side, 0); }
   [[nodiscard]] Index tail(BoundarySide side) const noexcept { return corner(side, 1); }
-  /// Of the same triangle, from the head on.
+  /// The next side of the same triangle, which starts at the head.
   [[nodiscard]] static BoundarySide next(BoundarySide side) noexcept {
     return side / 3 * 3 + (side + 2) % 3;
   }
-  /// Of the triangle beyond: from head to tail.
+  /// The same edge as a side of the adjacent triangle, from head to tail.
   [[nodiscard]] BoundarySide twin(BoundarySide side) const noexcept { return twins_[side]; }
 
  private:

@@ -16,13 +16,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Rotations at the boundary follow those inside so many times.
+/// Number of alternations between smoothing the field and aligning it with labels at the boundary.
 constexpr int kRounds = 4;
-/// How strongly tets of the boundary insist, in lengths of an edge: neighbours pull with one.
+/// Weight of a boundary rotation in edge lengths; the weight of a neighbour is about 1.
 constexpr double kInsistence = 20;
-/// Middles of neighbours are so many lengths of an edge apart at least: others would be one tet.
+/// Lower bound on the distance between centroids of neighbours, in edge lengths: smaller ones would
+/// weld the two tets together.
 constexpr double kLeastDistance = 0.1;
-/// Far below what counts: where the boundary leaves the turn of all open, it stays.
+/// Small regularization that keeps the global rotation at the identity where labels do not
+/// determine it.
 constexpr double kInertia = 1e-2;
 
 Vector3d asEigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
@@ -34,13 +36,13 @@ Matrix3d nearestRotation(const Matrix3d& matrix) {
   return u * svd.matrixV().transpose();
 }
 
-/// The rotation next to one that turns a normal to its label.
+/// Composes a rotation with the smallest one that then aligns a normal with its label.
 Matrix3d turnedTo(lattice::Direction label, const Vector3d& normal, const Matrix3d& rotation) {
   return Eigen::Quaterniond::FromTwoVectors(rotation * normal, vectorOf(label)).toRotationMatrix() *
          rotation;
 }
 
-/// The labelled triangle of each tet, the largest one if it has several, or kNone.
+/// Per tet its labelled triangle, the largest one if there are several, or kNone.
 std::vector<adjacency::HalfFace> labelledFaces(const LabelledMesh& mesh) {
   std::vector<adjacency::HalfFace> faces(mesh.topology.tetCount(), kNone);
   for (adjacency::HalfFace h = 0; h < mesh.flags.size(); ++h) {
@@ -51,7 +53,7 @@ std::vector<adjacency::HalfFace> labelledFaces(const LabelledMesh& mesh) {
   return faces;
 }
 
-/// The rotation of the whole object that turns most of it to its labels.
+/// The global rotation that aligns normals with labels best, weighted by area.
 Matrix3d turnOfAll(const LabelledMesh& mesh, const std::vector<adjacency::HalfFace>& faces) {
   Matrix3d sum = Matrix3d::Zero();
   double area = 0;
@@ -64,7 +66,8 @@ Matrix3d turnOfAll(const LabelledMesh& mesh, const std::vector<adjacency::HalfFa
   return nearestRotation(sum + kInertia * area * Matrix3d::Identity());
 }
 
-/// Differences of neighbours, by area and distance, and of the boundary from what it insists on.
+/// The Laplacian of the dual graph, with weights area / distance, plus a diagonal term that ties
+/// boundary tets to their rotations.
 Eigen::SparseMatrix<double> dualLaplacian(const LabelledMesh& mesh, double length,
                                           const std::vector<adjacency::HalfFace>& faces) {
   const adjacency::TetTopology& topology = mesh.topology;
@@ -96,7 +99,7 @@ Eigen::SparseMatrix<double> dualLaplacian(const LabelledMesh& mesh, double lengt
 }  // namespace
 
 Vector3d outwardNormal(const LabelledMesh& mesh, adjacency::HalfFace h) {
-  // Corners of a face are in the order that looks inwards.
+  // Corners of a face are counterclockwise as seen from inside.
   const auto& face = lattice::kFaceCorners[h % 4];
   const Vec3& first = mesh.point(adjacency::tetOf(h), face[0]);
   return asEigen(cross(minus(mesh.point(adjacency::tetOf(h), face[2]), first),
@@ -130,8 +133,8 @@ std::vector<Matrix3d> rotationField(const LabelledMesh& mesh, Stage& stage) {
     }
   };
   follow();
-  // Entry by entry: where a body is bent by more than half a turn, matrices still agree, but
-  // quaternions have the other sign.
+  // Matrix entries are smoothed, not quaternions, whose signs would disagree where the rotation
+  // exceeds half a turn.
   Eigen::Matrix<double, Eigen::Dynamic, 9> entries(n, 9);
   const auto row = [&](std::size_t t) { return entries.row(static_cast<Eigen::Index>(t)); };
   for (std::size_t t = 0; t < faces.size(); ++t) row(t) = rotations[t].reshaped().transpose();

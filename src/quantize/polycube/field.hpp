@@ -1,4 +1,4 @@
-// How each tet has to turn for the boundary to face where its labels say.
+// Rotations of tets that align the boundary with its labels, after Gregson et al. 2011.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace hexhex::quantization {
 
-/// The normal of a boundary triangle, outwards, as long as twice its area.
+/// The outward normal of a boundary triangle, with twice its area as length.
 [[nodiscard]] Eigen::Vector3d outwardNormal(const LabelledMesh& mesh, adjacency::HalfFace h);
 
 [[nodiscard]] inline Eigen::Vector3d vectorOf(lattice::Direction label) {
   return lattice::signOf(label) * Eigen::Vector3d::Unit(lattice::axisOf(label));
 }
 
-/// The mean length of edges, about.
+/// Approximate mean length of edges.
 [[nodiscard]] double edgeLength(const LabelledMesh& mesh);
 
-/// A smooth field of rotations, one per tet: those of tets with a boundary triangle turn its normal
-/// to its label, and as little else as their neighbours allow.
+/// A smooth field with one rotation per tet. The rotations of boundary tets align a normal with its
+/// label, and otherwise follow their neighbours.
 [[nodiscard]] std::vector<Eigen::Matrix3d> rotationField(const LabelledMesh& mesh, Stage& stage);
 
 }  // namespace hexhex::quantization

@@ -9,7 +9,8 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Positions stand in for the parameters of a map, which is thereby oriented as the object is.
+/// Uses positions as parameters to reuse the checks of maps; the map then has the object's
+/// orientation.
 igm::OrientedMap readTets(const TetMesh& tets, Stage& stage) {
   std::vector<TetParameters> positions;
   positions.reserve(tets.tets.size());
@@ -30,12 +31,12 @@ igm::OrientedMap readTets(const TetMesh& tets, Stage& stage) {
   return input;
 }
 
-/// Six times the volume over the cube of the longest edge: what has less is flat, whatever rounding
-/// made of it. Slivers of meshers have 1e-3 to 1e-8.
+/// Tets whose sixfold volume is at most this, relative to the cube of the longest edge, are
+/// considered flat, as rounding could explain it. Slivers in practice have 1e-3 to 1e-8.
 constexpr double kFlat = 1e-12;
 
-/// Before neighbours are compared: of a tet whose corners are in the wrong order, they would only
-/// say that one of two is.
+/// Called before neighbours are compared: with a tet whose corners are in the wrong order, that
+/// comparison would not tell which of the two is at fault.
 void requirePositive(const TetMapView& view) {
   std::size_t count = 0;
   Index first = 0;

@@ -1,4 +1,4 @@
-// Tet meshes whose boundary triangles say by labels which way they are to face in a polycube.
+// Tet meshes with a label per boundary triangle: the direction that it is to face in a polycube.
 #pragma once
 
 #include <span>
@@ -14,32 +14,32 @@
 
 namespace hexhex::quantization {
 
-/// A tet mesh with labels, positive in space.
+/// All tets have positive volume.
 struct LabelledMesh {
   igm::OrientedMap input;           ///< without parameters
   adjacency::TetTopology topology;  ///< with stars
-  std::vector<std::int8_t> flags;   ///< per half-face
+  std::vector<std::int8_t> flags;   ///< labels per half-face; -1 inside
 
   [[nodiscard]] const Vec3& point(Index tet, int corner) const {
     return input.view.points[topology.tets[tet][static_cast<std::size_t>(corner)]];
   }
   [[nodiscard]] bool isLabelled(adjacency::HalfFace h) const { return flags[h] >= 0; }
-  /// Of a half-face that has one.
+  /// @param h  must be labelled
   [[nodiscard]] lattice::Direction label(adjacency::HalfFace h) const {
     return static_cast<lattice::Direction>(flags[h]);
   }
-  /// In the caller's terms.
+  /// The place of a half-face in the caller's numbering of corners.
   [[nodiscard]] Place placeOf(adjacency::HalfFace h) const {
     return {PlaceKind::Face, adjacency::tetOf(h),
             static_cast<std::uint64_t>(input.callersCorner(adjacency::localOf(h)))};
   }
 };
 
-/// Without labels.
-/// @throws Error for broken meshes, and FlippedTet for tets that are not positive in space
+/// Reads a mesh without labels.
+/// @throws Error for broken meshes, and FlippedTet for tets without positive volume
 [[nodiscard]] LabelledMesh readUnlabelled(const TetMesh& tets, Stage& stage);
 
-/// @throws Error as mapFromFlags() does, for what can be told of one tet or triangle at a time
+/// @throws Error as mapFromFlags() does for defects of a single tet or triangle
 [[nodiscard]] LabelledMesh readLabels(const TetMesh& tets, std::span<const FaceFlags> flags,
                                       Stage& stage);
 

@@ -1,16 +1,16 @@
-// The seamless map of a polycube: boundary triangles say by labels which way they are to face.
+// The seamless map of a polycube, given labels: the direction that each boundary triangle is to
+// face (Gregson et al. 2011, All-Hex Mesh Generation via Volumetric PolyCube Deformation).
 //
-// 1. Tets that labels over-constrain are split (polycube_tets).
-// 2. A smooth field says how each tet has to turn for the boundary to face where labels say
-//    (polycube_field).
-// 3. A linear problem puts the planes where a map that turns so would have them (Gregson et al.
-//    2011), which decides on their order. Its corners have to be those of a polycube
-//    (polycube_borders).
-// 4. The foldover-free solver moves all vertices in their planes, which may move themselves
-//    (polycube_bend, polycube_problem). What decides whether it gets there are boundary triangles
-//    and edges in its energy: tets alone do not see triangles that fold over in their plane.
-// 5. Where that fails, tets are refined, and all begins anew: from there, maps do not get better.
-//    Unless there are fewer flips then, it is the labels that have no map.
+// 1. Tets that labels over-constrain are split (tets.hpp).
+// 2. A smooth field of rotations aligns the boundary with its labels (field.hpp).
+// 3. A linear problem finds the map that follows these rotations best. Its planes determine the
+//    order of planes, which must be that of a polycube (borders.hpp).
+// 4. The foldover-free solver moves vertices within their planes, and the planes (bend.hpp,
+//    problem.hpp). Boundary triangles and edges in its energy are crucial: tets alone do not notice
+//    triangles that fold over in their plane.
+// 5. If that fails, tets at flips are refined and all steps are repeated: continuing from the
+// failed
+//    map does not help. If the number of flips does not decrease, the labels admit no map.
 #include <string>
 
 #include <hexhex/quantize.hpp>
@@ -38,12 +38,11 @@
 namespace hexhex::quantization {
 namespace {
 
-/// Times at which tets are refined and all begins anew.
+/// Maximum number of refinements.
 constexpr int kMostRefinements = 3;
-/// Of the caller's labels, which are to have a map: steps of the solver times tets, a minute or
-/// two.
+/// Budget of mapFromFlags() in solver steps times tets: about half a minute.
 constexpr double kMostWork = 5e7;
-/// At least so many steps, however many tets there are.
+/// Minimum budget in solver steps, for large meshes.
 constexpr double kStepsOfAll = 1000;
 constexpr double kMostStepsOfTry = 1e6;  // the solver gives up far earlier
 
@@ -58,7 +57,7 @@ double scaleOf(const TetMapView& view) {
   return std::exp2(std::ceil(std::log2(kPolycubeUnits / std::max(size, 1e-300))));
 }
 
-/// Where fewer tets than this share stay flipped, finer ones help before fixed planes do.
+/// If at most this share of the tets is flipped, refinement is tried before fixed planes.
 constexpr double kFewShare = 1e-3;
 
 template <class Count>
@@ -66,7 +65,7 @@ std::string counted(Count count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// @param tets  that were bent
+/// @param tets  the tets that `bent` refers to
 [[noreturn]] void fail(const BentTets& bent, const PolycubeTets& tets) {
   const PolycubeProblem& problem = bent.problem;
   std::size_t first = bent.flipped.front();
@@ -92,7 +91,7 @@ std::string counted(Count count, const std::string& noun) {
               {PlaceKind::Tet, tets.parentTet[problem.tetAt(first)]});
 }
 
-/// Vertices of what is flipped, ascending.
+/// Vertices of the flipped elements, ascending.
 std::vector<Index> verticesAt(const BentTets& bent) {
   std::vector<Index> vertices;
   for (const std::size_t element : bent.flipped) {
@@ -155,9 +154,9 @@ class PolycubeMaker {
     return readLabels(tets, flags, stage);
   }
 
-  /// @param mayRefine  whether this is not the last chance
-  /// @param[out] best  the map with the fewest flips, if none is good
-  /// @return whether there is a map
+  /// @param mayRefine  false in the last attempt
+  /// @param[out] best  the attempt with the fewest flips, unless one succeeds
+  /// @return whether one succeeds
   bool bend(bool mayRefine, std::optional<BentTets>& best) {
     mesh_ = read(tets_.mesh, tets_.flags);
     const PolycubeProblem start = place();
@@ -165,7 +164,7 @@ class PolycubeMaker {
       return static_cast<std::int64_t>(
           std::llround(start.at(vertex, static_cast<std::size_t>(axis))));
     };
-    // As given first, so that errors have the caller's numbers.
+    // Checks the given mesh first, so that errors carry the caller's numbers.
     static_cast<void>(borders_.edges(planeAt));
     const std::vector<PolycubeEdge> edges = PolycubeBorders(mesh_).edges(planeAt);
     Stage stage(context_, "untangling");
@@ -185,13 +184,13 @@ class PolycubeMaker {
     return false;
   }
 
-  /// A few places that have no room: they stay flipped whatever planes do.
+  /// Whether only a few places lack room, to which fixed planes make no difference.
   [[nodiscard]] bool isFew(const BentTets& bent) const {
     return kFewShare * static_cast<double>(tets_.flags.size()) >=
            static_cast<double>(bent.flipped.size());
   }
 
-  /// Says how that went.
+  /// Reports an attempt as progress.
   void announce(const BentTets& bent, bool fixPlanes) {
     context_.report("untangling " + std::to_string(tets_.flags.size()) + " tets, planes " +
                         (fixPlanes ? "fixed: " : "free: ") + counted(bent.steps, "step") + ", " +
@@ -199,7 +198,7 @@ class PolycubeMaker {
                     std::min(1.0, 1 - workLeft_ / mostWork_));
   }
 
-  /// Near to where the field turns tets to, flipped or not.
+  /// Solves for the map that follows the rotation field best; it may have flipped tets.
   PolycubeProblem place() {
     Stage stage(context_, "planes");
     PolycubeProblem problem(mesh_, rotationField(mesh_, stage));
@@ -213,8 +212,8 @@ class PolycubeMaker {
   LabelledMesh given_;
   PolycubeBorders borders_;
   double scale_;
-  PolycubeTets tets_;  ///< of points times the scale
-  LabelledMesh mesh_;  ///< of these tets; what is bent refers to it
+  PolycubeTets tets_;  ///< with points times `scale_`
+  LabelledMesh mesh_;  ///< labels of `tets_`; bent problems refer to it
   std::vector<TetParameters> parameters_;
 };
 

@@ -1,4 +1,4 @@
-// The seamless map of a polycube, with a bound on what is spent on it.
+// The seamless map of a polycube, within a budget of work.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace hexhex::quantization {
 
-/// As mapFromFlags().
-/// @param[in,out] workLeft  steps of the solver times tets, of about half a microsecond each: the
-///                          same everywhere, unlike time. Once nothing is left, no more is tried
+/// Like mapFromFlags(), within a budget.
+/// @param[in,out] workLeft  solver steps times tets, about half a microsecond each: unlike time,
+///                          the same on all machines. No attempt starts once it is used up
 [[nodiscard]] TetMap mapFromLabels(const TetMesh& tets, std::span<const FaceFlags> flags,
                                    double& workLeft, Context& context);
 

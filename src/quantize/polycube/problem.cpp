@@ -41,7 +41,7 @@ void PolycubeProblem::numberUnknowns() {
     }
     for (Index v = 0; v < topology.pointCount; ++v) {
       if (topology.isIsolated(v)) continue;
-      const Index first = planes.find(v);  // the smallest of its set
+      const Index first = planes.find(v);  // the smallest vertex of its plane
       if (first == v) isPlane_.push_back(isInPlane[v]);
       unknowns_[v][axis] =
           first == v ? static_cast<int>(isPlane_.size()) - 1 : unknowns_[first][axis];

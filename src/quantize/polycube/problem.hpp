@@ -1,5 +1,5 @@
-// A polycube as the foldover-free solver takes it: which coordinates its tets share, and what is to
-// stay positive.
+// A polycube as input of the foldover-free solver: shared coordinates of vertices, and elements
+// that must stay positive.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace hexhex::quantization {
 
-/// All vertices of a connected piece of boundary with one axis share their coordinate along it.
-/// Elements of the problem are
+/// All vertices of a connected boundary region with labels of one axis share their coordinate along
+/// it. Elements of the problem are
 ///
-/// 1. the tets, which are pulled to rotations,
-/// 2. the boundary triangles, in their order as half-faces: they must not fold over in their plane,
-/// 3. the edges between labels: they must not run backwards beside a corner.
+/// 1. the tets, with a rotation as target,
+/// 2. the boundary triangles in the order of half-faces, which must not fold over in their planes,
+/// 3. the edges between labels, which must not run backwards near a corner.
 class PolycubeProblem {
  public:
-  /// With the tets only.
+  /// Adds the tets only.
   /// @param mesh  must outlive this
   /// @param rotations  per tet
   PolycubeProblem(const LabelledMesh& mesh, std::span<const Eigen::Matrix3d> rotations);
@@ -29,7 +29,7 @@ class PolycubeProblem {
   [[nodiscard]] untangle::Problem& solved() noexcept { return problem_; }
   [[nodiscard]] const untangle::Problem& solved() const noexcept { return problem_; }
 
-  /// Where a vertex is, or its planes.
+  /// The coordinate of a vertex; along the axis of a plane, that of the plane.
   [[nodiscard]] double& at(Index vertex, std::size_t axis) {
     return problem_.x[static_cast<std::size_t>(unknowns_[vertex][axis])];
   }
@@ -37,17 +37,17 @@ class PolycubeProblem {
     return problem_.x[static_cast<std::size_t>(unknowns_[vertex][axis])];
   }
 
-  /// Adds triangles and edges.
-  /// @param weight  of these, beside tets of their size
+  /// Adds boundary triangles and edges.
+  /// @param weight  relative to tets of their size
   void addBoundary(std::span<const PolycubeEdge> edges, double weight);
-  /// Planes stay where they are from now on.
+  /// Fixes planes at their current positions.
   void fixPlanes();
 
-  /// Of an element, ascending.
+  /// The vertices of an element, ascending.
   [[nodiscard]] std::vector<Index> verticesOf(std::size_t element) const;
-  /// What an element is, as a sentence has it, and where in the mesh.
+  /// A description of an element, to be used in a sentence.
   [[nodiscard]] std::string nameOf(std::size_t element) const;
-  /// One of the tets at an element.
+  /// A tet that contains an element.
   [[nodiscard]] Index tetAt(std::size_t element) const;
 
  private:
@@ -58,7 +58,7 @@ class PolycubeProblem {
   int addMatrix(const Eigen::Matrix3d& matrix);
 
   const LabelledMesh& mesh_;
-  double length_ = 0;  ///< of an edge, about
+  double length_ = 0;  ///< approximate length of an edge
   double volume_ = 0;
   std::vector<std::array<int, 3>> unknowns_;  ///< per vertex and axis
   std::vector<bool> isPlane_;                 ///< per unknown

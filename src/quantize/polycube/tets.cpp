@@ -27,7 +27,7 @@ void splitAll(PolycubeTets& tets, std::vector<tetmap::EdgeInTet> edges) {
                                         });
 }
 
-/// Where a tet mesh has its boundary, and where labels change there.
+/// The boundary of a tet mesh, and the curves along which its labels change.
 tetmap::BoundaryCurves boundaryOf(const PolycubeTets& tets) {
   std::vector<std::pair<tetmap::VertexPair, std::int8_t>> sides;
   for (std::size_t t = 0; t < tets.flags.size(); ++t) {
@@ -40,7 +40,7 @@ tetmap::BoundaryCurves boundaryOf(const PolycubeTets& tets) {
                             });
     }
   }
-  tetmap::sortUnique(sides);  // of one edge, different labels are left
+  tetmap::sortUnique(sides);  // leaves one entry for each edge and label
   std::vector<tetmap::VertexPair> edges;
   std::vector<tetmap::VertexPair> borders;
   for (const auto& [edge, label] : sides) {
@@ -53,7 +53,7 @@ tetmap::BoundaryCurves boundaryOf(const PolycubeTets& tets) {
   return {tets.mesh.points.size(), std::move(edges), std::move(borders)};
 }
 
-/// Puts vertices in the middle of tets all of whose corners are on the boundary.
+/// Splits each tet that has all four corners on the boundary, by a vertex in its middle.
 void splitTets(PolycubeTets& tets, const tetmap::BoundaryCurves& boundary) {
   tetmap::MutableTets mesh(std::move(tets.mesh.tets), tets.mate, tets.mesh.points.size());
   const std::size_t count = mesh.tetCount();
@@ -98,8 +98,8 @@ PolycubeTets polycubeTets(const LabelledMesh& mesh, double scale) {
 }
 
 void makeRoom(PolycubeTets& tets) {
-  // Middles are inside, or on the boundary but not between labels, so that there are fewer and
-  // fewer of these edges: boundary edges once, and then inner ones once.
+  // Midpoints are inside the object or inside a face, so each edge is split once: first those of
+  // the boundary, then inner ones.
   while (true) {
     const tetmap::BoundaryCurves boundary = boundaryOf(tets);
     std::vector<tetmap::EdgeInTet> edges = boundary.tightEdges(tets.mesh.tets);

@@ -1,4 +1,4 @@
-// The tets of a polycube, split where labels leave them no room.
+// The tets of a polycube, split where labels over-constrain them.
 #pragma once
 
 #include <quantize/polycube/labelled_mesh.hpp>
@@ -10,19 +10,19 @@ struct PolycubeTets {
   TetMesh mesh;
   std::vector<adjacency::HalfFace> mate;  ///< per half-face
   std::vector<FaceFlags> flags;           ///< per tet
-  std::vector<Index> parentTet;  ///< per tet: that of the labelled mesh which it is part of
+  std::vector<Index> parentTet;  ///< per tet: the tet of the labelled mesh that contains it
   tetmap::AddedVertices added{0};
 };
 
-/// @param scale  of its points, a power of two
+/// @param scale  factor of all points, a power of two
 [[nodiscard]] PolycubeTets polycubeTets(const LabelledMesh& mesh, double scale);
 
-/// Splits edges and tets until each tet has at most one corner, edge or triangle on the boundary,
-/// and each boundary triangle at most one corner or edge between labels: those with more can be
-/// flat wherever planes lie.
+/// Splits edges and tets until each tet has at most one vertex, edge or triangle on the boundary,
+/// and each boundary triangle at most one vertex or edge on curves between labels: those with more
+/// can be flat whatever the planes.
 void makeRoom(PolycubeTets& tets);
 
-/// Splits the longest edge of each tet at two of these vertices or more.
+/// Splits the longest edge of each tet that has at least two of these vertices.
 /// @param vertices  ascending
 void refineAt(PolycubeTets& tets, const std::vector<Index>& vertices);
 

@@ -12,18 +12,17 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Maximum number of planes that are compared with each other: among more, some are close by
-/// chance.
+/// Maximum number of planes to compare: with more, some are close by chance.
 constexpr std::size_t kMostPlanes = 10'000;
-/// Maximum number of times that a plane is carried across a piece of the cut: for maps with more
-/// pieces, the rest of quantization takes longer than this.
+/// Maximum number of transfers of planes across pieces of the cut; for maps that need more, the
+/// rest of quantization takes longer than that.
 constexpr std::size_t kMostIntersections = 200'000;
 
-/// Planes may also have arbitrary coordinates: one plane per axis represents those, at this
-/// fraction of the extent, where hardly any other plane will be.
+/// Planes without a fixed coordinate are represented by one plane per axis, at these fractions of
+/// the extent, where other planes are unlikely.
 constexpr std::array<double, 3> kAnywhere = {0.1234567, 0.2345671, 0.3456712};
 
-/// A coordinate that conditions fix, times two.
+/// A coordinate fixed by conditions, times two.
 struct FixedCoordinate {
   std::size_t axis = 0;
   IntegerForm form;
@@ -31,7 +30,7 @@ struct FixedCoordinate {
   [[nodiscard]] auto operator<=>(const FixedCoordinate&) const = default;
 };
 
-/// Collects all coordinates that are fixed at a vertex, in the charts of its sectors.
+/// Collects all fixed coordinates of a vertex, in the charts of its sectors.
 void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>& all) {
   for (const VertexConditions::Sector& sector : conditions.sectors) {
     for (int from = 0; from < 3; ++from) {
@@ -47,10 +46,11 @@ void collectFixed(const VertexConditions& conditions, std::set<FixedCoordinate>&
   }
 }
 
-/// Planes without duplicates: one that is nearly the same as an existing one gives an equation.
+/// Distinct planes. Adding one that nearly coincides with an existing one yields an equation
+/// instead.
 class Planes {
  public:
-  /// @param values  of shared unknowns
+  /// @param values  values of the shared unknowns
   Planes(std::span<const std::int64_t> values, double noise, double extent)
       : sharedCount_(values.size()),
         values_(values.begin(), values.end()),
@@ -76,7 +76,7 @@ class Planes {
     if (other == plane.form) return;
     IntegerForm difference = plane.form;
     difference.add(other, -1);
-    // What depends on planes with arbitrary coordinates is chance.
+    // Coincidences with planes of arbitrary coordinates are accidental.
     const auto& terms = difference.terms();
     if (terms.back().first >= sharedCount_) return;
     isAny_ = isAny_ || at->first.second != value;
@@ -88,7 +88,7 @@ class Planes {
   [[nodiscard]] std::int64_t valueOf(const FixedCoordinate& plane) const {
     return plane.form(values_);
   }
-  /// None if all planes that are nearly the same are exactly the same: these have to stay so.
+  /// Empty if planes that nearly coincide do so exactly: no equations are needed then.
   [[nodiscard]] std::vector<IntegerForm> equations() && {
     if (!isAny_) equations_.clear();
     return std::move(equations_);
@@ -96,7 +96,7 @@ class Planes {
 
  private:
   std::size_t sharedCount_;
-  std::vector<std::int64_t> values_;  ///< of shared unknowns, and of arbitrary planes
+  std::vector<std::int64_t> values_;  ///< of shared unknowns, then of arbitrary planes
   std::int64_t near_;
   std::vector<FixedCoordinate> planes_;
   std::map<std::pair<std::size_t, std::int64_t>, std::size_t> numbers_;  ///< by axis and value
@@ -105,8 +105,8 @@ class Planes {
   bool isAny_ = false;
 };
 
-/// Adds planes as they appear beyond pieces of the cut, beyond further pieces, and so on: walls may
-/// wind through the map many times. Planes far outside all charts belong to no wall.
+/// Carries planes across pieces of the cut, repeatedly, as walls may wind through the map many
+/// times. Planes far outside all charts belong to no wall.
 void addBeyondCut(const CutGraph& graph, const SharedUnknowns& unknowns, double extent,
                   Planes& planes) {
   const std::vector<adjacency::HalfFace> pieces = unknowns.cutPieces();

@@ -8,10 +8,9 @@
 
 namespace hexhex::quantization {
 
-/// Equations for coordinates fixed at nearly the same value of the common charts, as in symmetric
-/// objects.
-/// @param extent  of coordinates in all charts; on the lattice, like noise and values
-/// @return none if all of them are the same
+/// Equations for fixed coordinates that nearly coincide in the common charts.
+/// @param extent  of coordinates in all charts; in lattice units, like noise and values
+/// @return empty if these coordinates coincide exactly
 [[nodiscard]] std::vector<IntegerForm> coincidences(const CutGraph& graph,
                                                     const SharedUnknowns& unknowns,
                                                     const std::vector<VertexConditions>& conditions,

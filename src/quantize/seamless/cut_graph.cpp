@@ -14,10 +14,10 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// The motion of a chart on its way from tet to tet.
+/// From a tet's chart to the common chart.
 using Motion = lattice::GridMotion<double>;
 
-/// The centre of the same triangle in both its tets.
+/// The centroid of a triangle in the charts of both its tets.
 std::array<Vec3, 2> middlesOf(const igm::SharedTriangle& triangle) {
   std::array<Vec3, 2> middles{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -30,8 +30,8 @@ std::array<Vec3, 2> middlesOf(const igm::SharedTriangle& triangle) {
   return middles;
 }
 
-/// The rotation after which two edges of a tet come last in lexicographic order: the same whatever
-/// chart the tet is given in.
+/// The rotation after which two edges of a tet are lexicographically largest; it does not depend on
+/// the tet's chart.
 lattice::Rotation canonicalRotation(const TetParameters& u) {
   lattice::Rotation best;
   std::array<Vec3, 2> last{};
@@ -49,7 +49,7 @@ lattice::Rotation canonicalRotation(const TetParameters& u) {
   return best;
 }
 
-/// Walks a spanning tree of each component and moves all tets into the chart of the first one.
+/// Moves all tets of each component into the chart of its first one, along a spanning tree.
 /// @return the motion of each tet; marks triangles of the tree in `isTree`
 std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
                                   std::span<const TetParameters> parameters,
@@ -72,7 +72,8 @@ std::vector<Motion> moveAlongTree(const adjacency::TetTopology& topology,
   return lattice::chartsAlongTrees<Motion>(topology.tetCount(), begin, forEachNeighbour).motions;
 }
 
-/// Removes triangles from the cut that are the last ones at an edge around which nothing rotates.
+/// Removes loose ends of the cut: triangles that are the only cut ones at an edge around which
+/// charts agree.
 void mendCut(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
              CutGraph& graph) {
   std::vector<Index> cutFaces(edges.size());  // counts half-faces, i.e. two per triangle
@@ -109,8 +110,8 @@ void mendCut(const adjacency::TetTopology& topology, const adjacency::EdgeFans& 
   }
 }
 
-/// Moves charts to minimize the differences between corners across uncut triangles (least squares):
-/// along the tree alone, the noise of successive triangles adds up.
+/// Translates charts to minimize the gaps across uncut triangles (least squares): along the tree
+/// alone, the noise of successive triangles accumulates.
 void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
   const auto n = static_cast<Eigen::Index>(topology.tetCount());
   std::vector<Eigen::Triplet<double>> entries;
@@ -132,7 +133,7 @@ void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
     }
   }
   if (differences.isZero(0)) return;
-  // All charts may move together.
+  // Regularization, as translations of all charts together cost nothing.
   for (Eigen::Index t = 0; t < n; ++t) entries.emplace_back(t, t, 1e-9);
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -147,7 +148,7 @@ void levelCharts(const adjacency::TetTopology& topology, CutGraph& graph) {
   }
 }
 
-/// Gives corners at a vertex the same number if uncut triangles connect them.
+/// Numbers sectors: corners at a vertex that uncut triangles connect.
 void numberSectors(const adjacency::TetTopology& topology, CutGraph& graph) {
   DisjointSets sets(4 * topology.tetCount());
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
@@ -161,7 +162,7 @@ void numberSectors(const adjacency::TetTopology& topology, CutGraph& graph) {
   }
   graph.sectors.resize(4 * topology.tetCount());
   for (adjacency::CornerIndex corner = 0; corner < graph.sectors.size(); ++corner) {
-    // The smallest corner of a set has already been visited.
+    // The smallest corner of a set has already been numbered.
     const adjacency::CornerIndex first = sets.find(corner);
     graph.sectors[corner] =
         first == corner ? static_cast<Index>(graph.sectorCount++) : graph.sectors[first];
@@ -187,8 +188,7 @@ CutGraph cutOpen(const adjacency::TetTopology& topology, const adjacency::EdgeFa
                  std::span<const lattice::Rotation> rotations) {
   CutGraph graph;
   std::vector<bool> isTree(topology.mate.size());
-  // Charts may lie anywhere: far from the origin, sums would lose digits that differences still
-  // have.
+  // Moves each tet to the origin: far from it, sums would lose digits that differences still have.
   graph.parameters.assign(parameters.begin(), parameters.end());
   for (TetParameters& tet : graph.parameters) {
     const Vec3 origin = tet[0];

@@ -1,5 +1,4 @@
-// Where the charts of a map must differ: tets in common charts, cut along as few triangles as
-// necessary.
+// Common charts for the tets of a map, which must differ only across a small cut.
 #pragma once
 
 #include <cmath>
@@ -16,7 +15,7 @@
 
 namespace hexhex::quantization {
 
-/// Quarter turns around each edge: the sum of its tets' angles in the map.
+/// Number of quarter turns around each edge: the sum of its dihedral angles in the map.
 /// @tparam Corners  four points each, of any number type
 template <class Corners>
 [[nodiscard]] std::vector<int> quartersAround(const adjacency::EdgeFans& edges,
@@ -42,15 +41,15 @@ template <class Corners>
 }
 
 /// Whether an edge is singular although charts agree around it: an interior edge with several full
-/// turns, or a boundary edge where the boundary folds back on itself. Nothing else aligns it with
-/// an axis.
+/// turns, or a boundary edge where the boundary folds back on itself. Charts do not align such an
+/// edge with an axis.
 [[nodiscard]] inline bool isSingularByTurnsAlone(const adjacency::EdgeFans& edges, std::size_t edge,
                                                  int quarters) {
   const int regular = regularQuarters(edges, edge);
   return quarters != regular && quarters % regular == 0;
 }
 
-/// A seamless map in charts that agree across all triangles except those of a cut.
+/// A seamless map in charts that agree across all triangles except those of the cut.
 struct CutGraph {
   std::vector<TetParameters> parameters;     ///< per tet, in the common charts
   std::vector<lattice::Rotation> rotations;  ///< per half-face, from here to the neighbour
@@ -63,9 +62,9 @@ struct CutGraph {
 [[nodiscard]] std::vector<lattice::Rotation> fitRotations(
     const adjacency::TetTopology& topology, std::span<const TetParameters> parameters);
 
-/// Moves charts along a tree of tets, cuts all other triangles, then removes loose ends of the cut:
-/// across the last triangle of the cut at an interior edge charts agree, unless the edge is
-/// singular.
+/// Unifies charts along a spanning tree of tets, cuts all other triangles, then removes loose ends
+/// of the cut: at an interior edge with one remaining triangle, charts agree across it, unless the
+/// edge is singular.
 /// @param rotations  per half-face, between the given charts
 [[nodiscard]] CutGraph cutOpen(const adjacency::TetTopology& topology,
                                const adjacency::EdgeFans& edges,
@@ -80,8 +79,8 @@ void forEachFaceAt(const adjacency::EdgeCorner& at, const Visit& visit) {
   }
 }
 
-/// The cut that bounds, beyond `halfFace`, the connected tets at an edge: the half-face on its near
-/// side, or kNone for the boundary of the mesh.
+/// The cut triangle met next when turning around an edge from `halfFace` through its tet: the
+/// half-face on the near side, or kNone at the boundary of the mesh.
 [[nodiscard]] adjacency::HalfFace nextCutAround(const adjacency::TetTopology& topology,
                                                 const CutGraph& graph, lattice::CornerMask edge,
                                                 adjacency::HalfFace halfFace);

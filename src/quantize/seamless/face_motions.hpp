@@ -14,7 +14,8 @@
 
 namespace hexhex::quantization {
 
-/// Nearly all are the identity; those across one patch of the cut are equal.
+/// Stores distinct motions once: nearly all are the identity, and those across a piece of the cut
+/// are equal.
 class FaceMotions {
  public:
   explicit FaceMotions(std::size_t halfFaces = 0) : places_(halfFaces, 0) {}

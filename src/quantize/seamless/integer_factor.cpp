@@ -33,8 +33,8 @@ double planeOf(const TetParameters& corners, adjacency::HalfFace face) {
   return plane;
 }
 
-/// Magnitudes of all numbers that must be integers, in the given charts: the origin of the seamless
-/// map is arbitrary.
+/// Magnitudes of all numbers that must be integers. In the given charts, as the origin of the
+/// seamless map is arbitrary.
 std::vector<double> conditions(const adjacency::TetTopology& topology,
                                std::span<const TetParameters> parameters) {
   std::vector<double> sizes;
@@ -54,9 +54,9 @@ std::vector<double> conditions(const adjacency::TetTopology& topology,
   return sizes;
 }
 
-/// The largest length of which all are multiples up to noise; 0 if there is none.
+/// The largest length of which all sizes are multiples, up to noise; 0 if there is none.
 double commonLength(const std::vector<double>& sizes, double noise) {
-  // Any size fits a length of fewer noises than this.
+  // If the noise exceeds this fraction of the length, any size fits.
   constexpr double kNoisesPerLength = 1000;
   double length = 0;
   for (double size : sizes) {
@@ -67,11 +67,12 @@ double commonLength(const std::vector<double>& sizes, double noise) {
     }
     if (length > 0 && length < kNoisesPerLength * noise) return 0;
   }
-  // The largest multiple has the smallest relative error.
+  // The largest size has the smallest relative error.
   return length == 0 ? 0 : sizes.back() / std::round(sizes.back() / length);
 }
 
-/// The divisor that a person chose, hidden by rounding of the parameters: a number with six digits.
+/// Rounds to six digits if that changes little: undoes the effect of rounded parameters on a
+/// divisor that a person chose.
 double withFewDigits(double number) {
   const double unit = std::pow(10.0, std::floor(std::log10(number)) - 5);
   const double shorter = unit < 1 ? std::round(number / unit) / std::round(1 / unit)
@@ -103,11 +104,11 @@ double integerFactor(const TetMapView& map, const SeamlessMap& seamless, Context
   const std::vector<double> sizes = conditions(seamless.topology, input.view.parameters);
   stage.finish();
   if (sizes.empty()) return 0;
-  // Twice the move that made it seamless, plus what sums of doubles lose.
+  // Twice the displacement that made the map seamless, plus the rounding error of sums.
   const double noise = 2 * seamless.maxDisplacement + 1e-12 * sizes.back();
   const double length = commonLength(sizes, noise);
   if (length == 0) return 0;
-  // Around singular edges, halves of translations must be integers as well.
+  // Around singular edges, fixed points are halves of translations, and must be integers as well.
   for (const double multiple : {1.0, 2.0}) {
     const double factor = withFewDigits(multiple / length);
     if (isInteger(map, factor, context)) return factor;

@@ -18,15 +18,14 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Maximum number of entries of the matrix that expresses all variables by the free ones: one
-/// gigabyte.
+/// Maximum number of entries of the matrix of nearest(): one gigabyte.
 constexpr std::size_t kMostEntries = std::size_t{1} << 27;
 
-/// Limits of coefficients and of values; values, sums of a few coefficients, stay far below theirs.
+/// Limits of coefficients and values, to detect overflow; values of real maps are far below.
 constexpr std::int64_t kLargestCoefficient = std::int64_t{1} << 40;
 constexpr std::int64_t kLargestValue = std::int64_t{1} << 60;
-/// Limit of the divisors of a preference: planes of symmetric objects that come back after several
-/// ways around produce fractions down to eighths. Smaller fractions, from chains of them, would
+/// Limit of the divisors that a preference may introduce: in symmetric objects, planes that return
+/// after several turns produce fractions down to eighths. Smaller ones, from chains of these, would
 /// need a finer lattice.
 constexpr std::int64_t kLargestDivisor = 8;
 
@@ -109,7 +108,7 @@ IntegerSystem::IntegerSystem(std::size_t variableCount, std::vector<IntegerForm>
 }
 
 void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_t largestPivot) {
-  // Many vertices give the same equation.
+  // Normalizes and removes duplicates, as many vertices give the same equation.
   for (IntegerForm& form : equations) {
     if (form.isZero()) continue;
     const std::int64_t divisor = form.commonDivisor();
@@ -120,8 +119,7 @@ void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_
   for (IntegerForm& form : equations) addEquation(std::move(form), largestPivot);
 }
 
-/// The smallest index, in the order of solving, of a solved variable in a form; kNone if there is
-/// none.
+/// The first solved equation, in order, whose variable occurs in a form, or kNone.
 Index IntegerSystem::firstSolvedIn(const IntegerForm& form) const noexcept {
   Index first = kNone;
   for (const auto& [variable, factor] : form.terms()) first = std::min(first, solvedBy_[variable]);
@@ -129,7 +127,7 @@ Index IntegerSystem::firstSolvedIn(const IntegerForm& form) const noexcept {
 }
 
 void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
-  // Substitutes earlier solutions in their order: each brings in variables of later ones.
+  // Substitutes earlier solutions in their order, as each introduces variables solved later.
   for (Index place = firstSolvedIn(form); place != kNone; place = firstSolvedIn(form)) {
     const Solved& solved = solved_[place];
     const std::int64_t factor = form.coefficient(solved.variable);
@@ -139,7 +137,7 @@ void IntegerSystem::addEquation(IntegerForm form, std::int64_t largestPivot) {
     form.divide(std::max<std::int64_t>(form.commonDivisor(), 1));
   }
   if (form.isZero()) return;
-  // A coefficient of one keeps everything integer; other pivots are rare.
+  // A pivot of one keeps everything integer; others are rare.
   const auto pivot = std::min_element(
       form.terms().begin(), form.terms().end(),
       [](const auto& a, const auto& b) { return std::abs(a.second) < std::abs(b.second); });

@@ -1,4 +1,4 @@
-// Linear forms with integer coefficients, and systems of homogeneous equations in them.
+// Linear forms with integer coefficients, and systems of homogeneous linear equations.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ class IntegerForm {
   [[nodiscard]] std::int64_t coefficient(Index variable) const noexcept;
 
   /// Adds `factor` times `other`.
-  /// @throws Error TooLarge beyond 64 bits, as do multiply() and operator()
+  /// @throws Error TooLarge on overflow, as do multiply() and operator()
   void add(const IntegerForm& other, std::int64_t factor);
   void multiply(std::int64_t factor);
   /// Divides by an integer that divides all coefficients.
@@ -45,8 +45,8 @@ class IntegerForm {
 class IntegerSystem {
  public:
   /// @param equations  forms that must vanish
-  /// @param preferences     further forms that should vanish, except those that would produce
-  ///                        fractions smaller than eighths
+  /// @param preferences  further forms that should vanish; those that would produce fractions
+  ///                     smaller than eighths are skipped
   IntegerSystem(std::size_t variableCount, std::vector<IntegerForm> equations,
                 std::vector<IntegerForm> preferences = {});
 
@@ -54,13 +54,13 @@ class IntegerSystem {
   /// @throws Error TooLarge for more variables than the charts of real maps produce
   [[nodiscard]] std::vector<double> nearest(const std::vector<double>& wanted) const;
 
-  /// The solution with its free variables `rounded` to multiples of `step`.
-  /// @return no values if another variable is then not an integer
+  /// Rounds free variables to multiples of `step` and computes the others.
+  /// @return empty if one of them is then not an integer
   [[nodiscard]] std::vector<std::int64_t> roundedTo(const std::vector<double>& solution,
                                                     std::int64_t step) const;
 
-  /// Each variable as a combination of free ones (a free one is itself): pairs of a free variable
-  /// and its factor, ascending.
+  /// Each variable as a combination of free ones: pairs of a free variable and its factor,
+  /// ascending.
   [[nodiscard]] std::vector<std::vector<std::pair<Index, double>>> combinations() const;
 
   [[nodiscard]] const std::vector<Index>& freeVariables() const noexcept { return free_; }

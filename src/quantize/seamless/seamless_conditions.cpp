@@ -12,7 +12,7 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// R applied to forms.
+/// Applies a rotation to a vector of forms.
 std::array<IntegerForm, 3> rotated(lattice::Rotation rotation,
                                    const std::array<IntegerForm, 3>& forms) {
   std::array<IntegerForm, 3> image;
@@ -26,7 +26,7 @@ std::array<IntegerForm, 3> rotated(lattice::Rotation rotation,
 
 using SharedEquations = tetmap::PointEquations<IntegerForm>;
 
-/// Two paths to a sector give the same parameter there.
+/// Requires two paths to a sector to give the same parameter there.
 void addDifference(const VertexConditions::Sector& reached, const VertexConditions::Sector& known,
                    SharedEquations& equations) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -36,7 +36,7 @@ void addDifference(const VertexConditions::Sector& reached, const VertexConditio
   }
 }
 
-/// The conditions that planes impose in a sector.
+/// Adds the planes of a sector.
 void addPlanes(const VertexConditions::Sector& sector, const SharedUnknowns& unknowns,
                SharedEquations& equations) {
   for (int from = 0; from < 3; ++from) {
@@ -84,8 +84,8 @@ SharedUnknowns::SharedUnknowns(const adjacency::TetTopology& topology,
 }
 
 void SharedUnknowns::numberCutPieces(const adjacency::EdgeFans& edges) {
-  // Across an edge with two triangles of the cut, translations are equal unless the edge is
-  // singular.
+  // If an edge has exactly two triangles of the cut, translations across them are equal unless the
+  // edge is singular.
   DisjointSets sets(topology_.mate.size());
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     std::vector<std::pair<adjacency::HalfFace, lattice::CornerMask>> cuts;
@@ -110,7 +110,7 @@ void SharedUnknowns::numberCutPieces(const adjacency::EdgeFans& edges) {
     first_[h] = static_cast<Index>(size_);
     size_ += 3;
   }
-  // A piece with a single side: its translation is that of its inverse.
+  // If a piece is one-sided, its translation equals that of its inverse.
   for (adjacency::HalfFace h = 0; h < topology_.mate.size(); ++h) {
     if (first_[h] == kNone || sets.find(topology_.mate[h]) != h) continue;
     std::array<IntegerForm, 3> own;
@@ -158,7 +158,7 @@ void SharedUnknowns::numberPlanes(const Alignment& alignment) {
 IntegerForm SharedUnknowns::translation(adjacency::HalfFace halfFace, std::size_t axis) const {
   const adjacency::HalfFace piece = pieces_[halfFace];
   if (first_[piece] != kNone) return {first_[piece] + static_cast<Index>(axis), 1};
-  // Known on the other side: u' = R u + t, so u = R^-1 u' - R^-1 t.
+  // The unknown is that of the other side: u' = R u + t, so u = R^-1 u' - R^-1 t.
   const adjacency::HalfFace other = pieces_[topology_.mate[halfFace]];
   std::array<IntegerForm, 3> there;
   for (Index k = 0; k < 3; ++k) there[k] = {first_[other] + k, -1};
@@ -207,8 +207,8 @@ VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topolo
                               std::vector<IntegerForm>& equations) {
   VertexConditions conditions;
   SharedEquations ofPoint;
-  // Reaches all sectors from the first, across the cut; every other path between them gives a
-  // condition.
+  // Reaches all sectors from the first one, across the cut; every further path to a known sector
+  // gives a condition.
   const std::vector<SectorTransition> transitions = transitionsAt(vertex, topology, graph);
   conditions.sectors.push_back({graph.sectors[topology.star(vertex)[0]], {}, {}});
   const auto find = [&](Index sector) {

@@ -1,5 +1,5 @@
-// The conditions that make a map seamless, as integer equations: for each vertex, what translations
-// and planes imply for its parameter, and for each other.
+// The conditions that make a map seamless, as integer equations: what translations and planes imply
+// for the parameters of each vertex, and for each other.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace hexhex::quantization {
 
-/// What must be aligned with axes, apart from singular curves.
+/// Triangles and edges that must be aligned with axes, other than the singular curves that charts
+/// reveal.
 struct Alignment {
   std::vector<std::uint8_t> axes;  ///< per half-face: the axis perpendicular to it, or kFree
   /// An edge along an axis of its tet's common chart.
@@ -22,15 +23,15 @@ struct Alignment {
 };
 inline constexpr std::uint8_t kFree = 3;
 
-/// Unknown numbers that many vertices share: three for the translation of each piece of the cut,
-/// and one for each plane that contains a piece of the boundary or an aligned feature.
+/// Unknowns shared by many vertices: three for the translation across each piece of the cut, and
+/// one for each plane that contains a part of the boundary or an aligned feature.
 class SharedUnknowns {
  public:
   SharedUnknowns(const adjacency::TetTopology& topology, const adjacency::EdgeFans& edges,
                  const CutGraph& graph, const Alignment& alignment);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Component of the translation across a half-face of the cut.
+  /// A component of the translation across a half-face of the cut.
   [[nodiscard]] IntegerForm translation(adjacency::HalfFace halfFace, std::size_t axis) const;
   /// The plane that fixes a coordinate of a sector, or kNone.
   [[nodiscard]] Index plane(Index sector, std::size_t axis) const {
@@ -40,7 +41,7 @@ class SharedUnknowns {
   [[nodiscard]] const std::vector<IntegerForm>& equations() const noexcept { return equations_; }
   /// A half-face of each piece of the cut, on both of its sides.
   [[nodiscard]] std::vector<adjacency::HalfFace> cutPieces() const;
-  /// Their mean values in the map.
+  /// The mean values of all unknowns in the given map.
   [[nodiscard]] std::vector<double> measured() const;
 
  private:
@@ -57,7 +58,8 @@ class SharedUnknowns {
   std::vector<IntegerForm> equations_;
 };
 
-/// The parameter of a vertex in one of its sectors, and its relation to all others.
+/// The fixed coordinates of a vertex in the chart of its first sector, and the motions from there
+/// to all sectors.
 struct VertexConditions {
   /// factor * coordinate + rest = 0.
   struct Fixed {
@@ -74,8 +76,8 @@ struct VertexConditions {
   std::array<Fixed, 3> fixed;
 };
 
-/// @pre around each interior edge, charts turn about an axis, or agree
-/// @param equations  receives the conditions on shared unknowns
+/// @pre around each interior edge, charts agree or turn about an axis
+/// @param[in,out] equations  conditions on shared unknowns are appended
 [[nodiscard]] VertexConditions conditionsOf(Index vertex, const adjacency::TetTopology& topology,
                                             const CutGraph& graph, const SharedUnknowns& unknowns,
                                             std::vector<IntegerForm>& equations);

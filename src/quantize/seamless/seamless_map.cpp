@@ -16,26 +16,25 @@ namespace hexhex::quantization {
 
 namespace {
 
-/// Bound of coordinates on the lattice.
+/// Bound of coordinates in lattice units.
 constexpr double kLargest = 0x1p52;
 
-/// Bound of a map's size and of its inverse: products of eight lengths stay finite.
+/// Bound of a map's size and its inverse, so that products of eight lengths stay finite.
 constexpr double kMostSize = 0x1p100;
 
-/// Shared unknowns are multiples of this: their halves are on the lattice as well, and two planes
-/// either coincide or are so far apart that points between them can be rounded to the lattice.
+/// Shared unknowns are multiples of this, so that halves of them are on the lattice as well, and
+/// two planes either coincide or leave enough lattice points between them for rounding.
 constexpr std::int64_t kStep = 1 << 16;
 
-/// Planes closer than this fraction of the map's size are meant to be one.
+/// Planes closer than this fraction of the map's size are considered one.
 constexpr double kNoise = 1e-9;
-/// Maximum move for that, in multiples of the noise.
+/// Maximum displacement by joining them, as a multiple of the noise.
 constexpr double kChainedNoise = 16;
-/// Planes that are joined may bring others close to each other; nearly all are found in the first
-/// round.
+/// Joining planes may bring others close to each other; nearly all are found in the first round.
 constexpr int kRoundsOfPreferences = 3;
 
-/// The axis perpendicular to a triangle: the one along which it extends least. The normal of a thin
-/// triangle may be noise.
+/// The axis perpendicular to a triangle, as the one along which it extends least: the normal of a
+/// thin triangle may be noise.
 std::uint8_t normalAxis(const CutGraph& graph, adjacency::HalfFace h) {
   const TetParameters& u = graph.parameters[adjacency::tetOf(h)];
   const auto corner = [&](std::size_t k) {
@@ -55,7 +54,6 @@ bool areLevel(const TetParameters& u, std::size_t a, std::size_t b, std::size_t 
   return std::abs(u[a][axis] - u[b][axis]) <= tolerance;
 }
 
-/// A tet with a feature edge, or the half-face of a feature triangle.
 std::optional<adjacency::TetEdge> findEdge(const adjacency::TetTopology& topology, Index v,
                                            Index w) {
   for (const adjacency::CornerIndex corner : topology.star(v)) {
@@ -85,7 +83,7 @@ adjacency::HalfFace findFace(const adjacency::TetTopology& topology,
   return kNone;
 }
 
-/// Triangles between regions, and tagged ones.
+/// Triangles between regions, and tagged ones except those with `wallTag`.
 std::vector<adjacency::HalfFace> innerFaces(const SeamlessMap& map, std::int32_t wallTag) {
   const adjacency::TetTopology& topology = map.topology;
   const TetMapView& view = map.input.view;
@@ -104,9 +102,9 @@ std::vector<adjacency::HalfFace> innerFaces(const SeamlessMap& map, std::int32_t
   return faces;
 }
 
-/// The boundary, singular edges that charts do not reveal, and features that are aligned within the
-/// tolerance: the others do not prevent a seamless map, but will not be lines or planes of the
-/// mesh.
+/// Aligns the boundary, singular edges that charts do not reveal, and features that are
+/// axis-aligned within the tolerance. Other features do not prevent a seamless map, but hexahedra
+/// will not follow them.
 Alignment findAlignment(SeamlessMap& map, const adjacency::EdgeFans& edges, const CutGraph& graph,
                         const SeamlessOptions& options) {
   const adjacency::TetTopology& topology = map.topology;
@@ -155,7 +153,7 @@ Alignment findAlignment(SeamlessMap& map, const adjacency::EdgeFans& edges, cons
   return alignment;
 }
 
-/// The first tet of each component begins at the origin.
+/// The largest absolute coordinate; the first tet of each component starts at the origin.
 double largestCoordinate(const CutGraph& graph) {
   double largest = 0;
   for (const TetParameters& tet : graph.parameters) {
@@ -166,7 +164,7 @@ double largestCoordinate(const CutGraph& graph) {
   return largest;
 }
 
-/// Exact parameters of a vertex in all its sectors.
+/// Computes exact parameters of a vertex in all its sectors.
 class VertexSolver {
  public:
   VertexSolver(const adjacency::TetTopology& topology, const CutGraph& graph,
@@ -203,7 +201,7 @@ class VertexSolver {
             sector.translation[2](values_)};
   }
 
-  /// The mean of the parameters given at all its corners, seen from the first sector.
+  /// The mean of the given parameters of all its corners, carried to the first sector.
   [[nodiscard]] lattice::LatticePoint meanOf(Index vertex,
                                              const VertexConditions& conditions) const {
     Vec3 sum{};
@@ -238,7 +236,8 @@ std::vector<Index> flippedTets(std::span<const lattice::LatticeTet> corners) {
   return flipped;
 }
 
-/// Decided on the lattice, which is finer than the last digit of the largest coordinates.
+/// Tets that are flipped in the given map. Evaluated on the lattice, which resolves the last digit
+/// of the largest coordinates.
 std::vector<Index> flippedAsGiven(const CutGraph& graph, double unit) {
   std::vector<lattice::LatticeTet> corners(graph.parameters.size());
   for (std::size_t t = 0; t < corners.size(); ++t) {
@@ -276,8 +275,9 @@ void requireSize(double size) {
   throw Error(ErrorCode::TooLarge, what.str());
 }
 
-/// No corner may move by more than the tolerance, so transitions of a triangle's corners differ by
-/// at most four tolerances. Checked early, since a map far from seamless has countless conditions.
+/// No corner may move by more than the tolerance, so the translations at a triangle's corners
+/// differ by at most four times that. Checked early, since a map far from seamless has countless
+/// conditions.
 void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double tolerance) {
   const adjacency::TetTopology& topology = map.topology;
   for (adjacency::HalfFace h = 0; h < topology.mate.size(); ++h) {
@@ -303,7 +303,7 @@ void requireTransitions(const SeamlessMap& map, const CutGraph& graph, double to
   }
 }
 
-/// Whether the charts around an interior edge turn about an axis parallel to the edge, or agree.
+/// Whether the charts around an interior edge agree, or turn about an axis parallel to the edge.
 bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& graph,
                        const adjacency::TetEdge& at, double tolerance) {
   const std::optional<lattice::Rotation> around = adjacency::visitAroundEdge(
@@ -321,8 +321,8 @@ bool turnsAboutItsAxis(const adjacency::TetTopology& topology, const CutGraph& g
          areLevel(u, at.corner0, at.corner1, (axis + 2) % 3, 2 * tolerance);
 }
 
-/// No hexahedra fit around any other edge. This also ensures that charts impose only conditions on
-/// single coordinates of a vertex.
+/// Requires singular edges to be parallel to an axis, as hexahedra fit around no others. This also
+/// ensures that charts impose conditions on single coordinates of a vertex only.
 void requireAxesOfCurves(const SeamlessMap& map, const adjacency::EdgeFans& edges,
                          const CutGraph& graph, double tolerance) {
   const adjacency::TetTopology& topology = map.topology;
@@ -335,7 +335,7 @@ void requireAxesOfCurves(const SeamlessMap& map, const adjacency::EdgeFans& edge
   }
 }
 
-/// Exact corners from conditions and values of shared unknowns.
+/// Computes exact corners, given values of shared unknowns.
 void solveVertices(SeamlessMap& map, const CutGraph& graph,
                    const std::vector<VertexConditions>& conditions,
                    std::span<const std::int64_t> values) {
@@ -353,7 +353,7 @@ void solveVertices(SeamlessMap& map, const CutGraph& graph,
   }
 }
 
-/// Transitions between the charts after cutting.
+/// Computes the transitions between the charts, and checks that the map is seamless.
 void findChanges(SeamlessMap& map, const CutGraph& graph) {
   map.changes = FaceMotions(map.topology.mate.size());
   for (adjacency::HalfFace h = 0; h < map.topology.mate.size(); ++h) {
@@ -394,7 +394,7 @@ void requireDisplacement(const SeamlessMap& map, double tolerance) {
   notSeamless(map, what.str(), {PlaceKind::Tet, map.mostDisplaced});
 }
 
-/// Corners of the nearest seamless map, from conditions on shared unknowns.
+/// The corners of the nearest seamless map, computed from conditions on shared unknowns.
 class NearestMap {
  public:
   NearestMap(SeamlessMap& map, const CutGraph& graph, const SharedUnknowns& unknowns)
@@ -416,7 +416,8 @@ class NearestMap {
   }
 
   /// Solves again with planes joined that only noise separates: walls between them would be
-  /// chaotic. @pre find()
+  /// chaotic.
+  /// @pre find() was called
   void joinPlanes(double noise) {
     std::vector<IntegerForm> preferences;
     std::vector<std::int64_t> best = values_;
@@ -429,21 +430,21 @@ class NearestMap {
       if (best.empty()) break;
       take(best);
     }
-    // Chains of near coincidences may lead far away.
+    // Chains of near coincidences may lead far away; joined planes are given up then.
     if (map_.maxDisplacement > kChainedNoise * noise) take(values_);
   }
 
  private:
-  /// Values of shared unknowns for the nearest seamless map under all equations.
-  /// @param preferences  further equations, honoured as far as they produce no fractions
-  /// @return empty if they are not on the lattice
+  /// Values of the shared unknowns for the nearest seamless map.
+  /// @param preferences  further equations, honoured unless they produce fractions
+  /// @return empty if the values are not on the lattice
   [[nodiscard]] std::vector<std::int64_t> nearest(
       const std::vector<IntegerForm>& preferences) const {
     const IntegerSystem system(unknowns_.size(), equations_, preferences);
     std::vector<double> wanted = system.nearest(unknowns_.measured());
     for (double& x : wanted) x *= map_.unit;
     // Nearly all dependent values are sums of others, or half of that, and the step is a power of
-    // two; some are a third, a ninth ...
+    // two; a few are thirds, ninths ...
     std::vector<std::int64_t> values;
     for (const std::int64_t divisible : {1, 3, 15, 105, 315, 945}) {
       if (values.empty()) values = system.roundedTo(wanted, divisible * kStep);
@@ -490,7 +491,7 @@ SeamlessMap makeSeamless(const TetMapView& map, const SeamlessOptions& options, 
   defects.throwIfAny();
   result.topology = igm::buildTopology(result.input.view, stage, defects);
   defects.throwIfAny();
-  // Walks around edges and vertices return only on manifolds.
+  // Walks around edges and vertices terminate only on manifolds.
   igm::collectTopologyDefects(result.topology, stage, defects);
   defects.throwIfAny();
   const adjacency::TetTopology& topology = result.topology;
