@@ -7,8 +7,8 @@
 
 namespace hexhex::untangle {
 
-/// Contains both triangles. What the elements leave undetermined (such as moving everything
-/// together) is fixed by a slight shift.
+/// Stores both triangles. A slight shift fixes what the elements leave undetermined, such as a
+/// translation.
 [[nodiscard]] Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses);
 
 /// The right-hand side for which the solution brings Jacobian matrices as close as possible to
