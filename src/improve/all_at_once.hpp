@@ -17,7 +17,7 @@
 
 namespace hexhex::improvement {
 
-/// What moves at once.
+/// The vertices to move at once, and their cells.
 struct MovingCells {
   std::span<const Index> vertices;  ///< those that move, unless their place is Fixed
   std::span<const Index> cells;     ///< all cells at these vertices

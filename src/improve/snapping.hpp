@@ -1,8 +1,7 @@
 // Snaps edges of a mesh to curves of the surface that none of its edges follow.
 //
 // X. Gao, H. Shen, D. Panozzo, "Feature preserving octree-based hexahedral meshing", Computer
-// Graphics Forum 38 (2019), do so for
-// octree-based grids.
+// Graphics Forum 38 (2019), do so for octree-based grids.
 #pragma once
 
 #include <optional>

@@ -51,7 +51,7 @@ class LooseVertices {
  public:
   /// Releases the listed vertices that are on creases or where only creases meet: from now on, they
   /// move across all patches that only creases separate.
-  /// @param places  outlives this
+  /// @param places  must outlive this
   LooseVertices(VertexPlaces& places, std::span<const Index> vertices, const Array<Vec3>& points);
 
   [[nodiscard]] bool empty() const noexcept { return held_.empty(); }

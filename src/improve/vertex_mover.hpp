@@ -140,7 +140,7 @@ struct MovingMesh {
 /// How cells may lose quality so that others around the same vertex gain.
 struct Exchange {
   double floor;             ///< cells below it are to gain
-  bool belowFloor = false;  ///< whether others may fall below it, too
+  bool belowFloor = false;  ///< whether others may fall below it
   /// Cells above the floor may lose at most this many times what those below it gain; 0: no limit.
   double price = 0;
 };
