@@ -75,7 +75,7 @@ class EnergyTerms {
   std::size_t size_ = 0;
 };
 
-/// The energy: the sum of (|J|^3 / (3 sqrt(3) chi))^power, each at least 1.
+/// The energy: the sum of (|J|^3 / (3 sqrt(3) chi))^power. Terms are at least 1 if chi = det J.
 struct EnergyKind {
   int power = 1;  ///< 1, 2, 4 or 8: the larger, the more the worst term counts
   /// The regularization of chi. With 0, chi is the determinant, and the energy is infinite unless

@@ -1,5 +1,4 @@
-// The weighted Laplacian of all elements: the Hessian matrix of the sum of weight / 2 |J -
-// target|^2.
+// The weighted Laplacian of all elements: the Hessian of the sum of weight / 2 |J - target|^2.
 #pragma once
 
 #include <Eigen/SparseCore>

@@ -23,7 +23,7 @@ class Lbfgs {
   Lbfgs(Energy& energy, const Multigrid& metric, const Vector& x, double epsilon);
 
   /// One step downhill.
-  /// @param[in,out] x  the end of the last step
+  /// @param[in,out] x  where the last step ended
   /// @return false if no step lowers the energy
   bool step(Vector& x);
 
