@@ -12,18 +12,18 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// Ideal edges of a corner are half its own, half the means of its cell. With the cell's alone, a
-/// good cell whose edges differ costs as much as one of bad angles; with its own alone, short edges
-/// become shorter.
+/// Weight of a corner's own edge lengths in its ideal ones; the rest is the cell's means. With the
+/// cell's means alone, a good cell whose edges differ costs as much as one with bad angles; with
+/// its own lengths alone, short edges get shorter.
 constexpr double kOwnLength = 0.5;
-/// Of the penalty: from anywhere, and where most cells are good and are to stay so.
+/// Initial regularization: from any starting point, and if most cells are good and should stay so.
 constexpr double kFolded = 1;
 constexpr double kMostlyGood = 1e-3;
 
 /// The unknowns of a problem: how far vertices move along their directions.
 class Steps {
  public:
-  /// @param canMove  of (vertex)
+  /// @param canMove  called with a vertex
   template <class CanMove>
   Steps(const HexMesh& mesh, const VertexPlaces& places, std::span<const Index> vertices,
         const CanMove& canMove)
@@ -50,7 +50,7 @@ class Steps {
     return corner;
   }
 
-  /// Coordinates as sums of steps, all of which are 0.
+  /// Defines coordinates as sums of steps, which start at 0.
   void enter(untangle::Problem& problem) const {
     problem.x.assign(directions_.size(), 0.0);
     for (std::size_t i = 0; i < moving_.size(); ++i) {
@@ -64,7 +64,7 @@ class Steps {
     }
   }
 
-  /// Calls use(vertex, point) for where vertices get.
+  /// Calls use(vertex, point) with the new points of vertices.
   template <class Use>
   void take(const untangle::Problem& problem, const Use& use) const {
     for (std::size_t i = 0; i < moving_.size(); ++i) {
@@ -78,14 +78,14 @@ class Steps {
 
  private:
   const HexMesh& mesh_;
-  std::vector<int> rowOf_;  ///< per vertex: of its first coordinate, or -1
+  std::vector<int> rowOf_;  ///< per vertex: row of its first coordinate, or -1
   std::vector<Index> moving_;
   std::vector<Vec3> directions_;           ///< per unknown
-  std::vector<std::size_t> begins_ = {0};  ///< per vertex that moves, of its unknowns
+  std::vector<std::size_t> begins_ = {0};  ///< per moving vertex: its first unknown
 };
 
-/// The corner of a cell at a place, with its three edges.
-/// @param own  share of ideal lengths that are its own
+/// The element of the corner of a cell at a place, with its three edges.
+/// @param own  weight of the corner's own lengths in ideal ones
 untangle::Element cornerOf(const HexMesh& mesh, const Steps& steps, const Hex& cell,
                            const IdealBox& box, std::size_t place, double own) {
   const auto at = [&](std::size_t p) { return cell[mesh::kVtkCorner[p]]; };
@@ -129,7 +129,7 @@ void spreadAtOnce(HexMesh& mesh, const VertexPlaces& places, const MovingCells& 
                     [&](Index v) { return places.freedom[v] == Freedom::Free; });
   const Array<IdealBox> cubes(mesh.cells.size(), IdealBox{1, 1, 1});
   untangle::Problem problem = problemOf(mesh, steps, {moving.vertices, moving.cells, cubes}, 0);
-  problem.matrices.emplace_back();  // edges as short as they can be
+  problem.matrices.emplace_back();  // target 0: edges as short as possible
   for (untangle::Element& element : problem.elements) element.target = 0;
   untangle::Solver(problem, stage).start();
   steps.take(problem, [&](Index v, const Vec3& point) { mesh.points[v] = point; });

@@ -1,8 +1,8 @@
-// All vertices around some cells at once, where one after the other is in the way of the next.
+// Moves all vertices around some cells at once, where moving them one by one gets stuck.
 //
-// The foldover-free energy (untangle/untangle.hpp) of the eight corners of each cell, relative to
-// corners with right angles and edges as long as they are. So these follow the mesh from round to
-// round, and what counts in the end are angles.
+// Minimizes the foldover-free energy (untangle/untangle.hpp) of the eight corners of each cell,
+// relative to corners with right angles and current edge lengths. As these lengths are updated from
+// round to round, only angles count in the end.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,23 @@
 
 namespace hexhex::improvement {
 
-/// What moves at once.
+/// The vertices to move at once, and their cells.
 struct MovingCells {
   std::span<const Index> vertices;  ///< those that move, unless their place is Fixed
-  std::span<const Index> cells;     ///< all that these have
+  std::span<const Index> cells;     ///< all cells at these vertices
   const Array<IdealBox>& boxes;     ///< per cell of the mesh
 };
 
 /// Whether this build has the solver. Without it, vertices only move one by one.
 [[nodiscard]] bool canMoveAtOnce() noexcept;
 
-/// Moves free vertices to the means of their neighbours, from wherever they are.
+/// Moves free vertices to the averages of their neighbours, regardless of their current positions.
 void spreadAtOnce(HexMesh& mesh, const VertexPlaces& places, const MovingCells& moving,
                   Stage& stage);
 
-/// Untangles cells and brings their angles nearer to right ones. Vertices on the surface move in
-/// its tangents, then back onto it, which may fold a few cells again.
-/// @param isFolded  whether most cells may be inside out
+/// Untangles cells and brings their angles closer to right angles. Vertices on the surface move
+/// along its tangents, then return to it, which may fold a few cells again.
+/// @param isFolded  whether most cells may be inverted
 /// @param isHeld    per vertex: 1 if it stays
 void moveAtOnce(HexMesh& mesh, VertexPlaces& places, const MovingCells& moving, bool isFolded,
                 const std::vector<std::uint8_t>& isHeld, Stage& stage);

@@ -12,19 +12,19 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// Chains that end at bad cells have so many edges at least: one vertex that sticks out makes two
-/// in a row, or three together with a neighbour.
+/// Minimum number of edges of chains with a dead end that touch bad cells: a single protruding
+/// vertex makes two in a row, or three together with a neighbour.
 constexpr std::size_t kFewestEdges = 4;
-/// So many edges of folds are bridged: those around two vertices beside each other.
+/// Maximum number of edges by which to bridge folds: those around two adjacent vertices.
 constexpr std::size_t kMostBridged = 4;
-/// The cosine of the angle beyond which the boundary is folded back at a bad cell: 120 degrees.
+/// Cosine of the angle beyond which the boundary is folded back at bad cells: 120 degrees.
 constexpr double kFoldedBack = -0.5;
 
 enum class EdgeKind : std::uint8_t {
-  Flat,    ///< or as sharp as can be, but no crease
-  Unsure,  ///< at a fold, where the angle says nothing
+  Flat,    ///< no crease, however sharp
+  Unsure,  ///< at a fold, where angles mean nothing
   Crease,
-  Curve,  ///< whatever the angle
+  Curve,  ///< regardless of the angle
 };
 
 struct SurfaceEdge {
@@ -58,7 +58,7 @@ class CreaseGraph {
     });
   }
 
-  /// Carries chains on from where they end, straight over folds, to other lines.
+  /// Extends chains from their dead ends straight across folds to other lines.
   void bridge() {
     std::vector<Index> bridges;
     for (const Index end : deadEnds()) {
@@ -68,7 +68,7 @@ class CreaseGraph {
     for (const Index e : bridges) edges_[e].kind = EdgeKind::Crease;
   }
 
-  /// Leaves out short chains with a dead end at bad cells, and what becomes one by that.
+  /// Removes short chains with a dead end that touch bad cells, repeatedly until there are none.
   void prune() {
     for (bool isDone = false; !isDone;) {
       isDone = true;
@@ -136,7 +136,7 @@ class CreaseGraph {
         std::count_if(at.begin(), at.end(), [&](Index e) { return edges_[e].isLine(); }));
   }
 
-  /// A line at a vertex other than one of them.
+  /// A line at a vertex other than the given edge.
   [[nodiscard]] Index lineBeside(Index v, Index edge) const {
     for (const Index e : edgesAt_(v)) {
       if (e != edge && edges_[e].isLine()) return e;
@@ -144,7 +144,7 @@ class CreaseGraph {
     return kNone;
   }
 
-  /// Vertices where a crease ends that is the only line there.
+  /// Vertices at which a crease is the only line.
   [[nodiscard]] std::vector<Index> deadEnds() const {
     std::vector<Index> list;
     for (Index v = 0; v < parts_.points.size(); ++v) {
@@ -154,7 +154,7 @@ class CreaseGraph {
     return list;
   }
 
-  /// Edges at folds that lead from a dead end straight to another line; none if they do not.
+  /// Edges at folds that lead from a dead end straight to another line; empty if there are none.
   [[nodiscard]] std::vector<Index> bridgeFrom(Index v) const {
     std::vector<Index> edges;
     Index last = lineBeside(v, kNone);
@@ -183,7 +183,7 @@ class CreaseGraph {
     return best;
   }
 
-  /// From a dead end to where other than two lines meet, or to a curve.
+  /// The chain from a dead end to a curve, or to where the number of lines is not two.
   [[nodiscard]] std::vector<Index> chainFrom(Index v) const {
     std::vector<Index> chain;
     for (Index e = lineBeside(v, kNone); edges_[e].kind == EdgeKind::Crease;) {

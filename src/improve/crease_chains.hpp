@@ -1,8 +1,8 @@
-// Which sharp edges of a mesh's own boundary are creases of the object.
+// Decides which sharp edges of a mesh's own boundary are creases of the object.
 //
-// Where cells are bad, the boundary is folded and jagged, and turns by any angle. Angles count
-// beside quads that are not folded; edges form chains, which go on over folds where they are
-// straight; and what soon ends at bad cells is no crease.
+// At bad cells, the boundary is folded and jagged, and turns by any angle. So angles only count
+// beside quads that are not folded; edges form chains, which continue straight across folds; and
+// short chains that touch bad cells are no creases.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace hexhex::improvement {
 
-/// @param parts   with triangles two by two, those of one quad; without `sharp`
+/// @param parts    with two consecutive triangles per quad, which form a group; without `sharp`
 /// @param isAtBad  per point: 1 if a cell there is not positive
-/// @return edges, each ascending and all of them, too; without those that are curves anyway
+/// @return the creases, sorted, each with ascending vertices; without edges that are curves anyway
 [[nodiscard]] std::vector<std::array<Index, 2>> creaseChains(const SurfaceParts& parts,
                                                              std::span<const std::uint8_t> isAtBad,
                                                              Stage& stage);

@@ -16,20 +16,20 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// What an edge costs more whose end is one edge's length off the curve, in lengths: stairs along a
-/// diagonal, a third of an edge off, must be cheaper than its two sides.
+/// Extra cost, in lengths, of an edge whose end is one edge length off the curve: stairs along a
+/// diagonal, a third of an edge off, must be cheaper than two sides of the square.
 constexpr double kOffPrice = 4;
-/// Paths that cost so many times the length of their curve lead elsewhere.
+/// Paths that cost more than this many times the length of their curve lead elsewhere.
 constexpr double kDearest = 4;
-/// Edges on a curve are at least so long, as a share of what they were if all had their part of it.
+/// Minimum length of edges on a curve, relative to their proportional share of it.
 constexpr double kShortest = 0.4;
-/// Corners go to a vertex within so many edges of the nearest one.
+/// Corners are matched with vertices within this many edges of the nearest one.
 constexpr int kCornerRings = 2;
 
-/// Orders in which paths are laid.
+/// Maximum number of orders in which to find paths.
 constexpr int kOrders = 8;
 
-/// Points of a curve, in a row.
+/// Consecutive points of a curve.
 using Chain = std::vector<Index>;
 
 class ChainFinder {
@@ -67,7 +67,7 @@ class ChainFinder {
     return chain;
   }
 
-  /// A closed one in three: two paths between the same ends could be one.
+  /// Splits a closed chain in three: two paths between the same ends could coincide.
   void add(const Chain& chain, std::vector<Chain>& chains) const {
     if (chain.front() != chain.back()) {
       chains.push_back(chain);
@@ -114,8 +114,8 @@ class PathFinder {
     edgeLength_ = sum / static_cast<double>(std::max<std::size_t>(1, count));
   }
 
-  /// Short ones first, which have least choice; then again those first that found no way, as long
-  /// as that leaves fewer without.
+  /// Finds paths along short curves first, which have the least choice; then again, starting with
+  /// curves without a path. Keeps the order that leaves the fewest without.
   CurvePaths find() {
     std::vector<Chain> chains = ChainFinder(surface_).find();
     matchEnds(chains);
@@ -152,9 +152,10 @@ class PathFinder {
     return sum;
   }
 
-  /// Ends of chains, by distance: each gets the nearest vertex with enough edges that is left.
+  /// Matches ends of chains with vertices, nearest pairs first: each end gets the nearest vertex
+  /// that is left and has enough edges.
   void matchEnds(const std::vector<Chain>& chains) {
-    std::map<Index, std::size_t> ends;  // and how many curves meet there
+    std::map<Index, std::size_t> ends;  // number of chains that meet there
     for (const Chain& chain : chains) {
       ++ends[chain.front()];
       ++ends[chain.back()];
@@ -218,7 +219,7 @@ class PathFinder {
     return path;
   }
 
-  /// Dijkstra's, over vertices that no other path has.
+  /// Dijkstra's algorithm over vertices that no other path uses.
   [[nodiscard]] std::vector<Index> shortest(Index from, Index to, const TriangleTree& curve,
                                             double dearest) const {
     struct Reached {
@@ -252,7 +253,7 @@ class PathFinder {
     return {};
   }
 
-  /// Vertices go where they are nearest to the curve, but in order and apart from each other.
+  /// Places vertices at the nearest points of the curve, but in order and apart from each other.
   void place(const Chain& chain, const TriangleTree& tree, CurvePath& path) const {
     std::vector<double> starts = {0};
     for (std::size_t i = 1; i < chain.size(); ++i) {
@@ -296,11 +297,11 @@ class PathFinder {
 
   const Array<Vec3>& points_;
   const ReferenceSurface& surface_;
-  adjacency::VertexLists<Index> beside_;  ///< per vertex: those at the other ends of its edges
+  adjacency::VertexLists<Index> beside_;  ///< per vertex: its neighbours on the boundary
   std::vector<Index> boundary_;
-  double edgeLength_ = 0;            ///< on the average
-  std::vector<Index> owner_;         ///< per vertex: an end of the chain that has it, or kNone
-  std::map<Index, Index> vertexOf_;  ///< per end of a chain
+  double edgeLength_ = 0;            ///< mean length of boundary edges
+  std::vector<Index> owner_;         ///< per vertex: an end of the chain that uses it, or kNone
+  std::map<Index, Index> vertexOf_;  ///< per end of a chain: its vertex
   std::set<std::array<Index, 2>> isUsed_;
 };
 

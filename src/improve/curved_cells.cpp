@@ -16,7 +16,7 @@ const LagrangeKernels& widestKernels() noexcept {
   return widest;
 }
 
-/// @param places  equidistant, along each axis
+/// @param places  number of equidistant places along each axis
 LagrangeGrid gridOf(int order, int places) {
   return {curved::LagrangeColumns(order, curved::equidistant(places - 1))};
 }
@@ -75,7 +75,7 @@ void CurvedCells::certify(const Array<Vec3>& points, std::span<const Index> cell
       widestKernels().leastShares(bezierGrid_, lanesOf(points, cells), scratch.columns);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (states[i].scaled <= 0) continue;
-    // A proof follows at the end; it takes longer.
+    // Not a proof, which takes longer: that follows in the final certificate.
     states[i].certified = shares[i] > kSafe;
     if (states[i].certified) continue;
     scratch.nodes.clear();
@@ -117,7 +117,7 @@ class FeatureFinder {
   }
   [[nodiscard]] bool empty() const { return entries_.empty(); }
 
-  /// The tags of all features between vertices; none when called with them again.
+  /// The tags of all features with these vertices, on the first call only.
   [[nodiscard]] std::vector<std::int32_t> take(const std::array<Index, n>& vertices) {
     const std::array<Index, n> key = sorted(vertices);
     auto entry = std::lower_bound(

@@ -20,7 +20,7 @@
 namespace hexhex::improvement {
 
 struct CellPoints {
-  std::span<const Index> all;  ///< of cell 0, of cell 1, and so on
+  std::span<const Index> all;  ///< those of cell 0, of cell 1, and so on
   std::size_t perCell = 8;
   const adjacency::VertexCells& around;  ///< the cells at each point
   std::size_t pointCount = 0;
@@ -31,7 +31,7 @@ struct CellPoints {
   }
 };
 
-// Cells of order 2 or 3. Their nodes move one by one, like vertices of straight cells: moving a
+// Cells of orders 1 to 3. Their nodes move one by one, like vertices of straight cells: moving a
 // node changes the Jacobian matrix at any place by a matrix of rank one.
 
 /// The quality of a cell.
@@ -50,7 +50,7 @@ class CurvedCells {
     std::vector<Vec3> nodes;
   };
 
-  /// @param mesh  of an order up to kMaxOrder; outlives this
+  /// @param mesh  of an order up to kMaxOrder; must outlive this
   explicit CurvedCells(const LagrangeMesh& mesh);
 
   [[nodiscard]] CellPoints points(const adjacency::VertexCells& around) const;
@@ -60,7 +60,7 @@ class CurvedCells {
   /// The states of one to four cells. If the scaled Jacobian of any is less than required, none is
   /// certified.
   /// @param points   of nodes, instead of those of the mesh
-  /// @param leastOf  of (cell): the scaled Jacobian required
+  /// @param leastOf  called with a cell: the scaled Jacobian required
   template <class LeastOf>
   [[nodiscard]] std::array<CellState, curved::kCellLanes> statesOf(const Array<Vec3>& points,
                                                                    std::span<const Index> cells,
@@ -97,7 +97,7 @@ class CurvedCells {
 };
 
 /// Straight cells between adjacent nodes, p^3 per cell, with the generators and tags of all nodes.
-/// Their boundary is compared with the surface.
+/// Distances from the surface are those of their boundary.
 [[nodiscard]] HexMesh refinedMesh(const LagrangeMesh& mesh, Stage& stage);
 
 }  // namespace hexhex::improvement

@@ -1,5 +1,5 @@
-// Compiled for several widths of registers, as cell_measures.cpp is: what is called for one width
-// takes everything inline.
+// Compiled for several register widths, like cell_measures.cpp: the entry points for each width
+// inline everything that they call.
 #include <algorithm>
 #include <limits>
 
@@ -25,7 +25,7 @@ using mesh::scaled;
 constexpr std::size_t kLanes = TermLanes::kCount;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// 1 / |1|^3: of the ideal shape, the energy is 1.
+/// 1 / |I|^3, such that the ideal shape has energy 1.
 constexpr double kUnit = 0.19245008972987526;  // 1 / (3 sqrt(3))
 
 HEXHEX_INLINE double sumOf(const Number& x) noexcept { return (x[0] + x[1]) + (x[2] + x[3]); }
@@ -38,15 +38,15 @@ HEXHEX_INLINE Number chosen(const Number& condition, const Number& a, const Numb
 #endif
 }
 
-/// 1 / chi, and chi' / chi by the determinant, where chi = (det + root) / 2 with root^2 = det^2 +
-/// epsilon^2.
+/// 1 / chi, and chi' / chi with respect to the determinant, where chi = (det + root) / 2 with
+/// root^2 = det^2 + epsilon^2.
 struct Regularized {
   Number byChi;
   Number byRoot;
 };
 
 HEXHEX_INLINE Number inverseOfChi(double epsilon, const Number& det, const Number& root) noexcept {
-  // (root + det) (root - det) = epsilon^2: the one that does not cancel.
+  // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
   return chosen(det, Number{} + 2, 2 * (root - det)) /
          chosen(det, det + root, Number{} + epsilon * epsilon);
 }
@@ -103,7 +103,7 @@ HEXHEX_INLINE void addSlope(const TermLanes& term, const EnergyKind& kind,
     energy *= factor;
     factor *= factor;
   }
-  // Derivatives by |J|^2 and by the determinant.
+  // Derivatives with respect to |J|^2 and the determinant.
   const double power = kind.power;
   const Number all = power * energy;
   const Number gradientQ = 1.5 * all * bySquare;
@@ -117,7 +117,7 @@ HEXHEX_INLINE void addSlope(const TermLanes& term, const EnergyKind& kind,
     const Number weight = kind.volume * term.weight * byChi;
     sum.energy += weight * numerator;
     gradientDet += weight * (2 * det - numerator * byRoot);
-    // (det^2 + 1) / chi is convex in det where chi is linear; elsewhere a part that is.
+    // (det^2 + 1) / chi is only convex in det where chi is linear: use a convex part of it.
     const Number a = 1 - det * byRoot;
     detDet += 2 * weight * (a * a + byRoot * byRoot);
   }
@@ -143,7 +143,7 @@ HEXHEX_INLINE void slopeOfAll(std::span<const TermLanes> terms, const EnergyKind
   for (const std::size_t k : {0U, 3U, 5U}) slope.hessian[k] += sumOf(sum.diagonal);
 }
 
-/// Cells, one for each lane; of fewer, the last stands in, without weight.
+/// One cell per lane. Unused lanes repeat the last cell, with weight 0.
 struct alignas(TermLanes) LaneCells {
   std::array<Vector, 8> at;
   Vector scale;
@@ -180,7 +180,7 @@ HEXHEX_INLINE mesh::CellEdges<Number> edgesOf(const LaneCells& cells) noexcept {
   return edges;
 }
 
-/// At a corner next to the one that moves, across `edge`.
+/// The term at the corner that `edge` connects with the moving one.
 HEXHEX_INLINE void besideTerm(const Number& scale, const Vector& edge, const Vector& b,
                               const Vector& c, TermLanes& term) noexcept {
   const Vector cofactor = mesh::cross(b, c);
@@ -210,7 +210,7 @@ HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* te
   for (std::size_t i = 0; i < kCornerTerms; ++i) terms[i].weight = cells.weight;
 }
 
-/// Places (a, b, c), each 0, 1 or 2 halves along an axis: a + 3 b + 9 c.
+/// Values at places (a, b, c), each coordinate in halves of an axis: index a + 3 b + 9 c.
 template <class Value>
 struct alignas(TermLanes) ByPlace {
   std::array<Value, 27> values;
@@ -222,7 +222,7 @@ constexpr std::size_t placeAt(std::size_t a, std::size_t b, std::size_t c) noexc
   return a + 3 * b + 9 * c;
 }
 
-/// Those whose coefficients depend on the corner at (0, 0, 0): not more than one half is 2.
+/// Places whose coefficients depend on the corner at (0, 0, 0): at most one coordinate is 2.
 constexpr std::array<std::array<std::size_t, 3>, kBezierTerms> kPlaces = {
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1},
      {1, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}, {0, 2, 0}, {1, 2, 0},
@@ -256,10 +256,10 @@ HEXHEX_INLINE ByPlace<Number> determinantsOf(const mesh::CellEdges<Number>& edge
   return b;
 }
 
-/// Derivatives of the coefficients by the corner at (0, 0, 0), with the opposite sign. Each
-/// coefficient is a sum of products of three edges (jacobian_lanes.hpp); those of the first edges
-/// of the three axes depend on the corner. On faces and in the middle, the same sums hold as of the
-/// coefficients themselves.
+/// Negated derivatives of the coefficients with respect to the corner at (0, 0, 0). Each
+/// coefficient is a sum of triple products of edges (jacobian_lanes.hpp), of which only the first
+/// edge along each axis depends on the corner. On faces and in the middle, the same sums hold as
+/// for the coefficients themselves.
 HEXHEX_INLINE ByPlace<Vector> normalsOf(const mesh::CellEdges<Number>& edges,
                                         const Vector& s) noexcept {
   const auto& [u, v, w] = edges;
@@ -314,14 +314,14 @@ HEXHEX_INLINE ByPlace<Vector> normalsOf(const mesh::CellEdges<Number>& edges,
   return n;
 }
 
-/// One column of J at the nine places of the two other axes: its square, half the derivative of
-/// that by the corner, with the opposite sign, and half the second derivative.
+/// One column of J at the nine places along the two other axes: its square, minus half the
+/// derivative of that with respect to the corner, and half the second derivative.
 struct alignas(TermLanes) Column {
   std::array<Number, 9> square;
   std::array<Vector, 9> slope;
   std::array<Number, 9> growth;
 
-  /// @param edges  bilinear between these
+  /// @param edges  interpolated bilinearly
   HEXHEX_INLINE Column(const std::array<Vector, 4>& edges, const Number& scale) noexcept {
     const Number half = Number{} + 0.5;
     std::array<Vector, 9> at;
@@ -366,7 +366,7 @@ HEXHEX_INLINE void bezierTermsOf(std::span<const MovingCell> list, TermLanes* te
 
 constexpr EnergyKernels kPlain = {cornerTermsOf, bezierTermsOf, energyOf, slopeOfAll};
 
-// Windows aligns stacks too little for wide registers.
+// Windows does not align the stack enough for wide registers.
 #if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
 #define HEXHEX_WIDE_KERNELS 1
 [[gnu::target("avx2"), gnu::flatten]] void wideCornerTerms(std::span<const MovingCell> cells,

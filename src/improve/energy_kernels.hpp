@@ -1,4 +1,4 @@
-// Terms of energies, four at a time: those of up to four cells at the same place.
+// Energy terms, four at a time: those of up to four cells at the same place.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace hexhex::improvement {
 
 struct EnergyKernels {
-  /// The 4 terms of corners, or the 20 of coefficients, of one to four cells.
+  /// Compute the 4 terms of corners, or the 20 of Bezier coefficients, of one to four cells.
   void (*cornerTerms)(std::span<const MovingCell> cells, TermLanes* terms) noexcept;
   void (*bezierTerms)(std::span<const MovingCell> cells, TermLanes* terms) noexcept;
   double (*energy)(std::span<const TermLanes> terms, const EnergyKind& kind,
@@ -23,8 +23,8 @@ struct EnergyKernels {
 inline constexpr std::size_t kCornerTerms = 4;
 inline constexpr std::size_t kBezierTerms = 20;
 
-/// For each width of registers that the processor has, the widest last. All give the same, bit for
-/// bit.
+/// The kernels for each register width that the processor supports, the widest last. Their results
+/// are bitwise identical.
 [[nodiscard]] std::span<const EnergyKernels> energyKernels() noexcept;
 
 }  // namespace hexhex::improvement

@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t kFollowedCurvesGrain = 1024;
 
-/// An edge of the mesh is a chord of a curve: it may be so far from it, as a share of its length.
+/// Maximum distance of an edge from a curve of which it is a chord, relative to its length.
 constexpr double kChordHeight = 0.1;
-/// Edges that turn by more from the curve than 45 degrees cross it.
+/// Edges at more than 45 degrees to the curve cross it.
 constexpr double kAlong = 0.70710678;
 
-/// In the middle of thirds of a segment.
+/// Samples: midpoints of the thirds of a segment.
 constexpr std::array<double, 3> kSamples = {1.0 / 6, 3.0 / 6, 5.0 / 6};
 
 bool isOnCurve(Freedom freedom) { return freedom == Freedom::OnCurve || freedom == Freedom::Fixed; }

@@ -1,4 +1,4 @@
-// How much of the object's curves the edges of a mesh follow.
+// Measures how much of the object's curves the edges of a mesh follow.
 #pragma once
 
 #include <hexhex/types.hpp>
@@ -10,13 +10,13 @@ namespace hexhex::improvement {
 
 struct FollowedCurves {
   double length = 0;  ///< of all curves
-  double share = 1;   ///< of that length, from 0 to 1; 1 if there is none
+  double share = 1;   ///< fraction of it that is followed; 1 without curves
 };
 
-/// A curve is followed where an edge of the mesh is near it, in about its direction, both ends of
-/// which stay on curves.
-/// @param surface    whose curves are meant: vertices may be on others
-/// @param tolerance  near enough, however short the edge
+/// A curve is followed where an edge of the mesh with both ends on curves is near and roughly
+/// parallel.
+/// @param surface    its curves count; vertices may be on those of another surface
+/// @param tolerance  distance that is near enough, however short the edge
 [[nodiscard]] FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places,
                                             const ReferenceSurface& surface, double tolerance,
                                             Stage& stage);

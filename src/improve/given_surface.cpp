@@ -22,8 +22,8 @@ namespace hexhex::improvement {
 namespace {
 
 constexpr std::size_t kGivenSurfaceGrain = 1024;
-/// A curve or corner of the mesh is one of the surface within so many mean lengths of its edges:
-/// nearer than the next vertex, as long as edges are about as long.
+/// Maximum distance between a curve or corner of the mesh and one of the surface, in mean edge
+/// lengths: below that of the next vertex, as long as edges are similar in length.
 constexpr double kReach = 0.5;
 
 ReferenceSurface surfaceOf(const TriangleMesh& given, double angle, Stage& stage) {
@@ -48,7 +48,7 @@ ReferenceSurface surfaceOf(const TriangleMesh& given, double angle, Stage& stage
   return {std::move(parts), stage};
 }
 
-/// The other ends of each vertex's edges on the boundary.
+/// Per vertex: its neighbours along boundary edges.
 adjacency::VertexLists<Index> besideOnBoundary(std::size_t points, std::span<const Quad> quads,
                                                Stage& stage) {
   std::vector<std::array<Index, 2>> edges;
@@ -107,7 +107,7 @@ class Belonging {
         lengths_(edgeLengths(mesh.points, beside_)),
         triangles_(treeOf(surface_)) {}
 
-  /// @return what the places are on now
+  /// @return the surface that places refer to now
   ReferenceSurface find(Stage& stage) {
     const Array<Freedom> own = places_.freedom;
     std::vector<double> distances(own.size(), 0);
@@ -132,7 +132,7 @@ class Belonging {
     places_.simplex[v] = simplex;
     places_.isLoose[v] = 0;
   }
-  /// Vertices inside are free, or on tagged faces, which stay.
+  /// Vertices inside are free or, on tagged faces, fixed.
   void hold(std::size_t v) {
     if (places_.freedom[v] != Freedom::Free) enter(v, Freedom::Fixed, kNone);
   }
@@ -175,8 +175,8 @@ class Belonging {
     }
   }
 
-  /// Whether a neighbour is at a place on a curve already, as where the first row of thin cells
-  /// along it ends at a line of the mesh, too.
+  /// Whether a neighbour is much nearer to a place on a curve already, as where thin cells along a
+  /// curve have lines of the mesh on both sides.
   [[nodiscard]] bool isTaken(const Array<Freedom>& own, std::size_t v, const Vec3& place) const {
     const double distance = length(minus(mesh_.points[v], place));
     return std::any_of(beside_(v).begin(), beside_(v).end(), [&](Index other) {
@@ -205,7 +205,7 @@ VertexPlaces placesOnSurface(const HexMesh& mesh, const TriangleMesh& surface,
   Belonging belonging(mesh, places, surfaceOf(surface, angle, stage),
                       besideOnBoundary(mesh.points.size(), quads, stage));
   places.surface = belonging.find(stage);
-  places.tagged = 0;  // those of tagged faces inside: corners of the surface have a simplex
+  places.tagged = 0;  // those on tagged faces inside, unlike corners, have no simplex
   for (std::size_t v = 0; v < places.freedom.size(); ++v) {
     if (places.freedom[v] == Freedom::Fixed && places.simplex[v] == kNone) ++places.tagged;
   }

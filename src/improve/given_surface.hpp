@@ -1,4 +1,4 @@
-// A surface that a mesh did not come from: which of its places the vertices of the mesh belong to.
+// Assigns the vertices of a mesh to places on a surface from which it was not made.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,14 @@
 
 namespace hexhex::improvement {
 
-/// A vertex of the mesh's boundary belongs to the nearest triangle. One that is on a curve of the
-/// mesh itself belongs to the nearest curve within half an edge, and one at a corner of it to the
-/// nearest such corner, which takes one vertex only. Those of tagged quads inside stay.
+/// Boundary vertices belong to the nearest triangle; those on curves or at corners of the mesh
+/// itself, to the nearest curve of the surface within half an edge length. Each corner of the
+/// surface takes the nearest of the latter vertices within the same distance. Vertices of tagged
+/// quads inside are fixed.
 /// @param surface         at finite positions
-/// @param isAtBad, angle  as of placesOnMesh()
-/// @throws Error InvalidArgument for triangles of vertices that do not exist, and if more than a
-///         tenth of the boundary's vertices are farther from the surface than edges there are long;
+/// @param isAtBad, angle  as for placesOnMesh()
+/// @throws Error InvalidArgument for triangles with vertices that do not exist, and if more than a
+///         tenth of the boundary vertices are farther from the surface than their edges are long;
 ///         EmptyMesh without triangles
 [[nodiscard]] VertexPlaces placesOnSurface(const HexMesh& mesh, const TriangleMesh& surface,
                                            std::span<const std::uint8_t> isAtBad, double angle,

@@ -1,4 +1,4 @@
-// What is asked for, and what is told of it.
+// improve(): checks options and input, moves vertices, and reports.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -46,7 +46,8 @@ void requireOptions(const ImproveOptions& options) {
   requireRange(options.slack, 0.1, "The slack of the surface");
 }
 
-/// Squares of areas and products of them are computed, and lengths of cells as floats.
+/// Limits of coordinates and of the size of the surface, since products of squared areas are
+/// computed, and lengths of cells as floats.
 constexpr double kFarthest = 1e30;
 constexpr double kSmallest = 1e-10;
 
@@ -90,7 +91,7 @@ void reportMoves(const Array<Vec3>& before, const Array<Vec3>& points, ImproveRe
   if (report.movedVertices > 0) report.meanMove /= static_cast<double>(report.movedVertices);
 }
 
-/// Vertices that are farther from their triangle or segment than rounding leaves them.
+/// Counts vertices that are farther from their triangle or segment than rounding explains.
 void reportOff(const Array<Vec3>& points, const VertexPlaces& places, ImproveReport& report) {
   constexpr double kOn = 1e-9;
   for (std::size_t v = 0; v < points.size(); ++v) {
@@ -110,13 +111,13 @@ double distanceInside(const VertexPlaces& places, const HexMesh& mesh, const Imp
   return innerDistance(mesh.points, places.innerQuads, places.surface, report.diagonal, stage);
 }
 
-/// @return 1 if the vertex could have moved
+/// @return 1 if the vertex could move before, else 0
 std::uint64_t fix(VertexPlaces& places, Index v) {
   places.simplex[v] = kNone;
   return std::exchange(places.freedom[v], Freedom::Fixed) != Freedom::Fixed ? 1 : 0;
 }
 
-/// @return how many vertices could have moved
+/// @return number of vertices that could move before
 std::uint64_t fixBoundary(VertexPlaces& places) {
   std::uint64_t count = 0;
   for (Index v = 0; v < places.freedom.size(); ++v) {
@@ -125,8 +126,9 @@ std::uint64_t fixBoundary(VertexPlaces& places) {
   return count;
 }
 
-/// Of cells that no positions make positive: to move them takes long, and others lose by it.
-/// @return how many could have moved
+/// Fixes the vertices of cells that no positions make positive: moving them takes long and makes
+/// other cells worse.
+/// @return number of vertices that could move before
 std::uint64_t fixPaired(const Subject& subject, std::span<const std::uint64_t> cells,
                         VertexPlaces& places) {
   std::uint64_t count = 0;
@@ -165,7 +167,7 @@ void reportBefore(const Subject& subject, const Boundary& boundary, const Vertex
 }
 
 /// @param object  the surface, with all of its curves
-/// @param before  the points, where they were at first
+/// @param before  the initial points
 void reportAfter(const Subject& subject, const Boundary& boundary, const VertexPlaces& places,
                  const BoundaryDistance& distance, const ReferenceSurface& object,
                  Array<Vec3> before, ImproveReport& report, Stage& stage) {
@@ -192,16 +194,16 @@ void reportAfter(Improved& improved, const ReferenceSurface& object, const Array
               before, improved.report, stage);
 }
 
-/// Whether laying edges onto curves could help: some are not followed, or quads with two edges on
-/// one are flat.
+/// Whether snapping edges to curves could help: some curves are not followed, or quads with two
+/// edges on a curve are flat.
 bool couldSnap(const ImproveOptions& options, const ImproveReport& report) {
-  constexpr double kAll = 0.999;  // but for rounding, and short chords
+  constexpr double kAll = 0.999;  // up to rounding and short chords
   return options.snapCurves && report.curveLength > 0 &&
          (report.curvesFollowed < kAll || !report.after.allPositive() ||
           report.after.quality.minimum < options.target);
 }
 
-/// Moves points, adds a layer, and lays edges onto curves, where that is wanted and helps.
+/// Moves points. Adds a layer and snaps edges to curves where that is requested and helps.
 void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions& options,
              ImproveReport& report, Context& context, Stage& stage) {
   HexMesh& mesh = subject.mesh;
@@ -239,8 +241,8 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
   }
 }
 
-/// @param subjectOf  of (stage), once the options are right
-/// @param placesOf   of (mesh, per vertex whether a cell there is not positive, stage)
+/// @param subjectOf  called with the context, once the options are checked
+/// @param placesOf   called with (mesh, per vertex whether a cell there is not positive, stage)
 template <class SubjectOf, class PlacesOf>
 ImproveReport improveOn(const ImproveOptions& options, Context& context, const SubjectOf& subjectOf,
                         const PlacesOf& placesOf) {
@@ -270,7 +272,8 @@ ImproveReport improveOn(const ImproveOptions& options, Context& context, const S
   return report;
 }
 
-/// How to find places on the surface of a map, and on the mesh's own.
+/// How to find the places of vertices: on the surface of a map, on the mesh's own, or on a given
+/// one.
 auto onMap(const TetMapView& map, const ImproveOptions& options) {
   return [&map, &options](const HexMesh& mesh, std::span<const std::uint8_t> /*isAtBad*/,
                           Stage& stage) {

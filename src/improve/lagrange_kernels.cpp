@@ -1,4 +1,4 @@
-// Compiled for several widths of registers, as energy_kernels.cpp is.
+// Compiled for several register widths, like energy_kernels.cpp.
 #include <limits>
 
 #include <improve/lagrange_kernels.hpp>
@@ -26,7 +26,7 @@ static_assert(sizeof(Number) == sizeof(TermLanes::Number));
 constexpr std::size_t kMostPlaces = 9;  // along an axis: for order 3
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// The Lagrange polynomial of the node that moves, and its derivative, along one axis.
+/// The Lagrange polynomial of the moving node and its derivative, along one axis.
 struct alignas(TermLanes) Polynomial {
   std::array<Number, kMostPlaces> value;
   std::array<Number, kMostPlaces> derivative;
@@ -70,7 +70,8 @@ HEXHEX_INLINE void termsOf(const LagrangeGrid& grid, const MovingNode& moving,
                        const Number& a = along[0].value[row[0]];
                        const Number& b = along[1].value[row[1]];
                        const Number& c = along[2].value[row[2]];
-                       // The derivatives of the columns by the node are these times the identity.
+                       // The derivatives of the columns with respect to the node are these times
+                       // the identity.
                        const Number byU = cells.scale[0] * along[0].derivative[row[0]] * b * c;
                        const Number byV = cells.scale[1] * along[1].derivative[row[1]] * a * c;
                        const Number byW = cells.scale[2] * along[2].derivative[row[2]] * a * b;
@@ -124,7 +125,7 @@ HEXHEX_INLINE std::array<double, kCellLanes> leastSharesOf(const LagrangeGrid& g
 
 constexpr LagrangeKernels kPlainLagrange = {termsOf, leastSharesOf};
 
-// Windows aligns stacks too little for wide registers.
+// Windows does not align the stack enough for wide registers.
 #if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
 #define HEXHEX_WIDE_KERNELS 1
 [[gnu::target("avx2"), gnu::flatten]] void wideTerms(const LagrangeGrid& grid,

@@ -1,4 +1,4 @@
-// Terms of energies, and Bezier coefficients of determinants, of up to four curved cells at once.
+// Energy terms and Bezier coefficients of determinants, of up to four curved cells at once.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct LagrangeGrid {
   mesh::Matrix<double> toBezier = {};  ///< along an axis; empty: no conversion
 };
 
-/// Cells around a node that moves.
+/// Cells around a moving node.
 struct MovingNode {
   curved::LagrangeCells cells;
   std::size_t count;                                 ///< of cells
@@ -37,7 +37,7 @@ struct LagrangeKernels {
                                                         curved::LagrangeScratch& scratch);
 };
 
-/// As energyKernels().
+/// Like energyKernels().
 [[nodiscard]] std::span<const LagrangeKernels> lagrangeKernels() noexcept;
 
 }  // namespace hexhex::improvement

@@ -15,29 +15,30 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// Where more cells are below the target, moving all at once takes too long: a minute and more.
+/// Maximum number of cells below the target for moving all at once: more take a minute or longer.
 constexpr std::size_t kMostLowAtOnce = 5'000;
 
-/// A mesh farther than 5e-3 diagonals from the surface passes for another shape: its boundary quads
-/// shrink where they are far, until it is half as far. A tenth is left for what samples miss.
+/// A mesh farther than 5e-3 diagonals from the surface counts as a different shape: its boundary
+/// quads shrink where they are far, until it is half as far. The limit is a tenth lower, for what
+/// samples miss.
 constexpr double kOtherShape = 4.5e-3;
 constexpr double kFarChord = 2.5e-3;
-/// Rounds, at most, and in a row without a nearer mesh.
+/// Maximum number of rounds, and of consecutive rounds without a nearer mesh.
 constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
-/// Being nearer by less is not worth the right angles that it costs.
+/// A smaller reduction of the distance is not worth the quality that it costs.
 constexpr double kNearer = 0.99;
-/// Nor is it if less than this share is left of the sum of scaled Jacobians.
+/// Nor is one after which less than this fraction of the sum of scaled Jacobians is left.
 constexpr double kKept = 0.98;
 
-/// The least scaled Jacobian that is to be kept: what was, or the target if the mesh is pulled onto
-/// a surface, where good cells become less good.
+/// The least scaled Jacobian to preserve: the initial one, but at most the target if the mesh is
+/// pulled onto a given surface, which makes good cells worse.
 double leastKept(const ImproveReport& report, const VertexPlaces& places, double target) {
   const double least = report.before.quality.minimum;
   return places.isGiven ? std::min(least, target) : least;
 }
 
-/// Cells that lost their certificate, or whose scaled Jacobian fell below the least to be kept.
+/// Cells that lost their certificate, or whose scaled Jacobian fell below the least to preserve.
 std::vector<Index> worsened(const ImproveReport& report, double least) {
   std::vector<Index> cells;
   for (Index c = 0; c < report.after.validity.size(); ++c) {
@@ -95,13 +96,13 @@ double farthestAllowed(const SurfaceDistance& before) {
 }
 
 double meritOf(const ImproveReport& report) {
-  constexpr double kGood = 0.3;        // a minimum above needs no better
-  constexpr double kNear = 5e-3;       // of the diagonal: half as good
-  constexpr double kUnfollowed = 0.5;  // of a mesh that follows no curve
-  constexpr double kGrown = 2;         // times the cells that were asked for, before layers
+  constexpr double kGood = 0.3;        // no credit for a higher minimum
+  constexpr double kNear = 5e-3;       // distance in diagonals that halves the merit
+  constexpr double kUnfollowed = 0.5;  // factor for a mesh that follows no curve
+  constexpr double kGrown = 2;         // layers may multiply cells by this without penalty
   if (!report.after.allPositive()) return -1;
   const double quality = std::min(1.0, report.after.quality.minimum / kGood);
-  // Of two meshes that are far away, one is still nearer.
+  // Never 0: of two distant meshes, the nearer one wins.
   const double distance = report.distanceAfter.hausdorff() / kNear;
   const double nearness = 1 / (1 + distance * distance);
   const auto cells = static_cast<double>(report.after.positive);
@@ -111,7 +112,7 @@ double meritOf(const ImproveReport& report) {
 
 namespace {
 
-/// What moves points, and what it needs to know again and again.
+/// Moves the points of a mesh, with the data that all steps share.
 class Moving {
  public:
   Moving(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
@@ -134,19 +135,19 @@ class Moving {
     return boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_);
   }
 
-  /// Makes cells as good as they get.
+  /// Improves the mesh as far as possible.
   BoundaryDistance run() {
     Sweeps sweeps = newSweeps();
     const double target = options_.target;
     const std::vector<Index> wereBad = verticesAtBad(sweeps);
-    // Next to cells that nothing mends, others would lose.
+    // Near cells that cannot become positive, others would get worse.
     const bool canAtOnce = !curved_ && report_.cannotBePositive.empty() && canMoveAtOnce();
     const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
     if (isFolded)
       sweeps.moveAtOnce(target, slack_, true, [&] { return quadsBeyond(distance().ofQuads); });
     pull(sweeps);
     oneByOne(sweeps);
-    pull(sweeps);  // what bad cells held
+    pull(sweeps);  // vertices that bad cells held back
     const double lowest = std::max(target, leastKept(report_, places_, target));
     double floor = lowest;
     const Sweeps::Standing standing = sweeps.standing(target);
@@ -168,7 +169,7 @@ class Moving {
     return canSpread ? spread(sweeps, floor, after) : after;
   }
 
-  /// Puts back what moved together with some cells.
+  /// Restores all points that moved together with those of some cells.
   void putBackAt(std::span<const Index> cells) {
     putBack(newSweeps().cellPoints(), cells, before_, simplices_, subject_.mesh.points, places_);
   }
@@ -186,8 +187,8 @@ class Moving {
     return far;
   }
 
-  /// Vertices near cells that are bad at first, ascending. Layers of cells begin with bad ones
-  /// where the surface is as it should be.
+  /// Vertices near initially bad cells, ascending; none after layers were added, whose cells start
+  /// out bad although the surface is right.
   [[nodiscard]] std::vector<Index> verticesAtBad(const Sweeps& sweeps) const {
     constexpr int kRings = 2;
     if (report_.addedCells > 0) return {};
@@ -196,7 +197,7 @@ class Moving {
     return vertices;
   }
 
-  /// Vertices left their creases: they go back to the surface, not to these.
+  /// Records vertices that left their creases. If restored, they are on a patch, not on a crease.
   void noteLoose(std::span<const Index> vertices) {
     report_.offCreases += vertices.size();
     for (const Index v : vertices) {
@@ -204,7 +205,7 @@ class Moving {
     }
   }
 
-  /// Onto a surface that was given, such that no cell falls below the least that was.
+  /// Pulls the mesh onto a given surface, with leastKept() as the floor, but not less than 0.
   void pull(Sweeps& sweeps) const {
     if (!places_.isGiven) return;
     sweeps.pullOntoSurface(std::max(0.0, leastKept(report_, places_, options_.target)));
@@ -215,8 +216,8 @@ class Moving {
     sweeps.raiseWorst(options_.target, 0);
   }
 
-  /// Makes quads smaller where they are far from the surface, as long as that brings the mesh
-  /// nearer. The least scaled Jacobian stays, and nearly all of the mean.
+  /// Shrinks quads that are far from the surface, as long as the mesh gets nearer. Preserves the
+  /// least scaled Jacobian, and nearly all of the mean.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
     if (best.largest.hausdorff() <= kOtherShape) return best;
     Array<Vec3> points = subject_.mesh.points;
@@ -244,9 +245,10 @@ class Moving {
     return best;
   }
 
-  /// All vertices at once, where cells stay below the target. Around cells that were bad at first,
-  /// edges of folds are no features, and the surface is no more exact than its folds: creases are
-  /// let go, and vertices may leave it. What is no better afterwards is put back.
+  /// Moves all vertices at once where cells are still below the target. Around initially bad cells,
+  /// edges of folds are not features, and the surface is no more accurate than its folds: vertices
+  /// are released from creases and may leave the surface. Restores all points if the mesh is no
+  /// better afterwards.
   /// @param wereBad  vertices of these cells, ascending
   void atOnce(Sweeps& sweeps, std::span<const Index> wereBad) {
     const double target = options_.target;
@@ -269,8 +271,8 @@ class Moving {
     noteLoose(loose.holdUnmoved(subject_.mesh.points));
   }
 
-  /// Raises the worst until that brings little.
-  /// @return the least scaled Jacobian, or less if cells are bad
+  /// Improves the worst cells until progress gets small.
+  /// @return the least scaled Jacobian, or less if a cell is not certified
   static double raiseFurther(Sweeps& sweeps) {
     constexpr int kMost = 10;
     constexpr double kAim = 0.05;
@@ -294,8 +296,8 @@ class Moving {
   ImproveReport& report_;
   Stage& stage_;
   std::optional<CurvedCells> curved_;
-  Array<Index> simplices_;  ///< where points were, in the beginning
-  double limit_;            ///< of distances
+  Array<Index> simplices_;  ///< those of the initial points
+  double limit_;            ///< of distances, in diagonals
   double slack_;
 };
 

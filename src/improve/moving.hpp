@@ -1,4 +1,4 @@
-// One mesh, its boundary and where its vertices may be: all that it takes to improve it once.
+// Improves a mesh once, given its boundary and the places of its vertices.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@
 
 namespace hexhex::improvement {
 
-/// What is improved: a mesh whose points move, and the curved cells between these, if there are
-/// any.
+/// The mesh to improve, whose points move. If there are curved cells with the same points, these
+/// are improved, and the mesh is their refinedMesh().
 struct Subject {
   HexMesh& mesh;
   LagrangeMesh* curved = nullptr;
 
-  /// Cells of the mesh for each that counts.
+  /// Number of cells of the mesh per improved cell: order^3 if these are curved, else 1.
   [[nodiscard]] std::size_t parts() const;
   [[nodiscard]] Certificate certifyNow(Context& context) const;
   void putBack(const Array<Vec3>& points) const;
 };
 
-/// The boundary of a mesh, and the surface that it must be near.
+/// The boundary of a mesh, and the surface that it must stay near.
 struct Boundary {
-  std::vector<std::uint64_t> faces;  ///< as of boundaryPlaces()
+  std::vector<std::uint64_t> faces;  ///< from boundaryPlaces()
   Array<Quad> quads;
   TriangleTree surface{{}};
 
@@ -37,12 +37,12 @@ struct Boundary {
 
   [[nodiscard]] BoundaryDistance distanceTo(const VertexPlaces& places, const Array<Vec3>& points,
                                             double diagonal, Stage& stage) const;
-  /// @param parts  cells of the mesh for each that counts
+  /// @param parts  Subject::parts()
   [[nodiscard]] Array<std::uint64_t> cellsBeyond(double limit, const BoundaryDistance& distance,
                                                  std::size_t parts) const;
 };
 
-/// So far may the boundary be in the end, in diagonals.
+/// Maximum distance of the improved boundary from the surface, in diagonals.
 [[nodiscard]] double farthestAllowed(const SurfaceDistance& before);
 
 /// Cells that are not certified positive.
@@ -50,15 +50,15 @@ struct Boundary {
   return certificate.refuted + certificate.undecided;
 }
 
-/// How good a mesh is in the end: less than 0 if cells are not positive, 1 if nothing is to be
-/// better. A product, so that nothing pays for another.
+/// The merit of an improved mesh: negative if a cell is not positive, 1 if nothing is left to
+/// improve. A product, so that no criterion compensates for another.
 [[nodiscard]] double meritOf(const ImproveReport& report);
 
-/// Moves points and certifies. What did not become better in spite of all is put back.
-/// @param before          where points were, in the beginning
-/// @param[in,out] report  knows `before`, `diagonal` and `distanceBefore`; `after` and `offCreases`
-///                        are entered
-/// @return how far the boundary is in the end
+/// Moves points and certifies the result. Restores the points around cells that became worse.
+/// @param before          the initial points
+/// @param[in,out] report  with `before`, `diagonal` and `distanceBefore`; gets `after` and
+///         `offCreases`
+/// @return the final distance of the boundary from the surface
 [[nodiscard]] BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary,
                                           VertexPlaces& places, const ImproveOptions& options,
                                           const Array<Vec3>& before, ImproveReport& report,

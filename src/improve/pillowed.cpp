@@ -11,8 +11,8 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// A layer costs cells, and cells at edges and corners of the object become worse: the minimum has
-/// to rise by more than a user can do without.
+/// Minimum gain in the least scaled Jacobian that justifies a layer, which adds cells and makes
+/// those at edges and corners of the object worse.
 constexpr double kWorthwhile = 0.02;
 
 /// Whether a cell below the target has several faces on the boundary, which a pillow divides.
@@ -41,8 +41,8 @@ bool isBetter(const Improved& pillowed, const BoundaryDistance& distance,
   return pillowed.report.after.quality.minimum > report.after.quality.minimum + kWorthwhile;
 }
 
-/// New vertices are free, or where their leaders are.
-/// @return a vertex whose leader cannot move along anything; kNone: there is none
+/// New vertices are free, or have the place of their leader.
+/// @return a leader that is fixed, so that its copy cannot move off it; kNone if there is none
 Index extend(VertexPlaces& places, const mesh::Pillow& pillow) {
   const std::size_t n = places.freedom.size();
   for (std::size_t i = 0; i < pillow.leaders.size(); ++i) {

@@ -1,4 +1,4 @@
-// An improved mesh with a layer of cells under its boundary, where that makes it better.
+// Adds a layer of cells under the boundary of a mesh (a pillow) where that makes it better.
 #pragma once
 
 #include <optional>
@@ -10,25 +10,25 @@
 
 namespace hexhex::improvement {
 
-/// A mesh that was improved once, and how it ended.
+/// An improved mesh, and its report.
 struct Improved {
   HexMesh mesh;
   Boundary boundary;
   VertexPlaces places;
   BoundaryDistance distance;
-  ImproveReport report;  ///< `after` and what counts vertices
+  ImproveReport report;  ///< as far as movePoints() and moveEnlarged() write it
 };
 
-/// Moves the points of a mesh that has more cells than one which was improved already, and
-/// certifies. The report keeps the `before` of the latter.
-/// @param without  that mesh, whose cells and points come first
+/// Moves the points of an improved mesh to which cells were added, and certifies it. The report
+/// keeps the `before` of the mesh without these cells.
+/// @param without  the mesh without added cells; its cells and points come first
 void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
                   Context& context, Stage& stage);
 
 /// Improves a copy with a pillow.
-/// @param boundary, places, distance, report  of the mesh, which was improved already
-/// @return nothing if no pillow is wanted or, with PillowMode::Auto, helps
-/// @throws Error  with PillowMode::Always, if there cannot be one
+/// @param boundary, places, distance, report  of the mesh, which is already improved
+/// @return nothing if no pillow is requested or, with PillowMode::Auto, if none helps
+/// @throws Error  with PillowMode::Always, if no pillow is possible
 [[nodiscard]] std::optional<Improved> improvedWithPillow(
     const HexMesh& mesh, const Boundary& boundary, const VertexPlaces& places,
     const BoundaryDistance& distance, const ImproveOptions& options, const ImproveReport& report,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kReferenceSurfaceGrain = 4096;
 
-/// Whether a triangle passes its edge from the first of two vertices to the second.
+/// Whether a triangle traverses an edge from its first vertex to its second.
 bool passesForwards(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (triangle[i] == edge[0] && triangle[(i + 1) % 3] == edge[1]) return true;
@@ -42,8 +42,8 @@ double squaredDistance(const Vec3& a, const Vec3& b) {
   return dot(d, d);
 }
 
-/// From simplex to simplex as long as one of those at the corners is nearer, and the place farther
-/// than `enough`.
+/// Walks from simplex to simplex as long as a neighbour is nearer to the point and the place is
+/// farther away than `enough`.
 template <std::size_t n, class Corners, class Allowed>
 SurfacePlace walk(const Vec3& point, Index start, double enough,
                   const std::vector<std::array<Index, n>>& simplices,
@@ -117,7 +117,7 @@ bool ReferenceSurface::isCurve(const std::array<Index, 2>& vertices, std::span<c
   if (parts.triangles[a].tag != parts.triangles[b].tag) return true;
   if (parts.sharp) return std::binary_search(parts.sharp->begin(), parts.sharp->end(), vertices);
   if (!parts.groups.empty() && parts.groups[a] == parts.groups[b]) return false;
-  // Triangles inside, and those of a surface that was given, may face either way.
+  // Inner triangles and those of a given surface may face either way.
   const bool isTurned =
       passesForwards(triangles_[a], vertices) == passesForwards(triangles_[b], vertices);
   const Vec3 normal = normalOf(triangle(b));

@@ -1,4 +1,4 @@
-// The edges of triangles, and how sharp a surface is there.
+// Edges of triangles and their angles, and the reference surface of a mesh.
 #pragma once
 
 #include <algorithm>
@@ -25,13 +25,14 @@ using adjacency::ascending;
   return cross(minus(t[1], t[0]), minus(t[2], t[0]));
 }
 
-/// 1 if one of them has no length.
+/// 1 if either has no length.
 [[nodiscard]] inline double cosineBetween(const Vec3& a, const Vec3& b) noexcept {
   const double lengths = length(a) * length(b);
   return lengths > 0 ? dot(a, b) / lengths : 1;
 }
 
-/// @param visit  of (vertices, triangles around them): each edge once, its vertices ascending
+/// @param visit  called with (vertices, triangles around them) once per edge, its vertices
+///         ascending
 template <class Visit>
 void forEachEdge(std::span<const FeatureFace> triangles, const Visit& visit) {
   struct Side {
@@ -63,20 +64,20 @@ void forEachEdge(std::span<const FeatureFace> triangles, const Visit& visit) {
 // The surface that a mesh must not leave: triangles in smooth patches, between curves that end at
 // corners.
 //
-// A point on it is moved from where it is known to be, over neighbouring triangles of the patch (or
-// segments of the curve): so the other side of a thin wall is out of reach, however near.
+// Projection walks from a known simplex over neighbouring triangles of its patch (or segments of
+// its curve), so that the other side of a thin wall is out of reach, however near.
 
-/// What a surface is made of.
+/// The input of ReferenceSurface.
 struct SurfaceParts {
   Array<Vec3> points;
   std::vector<FeatureFace> triangles;        ///< those of different tags do not share a patch
-  std::size_t boundaryTriangles = 0;         ///< come first; the others are inside of the object
-  std::vector<Index> groups;                 ///< per triangle: no curve between those of one group
-  std::vector<std::array<Index, 2>> curves;  ///< edges of triangles, or not
-  bool areTagged = false;                    ///< the curves
+  std::size_t boundaryTriangles = 0;         ///< these come first; the others are inside the object
+  std::vector<Index> groups;                 ///< per triangle: no curve separates a group
+  std::vector<std::array<Index, 2>> curves;  ///< not necessarily edges of triangles
+  bool areTagged = false;                    ///< whether `curves` are
   std::vector<Index> corners;                ///< points
-  double angle = 40;  ///< in degrees: edges where the surface turns by more are curves, too
-  /// Those edges, ascending, where it is not the angle alone that tells.
+  double angle = 40;  ///< in degrees: edges where the surface turns by more are also curves
+  /// These edges, ascending, if the angle alone does not determine them.
   std::optional<std::vector<std::array<Index, 2>>> sharp;
 };
 
@@ -96,7 +97,7 @@ class ReferenceSurface {
 
   [[nodiscard]] const Array<Vec3>& points() const noexcept { return points_; }
   [[nodiscard]] std::size_t triangleCount() const noexcept { return triangles_.size(); }
-  /// The first so many triangles are the boundary of the object; the others are inside.
+  /// Triangles below this number are the boundary of the object; the others are inside.
   [[nodiscard]] std::size_t boundaryCount() const noexcept { return boundaryTriangles_; }
   [[nodiscard]] std::array<Vec3, 3> triangle(Index t) const noexcept;
   [[nodiscard]] const std::array<Index, 3>& triangleVertices(Index t) const noexcept {
@@ -108,16 +109,16 @@ class ReferenceSurface {
     return segments_[s];
   }
   [[nodiscard]] std::span<const Index> segmentsAt(Index point) const { return segmentsAt_(point); }
-  /// Triangles of one patch have one number.
+  /// The number of a triangle's patch.
   [[nodiscard]] Index patchOf(Index triangle) const noexcept { return patches_[triangle]; }
-  /// The same triangles, with other edges as curves.
+  /// The same triangles, with these edges as curves.
   [[nodiscard]] ReferenceSurface withCurves(std::vector<std::array<Index, 2>> sharp, double angle,
                                             Stage& stage) const;
   [[nodiscard]] std::span<const Index> corners() const noexcept { return corners_; }
 
-  /// How a vertex may move that lies inside of a simplex with these corners.
+  /// How a vertex inside the simplex with these corners may move.
   /// @param corners  one to three points
-  /// @param[out] simplex  that holds the place, unless it is Free; if it is Fixed, that point
+  /// @param[out] simplex  that holds the place, or the point if Fixed; unchanged if Free
   [[nodiscard]] Freedom freedomAt(std::span<const Index> corners, Index& simplex) const;
 
   /// Whether a triangle, curve or corner has a tag.
@@ -128,19 +129,20 @@ class ReferenceSurface {
     return freedom == Freedom::OnCurve ? taggedSegments_[simplex] : taggedTriangles_[simplex];
   }
 
-  /// Whether a curve or corner is one only because of its angle, or of a number of cells: the
-  /// surface goes on beyond it.
+  /// Whether a curve or corner is one only because of its angle or number of cells, so that the
+  /// surface continues across it.
   [[nodiscard]] bool isCrease(Freedom freedom, Index simplex) const;
-  /// A triangle at a curve or corner, the nearest to a point.
+  /// The triangle at a curve or corner that is nearest to a point.
   [[nodiscard]] Index triangleAt(Freedom freedom, Index simplex, const Vec3& point) const;
 
-  /// The nearest place of the patch around a triangle, as a walk downhill finds it.
-  /// @param enough  the walk ends at the first place that is no farther
+  /// The nearest place on the patch of a triangle, up to local minima: a walk downhill from there
+  /// finds it.
+  /// @param enough  the walk stops at the first place within this distance
   [[nodiscard]] SurfacePlace onPatch(const Vec3& point, Index triangle, double enough = 0) const;
   /// The same, across creases.
   [[nodiscard]] SurfacePlace acrossCreases(const Vec3& point, Index triangle,
                                            double enough = 0) const;
-  /// The nearest place of the curve around a segment, up to its ends.
+  /// The nearest place on the curve of a segment, up to the curve's ends.
   [[nodiscard]] SurfacePlace onCurve(const Vec3& point, Index segment) const;
 
  private:
@@ -155,13 +157,13 @@ class ReferenceSurface {
   std::vector<std::array<Index, 3>> triangles_;
   std::size_t boundaryTriangles_ = 0;
   std::vector<Index> patches_;      ///< per triangle
-  std::vector<Index> withCreases_;  ///< per triangle: of patches that only creases divide
+  std::vector<Index> withCreases_;  ///< per triangle: its patch, merged across creases
   std::vector<bool> taggedTriangles_;
   std::vector<std::array<Index, 2>> segments_;
   std::vector<bool> taggedSegments_;
   std::vector<bool> creases_;         ///< per segment
   std::vector<Index> corners_;        ///< points, ascending
-  std::vector<Index> taggedCorners_;  ///< of these
+  std::vector<Index> taggedCorners_;  ///< those of them with a tag
   adjacency::VertexLists<Index> trianglesAt_;
   adjacency::VertexLists<Index> segmentsAt_;
 };

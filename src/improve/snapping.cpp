@@ -21,16 +21,16 @@ namespace {
 
 using Edge = std::array<Index, 2>;
 
-/// Vertices within so many edges of those on paths make room for them, in so many rounds.
+/// Vertices within this number of edges of moved ones make room for them, in this number of rounds.
 constexpr int kRoomRings = 3;
 constexpr int kRoomRounds = 10;
-/// A corner between two edges of one path is flat if it is wider than 120 degrees.
+/// A corner between two edges on paths is flat if it is wider than 120 degrees.
 constexpr double kFlatCorner = -0.5;
 
-/// How far layers reach: beside the paths that need them, or over regions between paths.
+/// How far layers reach: along the paths that need them, or over entire regions between paths.
 enum class LayerWidth : std::uint8_t { Strips, Regions };
 
-/// The boundary of a mesh in regions between paths.
+/// Divides the boundary of a mesh into regions between paths.
 class Regions {
  public:
   Regions(std::span<const Quad> quads, std::span<const Edge> paths)
@@ -51,7 +51,7 @@ class Regions {
   [[nodiscard]] bool isPath(const Edge& edge) const {
     return std::binary_search(paths_.begin(), paths_.end(), edge);
   }
-  /// Edges and their quads, ascending.
+  /// Edges with their quads, sorted.
   [[nodiscard]] std::span<const std::pair<Edge, Index>> sides() const { return sides_; }
 
  private:
@@ -82,7 +82,8 @@ class CurveSnapper {
     places_.surface = places.surface.withCurves(std::move(segments), angle, stage);
   }
 
-  /// Puts vertices onto curves, and others of the boundary onto their side of them.
+  /// Moves vertices of paths onto curves, and other boundary vertices onto the patches of their
+  /// regions.
   void snap() {
     const Array<Vec3> before = mesh_.points;
     placeOnPatches();
@@ -90,7 +91,7 @@ class CurveSnapper {
     makeRoom(before);
   }
 
-  /// @return nothing if the pillow has an obstacle
+  /// @return nothing if no pillow is possible
   std::optional<Improved> layered(LayerWidth width, const ImproveReport& report) {
     mesh::Pillow pillow = mesh::addPillow(mesh_, {}, stage_);
     if (pillow.obstacle) return std::nullopt;
@@ -119,7 +120,7 @@ class CurveSnapper {
     return edges;
   }
 
-  /// A region lies on the patch to which most of it is nearest.
+  /// Assigns to each region the patch that is nearest to most of its area.
   void findPatches() {
     std::map<Index, std::map<Index, double>> areas;
     for (Index q = 0; q < boundary_.quads.size(); ++q) {
@@ -138,7 +139,7 @@ class CurveSnapper {
     }
   }
 
-  /// The nearest place of a region's patch.
+  /// The nearest place on the patch of a region.
   [[nodiscard]] SurfacePlace placeOf(Index region, const Vec3& point) {
     Patch& patch = patches_[patchOf_.at(region)];
     if (!patch.tree) {
@@ -179,7 +180,7 @@ class CurveSnapper {
     }
   }
 
-  /// Vertices that moved, and rings of others around them.
+  /// Vertices that moved, and rings of vertices around them.
   [[nodiscard]] std::vector<Index> nearMoved(const Array<Vec3>& before,
                                              const adjacency::VertexLists<Index>& beside) const {
     std::vector<Index> near;
@@ -200,7 +201,8 @@ class CurveSnapper {
     return near;
   }
 
-  /// Others around go to the middle of their neighbours, on the boundary along it.
+  /// Moves the vertices around to the averages of their neighbours; those on the boundary stay on
+  /// it.
   void makeRoom(const Array<Vec3>& before) {
     const std::size_t n = mesh_.points.size();
     std::vector<std::uint8_t> isOuter(n, 0);
@@ -231,8 +233,8 @@ class CurveSnapper {
     }
   }
 
-  /// Per quad: 1 if a layer is wanted around its cell. Around each vertex, quads of a region are
-  /// taken so that they are connected.
+  /// Per quad: 1 if a layer is needed around its cell. The chosen quads of a region are connected
+  /// around each vertex.
   std::vector<std::uint8_t> flatCorners(LayerWidth width) {
     const Array<Quad>& quads = boundary_.quads;
     std::vector<std::uint8_t> isIn(quads.size(), 0);
@@ -259,9 +261,9 @@ class CurveSnapper {
     return isIn;
   }
 
-  /// Takes all quads of a region along a path that has a flat corner there, or all of the region,
-  /// but for those at ends of paths, whose corners would be halved: the fewer corners a layer has,
-  /// the better are its cells.
+  /// Adds all quads of a region along a path with a flat corner there, or the entire region, except
+  /// for quads at ends of paths, whose corners would be halved: the fewer corners a layer has, the
+  /// better are its cells.
   void widen(const adjacency::VertexLists<Index>& quadsAt, LayerWidth width,
              std::vector<std::uint8_t>& isIn) {
     std::vector<Index> wanted;  // regions
@@ -292,7 +294,7 @@ class CurveSnapper {
     return std::binary_search(ends_.begin(), ends_.end(), v);
   }
 
-  /// How many edges divide the quads of a region at a vertex that are in from others.
+  /// Per vertex and region: number of edges between chosen quads of the region and other quads.
   [[nodiscard]] std::map<std::pair<Index, Index>, int> bordersAt(
       const std::vector<std::uint8_t>& isIn) {
     std::map<std::pair<Index, Index>, int> borders;
@@ -309,7 +311,8 @@ class CurveSnapper {
     return borders;
   }
 
-  /// @return whether some were added, or taken out
+  /// Connects the chosen quads of each region around each vertex.
+  /// @return whether quads were added or removed
   bool connect(const adjacency::VertexLists<Index>& quadsAt, std::vector<std::uint8_t>& isIn) {
     bool isChanged = false;
     for (const auto& [where, count] : bordersAt(isIn)) {
@@ -323,7 +326,7 @@ class CurveSnapper {
       }
       isChanged = true;
       if (isAdded) continue;
-      // The region touches itself there.
+      // The region touches itself there: remove all of it.
       for (Index q = 0; q < isIn.size(); ++q) {
         if (regions_.of(q) == where.second) isIn[q] = 0;
       }
@@ -331,7 +334,7 @@ class CurveSnapper {
     return isChanged;
   }
 
-  /// Places of new vertices: copies of those on the boundary are on the patch of their region.
+  /// Extends places to new vertices: copies of boundary vertices are on the patch of their region.
   void extend(Improved& result, std::size_t underneath, const mesh::SetLayers& layers) {
     VertexPlaces& places = result.places;
     places.freedom.resize(mesh_.points.size() + underneath, Freedom::Free);
@@ -349,7 +352,7 @@ class CurveSnapper {
 
   struct Patch {
     std::vector<Index> triangles;
-    std::optional<TriangleTree> tree;  ///< once it is asked for
+    std::optional<TriangleTree> tree;  ///< built on first use
   };
 
   HexMesh mesh_;
@@ -382,7 +385,7 @@ std::optional<Improved> improvedWithCurves(const HexMesh& mesh, const Boundary& 
     std::optional<Improved> result = snapper.layered(width, report);
     if (!result) break;
     result->report.snappedCurves = snapped;
-    // Nothing is asked of the points where edges were laid: the layers begin there.
+    // Layers start from the snapped mesh, so they may be as far from the surface as that one.
     result->report.distanceBefore =
         result->boundary.distanceTo(result->places, result->mesh.points, report.diagonal, stage)
             .largest;

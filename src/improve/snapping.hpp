@@ -1,4 +1,7 @@
-// A mesh whose edges are laid onto the curves of the surface that none of them followed.
+// Snaps edges of a mesh to curves of the surface that none of its edges follow.
+//
+// X. Gao, H. Shen, D. Panozzo, "Feature preserving octree-based hexahedral meshing", Computer
+// Graphics Forum 38 (2019), do so for octree-based grids.
 #pragma once
 
 #include <optional>
@@ -11,11 +14,10 @@
 
 namespace hexhex::improvement {
 
-/// Lays edges of a copy onto curves, along shortest paths of its boundary (Gao et al. 2019,
-/// "Feature preserving octree-based hexahedral meshing", do so for grids), adds a pillow, and
-/// layers where a quad has two edges on a curve that hardly turns; then improves it.
-/// @param mesh, boundary, places, report  of the mesh, which was improved already
-/// @return nothing if no curve can be followed so
+/// Snaps edges of a copy to curves, along shortest paths on its boundary; adds a pillow, and layers
+/// where a quad has two nearly collinear edges on curves; then improves it.
+/// @param mesh, boundary, places, report  of the mesh, which is already improved
+/// @return nothing if no curve can be followed this way
 [[nodiscard]] std::optional<Improved> improvedWithCurves(
     const HexMesh& mesh, const Boundary& boundary, const VertexPlaces& places,
     const ImproveOptions& options, const ImproveReport& report, Context& context, Stage& stage);

@@ -118,14 +118,14 @@ bool shareFacesAtAnEdge(const Hex& a, const Hex& b) {
   for (const Quad& face : facesOf(a)) {
     if (std::find(ofB.begin(), ofB.end(), face) != ofB.end()) common.push_back(face);
   }
-  // Of three or more, two always meet.
+  // Of three or more faces, two always meet.
   return common.size() > 2 ||
          (common.size() == 2 &&
           std::find_first_of(common[0].begin(), common[0].end(), common[1].begin(),
                              common[1].end()) != common[0].end());
 }
 
-/// Where the generator of a vertex is: a ball that holds it.
+/// A ball that contains the generator of a vertex.
 struct Ball {
   Vec3 centre{};
   double radius = 0;
@@ -151,14 +151,14 @@ Ball generatorOf(const HexMesh& mesh, const TetMapView& map, Index vertex) {
   return ball;
 }
 
-/// How far a vertex is from its generator, at least.
+/// Lower bound of the distance of a vertex from its generator.
 double offsetOf(const HexMesh& mesh, const TetMapView& map, Index vertex) {
   const Ball ball = generatorOf(mesh, map, vertex);
   return std::max(0.0, length(minus(mesh.points[vertex], ball.centre)) - ball.radius);
 }
 
-/// Whether the corners of a cell are on average farther from their generators than its longest edge
-/// is long.
+/// Whether the corners of a cell are, on average, farther from their generators than its longest
+/// edge is long.
 bool isElsewhere(const HexMesh& mesh, const TetMapView& map, const Hex& cell) {
   double longest = 0;
   for (const auto& edge : adjacency::kHexEdges) {

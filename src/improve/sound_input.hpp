@@ -1,4 +1,4 @@
-// What a mesh must be before moving its vertices can make it right.
+// Requirements on a mesh without which moving its vertices cannot make it valid.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +11,24 @@
 namespace hexhex::improvement {
 
 /// @param mesh   with corners in range
-/// @param parts  cells of the mesh for each that errors count
+/// @param parts  number of cells of the mesh per cell that errors refer to
 /// @throws Error RepeatedVertex for a cell that names a vertex twice; NonManifoldFace for a face of
-///         more than two cells; Orientation where two cells pass their common face in the same
-///         direction, and for cells that list their corners the other way round
+///         more than two cells; Orientation if two cells traverse their common face in the same
+///         direction, and for mirrored cells
 void requireSoundCells(const HexMesh& mesh, std::size_t parts, Context& context);
 
-/// Of cells that are not certified, those which share with another cell two faces that meet at an
-/// edge: at its ends, the determinants of the two are opposite numbers, so that one of them is not
-/// positive wherever vertices are. Ascending.
+/// Uncertified cells that share two adjacent faces with another cell, ascending: at the ends of the
+/// common edge of these faces, the determinants of the two cells are opposite, so one of the cells
+/// is not positive wherever vertices are.
 /// @param parts  as above
 [[nodiscard]] Array<std::uint64_t> cellsThatCannotBePositive(const HexMesh& mesh, std::size_t parts,
                                                              const Certificate& certificate,
                                                              Stage& stage);
 
-/// Compares positions with generators. Vertices may have moved since the mesh was extracted, but no
-/// farther than their cells are long.
+/// Compares the positions of vertices with their generators. Vertices may have moved since
+/// extraction, but by no more than the size of their cells.
 /// @param mesh  with generators in the map
-/// @throws Error InvalidArgument if more than a tenth of the cells are farther from them
+/// @throws Error InvalidArgument if more than a tenth of the cells are farther away
 void requireSameObject(const HexMesh& mesh, const TetMapView& map, Stage& stage);
 
 }  // namespace hexhex::improvement

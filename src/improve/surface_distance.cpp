@@ -13,7 +13,7 @@ namespace hexhex::improvement {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-/// Triangles in a leaf.
+/// Maximum number of triangles in a leaf.
 constexpr std::size_t kLeaf = 4;
 
 double squaredDistance(const Box& box, const Vec3& point) {
@@ -100,7 +100,7 @@ std::array<Vec3, 4> cornersOf(const Array<Vec3>& points, const Quad& quad) {
   return {points[quad[0]], points[quad[1]], points[quad[2]], points[quad[3]]};
 }
 
-/// Four triangles for each.
+/// A tree of four triangles per quad.
 TriangleTree treeOf(const Array<Vec3>& points, std::span<const Quad> quads) {
   std::vector<std::array<Vec3, 3>> triangles;
   triangles.reserve(4 * quads.size());
@@ -136,16 +136,16 @@ std::vector<Index> verticesOf(std::span<const Quad> quads, std::size_t points) {
   return vertices;
 }
 
-/// Where quads are divided: chords of a curved surface, and ridges between triangles as long as
-/// quads, are farthest from it anywhere between.
+/// Positions of samples along edges and across quads. More than the middle, since ridges between
+/// triangles as long as quads are farthest from these anywhere between vertices.
 constexpr std::array<double, 3> kQuarters = {0.25, 0.5, 0.75};
 
 Vec3 between(const Vec3& a, const Vec3& b, double share) {
   return plus(times(1 - share, a), times(share, b));
 }
 
-/// At quarters along edges and across; edges are those of two quads in most cases,
-/// and one of these asks.
+/// The largest distance of samples on edges and inside. An edge of two quads is only sampled for
+/// one.
 double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
   const std::array<Vec3, 4> corners = cornersOf(points, quad);
   double largest = 0;
@@ -165,9 +165,9 @@ double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTre
   return largest;
 }
 
-/// Vertices of triangles, middles of their edges, and centres: each once.
+/// Vertices, midpoints of edges, and centres of boundary triangles: each once.
 std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
-  std::vector<std::array<Index, 2>> edges;  // both vertices the same: only that
+  std::vector<std::array<Index, 2>> edges;  // with equal vertices: that vertex
   std::vector<Vec3> samples;
   for (Index t = 0; t < surface.boundaryCount(); ++t) {
     samples.push_back(centreOf(surface.triangle(t)));
@@ -185,7 +185,7 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
   return samples;
 }
 
-/// In diagonals, at vertices too.
+/// Per quad: the largest distance of its samples and vertices, in diagonals.
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
   const std::vector<Index> vertices = verticesOf(quads, points.size());

@@ -1,4 +1,5 @@
-// The nearest triangle to a point, by a tree of boxes.
+// Finds nearest triangles by a tree of bounding boxes, and the distance between the boundary of a
+// mesh and a surface.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@ class TriangleTree {
   explicit TriangleTree(std::span<const std::array<Vec3, 3>> triangles);
 
   struct Nearest {
-    double distance = 0;  ///< infinity without triangles
+    double distance = 0;  ///< infinite without triangles
     std::size_t triangle = 0;
   };
   [[nodiscard]] Nearest nearest(const Vec3& point) const;
@@ -35,21 +36,21 @@ class TriangleTree {
   std::vector<Box> boxes_;           ///< of a complete binary tree: children 2 i + 1, 2 i + 2
 };
 
-// How far the boundary of a mesh is from a surface.
-
-/// Of the bounding box.
+/// The diagonal of the bounding box.
 [[nodiscard]] double diagonalOf(const ReferenceSurface& surface);
 
 struct BoundaryDistance {
   SurfaceDistance largest;
-  /// Per quad: the largest of its own samples, and of the surface's to which it is the nearest.
+  /// Per quad: the largest distance of its own samples, and of samples of the surface for which it
+  /// is the nearest quad.
   std::vector<double> ofQuads;
 
   /// Ascending.
   [[nodiscard]] std::vector<Index> quadsBeyond(double limit) const;
 };
 
-/// Between two boundaries, whatever is inside. Quads are four triangles around their centres.
+/// The distance between the boundaries of a mesh and of a surface, in both directions. From the
+/// surface, each quad counts as four triangles around its centre.
 /// @param quads     of the boundary of the mesh
 /// @param tree      of the surface's boundary
 /// @param diagonal  by which distances are divided
@@ -59,12 +60,12 @@ struct BoundaryDistance {
                                                const TriangleTree& tree, double diagonal,
                                                Stage& stage);
 
-/// Of its boundary.
+/// A tree of the boundary triangles of a surface.
 [[nodiscard]] TriangleTree treeOf(const ReferenceSurface& surface);
 
-/// The largest distance of quads inside from the surface's triangles inside, in diagonals; 0 if
-/// there are none of either. Not the other way: triangles that are not aligned with the map have no
-/// quads.
+/// The largest distance of inner quads from inner triangles of the surface, in diagonals; 0 without
+/// any of either. Not measured in the other direction: triangles that are not aligned with the map
+/// have no quads.
 [[nodiscard]] double innerDistance(const Array<Vec3>& points, std::span<const Quad> quads,
                                    const ReferenceSurface& surface, double diagonal, Stage& stage);
 

@@ -13,8 +13,8 @@
 namespace hexhex::improvement {
 
 Colours::Colours(const CellPoints& mesh) : colourOf_(mesh.pointCount) {
-  // Each vertex gets the first colour that none before it has around.
-  std::vector<Index> takenBy;  // per colour: the last vertex with a neighbour of it
+  // Greedy colouring: each vertex gets the first colour that no earlier neighbour has.
+  std::vector<Index> takenBy;  // per colour: the last vertex that has a neighbour of this colour
   for (Index v = 0; v < mesh.pointCount; ++v) {
     for (const Index cell : mesh.around(v)) {
       for (const Index other : mesh.of(cell)) {
@@ -32,7 +32,7 @@ Colours::Colours(const CellPoints& mesh) : colourOf_(mesh.pointCount) {
   assert(separates(mesh));
 }
 
-/// Whether the points of each cell differ in colour.
+/// Whether all points of each cell differ in colour.
 bool Colours::separates(const CellPoints& mesh) const {
   std::vector<std::size_t> seenIn(count_, mesh.cellCount());
   for (std::size_t cell = 0; cell < mesh.cellCount(); ++cell) {
@@ -89,49 +89,54 @@ std::vector<Index> LooseVertices::holdUnmoved(const Array<Vec3>& points) {
 namespace {
 
 constexpr std::size_t kSweepsGrain = 1024;
-/// Vertices: a block takes some tenths of a millisecond.
+/// Vertices per block, which takes a few tenths of a millisecond.
 constexpr std::size_t kVertexGrain = 64;
 constexpr std::size_t kCurvedGrain = 8;
 
-/// Powers of the energy for the worst cells: the low ones get far soon where many cells are bad,
-/// the high one helps the last. For each, rounds, and visits per vertex of the mesh.
+/// Powers of the energy for the worst cells: low ones make fast progress while many cells are bad,
+/// the high one improves the last. For each power, maximum number of rounds, and of visits per
+/// vertex of the mesh.
 constexpr std::array<int, 3> kWorstPowers = {1, 2, 8};
 constexpr int kWorstRounds = 10;
 constexpr std::size_t kMostVisits = 4;
 
-/// With the high powers, cells above the target may lose so many times what those below gain. Where
-/// these can hardly be better, they would else pull all around them down: a mesh with a corner that
-/// nothing mends fell from 0.73 to 0.41 on average. With 10, some cells stay below the target that
-/// can reach it.
+/// With powers above 1, cells above the target may lose at most this many times what those below
+/// gain. Without a limit, cells that can hardly get better degrade all cells around them: the mean
+/// of a mesh with a corner that cannot be improved fell from 0.73 to 0.41. With 10, some cells stay
+/// below the target that could reach it.
 constexpr double kPrice = 30;
 
-/// Where more cells are below the target, none that is at it may fall below it on the way: many
-/// would end there, and all that moved with them be put back and raised again. So it is of curved
-/// cells: 1,749 of order 2 would take 5.0 s instead of 2.9 s and end with the same minimum.
+/// If more cells than this are below the target, no cell that meets it may fall below it
+/// temporarily: many would stay there, and all vertices that moved with them would be restored and
+/// moved again. The same holds for curved cells: 1,749 of order 2 would take 5.0 s instead of 2.9
+/// s, for the same minimum.
 constexpr std::size_t kMostFalling = 5'000;
 
-/// A step smaller than this share of the cells' size does not wake the neighbours.
+/// Steps below this fraction of the size of cells do not reactivate neighbours.
 constexpr double kStill = 1e-3;
 
-/// Rings of cells around those below the target that move at once: as many as make whole models of
-/// thousands of cells, and fewer where that were more cells than take some seconds.
+/// Rings of cells around those below the target that move at once: enough for whole models of
+/// thousands of cells; fewer where there would be more than kMostCellsAtOnce, which take some
+/// seconds.
 constexpr int kMostRingsAtOnce = 20;
 constexpr int kLeastRingsAtOnce = 3;
 constexpr std::size_t kMostCellsAtOnce = 20'000;
-/// Rounds, at most, and the share of all that is missing to right angles that one must bring.
+/// Maximum number of rounds; one that reduces the sum of 1 - quality by less than kStallAtOnce
+/// counts as stalled.
 constexpr int kMostRoundsAtOnce = 20;
-/// Rounds times cells, each of which takes a tenth of a millisecond: where cells are only below the
-/// target, and where most are bad, as nothing else mends these.
+/// Maximum of rounds times cells, each of which takes a tenth of a millisecond: if cells are only
+/// below the target, and if most are inverted, since nothing else repairs these.
 constexpr std::size_t kMostWorkAtOnce = 100'000;
 constexpr std::size_t kMostWorkFolded = 300'000;
 constexpr double kStallAtOnce = 0.01;
-/// A round may be for nothing, as what goes back onto the surface folds: so many are the end.
+/// Maximum number of stalled rounds, in all. A single one may be due to folds that arise on the way
+/// back to the surface.
 constexpr std::size_t kStallsAtOnce = 3;
 
-/// So far may boundary quads be from the surface, in diagonals: less than the 1e-3 that are
-/// promised for all of the surface, since only centres are looked at.
+/// Maximum distance of boundary quads from the surface, in diagonals: less than the 1e-3 promised
+/// for the entire surface, since only centres and midpoints of edges on curves are sampled.
 constexpr double kChord = 3e-4;
-/// A vertex this much nearer is on the surface.
+/// A vertex is on the surface if it is nearer than this fraction of the chord error.
 constexpr double kNearEnough = 1e-6;
 
 IdealBox boxOf(const Array<Vec3>& points, const Hex& cell) {
@@ -314,12 +319,12 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
   if (cells.empty()) return;
   const std::size_t rounds = std::min<std::size_t>(
       kMostRoundsAtOnce, (isFolded ? kMostWorkFolded : kMostWorkAtOnce) / cells.size());
-  if (rounds <= kStallsAtOnce) return;  // too few to come to rest
+  if (rounds <= kStallsAtOnce) return;  // too few to converge
   std::sort(vertices.begin(), vertices.end());
   cells = movable(std::move(cells), isAny);
   std::sort(cells.begin(), cells.end());
   std::vector<std::uint8_t> isHeld(mesh_.points.size(), 0);
-  for (const Quad& quad : places_.innerQuads) {  // nothing says when these are too far
+  for (const Quad& quad : places_.innerQuads) {  // nothing checks their distance
     for (const Index v : quad) isHeld[v] = 1;
   }
   if (isFolded) {
@@ -345,7 +350,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
     }
     measureAll();
     untangle(slack);
-    raiseWorst(target, 0);  // from cells that are hardly positive, no step leads on
+    raiseWorst(target, 0);  // barely positive cells would block further steps
     const double now = deficitOf(cells);
     if (now > (1 - kStallAtOnce) * least) ++stalls;
     if (now >= least) continue;
@@ -382,7 +387,7 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
   if (low.empty()) return;
   const CellPoints all = cellPoints();
   Neighbourhoods near(all);
-  // The last round in which a vertex moved: only where something moved is there something to do.
+  // Per vertex: the last round in which it moved. Only vertices near moved ones are visited again.
   std::vector<std::uint8_t> lastMove(mesh_.points.size(), 0);
   std::uint8_t round = 0;
   for (const int power : kWorstPowers) {

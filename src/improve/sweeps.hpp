@@ -1,5 +1,5 @@
-// Groups of vertices that move at the same time: no two of a group share a cell, so that the result
-// does not depend on threads.
+// Sweeps over the vertices of a mesh. Vertices of one colour move in parallel: no two of them share
+// a cell, so the result does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,7 @@ class Colours {
  public:
   explicit Colours(const CellPoints& mesh);
 
-  /// Vertices by their colour, otherwise in the order of the list: each group ends where the next
-  /// begins.
+  /// Vertices sorted by colour, otherwise in their given order. Group i ends at ends[i].
   struct Groups {
     std::vector<Index> vertices;
     std::vector<std::size_t> ends;
@@ -43,22 +42,22 @@ class Colours {
   std::size_t count_ = 0;
 };
 
-// Creases that keep cells from being positive: vertices may leave them as a last resort.
+// Vertices released from creases, as a last resort for cells that do not become positive otherwise.
 //
-// The boundary of a mesh with bad cells is jagged where these are, and its sharp edges there are no
-// features of the object.
+// The boundary of a mesh is jagged at bad cells, so sharp edges there are not features of the
+// object.
 
 class LooseVertices {
  public:
-  /// Lets go those of a list that lie on patches, on creases, or where these meet; from now on,
-  /// they move on all patches that only creases divide.
-  /// @param places  outlives this
+  /// Releases the listed vertices that are on creases or where only creases meet: from now on, they
+  /// move across all patches that only creases separate.
+  /// @param places  must outlive this
   LooseVertices(VertexPlaces& places, std::span<const Index> vertices, const Array<Vec3>& points);
 
   [[nodiscard]] bool empty() const noexcept { return held_.empty(); }
 
-  /// Holds those again that are where they were.
-  /// @return the others
+  /// Puts released vertices that have not moved back on their creases.
+  /// @return those that have moved
   std::vector<Index> holdUnmoved(const Array<Vec3>& points);
 
  private:
@@ -74,10 +73,11 @@ class LooseVertices {
 
 // Scaled Jacobians and certificates of some cells, straight or curved.
 
-/// Calls use(cell, CellState) for the cells of a list, until it returns false.
-/// @param curved   in place of the cells of the mesh, or null
-/// @param leastOf  of (cell): a curved one with a smaller scaled Jacobian need not be certified
-/// @return whether it never did
+/// Calls use(cell, CellState) for the listed cells until it returns false.
+/// @param curved   measured instead of the cells of the mesh, or null
+/// @param leastOf  called with a cell; curved cells with a smaller scaled Jacobian may be reported
+///         as not certified
+/// @return whether use() never returned false
 template <class LeastOf, class Use>
 bool forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
                CurvedCells::Scratch& scratch, const LeastOf& leastOf, const Use& use) {
@@ -105,109 +105,109 @@ bool forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const I
   return true;
 }
 
-/// What is kept of the state of a cell: its scaled Jacobian, or less than any if it is not
-/// certified.
+/// The quality of a cell: its scaled Jacobian, or a smaller number than any if it is not certified.
 [[nodiscard]] inline double certifiedQuality(const CellState& state) noexcept {
   constexpr double kNotCertified = -2;
   return state.certified ? state.scaled : kNotCertified;
 }
 [[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
 
-// From vertex to vertex, many at a time: cells become positive, then the worst ones better, then
-// all.
+// Makes cells positive, then improves the worst ones, then all of them.
 
 class Sweeps {
  public:
-  /// How a mesh stands: the less the better.
+  /// Summary of the qualities of all cells: less is better.
   struct Standing {
     std::size_t bad = 0;    ///< cells that are not certified
-    std::size_t below = 0;  ///< and of the others those below the target
-    double depth = 0;       ///< 1 less the least scaled Jacobian
+    std::size_t below = 0;  ///< certified cells below the target
+    double depth = 0;       ///< 1 minus the least quality
     auto operator<=>(const Standing&) const = default;
   };
   [[nodiscard]] Standing standing(double target) const;
-  /// Per cell: the scaled Jacobian, or less than any if it is not certified.
+  /// Per cell: certifiedQuality().
   [[nodiscard]] const Array<double>& qualities() const noexcept { return qualities_; }
-  /// Cells that were at the target and are below.
+  /// Cells that met the target at given earlier qualities, but no longer do.
   [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
-  /// The first three must outlive this.
-  /// @param mesh      whose points move; of curved cells the refined mesh
-  /// @param curved    cells between the same points that are to be improved in place of the mesh's,
-  ///                  or null
-  /// @param diagonal  of the surface
+  /// All references must outlive this.
+  /// @param mesh      its points move; the refined mesh if there are curved cells
+  /// @param curved    cells with the same points, improved instead of those of the mesh, or null
+  /// @param diagonal  of the bounding box of the surface
   Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, double diagonal,
          Stage& stage);
 
-  /// Moves vertices around cells that are not certified until all are, or nothing helps any more.
-  /// What did not become better stays as it was.
-  /// @param slack  so far may vertices without tags leave the surface if nothing else helps
+  /// Moves vertices around cells that are not certified until all are or nothing helps any more.
+  /// Restores vertices around cells that are still not certified.
+  /// @param slack  maximum distance by which untagged vertices may leave the surface, as a last
+  ///         resort
   void untangle(double slack);
 
-  /// Moves vertices of straight cells below the target, and many rings around, all at once, time
-  /// after time until angles come hardly nearer to right ones. Boundary quads that come too far
-  /// from the surface stay where they were from then on.
-  /// @param slack     as of untangle(), for what folds on the way back onto the surface
-  /// @param isFolded  whether most cells may be inside out
-  /// @param farQuads  of the boundary, which are too far
+  /// For straight cells: moves all vertices of cells below the target, and of many rings around, at
+  /// once; repeats this until angles hardly improve. Vertices of boundary quads that get too far
+  /// from the surface are put back and held from then on.
+  /// @param slack     as for untangle(), used for cells that fold when vertices return to the
+  ///         surface
+  /// @param isFolded  whether most cells may be inverted
+  /// @param farQuads  returns the boundary quads that are too far from the surface
   void moveAtOnce(double target, double slack, bool isFolded,
                   const std::function<Array<Quad>()>& farQuads);
 
-  /// The vertices of cells that are not certified or below the target, and of rings around.
+  /// The vertices of cells that are not certified or below the target, and of rings of cells
+  /// around.
   [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const;
 
-  /// Puts all vertices where they were.
+  /// Restores all vertices.
   void putBackAll(const Array<Vec3>& before, const Array<Index>& simplicesBefore);
 
-  /// Moves vertices around cells whose scaled Jacobian is below the target. Those at the target
-  /// stay there.
-  /// @param slack  so far may vertices without tags leave the surface
+  /// Moves vertices around cells whose scaled Jacobian is below the target. Cells that meet the
+  /// target still do afterwards.
+  /// @param slack  maximum distance by which untagged vertices may leave the surface
   void raiseWorst(double target, double slack);
 
-  /// Moves all vertices, so many times. No scaled Jacobian falls below the floor, and of those that
-  /// are there, none below the least around.
+  /// Moves all vertices in each pass. No scaled Jacobian falls below the floor or, if already below
+  /// it, below the least around the moving vertex.
   void smooth(int passes, double floor);
 
-  /// Moves vertices that are off their places of the surface towards these, as far as smooth()
-  /// would let cells be.
+  /// Moves vertices that are off the surface towards their places on it, as far as the bounds of
+  /// smooth() allow.
   void pullOntoSurface(double floor);
 
-  /// Rounds of moveBack() and pullOntoSurface() until they are given up.
+  /// Maximum number of rounds of moveBack() and of pullOntoSurface().
   static constexpr int kReturns = 8;
-  /// Moves vertices of quads of the boundary towards where they were, as far as no cell becomes
-  /// worse than smooth() would leave it.
+  /// Moves the vertices of boundary quads back towards earlier points, as far as the bounds of
+  /// smooth() allow.
   /// @param before, simplicesBefore  of all vertices
   void moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
                 const Array<Index>& simplicesBefore, double floor);
 
-  /// Moves vertices of the boundary along it to where its quads are far from the surface, so that
-  /// these become smaller and others larger, and then those inside after them. Scaled Jacobians
-  /// stay as smooth() would leave them.
-  /// @param errors  per quad of the boundary: how far it is, in any unit
-  /// @param even    quads that are no farther weigh as if they were so far
+  /// Moves boundary vertices along the surface towards quads that are far from it, so that these
+  /// shrink and others grow; then smooths the vertices inside. Scaled Jacobians stay within the
+  /// bounds of smooth().
+  /// @param errors  per boundary quad: its distance from the surface, in any unit
+  /// @param even    lower bound of these errors: nearer quads have equal weights
   void spread(std::span<const Quad> quads, std::span<const double> errors, double even,
               double floor);
 
-  /// The cells, with their points.
+  /// The point lists of the cells that are improved.
   [[nodiscard]] CellPoints cellPoints() const;
 
  private:
-  /// Takes the qualities of n cells that `cellAt` lists.
+  /// Updates the qualities of the n cells that `cellAt` lists.
   template <class CellAt>
   void measure(std::size_t n, const CellAt& cellAt);
   void measureAll();
-  /// Ideal cells get the shape that cells have.
+  /// Sets the ideal box of each cell to its current mean edge lengths.
   void takeBoxes();
-  /// Of some cells: how far scaled Jacobians are from 1, added up.
+  /// Sum of 1 - quality over some cells.
   [[nodiscard]] double deficitOf(std::span<const Index> cells) const;
-  /// The cells whose quality is wanted.
+  /// The cells whose quality satisfies the predicate.
   template <class Wanted>
   [[nodiscard]] std::vector<Index> cellsThat(const Wanted& isWanted) const;
-  /// The same of those, or of those of a list, that have a vertex which can move.
+  /// The same, for cells with a vertex that can move; of all cells, or of a list.
   template <class Wanted>
   [[nodiscard]] std::vector<Index> movableCells(const Wanted& isWanted) const;
   template <class Wanted>
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> list, const Wanted& isWanted) const;
-  /// Raises cells below the floor, which is the target.
+  /// Improves cells below exchange.floor, which is the target.
   void raise(const Exchange& exchange, double slack);
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
@@ -219,10 +219,10 @@ class Sweeps {
   adjacency::VertexCells meshAround_;
   adjacency::VertexCells nodeAround_;  ///< of curved cells
   Array<IdealBox> boxes_;              ///< per cell
-  Array<double> qualities_;            ///< per cell: certifiedQuality(), of where points are
-  Array<std::uint8_t> boundary_;       ///< per cell of the mesh: as of HexFaces
-  double chord_;                       ///< as of ChordError
-  std::optional<Colours> colours_;     ///< once they are asked for
+  Array<double> qualities_;            ///< per cell: certifiedQuality() at the current points
+  Array<std::uint8_t> boundary_;       ///< per cell of the mesh: HexFaces::boundary
+  double chord_;                       ///< ChordError::chord
+  std::optional<Colours> colours_;     ///< computed on first use
 };
 
 }  // namespace hexhex::improvement

@@ -7,10 +7,10 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// Rounds without fewer bad cells until more points around take part, and how many rings do.
+/// Rounds without progress before another ring of points takes part, and maximum number of rings.
 constexpr int kPatience = 10;
 constexpr int kMostRings = 4;
-/// The slack grows from a tenth of what is allowed.
+/// The slack starts at this fraction of what is allowed, and grows by this factor.
 constexpr double kFirstSlack = 0.1;
 constexpr double kSlackGrowth = 2.16;
 

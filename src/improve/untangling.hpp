@@ -1,4 +1,4 @@
-// Makes cells positive: around those that are not, points move until there are none.
+// Makes cells positive: moves points around uncertified cells until there are none.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace hexhex::improvement {
 
-/// What one kind of cells does with points.
+/// The operations that differ between straight and curved cells.
 struct UntanglingMoves {
-  /// Moves points once; each of them may leave the surface by `slack` unless it is tagged.
+  /// Moves each point once; untagged ones may leave the surface by up to `slack`.
   std::function<void(std::span<const Index> points, double slack)> sweep;
-  /// Those cells of a list that are not certified.
+  /// The cells of a list that are not certified.
   std::function<std::vector<Index>(std::span<const Index> cells)> badAmong;
 };
 
-/// What is near some cells.
+/// Finds rings of cells and their points.
 class Neighbourhoods {
  public:
-  /// @param mesh  outlives this
+  /// @param mesh  its lists must outlive this
   explicit Neighbourhoods(const CellPoints& mesh)
       : mesh_(mesh), isPoint_(mesh.pointCount, 0), isCell_(mesh.cellCount(), 0) {}
 
-  /// The points of cells, of cells at those, and so on; each once.
-  /// @param[in,out] cells  become those around the points
+  /// The points of cells and of so many rings of cells around them, each once.
+  /// @param[in,out] cells  extended to all cells at these points
   [[nodiscard]] std::vector<Index> pointsOf(int rings, std::vector<Index>& cells);
 
  private:
@@ -38,13 +38,14 @@ class Neighbourhoods {
 };
 
 /// @param bad    cells that are not certified
-/// @param slack  so far may points without tags leave the surface if nothing else helps
-/// @return cells that are not certified in the end
+/// @param slack  maximum distance by which untagged points may leave the surface, as a last resort
+/// @return cells that are still not certified
 [[nodiscard]] std::vector<Index> untangleCells(Neighbourhoods& near, const VertexPlaces& places,
                                                const UntanglingMoves& moves, double slack,
                                                std::vector<Index> bad);
 
-/// Puts back all points that moved together with those of some cells.
+/// Restores all points that moved together with those of some cells: a connected set of moved
+/// points is restored as a whole.
 /// @param before, placesBefore  of all points
 void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<Vec3>& before,
              const Array<Index>& placesBefore, Array<Vec3>& points, VertexPlaces& places);

@@ -11,7 +11,7 @@ namespace hexhex::improvement {
 
 namespace {
 
-/// The widest.
+/// The kernels for the widest registers.
 const EnergyKernels& kernels() noexcept {
   static const EnergyKernels& widest = energyKernels().back();
   return widest;
@@ -71,7 +71,8 @@ EnergySlope slopeOf(const EnergyTerms& terms, const EnergyKind& kind) noexcept {
 
 Vec3 newtonStep(const EnergySlope& slope, std::span<const Vec3> directions) noexcept {
   const std::size_t count = directions.size();
-  // Cholesky's factors of the matrix in these directions, lifted a little off singular ones.
+  // Cholesky factorization of the Hessian in these directions, shifted slightly away from singular
+  // ones.
   std::array<std::array<double, 3>, 3> a{};
   Vec3 right{};
   double trace = 0;
@@ -114,8 +115,7 @@ IdealBox idealBox(const Vec3& lengths) noexcept {
 
 MovingCell movingCell(const std::array<const Vec3*, 8>& corners, std::size_t moving,
                       const IdealBox& box) noexcept {
-  // Mirrored along an odd number of axes, the cell would be inside out: then two axes change
-  // places.
+  // Mirroring along an odd number of axes would invert the cell: then, two axes are swapped.
   const bool isOdd = (std::popcount(moving) & 1) != 0;
   constexpr std::array<std::size_t, 8> kExchanged = {0, 2, 1, 3, 4, 6, 5, 7};
   MovingCell cell;

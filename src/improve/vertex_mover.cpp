@@ -45,10 +45,10 @@ double ChordError::at(Index vertex, double enough) const {
 
 namespace {
 
-/// Of the term that keeps cells from shrinking while they are untangled.
+/// Weight of the term that keeps cells from shrinking during untangling.
 constexpr double kVolume = 0.1;
-/// Of determinants, which are 1 in the ideal cell: when all are positive, and for others by how
-/// much the least one is not.
+/// Regularization of determinants, which are 1 in the ideal cell: if all are positive, and as a
+/// fraction of the least one otherwise.
 constexpr double kLeastEpsilon = 1e-4;
 constexpr double kRegularization = 0.2;
 

@@ -1,4 +1,5 @@
-// How far boundary quads are from the surface between their vertices, which are on it.
+// Moves vertices one at a time, within the limits of their places and of the distance between
+// boundary and surface.
 #pragma once
 
 #include <array>
@@ -21,37 +22,40 @@
 
 namespace hexhex::improvement {
 
-/// All of it outlives this.
+/// The distance of boundary quads from the surface between their vertices, which are on it. All
+/// references must outlive this.
 struct ChordError {
   const HexMesh& mesh;
   const VertexPlaces& places;
   const adjacency::VertexCells& around;
-  const Array<std::uint8_t>& boundary;  ///< per cell: as of HexFaces
-  double chord;  ///< so far may quads be from the surface, if they are not farther anyway
+  const Array<std::uint8_t>& boundary;  ///< per cell: HexFaces::boundary
+  double chord;                         ///< maximum distance, unless quads are farther already
 
-  /// The largest distance of centres of boundary quads at a vertex, and of edges on its curve.
-  /// @param enough  where it is no larger, any number up to this
+  /// The largest distance from the surface of centres of boundary quads at a vertex, and from its
+  /// curve of midpoints of edges along it.
+  /// @param enough  distances up to this need not be exact
   [[nodiscard]] double at(Index vertex, double enough) const;
 };
 
-// Moves one point at a time down an energy, within what its place allows.
+// Moves one point at a time downhill, within the limits of its place.
 
 class PointMover {
  public:
-  /// @param points, places  of the same points; both outlive this
-  /// @param slack  so far may points leave patches and curves without tags
+  /// @param points, places  of the same points; both must outlive this
+  /// @param slack  maximum distance by which points may leave untagged patches and curves
   PointMover(Array<Vec3>& points, VertexPlaces& places, double slack)
       : points_(points), places_(places), slack_(slack) {}
 
   [[nodiscard]] bool canMove(Index point) const { return places_.freedom[point] != Freedom::Fixed; }
 
-  /// The energy that makes determinants positive: of terms by Bezier coefficients.
+  /// The energy that makes determinants positive, for terms of Bezier coefficients.
   [[nodiscard]] static EnergyKind untangling(const EnergyTerms& terms);
 
-  /// Takes one step of Newton's method, or a part of it that lowers the energy.
-  /// @param terms       where the point is
-  /// @param isAccepted  called when the point has moved; if false, a shorter step is tried
-  /// @return how far it moved
+  /// Takes a step of Newton's method, halved until it lowers the energy.
+  /// @param terms       at the current point
+  /// @param isAccepted  called after the point has moved; if it returns false, a shorter step is
+  ///         tried
+  /// @return the distance moved
   template <class Accept>
   double descend(Index point, const EnergyTerms& terms, const EnergyKind& kind,
                  const Accept& isAccepted) {
@@ -75,9 +79,9 @@ class PointMover {
     return 0;
   }
 
-  /// Moves a point to a place, or a part of the way: along the surface or, if it is off it and is
-  /// to be pulled there, straight.
-  /// @param isAccepted  as above
+  /// Moves a point to a place, or part of the way: along the surface, or straight if it is off the
+  /// surface and `isPulled` onto it.
+  /// @param isAccepted  as for descend()
   template <class Accept>
   bool moveTo(Index point, const SurfacePlace& target, bool isPulled, const Accept& isAccepted) {
     const SurfacePlace old{points_[point], places_.simplex[point]};
@@ -95,19 +99,19 @@ class PointMover {
   }
 
  private:
-  /// The first share of Newton's step that is tried with low powers. As neighbours follow, sweeps
-  /// get far sooner with more than one (successive overrelaxation).
+  /// First fraction of Newton's step to try for low powers. As neighbours follow, sweeps converge
+  /// much faster with more than one (successive overrelaxation).
   static constexpr double kOverrelaxation = 1.6;
-  /// Halvings of a step until it is given up.
+  /// Maximum number of trials, each half as long as the one before.
   static constexpr int kHalvings = 8;
-  /// Share of the decrease that the slope promises.
+  /// Required fraction of the decrease that the slope predicts.
   static constexpr double kDecrease = 1e-4;
-  /// Steps that promise a smaller share of the energy are not worth their time.
+  /// Steps with a smaller predicted decrease, relative to the energy, are not worth their time.
   static constexpr double kLeastPromise = 1e-7;
 
   struct Step {
     SurfacePlace place;
-    Vec3 moved{};  ///< from where the point was
+    Vec3 moved{};  ///< the displacement
     double length = 0;
   };
   [[nodiscard]] bool hasSlack(Index point) const;
@@ -120,56 +124,57 @@ class PointMover {
   double slack_;
 };
 
-// Moves one vertex at a time, within what its place allows, for the better of the cells around it.
+// Moves one vertex at a time to improve the cells around it.
 
-/// What movers work on; all of it outlives them.
+/// The data that movers share; must outlive them.
 struct MovingMesh {
-  HexMesh& mesh;                 ///< whose points move
-  const CurvedCells* curved;     ///< in place of its cells, or null
-  const CellPoints& cells;       ///< of one or the other
+  HexMesh& mesh;                 ///< its points move
+  const CurvedCells* curved;     ///< improved instead of its cells, or null
+  const CellPoints& cells;       ///< the point lists of one or the other
   const Array<IdealBox>& boxes;  ///< per cell
   VertexPlaces& places;
   const ChordError& chordError;
-  Array<double>& qualities;  ///< per cell: certifiedQuality(), while vertices are smoothed
+  Array<double>& qualities;  ///< per cell: certifiedQuality(); untangle() does not update it
 };
 
-/// What cells give so that others around the same vertex gain.
+/// How cells may lose quality so that others around the same vertex gain.
 struct Exchange {
-  double floor;             ///< cells below it gain
-  bool belowFloor = false;  ///< whether others may fall below it, too
-  /// So many times what those below the floor gain may those above it lose; 0: as much as it takes.
+  double floor;             ///< cells below it are to gain
+  bool belowFloor = false;  ///< whether others may fall below it
+  /// Cells above the floor may lose at most this many times what those below it gain; 0: no limit.
   double price = 0;
 };
 
-/// A vertex with all that a step of it takes. One per thread.
+/// Moves vertices and holds the scratch memory for that. One per thread.
 class VertexMover {
  public:
   /// Vertices of one cell must not move at the same time.
-  /// @param slack  so far may vertices leave patches and curves without tags
+  /// @param slack  maximum distance by which vertices may leave untagged patches and curves
   VertexMover(const MovingMesh& all, double slack)
       : all_(all), mover_(all.mesh.points, all.places, slack) {
     assert(all.boxes.size() == all.cells.cellCount());
     assert(all.qualities.size() == all.cells.cellCount());
   }
 
-  /// Brings all Bezier coefficients of the cells nearer to being positive.
-  /// @return the share of the cells' size that it moved by
+  /// Takes a step towards positive Bezier coefficients of all cells around a vertex.
+  /// @return the distance moved, relative to the size of the cells
   double untangle(Index vertex);
 
-  /// Lowers the energy at corners, if all cells around are certified and stay so. No scaled
-  /// Jacobian that is not below the floor falls below it, unless that is said, and none below the
-  /// least around; nor does the boundary leave the surface.
-  /// @param power  of EnergyKind
-  /// @return as untangle()
+  /// Lowers the energy at corners if all cells around are certified; they remain so. No scaled
+  /// Jacobian falls below the floor (unless `exchange` allows that) or, if already below it, below
+  /// the least around the vertex; nor does the boundary leave the surface.
+  /// @param power  EnergyKind::power
+  /// @return as for untangle()
   double smooth(Index vertex, int power, const Exchange& exchange);
 
-  /// Moves a vertex of the boundary towards a place, as PointMover does, if the cells around stay
-  /// as good as smooth() would leave them.
-  /// @param farthest  how far quads there may be from the surface
+  /// Moves a boundary vertex towards a place like PointMover::moveTo(), as far as the bounds of
+  /// smooth() allow.
+  /// @param farthest  maximum distance of the quads around it from the surface
   void moveTo(Index vertex, const SurfacePlace& place, bool isPulled, double floor,
               double farthest = std::numeric_limits<double>::infinity());
 
-  /// How far quads at a vertex may come from the surface: no farther than they are.
+  /// Maximum distance of quads at a vertex from the surface: ChordError::chord, or their
+  /// current distance if that is larger.
   [[nodiscard]] double farthestAt(Index vertex) const;
 
  private:
@@ -177,9 +182,9 @@ class VertexMover {
   [[nodiscard]] MovingCell straightCell(Index vertex, Index cell) const;
   [[nodiscard]] double leastQualityAt(Index vertex) const;
   void keepMeasured();
-  /// Takes the qualities of the cells around a vertex that has moved.
-  /// @param least  scaled Jacobian that was around
-  /// @return whether they are as good as they must be
+  /// Measures the cells around a vertex that has moved.
+  /// @param least  least quality around it before
+  /// @return whether they are good enough
   bool isGoodAround(Index vertex, double least, const Exchange& exchange);
   [[nodiscard]] double sizeAt(Index vertex) const;
 
@@ -187,7 +192,7 @@ class VertexMover {
   PointMover mover_;
   EnergyTerms terms_;
   std::vector<MovingCell> straight_;
-  std::vector<std::pair<Index, double>> measured_;  ///< by measureAround(): cells, qualities
+  std::vector<std::pair<Index, double>> measured_;  ///< by isGoodAround(): cells, qualities
   CurvedCells::Scratch scratch_;
 };
 

@@ -29,8 +29,8 @@ Vec3 normalized(const Vec3& a) {
   return size > 0 ? times(1 / size, a) : Vec3{};
 }
 
-/// Triangles of the boundary, then tagged ones inside and those between regions, if they are in
-/// planes of the grid: in others there are no quads.
+/// Adds the triangles of the boundary, then inner ones that are tagged or between regions, if they
+/// lie in grid planes: there are no quads on others.
 void addTriangles(const TetMapView& map, Stage& stage, SurfaceParts& parts) {
   const auto topology = adjacency::manifoldTopology(map.tets, map.points.size(), stage);
   if (!topology) {
@@ -87,7 +87,7 @@ void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage)
               Place{PlaceKind::Vertex, bad, 0});
 }
 
-/// Tagged vertices and edges.
+/// Adds tagged vertices and edges.
 void addTags(const auto& features, SurfaceParts& parts) {
   for (const FeatureVertex& vertex : features.vertices) {
     if (vertex.tag != 0) parts.corners.push_back(vertex.vertex);
@@ -114,7 +114,7 @@ bool byVertices(const FeatureQuad& a, const FeatureQuad& b) {
   return sorted(a.vertices) < sorted(b.vertices);
 }
 
-/// Found by their vertices.
+/// The tagged quads, sorted by their vertices.
 std::vector<FeatureQuad> taggedQuads(const HexMesh& mesh) {
   std::vector<FeatureQuad> tagged = mesh.features.quads;
   std::erase_if(tagged, [](const FeatureQuad& quad) { return quad.tag == 0; });
@@ -122,8 +122,8 @@ std::vector<FeatureQuad> taggedQuads(const HexMesh& mesh) {
   return tagged;
 }
 
-/// Faces of several cells that are tagged or, where regions count, lie between them and on
-/// triangles between regions of the map.
+/// Faces between cells that are tagged or, if `regionsCount`, lie between regions and have no free
+/// vertex.
 std::vector<Quad> innerQuads(const HexMesh& mesh, const Array<Freedom>& freedom, bool regionsCount,
                              Stage& stage) {
   const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
@@ -149,7 +149,7 @@ std::vector<Quad> innerQuads(const HexMesh& mesh, const Array<Freedom>& freedom,
       });
 }
 
-/// Boundary quads, then tagged ones inside.
+/// Adds boundary quads, then tagged inner ones.
 void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
   const std::vector<FeatureQuad> tagged = taggedQuads(mesh);
   std::vector<bool> isAdded(tagged.size());
@@ -166,9 +166,9 @@ void addQuads(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
   }
 }
 
-/// Edges of the boundary with other than two cells: where the boundary is folded, its angles do not
-/// tell where the object's edges are. (The surface of a map is not folded, so there, the angle
-/// alone tells: labels change along any zigzag of its edges.)
+/// Adds boundary edges with other than two cells as curves: where the boundary is folded, angles do
+/// not tell where the edges of the object are. (The surface of a map is not folded, so the angle
+/// suffices there; labels may change along any zigzag of its edges.)
 void addSingularEdges(const HexMesh& mesh, Stage& stage, SurfaceParts& parts) {
   const adjacency::VertexCells around = adjacency::cellsAroundVertices(mesh, stage);
   const adjacency::HexFaces faces = adjacency::findFaces(mesh, around, stage);
@@ -192,8 +192,9 @@ void requireFeatures(const HexFeatures& features, std::size_t points) {
                   "). Correct the features, or leave them out.");
 }
 
-/// @param features     of the map or the mesh, in whose vertices generators are given
-/// @param generatorOf  (vertex, list): the points whose simplex holds a vertex, or held it once
+/// @param features     of the map or the mesh, whose vertices generators refer to
+/// @param generatorOf  called with (vertex, list): lists the points whose simplex held the vertex
+///         originally, and returns their number
 template <class Features, class GeneratorOf>
 void place(const Array<Vec3>& points, const Features& features, const GeneratorOf& generatorOf,
            VertexPlaces& places, Stage& stage) {

@@ -24,19 +24,19 @@ struct VertexPlaces {
   Array<Index> simplex;
   /// Per vertex on a patch: 1 if it may leave it across creases.
   std::vector<std::uint8_t> isLoose;
-  std::vector<Quad> innerQuads;  ///< of the mesh, on triangles of the surface that are inside
+  std::vector<Quad> innerQuads;  ///< of the mesh, on inner triangles of the surface
   std::uint64_t tagged = 0;      ///< vertices that are Fixed because they have a tag
 
-  /// Whether a mesh was given a surface that its boundary may be off, and is to be pulled onto.
+  /// Whether the surface was given separately: the boundary may be off it, and is pulled onto it.
   bool isGiven = false;
 
-  /// Whether none of some vertices can move.
+  /// Whether all of the vertices are fixed.
   [[nodiscard]] bool areHeld(std::span<const Index> vertices) const {
     return std::all_of(vertices.begin(), vertices.end(),
                        [this](Index v) { return freedom[v] == Freedom::Fixed; });
   }
 
-  /// The place nearest to a point that a vertex may move to.
+  /// The nearest place to a point among those to which a vertex may move.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point, double enough = 0) const {
     if (freedom[vertex] == Freedom::OnPatch) {
       return isLoose[vertex] != 0 ? surface.acrossCreases(point, simplex[vertex], enough)
@@ -46,30 +46,31 @@ struct VertexPlaces {
     return {point, simplex[vertex]};
   }
 
-  /// The same, or the corner of the surface that a vertex belongs to, though it may not be there.
+  /// Like nearest(), but the corner of the surface for a vertex that belongs to one, even if the
+  /// vertex is not there yet.
   [[nodiscard]] SurfacePlace home(Index vertex, const Vec3& point) const {
     const bool isCorner = freedom[vertex] == Freedom::Fixed && simplex[vertex] != kNone;
     return isCorner ? SurfacePlace{surface.points()[simplex[vertex]], simplex[vertex]}
                     : nearest(vertex, point);
   }
 
-  /// Orthonormal directions in which a vertex may move: all axes, those of its triangle, that of
-  /// its segment, or none.
-  /// @return how many
+  /// Orthonormal directions in which a vertex may move: all axes, two in the plane of its triangle,
+  /// that of its segment, or none.
+  /// @return their number
   std::size_t directionsAt(Index vertex, std::array<Vec3, 3>& directions) const;
 };
 
-/// The surface is that of the map: its boundary, tagged triangles, and those between regions. A
-/// vertex is where its generator is.
+/// Places on the surface of the map: its boundary, tagged triangles, and those between regions. The
+/// generator of a vertex determines its place.
 /// @param mesh  with generators in the map
-/// @param angle  as of SurfaceParts
+/// @param angle  SurfaceParts::angle
 /// @throws Error InvalidArgument for generators that are not in the map, and for a map whose tets
 ///         do not form a manifold
 [[nodiscard]] VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angle,
                                        Stage& stage);
 
-/// The surface is the mesh's own boundary with its tagged quads, two triangles each.
-/// @param isAtBad  per vertex: 1 if a cell there is not positive; as of creaseChains()
+/// Places on the mesh's own boundary and tagged quads, two triangles each.
+/// @param isAtBad  per vertex: 1 if a cell there is not positive; as for creaseChains()
 /// @throws Error InvalidArgument for features that are not in the mesh
 [[nodiscard]] VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isAtBad,
                                         double angle, Stage& stage);

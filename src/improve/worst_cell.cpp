@@ -16,7 +16,7 @@ namespace {
 
 /// A corner of a cell: its vertex, and those at the ends of its three edges, right-handed.
 struct CellCorner {
-  std::size_t cell = 0;  ///< of straight cells
+  std::size_t cell = 0;  ///< index of a straight cell
   Index vertex = kNone;
   std::array<Index, 3> ends{};
 };
@@ -42,7 +42,7 @@ double scaledJacobian(const std::array<Vec3, 3>& edges) {
   return lengths > 0 ? tripleProduct(edges[0], edges[1], edges[2]) / lengths : 0;
 }
 
-/// Around an edge, from one face to the other.
+/// The angle around an edge in degrees, from one face to the other.
 double angleAround(const Vec3& edge, const Vec3& from, const Vec3& to) {
   const Vec3 a = cross(edge, from);
   const Vec3 b = cross(edge, to);

@@ -1,4 +1,4 @@
-// What keeps the worst cell of a mesh from being better.
+// Finds what limits the quality of the worst cell of a mesh.
 #pragma once
 
 #include <hexhex/improve.hpp>
@@ -8,7 +8,7 @@
 
 namespace hexhex::improvement {
 
-/// @param report  knows `after` and `cannotBePositive`
+/// @param report  with `after` and `cannotBePositive`
 [[nodiscard]] WorstCell worstCell(const Subject& subject, const Boundary& boundary,
                                   const VertexPlaces& places, const ImproveReport& report);
 

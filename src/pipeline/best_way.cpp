@@ -18,20 +18,20 @@
 namespace hexhex::pipeline {
 namespace {
 
-/// When a polycube's mesh is good enough: least scaled Jacobian, distance to the part in diagonals
-/// (chords of coarse quads alone cost some thousandths), share of curves followed.
+/// Limits of a good enough polycube mesh: minimum scaled Jacobian, distance from the part in
+/// diagonals (with coarse quads, chords alone cost some thousandths), fraction of curves followed.
 constexpr double kGood = 0.5;
 constexpr double kNear = 5e-3;
 constexpr double kFollowed = 0.99;
 
-/// The quicker one first.
+/// The faster one first.
 constexpr std::array<ShapeMethod, 2> kWays = {ShapeMethod::Polycube, ShapeMethod::Frames};
 
 std::string_view nameOf(ShapeMethod method) {
   return method == ShapeMethod::Frames ? "frames" : "polycube";
 }
 
-/// What one way came to: its mesh, why it has none, or an error that ends the search.
+/// The result of one way: its mesh, why it has none, or an error that ends the search.
 struct Outcome {
   std::optional<MeshedPart> part;
   std::optional<Error> refusal;
@@ -136,7 +136,7 @@ class BothWays {
   }
 
   MeshedPart better() {
-    // Discard what the other way has found by now: with one thread, it would not have started.
+    // Discard what the other way has found so far: with one thread, it would not have started.
     if (isGoodEnough(outcomes_[0])) {
       outcomes_[1] = {};
       outcomes_[1].isNeeded = false;
@@ -147,7 +147,7 @@ class BothWays {
     if (!outcomes_[0].part && !outcomes_[1].part) failBoth(outcomes_);
     std::array<WayReport, 2> reports;
     for (std::size_t i = 0; i < kWays.size(); ++i) reports[i] = reportOf(kWays[i], outcomes_[i]);
-    // If neither is certified, keep frames, which are usually nearer to it.
+    // If neither is certified, keep frames, which usually come closer.
     const bool isFirst = outcomes_[0].part && reports[0].merit > reports[1].merit;
     const std::size_t kept = isFirst || !outcomes_[1].part ? 0 : 1;
     MeshedPart part = std::move(*outcomes_[kept].part);

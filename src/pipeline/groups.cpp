@@ -26,7 +26,7 @@ using Edge = tetmap::VertexPair;
 
 constexpr std::size_t kGroupsGrain = 1024;
 
-/// Tags by the vertices of edges, triangles or quads.
+/// Looks up the tags of edges, triangles or quads by their vertices.
 template <class Feature>
 class Tags {
  public:
@@ -36,7 +36,7 @@ class Tags {
     std::sort(entries_.begin(), entries_.end(), byVertices);
   }
   [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
-  /// 0 without one.
+  /// @return 0 if there is none
   [[nodiscard]] std::int32_t of(decltype(Feature::vertices) vertices) const {
     const Feature wanted{sorted(vertices), 0};
     const auto found = std::lower_bound(entries_.begin(), entries_.end(), wanted, byVertices);
@@ -48,7 +48,7 @@ class Tags {
   std::vector<Feature> entries_;
 };
 
-/// The boundary of a map: triangles that face outwards, with their tags.
+/// The boundary triangles of a map, facing outwards, with their tags.
 std::vector<FeatureFace> boundaryOf(const TetMap& map, const adjacency::TetTopology& topology) {
   const Tags<FeatureFace> tags(map.features.faces);
   std::vector<FeatureFace> triangles;
@@ -92,15 +92,15 @@ class BoundaryTagger {
                                       mesh_.points[quad[2]], mesh_.points[quad[3]]};
       const std::size_t nearest = tree.nearest(centreOf(at)).triangle;
       const Vec3 normal = cross(minus(at[2], at[0]), minus(at[3], at[1]));
-      // Beyond a thin wall may be nearer.
+      // The far side of a thin wall may be nearer.
       const bool isThis = dot(normal, improvement::normalOf(corners[nearest])) > 0;
       tagged[q] = {quad, isThis ? triangles_[nearest].tag : before.of(quad)};
     });
     replaceBoundary(std::move(tagged));
   }
 
-  /// Quads between regions where no plane of the map is: they get the tag of the nearest triangle
-  /// between the same two.
+  /// Extraction only tags quads in grid planes of the map. Other quads between two regions get the
+  /// tag of the nearest triangle between the same two.
   void tagInterfaces() {
     const std::map<Regions, std::vector<FeatureFace>> interfaces = taggedInterfaces();
     if (interfaces.empty() || mesh_.regions.empty()) return;
@@ -132,7 +132,7 @@ class BoundaryTagger {
   std::uint64_t tagEdges(const Features& held) {
     const std::vector<Edge> outer = boundaryEdges();
     std::uint64_t missing = 0;
-    std::set<std::int32_t> open;  // tags of edges that are no lines of the map
+    std::set<std::int32_t> open;  // tags of boundary edges that are not on grid lines
     std::vector<FeatureEdge> curves;
     const Tags<FeatureEdge> known(held.edges);
     for (FeatureEdge edge : map_.features.edges) {
@@ -149,7 +149,7 @@ class BoundaryTagger {
     const Tags<FeatureEdge> tags(curves);
     const improvement::CurvePaths paths =
         improvement::pathsAlongCurves(mesh_.points, quads_, surfaceWith(curves), stage_);
-    if (paths.missing == 0) {  // where some of a curve are lines of the map, paths are along these
+    if (paths.missing == 0) {  // the paths also cover parts of these curves on grid lines
       std::erase_if(mesh_.features.edges,
                     [&open](const FeatureEdge& edge) { return open.contains(edge.tag); });
     }
@@ -194,7 +194,7 @@ class BoundaryTagger {
     return {std::min(a, b), std::max(a, b)};
   }
 
-  /// All triangles between two regions of which some have a tag.
+  /// All triangles between each two regions, if any of these triangles has a tag.
   [[nodiscard]] std::map<Regions, std::vector<FeatureFace>> taggedInterfaces() const {
     std::map<Regions, std::vector<FeatureFace>> list;
     const Tags<FeatureFace> tags(map_.features.faces);
@@ -242,7 +242,7 @@ class BoundaryTagger {
     return edges;
   }
 
-  /// The boundary of the map, with these edges for curves, which end where tags change.
+  /// The boundary of the map with these edges as curves, which end where the tag changes.
   [[nodiscard]] improvement::ReferenceSurface surfaceWith(
       const std::vector<FeatureEdge>& curves) const {
     improvement::SurfaceParts parts;

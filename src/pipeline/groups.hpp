@@ -1,6 +1,6 @@
-// Tags of a part, as groups of its mesh. Tags inside of the part, and of edges that are lines of
-// the map, are the extraction's; tags of the surface are found where it is in the end, as vertices
-// have moved along it.
+// Transfers the tags of a part to its mesh. Extraction provides tags inside the part, and those of
+// edges on grid lines of the map. Tags of the surface are assigned after improvement, since
+// vertices move along the surface.
 #pragma once
 
 #include <hexhex/types.hpp>
@@ -9,16 +9,16 @@
 
 namespace hexhex::pipeline {
 
-/// The tags that vertices are to stay on: those of edges and inner triangles in planes of the grid.
-/// Others have no edges or quads, and borders on a smooth surface would only be in the way.
+/// The tags that improvement must preserve: those of vertices, of edges on grid lines, and of inner
+/// triangles. Other edges have no edges of the mesh, and borders on a smooth surface would only be
+/// in the way.
 [[nodiscard]] Features heldTags(const TetMap& map, Stage& stage);
 
-/// Gives boundary quads the tags of the triangles that are nearest to their centres, and so quads
-/// between two regions that have none those of triangles between these; edges of the
-/// mesh beside tagged curves that are not lines of the map the tags of these; and vertices nearest
-/// to tagged ones theirs.
-/// @param held  as of heldTags()
-/// @return pieces of tagged curves that have no edges
+/// Tags boundary quads like the triangles nearest to their centres; untagged quads between two
+/// regions like the nearest triangle between these; edges of the mesh along tagged curves that are
+/// not on grid lines like the curve; and the vertices nearest to tagged ones like these.
+/// @param held  from heldTags()
+/// @return number of pieces of tagged curves without edges of the mesh
 [[nodiscard]] std::uint64_t tagBoundary(const TetMap& map, const Features& held, HexMesh& mesh,
                                         Stage& stage);
 

@@ -1,4 +1,4 @@
-// From tets alone to a hexahedral mesh: the stages of the library one after the other.
+// From tets to a hexahedral mesh: runs the stages of the library in sequence.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -21,10 +21,11 @@ namespace hexhex {
 namespace pipeline {
 namespace {
 
-/// Polycubes that are tried if the first one has a map but no mesh; each takes as long as the first.
+/// Maximum number of polycubes to try as long as they have a map but no mesh; each takes as long as
+/// the first.
 constexpr std::uint64_t kMostPolycubes = 2;
 
-/// Both ways at once take 6 kB per tet.
+/// Maximum number of tets for which both ways run at once, which takes 6 kB per tet.
 constexpr std::size_t kMostTetsAtOnce = 200'000;
 
 void requirePassed(const VerifyReport& report) {
@@ -37,7 +38,8 @@ void requirePassed(const VerifyReport& report) {
   }
 }
 
-/// Improves without tags: edges found by angle remain, which vertices may leave as a last resort.
+/// Improves without tags. Edges found by angle remain, but vertices may leave them as a last
+/// resort.
 ImproveReport improveWithoutTags(HexMesh& mesh, TetMapView map, const ImproveOptions& options,
                                  Context& context) {
   map.features = {};
@@ -47,7 +49,7 @@ ImproveReport improveWithoutTags(HexMesh& mesh, TetMapView map, const ImproveOpt
   return report;
 }
 
-/// @param map  of the part, with the tags that vertices are to stay on
+/// @param map  of the part, with the tags to preserve
 void improvePart(MeshedPart& part, const TetMapView& map, const ImproveOptions& options,
                  Context& context) {
   HexMesh other = part.mesh;
@@ -60,7 +62,7 @@ void improvePart(MeshedPart& part, const TetMapView& map, const ImproveOptions& 
   part.tagsReleased = true;
 }
 
-/// Makes a mesh of the map in `part.shape`'s report.
+/// Meshes the seamless map whose report is in `part.shape`.
 void meshOf(MeshedPart& part, const TetMap& seamless, const MeshOptions& options,
             Context& context) {
   QuantizedMap quantized = quantize(seamless, options.quantize, context);
@@ -113,7 +115,7 @@ MeshedPart meshBy(const ShapeOptions& shape, const TetMesh& tets, const MeshOpti
   });
 }
 
-/// Frames have one map, polycubes one for each seed that labels are found with.
+/// Frames have one map; a polycube has one for each seed of its labelling.
 MeshedPart meshBy(ShapeMethod method, const TetMesh& tets, const MeshOptions& options,
                   Context& context) {
   ShapeOptions shape = options.shape;

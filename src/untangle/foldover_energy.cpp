@@ -33,8 +33,8 @@ Eigen::Matrix3d cofactorOf(const Eigen::Matrix3d& j) {
   return columns;
 }
 
-/// std::hypot takes as long as the rest of an element's energy; neither square leaves the range of
-/// double.
+/// Not std::hypot, which takes as long as the rest of an element's energy; the squares stay within
+/// the range of double.
 double rootOf(double epsilon, double det) {
   return epsilon == 0 ? std::abs(det) : std::sqrt(epsilon * epsilon + det * det);
 }
@@ -109,7 +109,7 @@ Gradients cornerGradients(const Element& element) {
 Eigen::Matrix3d jacobian(const Problem& problem, const Element& element, const double* x) {
   Eigen::Matrix3d j = Eigen::Matrix3d::Zero();
   if (element.offset >= 0) j = toEigen(problem.matrices[static_cast<std::size_t>(element.offset)]);
-  // From differences, which keep small elements exact far from the origin.
+  // Differences keep small elements accurate far from the origin.
   const Eigen::Vector3d origin = toEigen(element.corners[0].at(x));
   for (std::size_t i = 0; i < 3; ++i) {
     j += (toEigen(element.corners[i + 1].at(x)) - origin) *
@@ -193,8 +193,7 @@ Height Energy::at(const Vector& unknowns, double epsilon, Vector& gradient) {
     if (problem_.pull > 0) byMatrix += problem_.pull * (j - targetOf(problem_, element));
     Eigen::Map<Corners>(forces_[index].data()) =
         element.weight * byMatrix * cornerGradients(element).transpose();
-    // Done here, while the element is in cache: reading it again below takes longer than all of
-    // this.
+    // Apply signs while the element is in cache: reading it again below would cost more.
     for (std::size_t use = 0; use < 12; ++use) {
       forces_[index][use] *= element.corners[use / 3].sign[use % 3];
     }

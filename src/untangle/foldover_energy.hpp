@@ -24,7 +24,7 @@ using Vector = Eigen::VectorXd;
 /// negative.
 [[nodiscard]] double regularized(double epsilon, double det) noexcept;
 
-/// The energy at one point, and what comes with it.
+/// The energy at one point, with the number of flips and the least determinant there.
 struct Height {
   double energy = 0;
   double leastDeterminant = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ class Uses {
 /// Converts derivatives with respect to coordinates to derivatives with respect to unknowns.
 [[nodiscard]] Vector byUnknowns(const Problem& problem, const Vector& byCoordinates);
 
-/// Gradients of all four corners.
+/// The gradients of all four corners.
 [[nodiscard]] Eigen::Matrix<double, 4, 3> cornerGradients(const Element& element);
 [[nodiscard]] Eigen::Matrix3d jacobian(const Problem& problem, const Element& element,
                                        const double* x);
@@ -85,7 +85,7 @@ class Energy {
   const Problem& problem_;
   Stage& stage_;
   Uses uses_;
-  /// Per element, corner and axis: its contribution to the derivative by that coordinate.
+  /// Per element, corner and axis: contribution to the derivative with respect to that coordinate.
   std::vector<std::array<double, 12>> forces_;
 };
 

@@ -8,7 +8,7 @@ namespace hexhex::untangle {
 
 namespace {
 
-/// Fraction of the diagonal: far below what matters, far above rounding.
+/// The shift, as a fraction of the diagonal: negligible, but far above rounding.
 constexpr double kShift = 1e-9;
 
 }  // namespace

@@ -1,5 +1,4 @@
-// The weighted Laplacian of all elements: the Hessian matrix of the sum of weight / 2 |J -
-// target|^2.
+// The weighted Laplacian of all elements: the Hessian of the sum of weight / 2 |J - target|^2.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -7,8 +6,8 @@
 
 namespace hexhex::untangle {
 
-/// Contains both triangles. What the elements leave undetermined (such as moving everything
-/// together) is fixed by a slight shift.
+/// Stores both triangles. A slight shift fixes what the elements leave undetermined, such as a
+/// translation.
 [[nodiscard]] Eigen::SparseMatrix<double> laplacian(const Problem& problem, const Uses& uses);
 
 /// The right-hand side for which the solution brings Jacobian matrices as close as possible to

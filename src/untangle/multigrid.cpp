@@ -8,8 +8,8 @@ namespace hexhex::untangle {
 
 namespace {
 
-/// Unknowns are strongly connected if their entry exceeds this fraction of the mean of their
-/// diagonal entries; half of that on each coarser level.
+/// Unknowns are strongly connected if their entry exceeds this fraction of the geometric mean of
+/// their diagonal entries; half of that on each coarser level.
 constexpr double kStrong = 0.08;
 /// A level that does not reduce the number of unknowns by this factor is useless.
 constexpr double kCoarser = 1.5;
@@ -21,8 +21,8 @@ constexpr Eigen::Index kCoarsest = 500;
 constexpr int kPowerIterations = 12;
 constexpr double kFromBelow = 1.1;
 
-/// For each unknown, the unknown of the next level to which it belongs, and the sign between them:
-/// charts may differ in sign.
+/// Per unknown: the coarse unknown to which it belongs, and the sign between them, since charts may
+/// differ in sign.
 struct Aggregates {
   std::vector<int> of;
   std::vector<double> sign;
@@ -53,7 +53,7 @@ Aggregates aggregate(const SparseMatrix& matrix, double share) {
                                                    : -result.sign[static_cast<std::size_t>(other)];
   };
   const auto isFree = [&result](int i) { return result.of[static_cast<std::size_t>(i)] < 0; };
-  // Whole neighbourhoods first,
+  // Aggregate whole neighbourhoods first.
   for (int i = 0; i < n; ++i) {
     bool allFree = isFree(i);
     forEachStrong(matrix, diagonal, share, i,
@@ -62,7 +62,7 @@ Aggregates aggregate(const SparseMatrix& matrix, double share) {
     result.of[static_cast<std::size_t>(i)] = result.count++;
     forEachStrong(matrix, diagonal, share, i, [&](int j, double entry) { join(j, i, entry); });
   }
-  // then what is left next to them, by the strongest connection,
+  // Attach unknowns next to these by their strongest connection.
   const std::vector<int> wholes = result.of;
   for (int i = 0; i < n; ++i) {
     if (!isFree(i)) continue;
@@ -73,7 +73,7 @@ Aggregates aggregate(const SparseMatrix& matrix, double share) {
       join(i, j, entry);
     });
   }
-  // then the rest.
+  // Aggregate the rest.
   for (int i = 0; i < n; ++i) {
     if (!isFree(i)) continue;
     result.of[static_cast<std::size_t>(i)] = result.count++;

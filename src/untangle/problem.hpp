@@ -9,8 +9,8 @@
 // - Tets: C = 0 and g = tetGradients(ideal edges).
 // - Triangles of a surface that is to face the direction e, with outward normal n: the g_i are the
 //   gradients in the triangle's plane, g_3 = 0, C = e n^T. det J is the ratio of areas, negative if
-//   the triangle is turned over. No energy of tets alone notices triangles that fold over in the
-//   plane to which they are bound.
+//   the triangle is flipped. The energy of the tets alone does not keep triangles from folding over
+//   within the plane to which they are constrained.
 // - Edges of a border that is to run along s e_c (a signed axis): with direction d and length l,
 //   g_1 = d / l, g_2 = g_3 = 0, C = R - s e_c d^T for a rotation R that turns d to s e_c; only
 //   coordinate c of the corners varies. det J is the ratio of lengths, negative if the edge runs
@@ -31,8 +31,8 @@ namespace hexhex::untangle {
 using Matrix3 = std::array<Vec3, 3>;  ///< rows
 
 /// Coordinate k is constant[k] + sign[k] * x[unknown[k]], or constant[k] alone if unknown[k] is
-/// negative. (Problem::sums allows a sum of unknowns instead of one.) Several coordinates, even of
-/// one corner, may share an unknown.
+/// negative. (With Problem::sums, sums of unknowns take the place of x.) Several coordinates, even
+/// of one corner, may share an unknown.
 struct Corner {
   Vec3 constant{};
   std::array<int, 3> unknown = {-1, -1, -1};
@@ -51,12 +51,12 @@ struct Element {
   std::array<Corner, 4> corners;
   std::array<Vec3, 3> gradients{};  ///< of corners 1 to 3; that of corner 0 is minus their sum
   double weight = 1;                ///< positive
-  int offset = -1;                  ///< C, as an index into Problem::matrices; -1: 0
-  int target = -1;                  ///< the rotation that it is pulled to, likewise; -1: 1
+  int offset = -1;                  ///< index of C in Problem::matrices; -1: C = 0
+  int target = -1;                  ///< index of the target rotation, likewise; -1: identity
 };
 
-/// For a tet whose ideal shape has these edges from corner 0: the rows of the inverse of the matrix
-/// with these columns.
+/// The gradients of a tet, given the three edges of its ideal shape at corner 0: the rows of the
+/// inverse of the matrix whose columns are these edges.
 [[nodiscard]] inline std::array<Vec3, 3> tetGradients(const std::array<Vec3, 3>& edges) {
   const double det = tripleProduct(edges[0], edges[1], edges[2]);
   std::array<Vec3, 3> rows = {cross(edges[1], edges[2]), cross(edges[2], edges[0]),
@@ -82,12 +82,11 @@ struct SparseRows {
 struct Problem {
   std::vector<Element> elements;
   std::vector<Matrix3> matrices;
-  /// Weight of 0.5 |J - target|^2 next to the foldover-free energy. Maps without any constant
-  /// corner need it: otherwise some collapse.
+  /// Weight of the term 0.5 |J - target|^2, added to the foldover-free energy. Without it, some
+  /// maps without constant corners collapse.
   double pull = 0;
-  std::vector<double> x;  ///< the unknowns: start of the search, then its result
-  /// Coordinates that are sums of several unknowns: unknown i of a corner then means row i of these
-  /// sums. Without rows, it is x[i].
+  std::vector<double> x;  ///< the unknowns: initial guess, then the solution
+  /// If not empty, Corner::unknown refers to rows of this matrix times x instead of entries of x.
   SparseRows sums;
 };
 

@@ -23,8 +23,8 @@ class Lbfgs {
   Lbfgs(Energy& energy, const Multigrid& metric, const Vector& x, double epsilon);
 
   /// One step downhill.
-  /// @param[in,out] x  the end of the last step
-  /// @return false if there is no step
+  /// @param[in,out] x  where the last step ended
+  /// @return false if no step lowers the energy
   bool step(Vector& x);
 
   /// At the current x.
@@ -46,7 +46,7 @@ class Lbfgs {
   Height height_;
   Vector gradient_;
   double scale_ = 1;        ///< of the metric
-  std::deque<Pair> pairs_;  ///< the latest ones
+  std::deque<Pair> pairs_;  ///< most recent last
 };
 
 namespace {
@@ -55,7 +55,7 @@ constexpr std::size_t kPairs = 12;
 /// Required fraction of the decrease that the slope predicts.
 constexpr double kSufficient = 1e-4;
 constexpr double kShortest = 1e-8;
-/// Pairs along which the energy is convex by less than this fraction are ignored.
+/// Pairs whose move and gradient change have a smaller cosine are ignored.
 constexpr double kConvex = 1e-12;
 
 }  // namespace
@@ -116,12 +116,12 @@ void Lbfgs::learn(Pair pair) {
 
 namespace {
 
-/// Up to this many unknowns are solved for exactly: more take longer to factor than everything
-/// else.
+/// Maximum number of unknowns for which the Laplacian is factored: beyond, factoring takes longer
+/// than everything else.
 constexpr Eigen::Index kMostFactored = 4000;
 constexpr int kMostRounds = 150;
-/// Steps per round. A penalty larger than the map can follow leaves it folded, so a round continues
-/// as long as each step lowers the energy considerably.
+/// Number of steps per round. If the penalty grew faster than the map can follow, folds would
+/// persist, so a round continues while each step lowers the energy by at least kFastDecrease.
 constexpr int kStepsOfRound = 10;
 constexpr int kMostStepsOfRound = 100;
 constexpr double kFastDecrease = 0.03;
@@ -135,13 +135,14 @@ constexpr Pace kQuick = {8, 0.5};
 constexpr Pace kPatient = {16, 0.2};
 /// A step that lowers the energy by a smaller fraction ends its round.
 constexpr double kLeastDecrease = 1e-6;
-/// Regularization where hardly any element is bad.
+/// Lower bound of the regularization.
 constexpr double kLeastEpsilon = 1e-9;
 /// Polishing ends when this many steps lower the energy by less than this fraction.
 constexpr int kPolishingSteps = 6;
 constexpr double kLeastPolish = 1e-4;
 
-/// The penalty grows as fast as the energy was able to follow (their Section 3, Theorem 1).
+/// The penalty grows as fast as the energy was able to follow (Garanzha et al. 2021, Section 3,
+/// Theorem 1).
 double nextEpsilon(double epsilon, double followed, double leastDeterminant) {
   const double aim = (1 - followed) * regularized(epsilon, leastDeterminant);
   const double square = aim * (aim - leastDeterminant);
@@ -251,8 +252,8 @@ Result Solver::run(const Options& options) {
 }
 
 std::vector<std::size_t> flatElements(const Problem& problem) {
-  // Random unknowns rarely make a polynomial of degree three vanish by chance; two draws even more
-  // rarely.
+  // A polynomial of degree three rarely vanishes at random unknowns by chance; at two draws even
+  // less.
   constexpr int kDraws = 2;
   // Far above rounding, far below the flattest tets of real maps.
   constexpr double kFlat = 1e-13;

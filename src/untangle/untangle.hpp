@@ -13,8 +13,7 @@
 // proportional to the number of elements. The solver stops when flipped elements vanish so slowly,
 // over the last 8 penalties (16 in patient mode), that some would be left after 150 penalties.
 // (Newton's method with a semidefinite approximation of the Hessian finds the same maps, but takes
-// 1.5 times as long over those of docs/user/quantize.md, and three times as long over the hardest
-// one.)
+// 1.5 times as long for those of docs/user/quantize.md, and three times as long for the hardest.)
 //
 // If flips remain, flatElements() lists the elements that no unknowns can make positive.
 #pragma once
@@ -34,13 +33,14 @@ struct Options {
   /// Initial regularization of the penalty: 1 from any starting point, 1e-3 if few elements are
   /// flipped and the others should stay as they are.
   double epsilon = 1;
-  /// Maximum number of steps that lower the energy once no element is flipped. They flip none
-  /// again.
+  /// Maximum number of steps that improve the map further once no element is flipped. They never
+  /// flip an element again.
   int polishing = 60;
-  /// Whether the penalty grows slowly and flips may persist for longer: for maps without anything
-  /// fixed, whose parts first have to find their places. Takes up to three times as many steps.
+  /// Whether the penalty grows slowly and flips may persist for longer: for maps without fixed
+  /// corners, whose parts have to find their places first. Takes up to three times as many steps.
   bool isPatient = false;
-  /// May be exceeded by a round or two, since the solver stops between rounds; excludes polishing.
+  /// Maximum number of steps without polishing. Checked between rounds, so the last round may
+  /// exceed it.
   int mostSteps = std::numeric_limits<int>::max();
 };
 
@@ -66,8 +66,8 @@ class Solver {
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
 
-  /// Moves the unknowns to where Jacobian matrices are as close as possible to their targets,
-  /// flipped or not: a linear problem, independent of the current unknowns.
+  /// Sets the unknowns such that Jacobian matrices are as close as possible to their targets,
+  /// flipped or not: a linear least-squares problem, independent of the current unknowns.
   void start();
 
   /// Untangles from the current unknowns. Never ends with more flipped elements than before.
@@ -78,8 +78,8 @@ class Solver {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Elements whose determinant vanishes whatever the unknowns, ascending: e.g. their corners are
-/// bound to one plane. Found at random unknowns, up to rounding.
+/// Elements whose determinant vanishes whatever the unknowns, ascending: e.g. because their corners
+/// are constrained to one plane. Tested at random unknowns, up to rounding.
 [[nodiscard]] std::vector<std::size_t> flatElements(const Problem& problem);
 
 }  // namespace hexhex::untangle
