@@ -38,13 +38,7 @@ HEXHEX_INLINE Number chosen(const Number& condition, const Number& a, const Numb
 #endif
 }
 
-/// 1 / chi, and chi' / chi with respect to the determinant, where chi = (det + root) / 2 with
-/// root^2 = det^2 + epsilon^2.
-struct Regularized {
-  Number byChi;
-  Number byRoot;
-};
-
+/// 1 / chi, where chi = (det + root) / 2 with root^2 = det^2 + epsilon^2.
 HEXHEX_INLINE Number inverseOfChi(double epsilon, const Number& det, const Number& root) noexcept {
   // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
   return chosen(det, Number{} + 2, 2 * (root - det)) /
