@@ -35,7 +35,7 @@ void printToStderr(fmt::format_string<Args...> format, Args&&... args) {
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
 }
 
-/// Escapes control characters in names and file contents, which a terminal could execute.
+/// Replaces control characters of names and file contents, which a terminal would execute.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// Prints "from -> to" to standard output, and an optional remark.

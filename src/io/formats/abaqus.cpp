@@ -638,7 +638,7 @@ class AbaqusWriter {
     output_.write("*HEADING\n").write(kAbaqusHeading).write('\n');
     writeNodes(points);
     writeElements(cells);
-    // The set of all elements, "hexahedra", is written elsewhere.
+    // writeElements() has written the set of all elements.
     for (const ElementGroup& group : groups.cells.groups) {
       if (group.name == "hexahedra") continue;
       writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,

@@ -200,8 +200,7 @@ ReadLabels readVtuLabels, readVtkLegacyLabels;
 // A map is the property `HexHex::Parametrization`: for each half-face of a tet, the parameters of
 // the opposite vertex in the tet's chart. Also stored: valences of edges (`edge_valance`),
 // rotations across half-faces (`HalffaceTransiton`), features (`AlgoHex::FeatureVertices`,
-// `...Edges`,
-// `...Faces`), and for hex meshes the generators of vertices (`v_tet_generator_type`).
+// `...Edges`, `...Faces`), and for hex meshes the generators of vertices (`v_tet_generator_type`).
 //
 // The format defines no order of a cell's corners, and no generators by corners. To preserve both,
 // further properties are written, which other programs ignore: `hexhex::corner_order` (only where

@@ -125,9 +125,9 @@ class HexexReader {
     keepFacesThatSaySomething(std::move(walls));
   }
 
-  /// Drops features that list the whole boundary, as programs that trace motorcycle complexes write
-  /// them, both as walls and as features: without tags they carry no information, and would merge
-  /// all boundary patches.
+  /// Adds interior walls to the features, and drops features on the boundary if they cover all of
+  /// it: without tags they carry no information, and would hide its smooth patches. Programs that
+  /// trace motorcycle complexes list the boundary among both walls and features.
   void keepFacesThatSaySomething(std::vector<FeatureFace> walls) {
     std::vector<FeatureFace>& faces = map_.features.faces;
     if (faces.empty() && walls.empty()) return;
