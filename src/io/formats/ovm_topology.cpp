@@ -461,7 +461,7 @@ class HexTopologyBuilder {
     };
     parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain, [&](std::size_t c) {
       Index* const handles = topology_.cells.handles.data() + 6 * c;
-      std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
+      std::array<Index, 6> mates;  // NOLINT(*-member-init): fully overwritten
       std::copy_n(handles, 6, mates.begin());
       for (std::size_t slot = 0; slot < 6; ++slot) {
         const Index mate = mates[kFaceOfSlot[slot]];

@@ -134,7 +134,7 @@ class UnvReader {
 
   void readNode() {
     nodeNumbers_.push_back(number("the number of a node"));
-    skipNumbers(3);  // coordinate systems and a color
+    skipNumbers(3);  // coordinate systems and a colour
     Vec3& point = lists_.points.emplace_back();
     for (double& coordinate : point) coordinate = scanner_->number("a coordinate of a node");
   }
@@ -142,7 +142,7 @@ class UnvReader {
   void readElement() {
     const std::uint64_t element = number("the number of an element");
     const std::int64_t typeNumber = scanner_->integer("the type of an element");
-    skipNumbers(3);  // tables of properties and a color
+    skipNumbers(3);  // tables of properties and a colour
     const std::uint64_t count = number("the number of nodes of an element");
     if (isBeam(typeNumber)) skipNumbers(3);
     constexpr std::uint64_t kMost = 64;

@@ -39,7 +39,7 @@ void convert(const VtkColumn& column, const char* from, std::size_t count, T* to
     const auto all = [&](auto bigEndian) {
       using Stored = decltype(zero);
       for (std::size_t i = 0; i < count; ++i) {
-        // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits keep their sign, too.
+        // NOLINTNEXTLINE(bugprone-signed-char-misuse): 8-bit numbers keep their sign.
         to[i] = static_cast<T>(loadNumber<Stored, bigEndian>(from + i * sizeof(Stored)));
       }
     };

@@ -69,7 +69,7 @@ class ObjReader {
   std::vector<Index> corners_;
 };
 
-/// Reads OFF: one vertex or face per line; what follows, such as colors, is skipped.
+/// Reads OFF: one vertex or face per line; what follows, such as colours, is skipped.
 class OffReader {
  public:
   static constexpr std::string_view kFirst = {};  // comments may come first
