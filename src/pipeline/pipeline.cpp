@@ -21,8 +21,7 @@ namespace hexhex {
 namespace pipeline {
 namespace {
 
-/// Polycubes that are tried if the first one has a map but no mesh; each takes as long as the
-/// first.
+/// Polycubes that are tried if the first one has a map but no mesh; each takes as long as the first.
 constexpr std::uint64_t kMostPolycubes = 2;
 
 /// Both ways at once take 6 kB per tet.
