@@ -1,5 +1,5 @@
-// The subcommands: each adds its options to the parser and says what to do afterwards; and what the
-// exit code of the command says.
+// The subcommands, each of which adds its options to the parser and returns what to run; and the
+// exit codes of the command.
 #pragma once
 
 #include <functional>
@@ -12,11 +12,11 @@ namespace hexhex::command {
 
 enum ExitCode : int {
   kSuccess = 0,
-  kInvalidMap = 1,    ///< the map is no integer-grid map
+  kInvalidMap = 1,    ///< the map is not an integer-grid map
   kBadUsage = 2,      ///< wrong options or arguments
-  kFileProblem = 3,   ///< a file cannot be read, understood, or written
-  kFailure = 4,       ///< the result failed its verification, memory was exhausted, or a bug
-  kInterrupted = 130  ///< Ctrl-C: 128 plus the number of the signal, as shells do it
+  kFileProblem = 3,   ///< a file cannot be read, is invalid, or cannot be written
+  kFailure = 4,       ///< verification failed, memory was exhausted, or a bug
+  kInterrupted = 130  ///< Ctrl-C: 128 plus the signal number, as in shells
 };
 
 [[nodiscard]] constexpr ExitCode exitCodeOf(ErrorCode code) noexcept {
@@ -27,7 +27,7 @@ enum ExitCode : int {
     case ErrorCode::FileSyntax:
     case ErrorCode::FileUnsupported:
     case ErrorCode::FileWrite:
-    // The command has its arrays from files, and readers check indices and numbers.
+    // Arrays come from files, whose readers check indices and numbers.
     case ErrorCode::IndexOutOfRange:
     case ErrorCode::NotFinite:
       return kFileProblem;
@@ -74,7 +74,7 @@ struct Command {
 [[nodiscard]] Command addConvert(CLI::App& app);
 [[nodiscard]] Command addFormats(CLI::App& app);
 [[nodiscard]] Command addView(CLI::App& app);
-/// After all others, which it explains.
+/// To be added after all other subcommands, which it explains.
 [[nodiscard]] Command addHelp(CLI::App& app);
 
 }  // namespace hexhex::command

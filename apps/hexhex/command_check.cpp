@@ -1,4 +1,4 @@
-// `hexhex check`: what a map is and what is wrong with it.
+// `hexhex check`: diagnoses a map.
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,7 +26,7 @@ struct CheckArguments {
   bool json = false;
 };
 
-/// What a map is, and whether it is seamless if it is not integer.
+/// Diagnosis of a map, including seamlessness if it is not an integer-grid map.
 struct Examination {
   CheckReport report;
   std::optional<SeamlessReport> seamless;
@@ -45,7 +45,7 @@ Examination examine(const CheckArguments& arguments) {
   return result;
 }
 
-/// What the map is, in a sentence, and what to do with it.
+/// The kind of map in a sentence, and what to do with it.
 std::string classify(const Examination& found, const MapSource& input) {
   if (found.report.valid()) return "The map is valid.";
   std::string advice = found.seamless ? adviceFor(*found.seamless, quantizationOf(input)) : "";

@@ -1,4 +1,4 @@
-// `hexhex convert`: a map or a hexahedral mesh into another format.
+// `hexhex convert`: converts a map or a hexahedral mesh to another format.
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -34,7 +34,7 @@ struct ConvertArguments {
   bool hexesOnly = false;
 };
 
-/// That neither maps nor hex meshes can be written is known before anything is read.
+/// Refuses a format that supports neither maps nor hex meshes before anything is read.
 void requireAnyFormat(const ConvertArguments& arguments) {
   try {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
@@ -44,7 +44,7 @@ void requireAnyFormat(const ConvertArguments& arguments) {
   }
 }
 
-/// Calls require(), and says of its error what the input is.
+/// Calls require(), and adds the kind of the input to its error.
 template <class F>
 void requireFor(const ConvertArguments& arguments, const char* content, const F& require) {
   try {
@@ -56,7 +56,7 @@ void requireFor(const ConvertArguments& arguments, const char* content, const F&
   }
 }
 
-/// How a file is read.
+/// The options for reading.
 ReadOptions readingOf(const ConvertArguments& arguments, std::vector<CellCount>& counts) {
   ReadOptions options = arguments.input.options();
   options.hexesOnly = arguments.hexesOnly;
@@ -70,8 +70,8 @@ std::variant<TetMap, HexMesh> readInput(const ConvertArguments& arguments,
   return readMapOrHexMesh(arguments.input.file, readingOf(arguments, counts), context);
 }
 
-/// Whether the input has cells of higher order. Pipes, which are read but once, are not looked
-/// into.
+/// Whether the input has cells of higher order. Pipes can be read only once, so they are not
+/// inspected.
 bool isCurved(const ConvertArguments& arguments, Context& context) {
   const MapSource& input = arguments.input;
   std::error_code unknown;
@@ -98,7 +98,7 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
                      mesh.order, mesh.points.size());
 }
 
-/// What was converted.
+/// Converts the input and returns a description of what was converted.
 std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCount>& counts,
                          Context& context) {
   if (isCurved(arguments, context)) return convertCurved(arguments, context);
@@ -167,7 +167,7 @@ int run(const ConvertArguments& arguments) {
   longRun.finish();
   if (arguments.hexesOnly) warnOfOtherCells(counts);
   if (arguments.run.quiet) return kSuccess;
-  std::error_code unknown;  // the size of a pipe
+  std::error_code unknown;  // a pipe has no size
   const std::uintmax_t bytes = std::filesystem::file_size(arguments.output, unknown);
   printFiles(arguments.input.description(), arguments.output,
              ": " + what + (unknown ? "" : ", " + bytesAsText(bytes)));

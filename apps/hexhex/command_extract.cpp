@@ -1,4 +1,4 @@
-// `hexhex extract`: from a map to a verified hexahedral mesh.
+// `hexhex extract`: extracts a verified hexahedral mesh from a map.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -42,18 +42,18 @@
 namespace hexhex::command {
 namespace {
 
-/// The options, whose repair goes to the record.
+/// The options; the record receives the repaired map.
 ExtractOptions optionsOf(const ExtractArguments& arguments, ExtractionRecord& record) {
   ExtractOptions options = arguments.options;
   if (arguments.repair) options.repair = &record.repaired;
   return options;
 }
 
-/// What extracts a mesh and then verifies it.
+/// Creates the extractor, which repairs the map if requested.
 Extractor prepareExtractor(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                            ExtractionRecord& record) {
   const ExtractOptions options = optionsOf(arguments, record);
-  // Where there is no such number, the extraction says so.
+  // If the product overflows, the extraction reports it.
   const bool fits = options.scale <= std::numeric_limits<int>::max() / arguments.order;
   const int maxScale = fits ? options.scale * arguments.order : options.scale;
   return longRun.part("extraction", [&] {
@@ -72,7 +72,7 @@ void verifyMesh(const ExtractArguments& arguments, Extractor& extractor, const H
                 "Please report this with the map.");
 }
 
-/// Extracts the mesh with the arcs and patches that are asked for.
+/// Extracts the mesh with the requested arcs and patches.
 PiecewiseLinearMesh extractWithCurves(const ExtractArguments& arguments, Extractor& extractor,
                                       Context& context, ExtractionRecord& record) {
   if (arguments.arcs.empty() && arguments.patches.empty()) {
@@ -83,8 +83,9 @@ PiecewiseLinearMesh extractWithCurves(const ExtractArguments& arguments, Extract
   return extractor.extractPiecewiseLinear(parts, arguments.options, context, &record.statistics);
 }
 
+/// Improves the mesh if requested; otherwise only certifies its quality.
 /// @param mesh  straight or curved
-/// @return where its points were before; empty without an improvement, and if no page shows them
+/// @return the points before improvement, if a page shows them; otherwise empty
 Array<Vec3> improveOrCertify(const ExtractArguments& arguments, const TetMap& map, auto& mesh,
                              LongRun& longRun, ExtractionRecord& record) {
   Context& context = longRun.context();
@@ -100,7 +101,7 @@ Array<Vec3> improveOrCertify(const ExtractArguments& arguments, const TetMap& ma
   return pointsBefore(std::move(before), *record.improved);
 }
 
-/// @param mesh  straight or curved  @param before  as improveOrCertify() returned it
+/// @param mesh  straight or curved  @param before  the result of improveOrCertify()
 void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Array<Vec3>& before,
                    LongRun& longRun, const ExtractionRecord& record) {
   if (arguments.page.empty()) return;
@@ -114,7 +115,7 @@ void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Ar
   });
 }
 
-/// Lists the boundary where that is hardly noticed or asked for: it takes 0.7 of 6 s for six
+/// Lists the boundary if the mesh is small or this was requested: it takes 0.7 of 6 s for six
 /// million cells.
 /// @param mesh  straight or curved
 void noteBoundary(const ExtractArguments& arguments, const auto& mesh, LongRun& longRun,
@@ -157,7 +158,7 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
       "extraction", [&] { return extractWithCurves(arguments, *extractor, context, record); });
   HexMesh& mesh = all.mesh;
   verifyMesh(arguments, *extractor, mesh, longRun, record);
-  extractor.reset();  // its memory serves what follows
+  extractor.reset();  // frees its memory for the next steps
   if (!arguments.arcs.empty()) {
     longRun.part("writing", [&] {
       writeArcs(all, extractedMap(map, &record.repaired), arguments.arcs, context);
@@ -175,7 +176,7 @@ void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun&
   record.cells = mesh.cells.size();
 }
 
-/// Cells of higher order.
+/// The same for cells of higher order.
 void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                    ExtractionRecord& record) {
   Context& context = longRun.context();
@@ -193,7 +194,7 @@ void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun
   record.nodes = mesh.points.size();
 }
 
-/// The same in pieces, verified after it was written.
+/// Extracts and writes a mesh in pieces, and verifies the file.
 void extractInPieces(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
   StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.choice.options(),
@@ -205,7 +206,7 @@ void extractInPieces(const ExtractArguments& arguments, const TetMap& map, LongR
   record.streamed = mesh.written;
 }
 
-/// The same in parts.
+/// Extracts and writes a mesh in parts.
 void extractAllParts(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                      ExtractionRecord& record) {
   WriteOptions options = arguments.choice.options();
@@ -220,7 +221,7 @@ void extractAllParts(const ExtractArguments& arguments, const TetMap& map, LongR
   record.cells = record.meshParts->summary.cells;
 }
 
-/// What is left of a map beyond repair. Always an invalid map, by its exit code.
+/// Extracts the valid part of a map beyond repair. The exit code is always that of an invalid map.
 int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, const Error& problem,
                        LongRun& longRun, Report& report) {
   Context& context = longRun.context();
@@ -242,8 +243,8 @@ int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, con
   return kInvalidMap;
 }
 
-/// The functions of the library that a run calls; weights are their seconds for a mesh of seven
-/// million cells.
+/// The library functions that a run calls; weights are their seconds for a mesh of seven million
+/// cells.
 std::vector<WorkStep> stepsOf(const ExtractArguments& arguments) {
   std::vector<WorkStep> steps = {{"readMap", 0.05}, {"readMapPair", 0.05}};
   if (arguments.quantize) steps.push_back({"quantize", 20});
@@ -280,7 +281,7 @@ TetMap readAndQuantize(const ExtractArguments& arguments, LongRun& longRun,
   return std::move(quantized.map);
 }
 
-/// In a team, the first process reads, and all others get what it has.
+/// In a team, the first process reads the map and broadcasts it.
 TetMap readForTeam(const ExtractArguments& arguments, LongRun& longRun, ExtractionRecord& record) {
   if (arguments.team == nullptr) return readAndQuantize(arguments, longRun, record);
   const bool reads = arguments.team->rank() == 0;
@@ -289,10 +290,10 @@ TetMap readForTeam(const ExtractArguments& arguments, LongRun& longRun, Extracti
   return reads ? std::move(read) : std::move(shared);
 }
 
-/// What is known beside what the steps have noted.
+/// Fills in what the steps have not recorded.
 void fillRecord(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
                 ExtractionRecord& record) {
-  std::error_code unknown;  // the size of a pipe
+  std::error_code unknown;  // a pipe has no size
   record.input.file = arguments.input.description();
   for (const std::filesystem::path& file : arguments.input.files()) {
     record.input.bytes += std::filesystem::file_size(file, unknown);
@@ -348,8 +349,8 @@ int extractMesh(const ExtractArguments& arguments) {
   return kSuccess;
 }
 
-/// What processes of a team must have in common of a command line: all but what each has for
-/// itself, or the first alone.
+/// The options that must agree across a team: all except those that are per process, or that only
+/// the first process uses.
 std::string commonOptions(const CLI::App& parser) {
   constexpr std::array<std::string_view, 5> kOwn = {"--threads", "--verbose", "--quiet", "--report",
                                                     "--mpi"};
@@ -361,7 +362,7 @@ std::string commonOptions(const CLI::App& parser) {
     if (option->get_expected_max() == 0) continue;  // a flag
     for (const std::string& value : option->results()) text += value + ' ';
   }
-  text.pop_back();  // there is a map, and an output
+  text.pop_back();  // not empty: map and output are mandatory
   return text;
 }
 
@@ -383,7 +384,7 @@ int run(const ExtractArguments& given, const CLI::App& parser) {
       static_cast<void>(extractMesh(arguments));
     });
   } catch (const Error& error) {
-    // Here, where all are still there: when one has ended so, mpirun stops the others.
+    // Print before this process exits: mpirun then stops the others.
     if (speaks) printError(error, sentenceOf(error));
     return exitCodeOf(error.code());
   }

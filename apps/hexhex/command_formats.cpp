@@ -1,4 +1,4 @@
-// `hexhex formats`: what files are read and written.
+// `hexhex formats`: lists the supported file formats.
 #include <string>
 
 #include <fmt/core.h>
@@ -10,7 +10,7 @@
 namespace hexhex::command {
 namespace {
 
-/// "read, write", "write", or "-".
+/// "read, write", "read", "write", or "-".
 std::string uses(bool reads, bool writes) {
   if (reads) return writes ? "read, write" : "read";
   return writes ? "write" : "-";

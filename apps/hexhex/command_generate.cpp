@@ -1,4 +1,4 @@
-// `hexhex generate`: maps with known answers.
+// `hexhex generate`: generates maps with known properties.
 #include <map>
 #include <memory>
 #include <span>
@@ -37,7 +37,7 @@ auto choicesOf(std::span<const Entry> entries) {
 int run(const GenerateArguments& arguments) {
   const WriteOptions writing = arguments.choice.options();
   requireMapFormat(arguments.output, writing);
-  // A signal takes effect between the two steps: a file is written whole or not at all.
+  // Signals take effect between the two steps: a file is written completely or not at all.
   Context context;
   const CancelOnSignal cancelOnSignal(context);
   requireWritable(arguments.output);

@@ -1,4 +1,4 @@
-// `hexhex help`: the help of a subcommand.
+// `hexhex help`: prints the help of a subcommand.
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,7 +23,7 @@ int run(const CLI::App& app, const HelpArguments& arguments) {
     asked = parser;
     name += " " + arguments.subcommand;
   }
-  // Asked itself, an app explains the subcommand that was given, which is this one.
+  // app.help() would print the help of the subcommand that was given, which is this one.
   fmt::print("{}", app.get_formatter()->make_help(asked, name, CLI::AppFormatMode::Normal));
   return kSuccess;
 }

@@ -1,4 +1,4 @@
-// `hexhex improve`: a mesh whose cells are positive, and better.
+// `hexhex improve`: improves the quality of a mesh.
 #include <memory>
 #include <string>
 #include <utility>
@@ -85,7 +85,7 @@ HexMesh readStraight(const ImproveArguments& arguments, Context& context) {
   return mesh;
 }
 
-/// @return whether the mesh is curved
+/// Checks that the output can be written. @return whether the mesh is curved
 bool requireFormats(const ImproveArguments& arguments, Context& context) {
   if (!holdsLagrangeCells(arguments.mesh, context)) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());

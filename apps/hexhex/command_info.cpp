@@ -1,4 +1,4 @@
-// `hexhex info`: what a file holds.
+// `hexhex info`: summarizes the content of a file.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -41,7 +41,7 @@ struct Box {
   Vec3 upper{};
 };
 
-/// Empty without points.
+/// The bounding box; empty if there are no points.
 std::optional<Box> boxOf(std::span<const Vec3> points) {
   if (points.empty()) return std::nullopt;
   Box box{points.front(), points.front()};
@@ -54,9 +54,9 @@ std::optional<Box> boxOf(std::span<const Vec3> points) {
   return box;
 }
 
-/// What a file holds; what is empty does not apply.
+/// The content of a file; empty fields do not apply.
 struct FileContent {
-  std::uint64_t tets = 0;  ///< a map if there are any
+  std::uint64_t tets = 0;  ///< 0: no map
   std::uint64_t cells = 0;
   std::uint64_t points = 0;
   std::optional<Box> box;
@@ -68,7 +68,7 @@ struct FileContent {
   bool isMap = false;
   std::vector<CellCount> types;  ///< of a mesh
 
-  /// Whether there are other cells than the hexahedra that all else is about.
+  /// Whether there are cells other than the hexahedra that the other fields describe.
   [[nodiscard]] bool isMixed() const noexcept { return types.size() > 1; }
 };
 
@@ -99,7 +99,7 @@ FileContent contentOf(const HexMesh& mesh, double patchAngle, Context& context) 
   return content;
 }
 
-/// What is known without the whole mesh in memory.
+/// Content that is known without loading the mesh.
 FileContent contentOf(const MeshSummary& summary) {
   FileContent content;
   content.cells = summary.cells;
@@ -109,7 +109,7 @@ FileContent contentOf(const MeshSummary& summary) {
   return content;
 }
 
-/// What is in one file.
+/// Reads a single file.
 FileContent readFile(const InfoArguments& arguments, Context& context) {
   const MapSource& source = arguments.source;
   std::vector<CellCount> types;
@@ -148,7 +148,7 @@ void printHistogram(const QualitySummary& quality) {
 /// "; the first is cell 13"
 std::string firstOf(std::uint64_t cell) { return fmt::format("; the first is cell {}", cell); }
 
-/// What is wrong with the lists of corners, if anything.
+/// Prints cells with invalid lists of corners.
 void printFaults(const CellFaults& faults, std::uint64_t cells) {
   if (!faults.repeated.empty()) {
     printLine("repeated corners", counted(faults.repeated.size(), "cell") +

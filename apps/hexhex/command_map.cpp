@@ -1,4 +1,4 @@
-// `hexhex map`: from a part, tets or a surface, to a seamless map.
+// `hexhex map`: computes a seamless map of a part, given as tets, a surface or a STEP file.
 #include <memory>
 #include <string>
 

@@ -1,4 +1,5 @@
-// `hexhex mesh`: from a part, tets or a surface, to a hexahedral mesh whose cells are certified.
+// `hexhex mesh`: makes a hexahedral mesh with certified cells of a part, given as tets, a surface
+// or a STEP file.
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -30,7 +31,7 @@ namespace {
 struct MeshArguments {
   std::string part;
   std::string output;
-  std::string map;   ///< empty: it is not kept
+  std::string map;   ///< empty: not written
   std::string page;  ///< empty: none
   OutputChoice choice;
   std::string report;

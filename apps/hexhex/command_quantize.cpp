@@ -1,4 +1,4 @@
-// `hexhex quantize`: from a seamless map to an integer-grid map.
+// `hexhex quantize`: turns a seamless map into an integer-grid map.
 #include <memory>
 #include <string>
 

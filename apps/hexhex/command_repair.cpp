@@ -1,4 +1,4 @@
-// `hexhex repair`: from a defective map to a valid one.
+// `hexhex repair`: turns a defective map into a valid one.
 #include <memory>
 #include <string>
 

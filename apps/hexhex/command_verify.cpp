@@ -1,4 +1,4 @@
-// `hexhex verify`: does a mesh agree with its map?
+// `hexhex verify`: checks a mesh against its map.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -30,7 +30,7 @@ struct VerifyArguments {
   bool json = false;
 };
 
-/// One row per check, columns as wide as their longest entry.
+/// Prints a row per check, with columns as wide as their longest entry.
 void printTable(const VerifyReport& report) {
   const VerifyItem head{"check", "expected", "found", true};
   std::size_t nameWidth = head.name.size();
@@ -50,7 +50,7 @@ void printTable(const VerifyReport& report) {
   fmt::print("The mesh {} with the map.\n", report.passed() ? "agrees" : "does not agree");
 }
 
-/// The scale at which the map has as many cells as the mesh, if that is another one.
+/// Another scale at which the map would have as many cells as the mesh.
 std::optional<int> likelyScale(const VerifyReport& report, int scale) {
   const auto isCells = [](const VerifyItem& item) { return item.name == "cells"; };
   const auto cells = std::find_if(report.items.begin(), report.items.end(), isCells);
@@ -58,7 +58,7 @@ std::optional<int> likelyScale(const VerifyReport& report, int scale) {
   const double expected = std::stod(cells->expected) / std::pow(scale, 3);
   const double found = std::stod(cells->found);
   const double likely = std::round(std::cbrt(found / expected));
-  constexpr double kMost = 1e6;  // cubes up to here, and their products, are exact enough
+  constexpr double kMost = 1e6;  // cubes of larger numbers would be too inexact
   if (!(likely >= 1 && likely < kMost) || expected * std::pow(likely, 3) != found) {
     return std::nullopt;
   }
@@ -67,7 +67,7 @@ std::optional<int> likelyScale(const VerifyReport& report, int scale) {
 
 struct Comparison {
   VerifyReport report;
-  Certificate certificate;  ///< a cell may be where it belongs and yet not be valid
+  Certificate certificate;  ///< a cell may be in the right place and still be invalid
 };
 
 Comparison compare(const VerifyArguments& arguments) {

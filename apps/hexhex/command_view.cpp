@@ -1,4 +1,4 @@
-// `hexhex view`: a page that shows a mesh in any browser.
+// `hexhex view`: writes a page that shows a mesh in any browser.
 #include <memory>
 
 #include <hexhex/curved.hpp>

@@ -9,8 +9,8 @@
 namespace hexhex::command {
 namespace {
 
-/// Number of characters to insert, remove, replace or swap with a neighbour (Damerau's distance,
-/// each place changed once).
+/// Number of characters to insert, remove, replace or swap with a neighbour (Damerau-Levenshtein
+/// distance, restricted to one edit per position).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> beforeLast(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
@@ -30,7 +30,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Names of the options of a parser, with their dashes.
+/// The long names of a parser's options, with dashes.
 std::vector<std::string> optionNames(const CLI::App& parser) {
   std::vector<std::string> names;
   for (const CLI::Option* option : parser.get_options()) {

@@ -1,4 +1,4 @@
-// Options with values, and "Did you mean ...?"
+// Options with values, and suggestions for misspelt words.
 #pragma once
 
 #include <map>
@@ -10,28 +10,28 @@
 
 namespace hexhex::command {
 
-/// " Did you mean extract?", if one of the words is near to what was written; otherwise nothing.
+/// " Did you mean extract?" if one of the words is close to what was written; otherwise empty.
 [[nodiscard]] std::string suggestionFor(std::string_view written,
                                         const std::vector<std::string>& words);
 
-/// "atlas or propeller"
+/// Joins words: "atlas or propeller".
 [[nodiscard]] std::string listed(const std::vector<std::string>& words);
 
-/// Accepts these words only; otherwise says which there are.
+/// Accepts only these words; the error lists them.
 [[nodiscard]] CLI::Validator oneOf(std::vector<std::string> words);
 
-/// The same text with longer lines broken at spaces, as --help shows them.
+/// Breaks longer lines at spaces, for --help.
 [[nodiscard]] std::string wrapped(std::string text);
 
-/// An option or argument.
-/// @param hint  what --help says of its value: "FILE REQUIRED", "NUMBER [0.3]"
+/// Adds an option or argument.
+/// @param hint  shown by --help after its name: "FILE REQUIRED", "NUMBER [0.3]"
 template <class Value>
 CLI::Option* addValue(CLI::App& parser, const std::string& name, Value& value,
                       const std::string& hint, const std::string& description) {
   return parser.add_option(name, value, wrapped(description))->option_text(hint);
 }
 
-/// An option whose values have names.
+/// Adds an option with named values.
 template <class Value>
 CLI::Option* addChoice(CLI::App& parser, const std::string& name, Value& value,
                        const std::string& hint, const std::map<std::string, Value>& choices,
@@ -45,8 +45,7 @@ CLI::Option* addChoice(CLI::App& parser, const std::string& name, Value& value,
       ->option_text(hint);
 }
 
-/// What the command line of a parser holds that nothing expects, as a sentence; empty if all was
-/// expected.
+/// A sentence about unexpected words on the command line; empty if there are none.
 [[nodiscard]] std::string unexpectedAsText(const CLI::App& app);
 
 }  // namespace hexhex::command

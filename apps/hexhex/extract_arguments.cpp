@@ -38,7 +38,7 @@ void requireCurvedOutputs(const ExtractArguments& arguments) {
   }
 }
 
-/// Parts are straight cells of a valid map.
+/// Only straight cells of a valid map can be written in parts.
 void requirePartsOutputs(const ExtractArguments& arguments) {
   refuseIf(arguments.options.engine != Engine::Atlas || arguments.order > 1 || arguments.partial ||
                !arguments.arcs.empty() || !arguments.patches.empty(),
@@ -49,7 +49,7 @@ void requirePartsOutputs(const ExtractArguments& arguments) {
   requirePartFormat(arguments.output, arguments.choice.options(), arguments.team != nullptr);
 }
 
-/// Vertices move in a mesh that is whole.
+/// Only a complete mesh in memory can be improved.
 void requireImprovable(const ExtractArguments& arguments) {
   if (!arguments.improve) return;
   if (arguments.stream || arguments.partial || arguments.parts.parts) {
@@ -64,7 +64,7 @@ void requireImprovable(const ExtractArguments& arguments) {
            "--pillow adds straight cells. Leave out --pillow or --order.");
 }
 
-/// A page shows a mesh that is whole and valid.
+/// Only a complete and valid mesh can be shown on a page.
 void requirePageOutput(const ExtractArguments& arguments) {
   if (arguments.page.empty()) return;
   if (arguments.stream || arguments.partial || arguments.parts.parts) {
@@ -75,7 +75,7 @@ void requirePageOutput(const ExtractArguments& arguments) {
   requirePage(arguments.page);
 }
 
-/// What is left of a map beyond repair is a straight mesh in memory.
+/// A partial extraction needs a straight mesh in memory.
 void requirePartialOutputs(const ExtractArguments& arguments) {
   if (!arguments.partial) return;
   refuseIf(arguments.stream,
@@ -85,7 +85,7 @@ void requirePartialOutputs(const ExtractArguments& arguments) {
            "ones to follow. Leave out --partial, or --order, --arcs and --patches.");
 }
 
-/// What happens to maps that are not valid.
+/// Options for invalid maps.
 void addRepairOptions(CLI::App& parser, ExtractArguments& arguments) {
   addChoice<bool>(parser, "--repair", arguments.repair, "MODE [auto]",
                   {{"auto", true}, {"off", false}},
@@ -97,7 +97,7 @@ void addRepairOptions(CLI::App& parser, ExtractArguments& arguments) {
                   "cells at holes as region 1, and list the holes; exit code 1");
 }
 
-/// After the extraction.
+/// Options for improvement after the extraction.
 void addImprovement(CLI::App& parser, ExtractArguments& arguments) {
   CLI::Option* const flag =
       parser.add_flag("--improve", arguments.improve,
@@ -108,7 +108,7 @@ void addImprovement(CLI::App& parser, ExtractArguments& arguments) {
   }
 }
 
-/// Options that change how a mesh is made, but not the mesh.
+/// Options that affect how a mesh is computed, but not the result.
 void addMethod(CLI::App& parser, ExtractArguments& arguments) {
   addChoice<Engine>(parser, "--engine", arguments.options.engine, "ENGINE [atlas]",
                     {{"atlas", Engine::Atlas}, {"propeller", Engine::Propeller}},
@@ -123,7 +123,7 @@ void addMethod(CLI::App& parser, ExtractArguments& arguments) {
   addPartsOptions(parser, arguments.parts);
 }
 
-/// Meshes that follow the map more closely.
+/// Options for cells of higher order, arcs and patches.
 void addCurved(CLI::App& parser, ExtractArguments& arguments) {
   CLI::Option* const order =
       addValue(parser, "--order", arguments.order, "P [1]",
@@ -192,7 +192,7 @@ void requireOutputs(const ExtractArguments& arguments) {
   } else if (arguments.order == 1) {
     requireHexMeshFormat(arguments.output, arguments.choice.options());
   }
-  // Several processes would each make a folder of their own.
+  // In a team, each process would create its own folder.
   requireWritable(arguments.output, !arguments.parts.parts);
   if (arguments.stream && !arguments.parts.parts) {
     requireStreamable(arguments.output, arguments.choice.options(), arguments.options);

@@ -1,4 +1,4 @@
-// What the command line says of an extraction.
+// The command line of `hexhex extract`.
 #pragma once
 
 #include <string>
@@ -38,15 +38,15 @@ struct ExtractArguments {
   RunOptions run;
   bool stream = false;
   PartsChoice parts;
-  ProcessTeam* team = nullptr;  ///< of which this is one process
+  ProcessTeam* team = nullptr;  ///< null: a single process
   bool partial = false;
   bool noVerify = false;
 };
 
 void addExtractOptions(CLI::App& parser, ExtractArguments& arguments);
 
-/// Everything that can be known to fail before long work.
-/// @throws Error  for what does not go together, and for files that cannot be written
+/// Detects everything that would fail later, before long work.
+/// @throws Error  for incompatible options, and for files that cannot be written
 void requireOutputs(const ExtractArguments& arguments);
 
 }  // namespace hexhex::command

@@ -1,5 +1,5 @@
-// `hexhex extract --parts`: a mesh that never stands in memory as a whole, from a map into a file
-// for each part.
+// `hexhex extract --parts`: extracts a mesh into a file per part, without ever holding it in memory
+// as a whole.
 #pragma once
 
 #include <filesystem>
@@ -16,13 +16,13 @@
 
 namespace hexhex::command {
 
-/// What the command line says about parts.
+/// The options for parts.
 struct PartsChoice {
   std::optional<std::uint32_t> parts;  ///< empty: one mesh
   PartOptions options;
-  bool mpi = false;  ///< join other processes even if nothing says that there are any
+  bool mpi = false;  ///< join a team even if no other processes are detected
 
-  /// Whether something is said of parts, of which there may be none.
+  /// Whether options that require --parts were given.
   [[nodiscard]] bool isOfParts() const noexcept {
     return options.ghostLayers > 0 || options.method != PartitionMethod::Curve;
   }
@@ -36,18 +36,18 @@ struct PartsChoice {
 /// Adds --parts, --ghosts, --partition and --mpi.
 void addPartsOptions(CLI::App& parser, PartsChoice& choice);
 
-/// What is known of a mesh that was written in parts.
+/// Results of writing a mesh in parts.
 struct PartsRecord {
   PartOptions options;
   PartsSummary summary;
 };
 
-/// "partition of 8 parts": lines for the terminal.
+/// Prints lines such as "partition of 8 parts".
 void printParts(const PartsRecord& record);
 
-/// Extracts a mesh into a file for each part. That parts make up one mesh is checked before the
-/// files get their names.
-/// @param team  the processes that make a part each, or null: this one makes all
+/// Extracts a mesh into a file per part. Checks that the parts make up one mesh before the files
+/// are renamed.
+/// @param team  processes that extract a part each; null: this process extracts all
 /// @throws Error  as extractParts() and openPartSink(); VerificationFailed
 [[nodiscard]] PartsRecord extractInParts(const TetMap& map, const std::filesystem::path& output,
                                          const WriteOptions& writing,

@@ -21,7 +21,7 @@
 #define NOMINMAX
 #endif
 #include <windows.h>
-// After it, as it needs it.
+// Must follow the header above.
 #include <psapi.h>
 #else
 #include <sys/resource.h>
@@ -129,7 +129,7 @@ std::string reportAsJson(const ExtractionRecord& record) {
                  {"engine", engineName(record.engine)},
                  {"stages", stagesAsJson(record.stages)},
                  {"peak_memory_bytes", peakMemory()}};
-  // Some names mean something else for the whole run.
+  // Some names have another meaning for the whole run.
   Json counts = fieldsAsJson(statistics, {{"vertices_by_generator", byKind(statistics.vertices)}});
   counts["generators"] = byKind(statistics.generators);
   counts.erase("seconds");

@@ -1,5 +1,4 @@
-// What `hexhex extract` says of a mesh, for people and for machines. docs/user/report.md explains
-// every key of the JSON.
+// The output of `hexhex extract`, for people and as JSON. docs/user/report.md explains every key.
 #pragma once
 
 #include <array>
@@ -24,7 +23,7 @@
 
 namespace hexhex::command {
 
-/// The largest amount of memory that this process has used so far, in bytes.
+/// Peak memory usage of this process, in bytes.
 [[nodiscard]] std::uint64_t peakMemory();
 
 struct FileSize {
@@ -35,11 +34,11 @@ struct FileSize {
 /// Arcs or patches that were written.
 struct CurvesRecord {
   std::filesystem::path file;  ///< empty if there are none
-  std::uint64_t count = 0;     ///< arcs, or patches
-  std::uint64_t pieces = 0;    ///< inner points, or polygons
+  std::uint64_t count = 0;     ///< arcs or patches
+  std::uint64_t pieces = 0;    ///< inner points or polygons
 };
 
-/// Everything that is known at the end of an extraction.
+/// The results of an extraction.
 struct ExtractionRecord {
   FileSize input;
   FileSize output;
@@ -59,34 +58,33 @@ struct ExtractionRecord {
   ExtractStatistics statistics;
   RepairedMap repaired;
   std::vector<Index> straightenedCells;     ///< of higher order: LagrangeMesh::straightenedCells
-  std::optional<QuantizeReport> quantized;  ///< empty for a map that was integer
-  std::optional<ImproveReport> improved;    ///< empty for a mesh as it was extracted
+  std::optional<QuantizeReport> quantized;  ///< empty if the map was not quantized
+  std::optional<ImproveReport> improved;    ///< empty if the mesh was not improved
   std::vector<StageTime> stages;
   std::vector<StageTime> parts;  ///< of the whole run: "reading", "extraction", ...
   std::string partsAsText;
-  std::optional<std::vector<NamedPatch>> boundary;  ///< empty if it was not listed
-  std::optional<Certificate> certificate;           ///< empty if the mesh was never whole
-  std::optional<VerifyReport> verification;         ///< empty if it was skipped
-  std::optional<MeshSummary> streamed;              ///< of a mesh that was written in pieces
-  std::optional<PartsRecord> meshParts;             ///< of a mesh that was written in parts
+  std::optional<std::vector<NamedPatch>> boundary;  ///< empty if not listed
+  std::optional<Certificate> certificate;    ///< empty if the mesh was never in memory as a whole
+  std::optional<VerifyReport> verification;  ///< empty if skipped
+  std::optional<MeshSummary> streamed;       ///< of a mesh written in pieces
+  std::optional<PartsRecord> meshParts;      ///< of a mesh written in parts
 };
 
 /// The report as JSON text, ending with a line break.
 [[nodiscard]] std::string reportAsJson(const ExtractionRecord& record);
 
-/// What is unusual, on the standard error output.
+/// Prints warnings to standard error.
 void printWarnings(const ExtractionRecord& record, const TetMap& map);
 
-/// A line for each thing that is worth knowing.
+/// Prints a line for each notable result.
 void printSummary(const ExtractionRecord& record);
 
-/// What a partial extraction left out: counts, and the places of the largest holes, on the standard
-/// output.
+/// Prints what a partial extraction left out, in numbers, and the places of the largest holes.
 void printPartial(const PartialMesh& partial);
 
-/// The report of a partial extraction, with all holes, as JSON text that ends with a line break;
+/// The report of a partial extraction, with all holes, as JSON text ending with a line break;
 /// docs/user/report.md explains the keys.
-/// @param problem  why there is no whole mesh
+/// @param problem  why there is no complete mesh
 [[nodiscard]] std::string partialReportAsJson(const PartialMesh& partial, const Error& problem,
                                               int scale);
 

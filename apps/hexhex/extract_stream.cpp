@@ -22,9 +22,9 @@ namespace {
               fmt::format("{}: the file cannot be written: {}.", file.string(), why));
 }
 
-/// What a target is in the end. Renaming onto a link would replace the link.
-/// @throws Error FileWrite if the file is there but cannot be read back after it was written (a
-///         folder, a device, a pipe), or is a link to nowhere
+/// The target with symbolic links resolved: renaming onto a link would replace the link.
+/// @throws Error FileWrite if the target exists but could not be read back (a folder, a device, a
+///         pipe), or is a dangling link
 std::filesystem::path realFile(const std::filesystem::path& target) {
   std::error_code error;
   std::filesystem::path real = target;
@@ -39,17 +39,17 @@ std::filesystem::path realFile(const std::filesystem::path& target) {
   return real;
 }
 
-/// Beside `file`, with the extension of `target`, but not its name, which may be as long as the
-/// file system allows. As one string: libstdc++'s paths that grow leave a broken path where memory
-/// ends.
+/// A name beside `file`, with the extension of `target` but not its name, which may already have
+/// the maximum length. Built as one string: growing a libstdc++ path leaves it broken when memory
+/// runs out.
 std::string nameBeside(const std::filesystem::path& file, const std::filesystem::path& target) {
   const std::string folder = file.has_parent_path() ? file.parent_path().string() + '/' : "";
   return fmt::format("{}.hexhex-{}-unread{}", folder, ::getpid(), target.extension().string());
 }
 
-/// A name beside the target, with its extension, for a file that somebody else writes. keep()
-/// renames the file to the target; without keep() the file vanishes, and the target stays as it
-/// was.
+/// A temporary name beside the target, with its extension, for a file written by others. keep()
+/// renames the file to the target; without keep(), the file is removed and the target left
+/// unchanged.
 class PendingFile {
  public:
   /// @throws Error  as realFile()
@@ -63,12 +63,12 @@ class PendingFile {
   /// @throws Error FileWrite
   void keep();
 
-  /// The same error, in terms of the target instead of the name that nobody has heard of.
+  /// The error with the temporary's path replaced by the target's.
   [[nodiscard]] Error named(const Error& error) const;
 
  private:
-  std::filesystem::path target_;   ///< as given, for sentences
-  std::filesystem::path real_;     ///< what it is if it is a link
+  std::filesystem::path target_;   ///< as given, for messages
+  std::filesystem::path real_;     ///< with links resolved
   std::filesystem::path pending_;  ///< in the folder of `real_`
 };
 
@@ -93,7 +93,7 @@ Error PendingFile::named(const Error& error) const {
   return {error.code(), sentence, error.place()};
 }
 
-/// Hands every call to two sinks, one after the other.
+/// Forwards every call to two sinks in turn.
 class TwoSinks final : public MeshSink {
  public:
   TwoSinks(MeshSink& first, MeshSink& second) : first_(first), second_(second) {}
@@ -124,7 +124,7 @@ class TwoSinks final : public MeshSink {
   MeshSink& second_;
 };
 
-/// What the file holds: proven right, and the same, bit for bit, as what was written.
+/// Adds to a report whether the file holds exactly what was written, by checksums.
 VerifyReport compare(VerifyReport report, const MeshSummary& written, const MeshSummary& read) {
   const auto add = [&report](const char* item, std::uint64_t expected, std::uint64_t found) {
     report.items.push_back(
@@ -135,7 +135,7 @@ VerifyReport compare(VerifyReport report, const MeshSummary& written, const Mesh
   return report;
 }
 
-/// Reads a file piece by piece.
+/// Reads a file piece by piece and verifies it against the map.
 VerifyReport readAndProve(const std::filesystem::path& file, std::string_view format,
                           const TetMapView& map, const VerifyOptions& options,
                           const MeshSummary& written, Context& context) {
@@ -158,7 +158,7 @@ void requireStreamable(const std::filesystem::path& output, const WriteOptions& 
                 "mesh in memory. Leave out one of --stream and --engine.");
   }
   static_cast<void>(realFile(output));
-  // A sink that is destroyed at once leaves nothing, but says what is wrong.
+  // A sink destroyed at once leaves no file, but reports errors.
   Context context;
   static_cast<void>(openMeshSink(output, writing, context));
 }

@@ -1,5 +1,5 @@
-// `hexhex extract --stream`: a mesh that never stands in memory as a whole, from a map into a file
-// that gets its name only when it was read back.
+// `hexhex extract --stream`: extracts a mesh into a file without ever holding it in memory as a
+// whole; the file is renamed to its target once it was read back.
 #pragma once
 
 #include <filesystem>
@@ -16,21 +16,21 @@
 
 namespace hexhex::command {
 
-/// Everything that can be known to fail before long work.
-/// @throws Error InvalidArgument for an engine that cannot; FileUnsupported for a format that
-///         cannot; FileWrite
+/// Detects everything that would fail later, before long work.
+/// @throws Error InvalidArgument for an engine, FileUnsupported for a format that cannot stream;
+///         FileWrite
 void requireStreamable(const std::filesystem::path& output, const WriteOptions& writing,
                        const ExtractOptions& options);
 
-/// What is known of a mesh that was written in pieces.
+/// Results of writing a mesh in pieces.
 struct StreamedMesh {
   MeshSummary written;                       ///< of the pieces
-  std::optional<VerifyReport> verification;  ///< empty if it was not wanted
+  std::optional<VerifyReport> verification;  ///< empty if not requested
 };
 
-/// Extracts a mesh piece by piece into a file. If wanted, the file is read again, piece by piece,
-/// before it gets its name: it must hold the mesh of the map, which is proven piece by piece, with
-/// the checksums of what was extracted. On failure there is no new file.
+/// Extracts a mesh piece by piece into a file. If verification is requested, the file is read back
+/// piece by piece before it is renamed to its target: it must be the mesh of the map, with the
+/// checksums of what was extracted. On failure there is no new file.
 /// @throws Error  as extractTo(), openMeshSink() and readHexMeshTo(); VerificationFailed
 [[nodiscard]] StreamedMesh extractStreamed(const TetMapView& map,
                                            const std::filesystem::path& output,

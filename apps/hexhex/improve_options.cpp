@@ -47,7 +47,7 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
 
 namespace {
 
-/// "8 at corners, 2 with a tag", of vertices that do not move at all.
+/// Describes vertices that do not move at all: "8 at corners, 2 with a tag".
 std::string heldAsText(const ImproveReport& report) {
   const std::uint64_t corners =
       report.vertices[3] - report.taggedVertices - report.boundaryVertices - report.pairedVertices;
@@ -62,7 +62,7 @@ std::string heldAsText(const ImproveReport& report) {
   return text;
 }
 
-/// "cell 812 at vertex 93: a corner of the object, of 15 degrees"
+/// Describes the worst cell: "cell 812 at vertex 93: a corner of the object, of 15 degrees".
 std::string worstAsText(const WorstCell& worst) {
   const auto holder = [&]() -> std::string {
     switch (worst.holder) {
@@ -85,9 +85,9 @@ std::string worstAsText(const WorstCell& worst) {
   return text;
 }
 
-/// What the caller may not have wanted.
+/// Warns of possibly unwanted effects.
 void warnOfImprovement(const ImproveReport& report) {
-  // Rounding is no distance.
+  // Tolerate rounding errors.
   const double limit = 1.00001 * std::max(report.distanceBefore.hausdorff(), kSurfaceTolerance);
   if (report.distanceAfter.hausdorff() > limit) {
     printWarning(

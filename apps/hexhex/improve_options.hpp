@@ -1,4 +1,4 @@
-// Options of improvement, and what it tells.
+// Options and output of improvement.
 #pragma once
 
 #include <vector>
@@ -13,11 +13,12 @@ namespace hexhex::command {
 /// @return all of them
 std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& options);
 
-/// Where the vertices of an improved mesh were before, those of a pillow when it was added.
-/// @param points  of the mesh before; empty if they are not wanted
+/// The points of a mesh before improvement, matching its vertices after it; vertices of a pillow
+/// have the positions where they were inserted.
+/// @param points  of the mesh before; empty if not needed
 [[nodiscard]] Array<Vec3> pointsBefore(Array<Vec3> points, const ImproveReport& report);
 
-/// What happened, in some lines on the standard output; cells that stay bad as a warning.
+/// Prints the results; warns of cells that remain bad.
 void printImprovement(const ImproveReport& report);
 
 }  // namespace hexhex::command

@@ -1,4 +1,4 @@
-// Reports as JSON, for programs. docs/user/report.md explains the keys.
+// Reports as JSON. docs/user/report.md explains the keys.
 #pragma once
 
 #include <array>
@@ -26,12 +26,12 @@
 
 namespace hexhex::command {
 
-/// Keys in the order in which they are added: easier to read than alphabetical.
+/// Keeps keys in order of insertion: easier to read than alphabetical order.
 using Json = nlohmann::ordered_json;
 
 [[nodiscard]] Json valencesAsJson(const std::map<int, std::uint64_t>& countByValence);
 
-/// An object with the fields of a report, behind those that are given.
+/// Appends the fields of a report to a JSON object.
 template <class Report>
 [[nodiscard]] Json fieldsAsJson(const Report& report, Json json = Json::object()) {
   visitFields(report, [&json](const char* field, const auto& value) {
@@ -44,7 +44,7 @@ template <class Report>
   return json;
 }
 
-/// @param seamless  empty if nobody looked
+/// @param seamless  empty if not examined
 [[nodiscard]] Json checkAsJson(const CheckReport& report, int scale,
                                const std::optional<SeamlessReport>& seamless);
 
@@ -65,17 +65,17 @@ struct NamedMethod {
   std::string_view name;
   ShapeMethod kind;
 };
-/// As the option --method has them.
+/// The values of the option --method.
 inline constexpr std::array<NamedMethod, 3> kShapeMethods = {{{"auto", ShapeMethod::Auto},
                                                               {"polycube", ShapeMethod::Polycube},
                                                               {"frames", ShapeMethod::Frames}}};
 [[nodiscard]] std::string nameOf(ShapeMethod method);
 
-/// What a map is that is no integer-grid map: "integer up to a scale", "seamless", "almost
+/// The kind of a map that is not an integer-grid map: "integer up to a scale", "seamless", "almost
 /// seamless", "neither".
 [[nodiscard]] const char* kindName(const SeamlessReport& report) noexcept;
 
-/// With a line break at its end. File names need not be valid UTF-8; bytes that are not are
+/// Formats JSON with a line break at the end. Invalid UTF-8, as file names may contain, is
 /// replaced.
 [[nodiscard]] std::string jsonText(const Json& json);
 

@@ -57,16 +57,16 @@ CancelOnSignal::~CancelOnSignal() {
 
 namespace {
 
-constexpr int kBarWidth = 30;  // with the longest stage name it fits in 80 columns
+constexpr int kBarWidth = 30;  // fits in 80 columns with the longest stage name
 
-// What ends within a second needs no bar; ten pictures a second look smooth.
+// No bar for runs of less than a second; ten updates a second look smooth.
 constexpr std::chrono::duration<double> kFirst{1.0};
 constexpr std::chrono::duration<double> kNext{0.1};
 
-// Below this share, the time that is left would be a guess.
+// Below this share, an estimate of the time left would be a guess.
 constexpr double kLeastShare = 0.02;
 
-/// "12 s left", or nothing.
+/// "12 s left", or empty.
 std::string timeLeft(double seconds, double share) {
   if (share < kLeastShare) return {};
   const double left = std::ceil(seconds * (1 - share) / share);

@@ -1,5 +1,4 @@
-// What subcommands with long work have in common: threads, progress, Ctrl-C, and how long each part
-// took.
+// Shared by subcommands that run long: threads, progress, signals, and timing of the steps.
 #pragma once
 
 #include <chrono>
@@ -16,8 +15,8 @@
 
 namespace hexhex::command {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP cancel the context. A second signal ends the process
-/// at once.
+/// For its lifetime, SIGINT, SIGTERM and SIGHUP cancel the context. A second signal ends the
+/// process at once.
 class CancelOnSignal {
  public:
   explicit CancelOnSignal(Context& context);
@@ -26,27 +25,25 @@ class CancelOnSignal {
   CancelOnSignal& operator=(const CancelOnSignal&) = delete;
 };
 
-/// What to tell of an error: where a signal cancelled the run, what that means ("Terminated.").
+/// The message of an error; if a signal cancelled the run, that signal's ("Terminated.").
 [[nodiscard]] std::string_view sentenceOf(const Error& error) noexcept;
 
-/// Progress on the standard error output: one bar for a whole run on a terminal, or a line per
-/// stage.
+/// Progress on standard error: a bar for the whole run, or a line per stage.
 class ProgressDisplay {
  public:
-  /// A bar if the standard error output is a terminal, from the second second on; elsewhere
-  /// nothing.
-  /// @param quiet    nothing at all
-  /// @param verbose  a line per stage instead, everywhere
+  /// Shows a bar after one second if standard error is a terminal; otherwise nothing.
+  /// @param quiet    print nothing at all
+  /// @param verbose  print a line per stage instead, on any output
   explicit ProgressDisplay(bool quiet, bool verbose = false);
   /// Removes the bar.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// What a context calls. Refers to this display.
+  /// The callback for a context. Refers to this display.
   [[nodiscard]] Context::Progress callback();
 
-  /// Removes the bar, so that something else can be printed.
+  /// Removes the bar, so that other output can be printed.
   void clear();
 
  private:
@@ -60,7 +57,7 @@ class ProgressDisplay {
   Clock::time_point begin_ = Clock::now();
   Clock::time_point drawn_;
   bool barIsVisible_ = false;
-  std::vector<std::string> printed_;  ///< stages that had their line
+  std::vector<std::string> printed_;  ///< stages already printed
 };
 
 struct RunOptions {
@@ -75,22 +72,22 @@ void addRunOptions(CLI::App& parser, RunOptions& options,
 
 class LongRun {
  public:
-  /// @param steps  the functions of the library that are going to be called, and how long they take
+  /// @param steps  the library functions that will be called, with weights by duration
   LongRun(const RunOptions& options, std::vector<WorkStep> steps);
 
   [[nodiscard]] Context& context() noexcept { return context_; }
 
-  /// Runs work(), whose time is that of the part.
+  /// Runs work() and measures its time as that of the part.
   template <class Work>
   std::invoke_result_t<Work> part(std::string_view name, const Work& work) {
     const Watch watch(*this, name);
     return work();
   }
 
-  /// The work is over; results may be printed.
+  /// To be called before results are printed.
   void finish() { progress_.clear(); }
 
-  /// In order.
+  /// In the order of the run.
   [[nodiscard]] const std::vector<StageTime>& parts() const noexcept { return parts_; }
   /// "7.72 s: reading 0.01, extraction 3.85, writing 0.80"
   [[nodiscard]] std::string partsAsText() const;
@@ -98,10 +95,10 @@ class LongRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Adds the time that it lives to a part.
+  /// Adds its lifetime to the time of a part.
   class Watch {
    public:
-    /// Whatever takes memory is done here: destructors must not fail.
+    /// Allocates all memory here, since the destructor must not fail.
     Watch(LongRun& run, std::string_view name);
     ~Watch();
     Watch(const Watch&) = delete;

@@ -1,5 +1,5 @@
-// `hexhex`: parses the command line, runs the subcommand, and turns errors into a sentence and an
-// exit code.
+// The command `hexhex`: parses the command line, runs a subcommand, and turns errors into a message
+// and an exit code.
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -55,7 +55,7 @@ Exit codes:
 Output files appear complete or not at all.)";
 
 std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
-  // A misspelt word is said to be one, and not that what it was meant for is missing.
+  // Report a misspelt word rather than the missing one that was meant.
   const std::string unexpected = unexpectedAsText(*app);
   const std::vector<CLI::App*> given = app->get_subcommands();
   return fmt::format("hexhex: error: {}\nRun `hexhex {}--help` for the options and examples.\n",
@@ -63,9 +63,8 @@ std::string usageProblem(const CLI::App* app, const CLI::Error& error) {
                      given.empty() ? "" : given.front()->get_name() + " ");
 }
 
-/// Memory for the time when there is no more: what is given back here the first time lets small
-/// work go on, such as a destructor's, which may not fail; the second time, it lets all be cleaned
-/// up.
+/// Memory reserved for when it runs out. Releasing the first block lets small work continue, such
+/// as that of destructors, which must not fail; the second one lets everything be cleaned up.
 std::array<std::atomic<void*>, 2> spareMemory;
 
 void reserveMemory() {
@@ -78,7 +77,7 @@ void reserveMemory() {
   });
 }
 
-/// Says so without any memory.
+/// Prints the error without allocating memory.
 int failForMemory() noexcept {
   static_cast<void>(
       std::fputs("hexhex: error: This machine is out of memory, or refuses threads or locks; "
@@ -88,12 +87,12 @@ int failForMemory() noexcept {
   return kFailure;
 }
 
-/// First of all: the validators of CLI11 are made before main(), where nothing can be caught.
+/// Runs before main(), since CLI11 constructs its validators then and nothing can be caught.
 [[gnu::constructor(101)]] void endWithoutMemory() {
   std::set_new_handler([] { std::_Exit(failForMemory()); });
 }
 
-/// Runs a subcommand; every error ends here.
+/// Runs a subcommand and handles all errors.
 int runGuarded(const Command& command) {
   try {
     return command.run();
@@ -128,7 +127,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // --help and --version arrive here, too.
+    // --help and --version arrive here as well.
     return app.exit(error) == 0 ? kSuccess : kBadUsage;
   }
   for (const Command& command : commands) {
@@ -143,7 +142,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace hexhex::command;
 #ifdef SIGXFSZ
-  // A limit on the size of files shall be an error like a full disk, not the end of the process.
+  // Exceeding a file size limit should be an error like a full disk, not end the process.
   std::signal(SIGXFSZ, SIG_IGN);
 #endif
   reserveMemory();
@@ -153,7 +152,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return failForMemory();
   } catch (...) {
-    // What remains can only come from printing, e.g. to a closed pipe.
+    // Only printing can throw here, e.g. to a closed pipe.
   }
   static_cast<void>(std::fputs("hexhex: error: The standard output cannot be written.\n", stderr));
   return kFileProblem;

@@ -1,4 +1,4 @@
-// What people are told of maps: a CheckReport, an Expectation, a RepairReport.
+// Text about maps: CheckReport, Expectation, RepairReport.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace hexhex::command {
 
-/// Prints what the map consists of.
+/// Prints the contents of the map.
 void printMap(const CheckReport& report);
 
-/// Prints what is wrong with it, and where most.
+/// Prints its defects, and where most of them are.
 void printDefects(const CheckReport& report);
 
-/// Prints the numbers that a mesh can be compared with.
+/// Prints expected numbers to compare a mesh with.
 void printExpectation(const Expectation& expected);
 
 /// "The map had 21 flipped or flat tets in 3 places. It was repaired: ..."
 [[nodiscard]] std::string repairNotice(const RepairReport& report);
 
-/// One line per region, on the standard output.
+/// Prints a line per region.
 void printRegions(const RepairReport& report);
 
 /// docs/user/report.md explains the keys; null if nothing was changed.

@@ -1,5 +1,5 @@
-// What connects processes that mpirun has started: a library that the command loads then, so that
-// it takes MPI at no other time.
+// The module that connects processes started by mpirun. The command loads it only then, so that it
+// does not depend on MPI otherwise.
 #include <optional>
 
 #include <hexhex/mpi.hpp>
@@ -19,7 +19,7 @@ HEXHEX_API hexhex::ProcessTeam* hexhexBeginMpi() {
 }
 
 HEXHEX_API void hexhexEndMpi() {
-  MPI_Barrier(MPI_COMM_WORLD);  // what others have to say, they have said
+  MPI_Barrier(MPI_COMM_WORLD);  // lets other processes print their errors first
   world.reset();
   MPI_Finalize();
 }

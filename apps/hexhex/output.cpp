@@ -12,7 +12,7 @@
 namespace hexhex::command {
 namespace {
 
-/// Whether two names mean one file, or would once both are written.
+/// Whether two names denote the same file, or would once both are written.
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code missing;
   if (std::filesystem::equivalent(a, b, missing)) return !std::filesystem::is_other(a, missing);
@@ -67,7 +67,7 @@ void printError(const Error& error, std::string_view sentence) {
 
 std::string counted(std::uint64_t count, std::string_view noun) {
   if (noun == "vertex" && count != 1) return fmt::format("{} vertices", count);
-  const bool hisses = noun.ends_with("ch");  // patches
+  const bool hisses = noun.ends_with("ch");  // "patches"
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : hisses ? "es" : "s");
 }
 
@@ -104,7 +104,7 @@ void printQuality(const Certificate& certificate) {
 void printPatches(std::span<const NamedPatch> patches) {
   if (patches.empty()) return;
   constexpr std::size_t kMost = 20;
-  // Rounding is no direction, and no place.
+  // Print rounding errors as 0.
   const auto vectorAsText = [](const Vec3& vector, double unit) {
     std::string text;
     for (const double x : vector) {
@@ -153,7 +153,7 @@ void requireAllDifferent(std::vector<std::filesystem::path> files,
 
 void requireWritable(const std::filesystem::path& file, bool makesFolders) {
   std::error_code missing;
-  // OpenFOAM's case is made with its folders, or replaced as a folder.
+  // OpenFOAM's case folder is created with the output, or replaced as a folder.
   const bool makesFolder = makesFolders && file.extension() == ".foam" && file.has_parent_path() &&
                            !std::filesystem::exists(file.parent_path(), missing);
   if (makesFolder || file.filename() == "polyMesh") return;

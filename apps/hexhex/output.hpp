@@ -1,4 +1,4 @@
-// How the command prints: warnings, labelled lines, sizes; and files of its own.
+// Printing: warnings, labelled lines, sizes; and checks of output files.
 #pragma once
 
 #include <cstdint>
@@ -27,25 +27,25 @@
 
 namespace hexhex::command {
 
-/// Prints to the standard error output. What cannot be printed there is lost, and nothing else: a
-/// closed terminal must not cost the result.
+/// Prints to standard error. Failures to print are ignored: a closed terminal must not cost the
+/// result.
 template <class... Args>
 void printToStderr(fmt::format_string<Args...> format, Args&&... args) {
   const std::string text = fmt::format(format, std::forward<Args>(args)...);
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
 }
 
-/// For the terminal, which shall not obey what names of files, or in files, tell it.
+/// Replaces control characters of names and file contents, which a terminal would execute.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// "from -> to" on the standard output, and what is to be said besides.
+/// Prints "from -> to" to standard output, and an optional remark.
 void printFiles(const std::filesystem::path& from, const std::filesystem::path& to,
                 std::string_view besides = "");
 
-/// "  label      value" on the standard output.
+/// Prints "  label      value" to standard output.
 void printLine(std::string_view label, std::string_view value);
 
-/// "hexhex: warning: <sentence>" on the standard error output.
+/// Prints "hexhex: warning: <sentence>" to standard error.
 void printWarning(std::string_view sentence);
 
 /// "1 cell", "12 cells", "12 vertices".
@@ -54,10 +54,9 @@ void printWarning(std::string_view sentence);
 /// "12.3 MB"
 [[nodiscard]] std::string bytesAsText(std::uint64_t bytes);
 
-/// The sentence, and in brackets what a script or a bug report wants to know, on the standard error
-/// output.
+/// Prints the message to standard error, with details for scripts and bug reports in brackets.
 void printError(const Error& error);
-/// @param sentence  in place of the error's
+/// @param sentence  replaces the error's message
 void printError(const Error& error, std::string_view sentence);
 
 /// 16 hexadecimal digits.
@@ -66,29 +65,29 @@ void printError(const Error& error, std::string_view sentence);
 /// "12 of valence 3, 4 of valence 5", or "none".
 [[nodiscard]] std::string valencesAsText(const std::map<int, std::uint64_t>& countByValence);
 
-/// Two lines: the scaled Jacobian at corners and everywhere, and whether cells are positive.
+/// Prints two lines: the scaled Jacobian at corners and everywhere, and whether cells are positive.
 void printQuality(const Certificate& certificate);
 
-/// A table of the boundary: name, quads, area, centre and normal of each patch, 20 at most.
+/// Prints a table of the boundary: name, quads, area, centre and normal of at most 20 patches.
 void printPatches(std::span<const NamedPatch> patches);
 
-/// Which cells are not positive, and where: a sentence.
+/// A sentence about the cells that are not positive, and where they are.
 [[nodiscard]] std::string refutationAsText(const Certificate& certificate);
 
-/// Throws InvalidArgument for options that do not go together.
+/// Throws InvalidArgument if options are incompatible.
 void refuseIf(bool isRefused, const std::string& sentence);
 
-/// Throws InvalidArgument if an output and one more file, of those that are read or written, have
-/// names that mean one file, or would once both are written. Names may be empty.
+/// Throws InvalidArgument if an output has the same file as another output or an input, or would
+/// once both are written. Names may be empty.
 void requireAllDifferent(std::vector<std::filesystem::path> files,
                          std::initializer_list<std::string> outputs);
 
-/// Throws FileWrite if the file is a folder or a link to nowhere, or no file can be created in its
+/// Throws FileWrite if the file is a folder or a dangling link, or no file can be created in its
 /// folder: to fail before long work.
-/// @param makesFolders  whether folders of a case of OpenFOAM are made with it
+/// @param makesFolders  whether folders of an OpenFOAM case are created
 void requireWritable(const std::filesystem::path& file, bool makesFolders = true);
 
-/// A report that is asked for: a file, or "-" for the standard output, which then holds nothing
+/// The destination of a report: a file, or "-" for standard output, which then receives nothing
 /// else; or none.
 class Report {
  public:
@@ -104,12 +103,12 @@ class Report {
   std::unique_ptr<io::OutputFile> file_;
 };
 
-/// Throws VerificationFailed, naming what does not agree, unless all checks passed.
-/// @param problem  begins the sentence: what happened
-/// @param advice   ends it: what to do
+/// Throws VerificationFailed, listing the failed checks, unless all passed.
+/// @param problem  beginning of the message: what happened
+/// @param advice   end of the message: what to do
 void requirePassed(const VerifyReport& report, std::string_view problem, std::string_view advice);
 
-/// The map that an extraction took: the caller's, or what a repair made of it.
+/// The map used by an extraction: the caller's, or the repaired one.
 [[nodiscard]] inline TetMapView extractedMap(const TetMapView& map, const RepairedMap* repaired) {
   return repaired != nullptr && repaired->map ? TetMapView(*repaired->map) : map;
 }

@@ -21,7 +21,7 @@
 namespace hexhex::command {
 namespace {
 
-/// Tags that no quad has.
+/// Generates tags that no quad has.
 class FreeTags {
  public:
   explicit FreeTags(const HexMesh& mesh) {
@@ -39,7 +39,7 @@ class FreeTags {
   std::int32_t last_ = 0;
 };
 
-/// Names of tags that no quad has would become those of new groups.
+/// Drops names of unused tags, which new groups would take over.
 void dropUnused(HexFeatures& features) {
   std::set<std::int32_t> used;
   for (const FeatureQuad& quad : features.quads) used.insert(quad.tag);
@@ -53,7 +53,7 @@ Quad sorted(Quad vertices) {
   return vertices;
 }
 
-/// Gives smooth patches of a tagged group tags of their own, if there are several.
+/// Splits tagged groups with several smooth patches, each of which gets its own tag.
 void splitTags(HexMesh& mesh, double angle, Context& context) {
   std::map<Quad, std::int32_t> patchOf;
   for (const FeatureQuad& quad : boundaryPatches(mesh, angle, context)) {
@@ -81,7 +81,7 @@ void splitTags(HexMesh& mesh, double angle, Context& context) {
   }
 }
 
-/// Tags the quads of patches that have no tag, with numbers behind the tags that there are.
+/// Tags the quads of untagged patches, with numbers above all existing tags.
 void tagPatches(HexMesh& mesh, std::vector<NamedPatch>& patches) {
   FreeTags free(mesh);
   for (NamedPatch& patch : patches) {
@@ -127,7 +127,7 @@ void PatchNames::apply(HexMesh& mesh, double angle, Context& context) const {
   dropUnused(mesh.features);
   if (split) {
     splitTags(mesh, angle, context);
-    dropUnused(mesh.features);  // those of groups that were divided
+    dropUnused(mesh.features);  // those of groups that were split
   }
   if (names_.empty()) return;
   std::vector<NamedPatch> patches = namedPatches(mesh, angle, context);
@@ -153,7 +153,7 @@ void PatchNames::apply(HexMesh& mesh, double angle, Context& context) const {
   requireOwnNames(mesh, patches, angle, context);
 }
 
-/// @param patches  with the names that they had
+/// @param patches  with their previous names
 void PatchNames::requireOwnNames(const HexMesh& mesh, const std::vector<NamedPatch>& patches,
                                  double angle, Context& context) const {
   std::map<std::int32_t, std::string> named;
@@ -164,7 +164,7 @@ void PatchNames::requireOwnNames(const HexMesh& mesh, const std::vector<NamedPat
   for (const NamedPatch& patch : patches) {
     const std::string& now = named.at(patch.tag);
     const auto found = names_.find(patch.name);
-    // Where a name is another group's, too, the second group is called by its tag.
+    // Of two groups with the same name, the second one was named by its tag.
     const std::string byTag =
         fmt::format("surface_{}{}", patch.tag < 0 ? "m" : "", std::abs(std::int64_t{patch.tag}));
     const bool isWanted =

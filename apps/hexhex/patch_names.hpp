@@ -1,4 +1,4 @@
-// How people divide and name the boundary: --split-tags and --names.
+// Options that split and name boundary patches: --split-tags and --names.
 #pragma once
 
 #include <filesystem>
@@ -16,24 +16,24 @@
 
 namespace hexhex::command {
 
-/// What each group of boundary quads shall be called, by the name that it has.
+/// New names of boundary groups, by their current names.
 class PatchNames {
  public:
-  /// Whether tagged groups are divided into smooth patches first: NAME_1, NAME_2, ...
+  /// Whether to split tagged groups into smooth patches first: NAME_1, NAME_2, ...
   bool split = false;
 
-  /// Reads a file with two words on each line: a name that a group has, and its new one. '#' begins
-  /// a comment.
+  /// Reads a file with two words per line: a group's current name, and its new one. '#' begins a
+  /// comment.
   void read(const std::filesystem::path& file);
 
-  /// Divides groups, if that is asked for. If there are names: tags smooth patches where the
-  /// boundary is not tagged, and names groups.
+  /// Splits groups, if requested. If there are names: tags smooth patches of an untagged boundary,
+  /// and renames groups.
   /// @param angle  of smooth patches, as in namedPatches()
-  /// @throws Error InvalidArgument for a group that there is not, naming those that there are
+  /// @throws Error InvalidArgument for an unknown group, listing the known ones
   void apply(HexMesh& mesh, double angle, Context& context) const;
   void apply(LagrangeMesh& mesh, double angle, Context& context) const;
 
-  /// Warns of a --patch-angle that does nothing. Names and divided groups need it.
+  /// Warns of a --patch-angle without effect, unless names or split groups need it.
   void warnOfAngle(const PatchAngle& angle, const HexMesh& mesh, const std::string& file,
                    const WriteOptions& options, Context& context) const;
   void warnOfAngle(const PatchAngle& angle, const LagrangeMesh& mesh, const std::string& file,
@@ -51,13 +51,13 @@ class PatchNames {
   std::map<std::string, std::string> names_;
 };
 
-/// Names groups and writes a mesh, straight or curved.
+/// Renames groups and writes a mesh, straight or curved.
 void writeNamed(const PatchNames& names, HexMesh& mesh, const std::string& file,
                 const WriteOptions& options, Context& context);
 void writeNamed(const PatchNames& names, LagrangeMesh& mesh, const std::string& file,
                 const WriteOptions& options, Context& context);
 
-/// Adds both.
+/// Adds both options.
 void addPatchNames(CLI::App& parser, PatchNames& names);
 
 }  // namespace hexhex::command

@@ -1,4 +1,4 @@
-// Options of maps that are made of tets alone, and what they tell.
+// Options and output of map computation from tets.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@
 
 namespace hexhex::command {
 
-/// Adds an argument PART, and --mesher and --tet-size for parts that are no tets.
+/// Adds an argument PART, and --mesher and --tet-size for parts that are not tets.
 void addPart(CLI::App& parser, std::string& part, FillOptions& options);
 /// Adds --method and --seed.
 void addShapeOptions(CLI::App& parser, ShapeOptions& options);
 
-// Some lines on the standard output.
+// Print to standard output.
 void printFill(const FilledPart& part);
 void printShape(const ShapeReport& report);
 

@@ -35,7 +35,7 @@ std::string MapSource::description() const {
 }
 
 namespace {
-/// Instead of a file with labels.
+/// Used in place of a file with labels.
 constexpr const char* kAutomaticFlags = "auto";
 }  // namespace
 
@@ -109,27 +109,27 @@ void requireMesh(const std::filesystem::path& file, const WriteOptions& options)
   requireHexMeshFormat(file, options);
 }
 
-/// Whether a format is known by this name, too.
+/// Whether a name is an alias of a format.
 bool isOtherName(const std::string& name) {
   for (const auto require : {requireMapFormat, requireMesh}) {
     try {
       require("", WriteOptions{.format = name});
       return true;
     } catch (const Error&) {
-      // Not in this table.
+      // not an alias
     }
   }
   return false;
 }
 
-/// Either a file or two.
+/// Requires either one file or a pair.
 void requireOneSource(const MapSource& source, const std::string& argument) {
   if (source.file.empty() && !source.isPair()) throw CLI::RequiredError(argument);
   if (source.isPair() && source.polycube.empty() && source.flags.empty()) {
     throw CLI::ValidationError("--tets", "requires --polycube or --flags");
   }
-  // excludes("--tets") would end the process where memory ends: CLI11 looks names up in noexcept
-  // functions.
+  // Not by excludes("--tets"): CLI11 looks up names in noexcept functions, which terminate when
+  // memory runs out.
   if (source.isPair() && source.keepWalls) throw CLI::ExcludesError("--keep-walls", "--tets");
   if (source.file.empty() || !source.isPair()) return;
   throw CLI::ValidationError(argument, "cannot be combined with --tets");
@@ -235,11 +235,11 @@ std::vector<std::string> solverNames() {
   return names;
 }
 
-/// What a solver does not take for its format is of no use, whatever is in it.
+/// Requires the extension by which the solver recognizes its format.
 void requireExtension(const SolverFormat& solver, std::string& output) {
   const std::filesystem::path file = output;
   std::error_code missing;
-  // Pipes have any name, and so has the folder that OpenFOAM's files are in.
+  // Pipes may have any name, and so may the folder of OpenFOAM's files.
   if (std::filesystem::is_other(file, missing) || file.filename() == "polyMesh") return;
   if (file.extension() == solver.extension) return;
   std::filesystem::path other = file;
@@ -256,7 +256,7 @@ void requireExtension(const SolverFormat& solver, std::string& output) {
 }  // namespace
 
 void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output) {
-  // Asked for by its name, CLI11 would end the program where memory does not suffice.
+  // Looking up the option by name would make CLI11 terminate when memory runs out.
   CLI::Option* const format = addOutputChoice(parser, choice);
   addValue(parser, "--for", choice.solver, "SOLVER",
            "Write what this solver reads (calculix, dealii, mfem, ...:\n"

@@ -1,4 +1,4 @@
-// Options that several subcommands have, and checks with messages that people understand.
+// Options shared by several subcommands, with readable error messages.
 #pragma once
 
 #include <filesystem>
@@ -15,16 +15,16 @@
 
 namespace hexhex::command {
 
-/// Accepts whole numbers from `minimum` that fit in an int.
+/// Accepts integers from `minimum` on that fit in an int.
 [[nodiscard]] CLI::Validator wholeNumberFrom(int minimum);
 
-/// Where a subcommand has its map from: a file, two meshes, or a mesh and labels.
+/// The source of a map: a file, a pair of meshes, or a mesh and labels.
 struct MapSource {
   std::string file;
   std::string tets;
   std::string polycube;
   std::string flags;    ///< labels of the boundary of `tets`, instead of `polycube`
-  std::string surface;  ///< that the labels belong to, or empty
+  std::string surface;  ///< surface of the labels, or empty
   std::string flagsArray = "flags";
   std::string mapArray = "igm";
   std::string format;
@@ -33,28 +33,28 @@ struct MapSource {
   [[nodiscard]] bool isPair() const noexcept { return !tets.empty(); }
   /// "sphere.hexex", "tets.mesh and polycube.mesh", "tets.mesh and labels.txt"
   [[nodiscard]] std::string description() const;
-  /// All files that are read.
+  /// All files to read.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
   [[nodiscard]] ReadOptions options() const;
 };
 
-/// ".mesh, .vtu or .vtk": the extensions of the formats that can do this.
+/// ".mesh, .vtu or .vtk": the extensions of formats with a capability.
 [[nodiscard]] std::string extensionsThat(bool FileFormat::*can);
 
 /// Adds --input-format.
 void addInputFormat(CLI::App& parser, MapSource& source);
 
-/// Adds --keep-walls; addMapSource() sees to it that --tets is not given beside it.
+/// Adds --keep-walls; addMapSource() makes it incompatible with --tets.
 void addKeepWalls(CLI::App& parser, MapSource& source);
 
-/// For arguments that name a map to read.
+/// The description of arguments that name a map to read.
 [[nodiscard]] std::string mapDescription();
 
-/// Adds an argument, and --tets, --polycube, --flags, --surface, --flags-array and --map-array; a
-/// map has to be given in one of these ways.
+/// Adds an argument, and --tets, --polycube, --flags, --surface, --flags-array and --map-array; the
+/// map must be given in one of these ways.
 void addMapSource(CLI::App& parser, MapSource& source, const std::string& argument = "MAP",
                   const std::string& description = mapDescription());
-/// For subcommands with another argument behind MAP: where two meshes are given instead, the first
+/// For subcommands with another argument after MAP: if a pair of meshes is given, the first
 /// argument is that other one.
 /// @param argument, otherArgument  their names
 void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& argument,
@@ -64,20 +64,20 @@ void addMapSourceBefore(CLI::App& parser, MapSource& source, const std::string& 
 /// @throws Error  as readMap(), readMapPair(), readFlags() and mapFromFlags()
 [[nodiscard]] TetMap readMap(const MapSource& source, Context& context);
 
-/// Adds -o for the map or the mesh that a subcommand makes.
+/// Add -o for the resulting map or mesh.
 void addMapOutput(CLI::App& parser, std::string& file);
 void addMeshOutput(CLI::App& parser, std::string& file);
 
 /// How a subcommand writes its result.
 struct OutputChoice {
   std::string format;
-  std::string solver;  ///< that chooses the format, or empty
+  std::string solver;  ///< determines the format, unless empty
   std::string mapArray = "igm";
   bool compress = false;
 
   [[nodiscard]] WriteOptions options() const;
   /// @param order  0: not known yet
-  /// @throws Error InvalidArgument, FileUnsupported if cells of higher order are not written so
+  /// @throws Error InvalidArgument, FileUnsupported if the format cannot hold cells of higher order
   void requireForCurved(const std::string& output, int order = 0) const;
 };
 
@@ -93,29 +93,29 @@ void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output);
 
 /// Adds --hexes-only.
 void addHexesOnly(CLI::App& parser, bool& hexesOnly);
-/// Names the cells that were left out for it, if there are any.
+/// Warns of cells that were skipped because of it, if there are any.
 void warnOfOtherCells(const std::vector<CellCount>& counts);
 
-/// What --patch-angle says.
+/// The option --patch-angle.
 struct PatchAngle {
   double degrees = WriteOptions{}.patchAngle;
   bool isGiven = false;
 
-  /// Warns of an angle that was given, but changes nothing in a file.
+  /// Warns if the angle was given but has no effect on the file.
   /// @param patches  of the mesh that was written
   void warnIfUseless(std::span<const NamedPatch> patches, const std::string& file,
                      const WriteOptions& options) const;
-  /// The same of a mesh whose patches nobody needs else.
+  /// The same if patches are not needed otherwise; computes them.
   void warnIfUseless(const HexMesh& mesh, const std::string& file, const WriteOptions& options,
                      Context& context) const;
-  /// The same where there are no patches at all. @param why  "maps have no boundary quads"
+  /// The same if there are no patches at all. @param why  "maps have no boundary quads"
   void warnIfGiven(std::string_view why) const;
 };
-/// Adds it, from 0 to 180 degrees.
+/// Adds --patch-angle, from 0 to 180 degrees.
 CLI::Option* addPatchAngle(CLI::App& parser, PatchAngle& angle);
-/// Adds --report. @param description  of what is in it
+/// Adds --report. @param description  of its content
 void addReport(CLI::App& parser, std::string& file, const std::string& description);
-/// Adds --view. @param description  of what the page shows
+/// Adds --view. @param description  of the content of the page
 void addPage(CLI::App& parser, std::string& page, const std::string& description);
 /// Adds --json.
 void addJson(CLI::App& parser, bool& json);
@@ -123,8 +123,8 @@ void addQuiet(CLI::App& parser, bool& quiet,
               const std::string& description = "Print nothing but errors");
 
 void addScale(CLI::App& parser, int& scale, const std::string& description);
-/// Of cells of higher order.
-/// @param order  the option that says which
+/// For cells of higher order.
+/// @param order  the option for the order
 void addCurvedNodes(CLI::App& parser, CurvedNodes& nodes, CLI::Option* order);
 void addTolerance(CLI::App& parser, double& tolerance);
 void addRound(CLI::App& parser, bool& round);

@@ -16,7 +16,7 @@
 namespace hexhex::command {
 namespace {
 
-/// A whole number from the first of these variables that is set, or else 1.
+/// The value of the first of these variables that is set, at least 1; otherwise 1.
 int environmentNumber(std::initializer_list<const char*> names) {
   for (const char* const variable : names) {
     if (const char* const text = std::getenv(variable)) return std::max(std::atoi(text), 1);
@@ -24,7 +24,7 @@ int environmentNumber(std::initializer_list<const char*> names) {
   return 1;
 }
 
-/// Open MPI; MPICH and what is like it, and Slurm.
+/// Variables of Open MPI; and of MPICH, its derivatives, and Slurm.
 int startedProcesses() { return environmentNumber({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}); }
 
 [[noreturn]] void refuse(const std::string& problem) {
@@ -34,7 +34,7 @@ int startedProcesses() { return environmentNumber({"OMPI_COMM_WORLD_SIZE", "PMI_
 }
 
 #if defined(HEXHEX_MPI_MODULE)
-/// Beside the command in its build, or where it is installed.
+/// Loads the module from the command's build folder, or from where it is installed.
 void* loadModule() {
   std::error_code error;
   const std::filesystem::path folder =
@@ -43,7 +43,7 @@ void* loadModule() {
   for (const std::filesystem::path& place : {folder, folder / HEXHEX_MPI_FOLDER}) {
     const std::filesystem::path file = place / HEXHEX_MPI_MODULE;
     if (!std::filesystem::exists(file, error)) continue;
-    // Open MPI loads parts of itself that look for the others.
+    // RTLD_GLOBAL: plugins of Open MPI need its symbols.
     if (void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL)) return module;
     problem = dlerror();
   }

@@ -1,17 +1,17 @@
-// Processes that mpirun has started together.
+// Teams of processes started by mpirun.
 #pragma once
 
 #include <hexhex/team.hpp>
 
 namespace hexhex::command {
 
-/// Whether this is one of several processes of an MPI, or asked to be one.
+/// Whether this is one of several MPI processes, or was asked to join a team.
 [[nodiscard]] bool isInTeam(bool asked);
 
-/// Joins the others. There is one at a time.
+/// Joins the team. At most one may exist at a time.
 class StartedTeam {
  public:
-  /// @throws Error InvalidArgument where MPI cannot be loaded, or is not the one of mpirun
+  /// @throws Error InvalidArgument if MPI cannot be loaded, or is not that of mpirun
   StartedTeam();
   ~StartedTeam();
   StartedTeam(const StartedTeam&) = delete;
@@ -24,7 +24,7 @@ class StartedTeam {
   void (*end_)() = nullptr;
 };
 
-/// As many threads as leave cores to other processes on this machine.
+/// A default number of threads that leaves cores to the other processes on this machine.
 [[nodiscard]] int threadsInTeam();
 
 }  // namespace hexhex::command

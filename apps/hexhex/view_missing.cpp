@@ -1,4 +1,4 @@
-// `hexhex view` and --view of a command that was built without the viewer page.
+// `hexhex view` and --view in builds without the viewer page.
 #include <hexhex/error.hpp>
 
 #include "view_page.hpp"

@@ -26,17 +26,17 @@
 #include "shared_options.hpp"
 
 #ifdef __APPLE__
-extern "C" char** environ;  // its headers lack it
+extern "C" char** environ;  // not declared in macOS headers
 #endif
 
 namespace hexhex::command {
 namespace {
 
-/// Mesh and what is known about it.
+/// A mesh with related results.
 struct Subject {
   std::variant<HexMesh, LagrangeMesh> mesh;
   std::optional<VerifyReport> verification;
-  std::string map;     ///< that it was compared with
+  std::string map;     ///< with which it was compared
   std::string notice;  ///< of a repair; empty: none
 
   [[nodiscard]] bool agrees() const { return !verification || verification->passed(); }
@@ -54,7 +54,7 @@ VerifyReport compare(const TetMapView& map, const Subject& subject, const Verify
   return verify(map, std::get<HexMesh>(subject.mesh), options, context);
 }
 
-/// The mesh of a map.
+/// Extracts the mesh of a map.
 Subject extractSubject(const ViewArguments& arguments, TetMap map, Context& context) {
   refuseIf(!arguments.map.empty(),
            arguments.mesh +
@@ -135,10 +135,10 @@ constexpr const char* kOpener = "open";
 constexpr const char* kOpener = "xdg-open";
 #endif
 
-/// Does not wait for the browser.
+/// Opens a page without waiting for the browser.
 void openInBrowser(const std::filesystem::path& page) {
   std::string program = kOpener;
-  std::string file = std::filesystem::absolute(page).string();  // no option, whatever its name
+  std::string file = std::filesystem::absolute(page).string();  // absolute: not taken for an option
   const std::array<char*, 3> words = {program.data(), file.data(), nullptr};
   pid_t process = 0;
   const int problem = ::posix_spawnp(&process, kOpener, nullptr, nullptr, words.data(), environ);
@@ -170,7 +170,7 @@ int view(const ViewArguments& arguments) {
   if (!arguments.run.quiet) {
     printFiles(arguments.mesh, page);
     printLine("mesh", counted(subject.cellCount(), "cell"));
-    std::error_code unknown;  // the size of a pipe
+    std::error_code unknown;  // a pipe has no size
     const std::uintmax_t bytes = std::filesystem::file_size(page, unknown);
     if (!unknown) printLine("page", bytesAsText(bytes));
     if (!arguments.open) printLine("to see it", "open the page in any browser, or add --open");

@@ -1,4 +1,4 @@
-// What `hexhex view` does after its options are known, and pages that other commands write.
+// `hexhex view` after option parsing, and pages written by other commands.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct ViewArguments {
   std::string page;  ///< empty: the mesh's name with .html
   std::string map;   ///< empty: none
   VerifyOptions options;
-  int order = 1;  ///< of the cells that are extracted
+  int order = 1;  ///< of extracted cells
   CurvedNodes curvedNodes = CurvedNodes::Blended;
   bool quantize = false;
   QuantizeOptions quantizeOptions;
@@ -32,12 +32,12 @@ struct ViewArguments {
 /// @throws Error  FileUnsupported if the command was built without the viewer
 int view(const ViewArguments& arguments);
 
-/// That a page can be written there; nothing if no page is asked for.
+/// Checks that the page can be written; does nothing if the name is empty.
 /// @throws Error  FileWrite; FileUnsupported if the command was built without the viewer
 void requirePage(const std::string& page);
 
-/// The page of a mesh that a command has made.
-/// @param output  the file of the mesh, which the page is named after
+/// Writes the page of a mesh that a command has made.
+/// @param output  the file of the mesh, after which the page is named
 void writePage(const HexMesh& mesh, const std::string& page, const std::string& output,
                ViewOptions options, Context& context);
 void writePage(const LagrangeMesh& mesh, const std::string& page, const std::string& output,

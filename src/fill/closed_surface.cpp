@@ -23,7 +23,7 @@ namespace {
 
 using Corners = std::array<Index, 3>;
 
-/// "(0.5, 1, 2.25)"
+/// A point for messages: "(0.5, 1, 2.25)".
 std::string asText(const Vec3& point) {
   constexpr int kDigits = 6;
   std::string text;
@@ -46,14 +46,15 @@ std::string nameOf(const TriangleMesh& surface, Index t) {
   return asText(corners[0]) + ", " + asText(corners[1]) + ", " + asText(corners[2]);
 }
 
-/// Side i of triangle t, from its corner i to the next, is 3 t + i.
+/// A side of a triangle. Side i of triangle t, from its corner i to the next, has the number 3 t +
+/// i.
 struct Side {
   std::array<Index, 2> ends;  ///< ascending
   Index side;
   auto operator<=>(const Side&) const = default;
 };
 
-/// A surface that is being checked to be closed and manifold, and oriented.
+/// A surface that is checked to be closed and manifold, and oriented consistently.
 class Checked {
  public:
   Checked(TriangleMesh surface, Stage& stage) : surface_(std::move(surface)) {
@@ -72,10 +73,10 @@ class Checked {
     }
   }
 
-  /// The closed surfaces of which it consists, each around a positive volume.
+  /// The closed surfaces that it consists of, oriented to enclose a positive volume.
   [[nodiscard]] std::vector<TriangleMesh> shells() const {
     std::vector<TriangleMesh> all(shellCount_);
-    std::vector<Index> vertices(surface_.points.size(), kNone);  // each is in one shell
+    std::vector<Index> vertices(surface_.points.size(), kNone);  // each belongs to one shell
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       TriangleMesh& shell = all[shell_[t]];
       Corners& corners = shell.triangles.emplace_back(surface_.triangles[t]);
@@ -95,7 +96,7 @@ class Checked {
     if (surface_.triangles.empty()) {
       throw Error(ErrorCode::EmptyMesh, "The surface has no triangles.");
     }
-    // Sides are numbered, too.
+    // Sides have indices, too.
     if (surface_.triangles.size() > kNone / 3) {
       throw Error(ErrorCode::TooLarge, "The surface has more triangles than can be numbered.");
     }
@@ -117,7 +118,7 @@ class Checked {
     }
   }
 
-  /// No two triangles may have the same corners.
+  /// Refuses two triangles with the same corners.
   void requireThickness() const {
     std::vector<std::pair<Corners, Index>> sorted;
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
@@ -191,7 +192,7 @@ class Checked {
   [[nodiscard]] Index tail(Index side) const { return surface_.triangles[side / 3][side % 3]; }
   [[nodiscard]] static Index next(Index side) noexcept { return side / 3 * 3 + (side + 1) % 3; }
 
-  /// Turns triangles to agree with the first of their shell, and numbers the shells.
+  /// Orients triangles consistently with the first one of their shell, and numbers the shells.
   void orient() {
     const std::size_t count = surface_.triangles.size();
     shell_.assign(count, kNone);
@@ -225,7 +226,8 @@ class Checked {
     turn(turned);
   }
 
-  /// Corners 0, 1, 2 become 1, 0, 2: side 0 stays, the other two swap places.
+  /// Flips triangles: corners 0, 1, 2 become 1, 0, 2, so side 0 stays and the other two are
+  /// swapped.
   void turn(const std::vector<bool>& turned) {
     const auto renamed = [&turned](Index side) {
       const bool moves = turned[side / 3] && side % 3 != 0;
@@ -239,7 +241,7 @@ class Checked {
     }
   }
 
-  /// Around each vertex, all triangles must form a single fan.
+  /// Checks that the triangles around each vertex form a single fan.
   void requireFans() const {
     std::vector<bool> seen(twins_.size(), false);
     std::vector<bool> hasFan(surface_.points.size(), false);
@@ -310,7 +312,7 @@ std::vector<Shell> nested(std::vector<TriangleMesh> surfaces) {
     shell.surface = std::move(surface);
   }
   for (Shell& shell : shells) {
-    // The surfaces do not meet, so any point of one will do.
+    // The surfaces are disjoint, so any point of one will do.
     const Vec3& point = shell.surface.points[0];
     for (std::size_t other = 0; other < shells.size(); ++other) {
       const Box& box = shells[other].box;
@@ -352,7 +354,7 @@ std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage) {
   }
   for (const Shell& shell : shells) {
     if (shell.around.size() % 2 == 0) continue;
-    // The innermost surface around it is contained in all others.
+    // The innermost surface around a shell is the one contained in most others.
     const std::size_t inner = *std::max_element(
         shell.around.begin(), shell.around.end(),
         [&](auto a, auto b) { return shells[a].around.size() < shells[b].around.size(); });

@@ -1,4 +1,4 @@
-// Does a surface bound bodies, and which ones?
+// Checks whether a surface bounds bodies, and finds them.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct Body {
   double volume = 0;
 };
 
-/// The bodies that a surface bounds, whatever the orientation of its triangles. A closed surface
+/// The bodies bounded by a surface, whatever the orientation of its triangles. A closed surface
 /// inside another bounds a cavity, and one inside that bounds another body.
-/// @throws Error  as fillSurface(), for other surfaces
+/// @throws Error  as fillSurface(), if it bounds no bodies
 [[nodiscard]] std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage);
 
 /// Winding number of a closed surface around a point: 0 outside. The point must not be on the

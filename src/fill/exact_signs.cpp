@@ -1,5 +1,5 @@
-// Determinants in doubles with an error bound (Shewchuk 1997), and in integers where the bound does
-// not decide.
+// Signs of determinants: in doubles with an error bound (Shewchuk 1997, "Adaptive precision
+// floating-point arithmetic and fast robust geometric predicates"), in integers if it fails.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using mesh::BigInteger;
 
-/// The differences from the first of several points, as integers with a common factor.
+/// The differences of points from the first one, as integers with a common scale.
 template <std::size_t n>
 std::array<std::array<BigInteger, 3>, n> exactDifferences(const Vec3& from,
                                                           const std::array<Vec3, n>& points) {
@@ -39,13 +39,13 @@ std::array<std::array<BigInteger, 3>, n> exactDifferences(const Vec3& from,
   return result;
 }
 
-/// A sum of products with a common bound on their relative errors.
+/// A sum of products whose relative errors have a common bound.
 struct Filter {
   double sum = 0;
   double magnitude = 0;
 
-  /// Whether the sign is certain. If all products are 0 and no difference is small enough for them
-  /// to have vanished, the sum is 0, too.
+  /// Whether the sign is certain. If all products are 0 and none can have underflowed, the sum is
+  /// exactly 0.
   [[nodiscard]] bool tells(double relativeError, bool hasTiny) const noexcept {
     if (hasTiny) return false;
     return std::abs(sum) > relativeError * magnitude || magnitude == 0;
@@ -53,7 +53,7 @@ struct Filter {
   [[nodiscard]] int sign() const noexcept { return sum > 0 ? 1 : (sum < 0 ? -1 : 0); }
 };
 
-/// Whether products of three such numbers may underflow, or may not be finite.
+/// Whether products of three such numbers may underflow or overflow.
 bool isTiny(const Vec3& v) noexcept {
   constexpr double kSmall = 1e-90;
   constexpr double kLarge = 1e90;

@@ -1,4 +1,4 @@
-// On which side of a plane, or of a line in an axis-parallel plane, points lie: exactly.
+// Exact orientation predicates: the side of a plane, or of a line in an axis-parallel plane.
 #pragma once
 
 #include <cstddef>

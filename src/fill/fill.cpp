@@ -63,7 +63,7 @@ double totalVolume(const TetMesh& mesh) {
   return sum;
 }
 
-/// Removes tets from cavities, which some meshers fill, too.
+/// Removes tets in cavities, which some meshers fill as well.
 void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   if (body.voidCount == 0) return;
   constexpr std::size_t kGrain = 16;
@@ -78,7 +78,7 @@ void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   std::erase_if(mesh.tets, [&](const Tet& /*tet*/) { return isInVoid[t++] != 0; });
 }
 
-/// A mesh far from filling the body is not a mesh of it.
+/// Refuses a mesh whose volume differs too much from the body's.
 void requireFilled(double volume, double filled, const std::string& mesher) {
   constexpr double kMostMissing = 0.1;
   if (std::abs(filled - volume) <= kMostMissing * volume) return;

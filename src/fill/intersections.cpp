@@ -1,6 +1,6 @@
-// If two triangles meet outside common vertices and edges, an edge of one meets the other there:
-// for all pairs whose boxes meet, each edge is compared with the other triangle. The boxes are the
-// nodes of a tree.
+// If two triangles meet outside common vertices and edges, an edge of one meets the other there. So
+// for all pairs whose boxes overlap, found by a box tree, each edge is tested against the other
+// triangle.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -27,7 +27,7 @@ bool meet(const Box& a, const Box& b) noexcept {
   return true;
 }
 
-/// Triangles, recursively halved, each half with its box.
+/// A hierarchy of bounding boxes, by recursive bisection of the triangles.
 class BoxTree {
  public:
   explicit BoxTree(const TriangleMesh& surface) : order_(surface.triangles.size()) {
@@ -45,7 +45,7 @@ class BoxTree {
 
   [[nodiscard]] const Box& box(Index triangle) const { return boxes_[triangle]; }
 
-  /// Calls visit(t) for all triangles whose boxes meet a box.
+  /// Calls visit(t) for all triangles whose boxes overlap a box.
   template <class Visit>
   void forEachAt(const Box& box, const Visit& visit) const {
     forEachAt(box, visit, 0, 0, order_.size());
@@ -112,7 +112,7 @@ class EdgeAndTriangle {
     for (std::size_t i = 0; i < 3; ++i) t_[i] = points_[triangle[i]];
   }
 
-  /// Whether they have a common point that is neither a common vertex nor on a common edge.
+  /// Whether the triangle and an edge have a common point other than a common vertex or edge.
   [[nodiscard]] bool meet(Index from, Index to) const {
     const std::size_t begin = cornerOf(from);
     const std::size_t end = cornerOf(to);
@@ -127,7 +127,7 @@ class EdgeAndTriangle {
       if (end < 3) return leavesInto(end, p);
       return meetInPlane(p, q);
     }
-    if (begin < 3 || end < 3) return false;  // in that vertex alone
+    if (begin < 3 || end < 3) return false;  // only in that vertex
     std::array<int, 3> turns{};
     for (std::size_t i = 0; i < 3; ++i) turns[i] = orientation(p, q, t_[i], t_[(i + 1) % 3]);
     const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
@@ -135,13 +135,13 @@ class EdgeAndTriangle {
   }
 
  private:
-  /// 3: none of them.
+  /// The corner that is this vertex; 3 if there is none.
   [[nodiscard]] std::size_t cornerOf(Index vertex) const {
     return static_cast<std::size_t>(std::find(triangle_.begin(), triangle_.end(), vertex) -
                                     triangle_.begin());
   }
 
-  /// Whether the path from a corner to a point of the plane starts inside the triangle.
+  /// Whether the segment from a corner to a point of the plane starts inside the triangle.
   [[nodiscard]] bool leavesInto(std::size_t corner, const Vec3& point) const {
     const std::size_t axis = openAxis(t_);
     const Vec3& a = t_[corner];
@@ -151,7 +151,7 @@ class EdgeAndTriangle {
     return turn * orientation(a, b, point, axis) >= 0 && turn * orientation(c, a, point, axis) >= 0;
   }
 
-  /// Two convex sets in a plane are disjoint if a side of one separates them.
+  /// The coplanar case: convex sets in a plane are disjoint if a side of one separates them.
   [[nodiscard]] bool meetInPlane(const Vec3& p, const Vec3& q) const {
     const std::size_t axis = openAxis(t_);
     const int turn = orientation(t_[0], t_[1], t_[2], axis);
@@ -181,7 +181,7 @@ bool edgesMeet(const TriangleMesh& surface, const Corners& edges, const Corners&
   return false;
 }
 
-/// The first triangle after t that it meets, or kNone.
+/// The first triangle after t that intersects it, or kNone.
 Index firstMetBy(Index t, const TriangleMesh& surface, const BoxTree& tree) {
   Index first = kNone;
   tree.forEachAt(tree.box(t), [&](Index other) {
@@ -198,7 +198,7 @@ Index firstMetBy(Index t, const TriangleMesh& surface, const BoxTree& tree) {
 bool isFlat(const std::array<Vec3, 3>& triangle) { return openAxis(triangle) == 3; }
 
 std::optional<std::array<Index, 2>> firstIntersection(const TriangleMesh& surface, Stage& stage) {
-  constexpr std::size_t kGrain = 256;  // takes some hundred microseconds
+  constexpr std::size_t kGrain = 256;  // takes a few hundred microseconds
   const BoxTree tree(surface);
   const std::size_t first = firstFault(
       stage, surface.triangles.size(),

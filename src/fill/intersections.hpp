@@ -10,7 +10,7 @@
 
 namespace hexhex::fill {
 
-/// The first pair of triangles with a common point that is not on a vertex or an edge of both, for
+/// The first pair of triangles with a common point that is not a vertex or on an edge of both, for
 /// any number of threads. Exact.
 /// @param surface  its triangles have nonzero area and no two have the same corners
 [[nodiscard]] std::optional<std::array<Index, 2>> firstIntersection(const TriangleMesh& surface,

@@ -27,7 +27,7 @@ namespace {
 /// edge^3 / volume of a regular tet.
 const double kRegularTet = 6 * std::sqrt(2.0);
 
-/// Numbers as C++ and meshers spell them, whatever the user's locale.
+/// Writes numbers in the C locale, whatever the user's.
 class Text {
  public:
   explicit Text(const std::filesystem::path& file) : out_(file) {
@@ -49,7 +49,7 @@ class Text {
   std::ofstream out_;
 };
 
-/// As text, with all digits of coordinates.
+/// Writes a text file with exact coordinates.
 void writeStl(const TriangleMesh& surface, const std::filesystem::path& file) {
   Text out(file);
   out << "solid part\n";
@@ -82,7 +82,7 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
   out.close(file);
 }
 
-/// Output of the script; programs write no names.
+/// The script's output file, which has names of groups; output of other runners has none.
 constexpr const char* kNamed = "part.msh";
 
 /// A way to run one or more meshers; the first one available does the work.
@@ -106,7 +106,7 @@ std::string asWord(double number) {
   return {room.data(), end.ptr};
 }
 
-/// In order of preference.
+/// Runners in order of preference.
 std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const bool isStep = task.surface == nullptr;
   const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
@@ -151,7 +151,7 @@ std::string lastLines(std::string_view said) {
   return text.empty() ? "It said nothing." : "It said: " + text;
 }
 
-/// @param said  by programs that could not be started
+/// @param said  output of the runners that failed to start
 [[noreturn]] void failWithoutMesher(const Task& task, Mesher mesher, const std::string& said) {
   const bool isStep = task.surface == nullptr;
   const std::array<std::string, 5> advice = {
@@ -177,7 +177,7 @@ std::string lastLines(std::string_view said) {
                                           lastLines(said));
 }
 
-/// Makes each tet positive, and removes points without tets.
+/// Gives each tet a positive volume, and removes unused points.
 TetMesh tidied(TetMesh read) {
   TetMesh mesh;
   mesh.regions = std::move(read.regions);

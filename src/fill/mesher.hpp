@@ -25,7 +25,7 @@ struct Meshed {
   std::string mesher;  ///< with its version, if it reports one
 };
 
-/// Negative for a tet with its corners in the opposite order.
+/// The signed volume of a tet; negative if its corners are in the opposite order.
 [[nodiscard]] double volumeOf(const TetMesh& mesh, const Tet& tet);
 
 /// @throws Error  as fillSurface(), for meshers that fail or are not installed; Cancelled

@@ -37,7 +37,7 @@ namespace {
               "A mesher cannot be started: " + what + ": " + std::strerror(errno) + ".");
 }
 
-/// Closed at the end of its scope, and in other programs.
+/// A file descriptor, closed at the end of its scope and on exec.
 class Descriptor {
  public:
   Descriptor(int value, const char* what) : value_(value) {
@@ -57,7 +57,7 @@ class Descriptor {
 [[noreturn]] void become(char* const* words, const char* folder, int input, int output,
                          [[maybe_unused]] pid_t parent) {
 #if defined(__linux__)
-  // Ensures that it does not outlive the parent, however that ends.
+  // Ensures that the child does not outlive its parent, however that ends.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
 #endif
@@ -67,7 +67,7 @@ class Descriptor {
   _exit(ProgramEnd::kNotFound);
 }
 
-/// A running program, which is ended together with this object.
+/// A running program, which is killed when this object is destroyed.
 class Child {
  public:
   explicit Child(pid_t id) : id_(id) {

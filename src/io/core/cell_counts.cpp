@@ -9,7 +9,7 @@
 namespace hexhex::io {
 namespace {
 
-/// The type with this number; null if there is none.
+/// The volume cell type with this number in a format; null if there is none.
 const VolumeCells* find(std::int64_t VolumeCells::*number, std::int64_t value) {
   const auto* const found =
       std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
@@ -17,7 +17,7 @@ const VolumeCells* find(std::int64_t VolumeCells::*number, std::int64_t value) {
   return found == kVolumeCells.end() ? nullptr : found;
 }
 
-/// Types of VTK that are points, lines and polygons, straight and curved, or nothing.
+/// Whether a VTK type is empty, a point, a line or a polygon, straight or curved.
 bool isFlat(std::int64_t type) {
   constexpr std::array<std::int64_t, 31> kFlat = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21,
                                                   22, 23, 28, 30, 34, 35, 36, 51, 52, 53, 54,

@@ -1,4 +1,4 @@
-// Points, and cells of one kind: what readers take from files that may hold other cells, too.
+// Points and cells of one kind, as read from files that may also hold other cells.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace hexhex::io {
 
-/// Tetrahedra with their points. Corners are in the order of VTK.
+/// Tetrahedra with their points. Corners are in VTK order.
 struct TetCells {
   Array<Vec3> points;
   Array<Tet> cells;
@@ -31,11 +31,11 @@ struct TetCells {
   return features.quads;
 }
 
-/// What readers make of hexahedra (8 corners) or tetrahedra (4).
+/// The mesh that readers build from hexahedra (8 corners) or tetrahedra (4).
 template <std::size_t corners>
 using CellMesh = std::conditional_t<corners == 8, HexMesh, TetCells>;
 
-/// What formats and sentences call a kind of elements.
+/// A kind of elements: its names in messages and its codes in file formats.
 struct CellKind {
   std::size_t corners = 0;
   std::string_view singular;
@@ -56,21 +56,21 @@ template <>
 inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
                                           5, 12,           PlaceKind::Cell};
 
-/// Triangles, which carry labels.
+/// Triangles that carry labels.
 inline constexpr CellKind kTriangleKind = {
     .corners = 3, .singular = "triangle", .plural = "triangles", .vtkType = 5};
 
-// The volume cells of a file, by type. A mesh without some of them has holes: readers count, and
-// files.cpp decides.
+// The volume cells of a file, by type. Dropping some of them leaves holes in the mesh, so readers
+// count them all and files.cpp decides whether to accept the file.
 
-/// A type of volume cells, and what formats call it; 0 where they do not know it.
+/// A type of volume cells and its codes in file formats; 0 where a format lacks it.
 struct VolumeCells {
   std::string_view plural;
   std::int64_t vtkType = 0;
   std::int64_t gmshType = 0;
-  std::uint32_t meditCode = 0;         ///< of the section in `.meshb`
-  std::string_view meditKeyword = {};  ///< of the section in `.mesh`
-  std::size_t meditVertices = 0;       ///< of a cell
+  std::uint32_t meditCode = 0;         ///< section code in `.meshb`
+  std::string_view meditKeyword = {};  ///< section name in `.mesh`
+  std::size_t meditVertices = 0;       ///< per cell
 };
 
 constexpr std::array<VolumeCells, 38> kVolumeCells = {
@@ -115,24 +115,24 @@ constexpr std::array<VolumeCells, 38> kVolumeCells = {
 
 class CellCounts {
  public:
-  // Cells of a format's type. Points, lines and polygons do not count.
+  // Add cells by a format's type number. Points, lines and polygons are not counted.
   void addVtk(std::int64_t type, std::uint64_t count);
   void addGmsh(std::int64_t type, std::uint64_t count);
   void add(const VolumeCells& type, std::uint64_t count) { counts_[type.plural] += count; }
   void add(const CellKind& kind, std::uint64_t count) { addVtk(kind.vtkType, count); }
 
   [[nodiscard]] std::uint64_t of(const CellKind& kind) const;
-  /// Refuses a file that also holds others.
-  /// @param advice  what helps
+  /// Refuses a file that also holds cells of other kinds.
+  /// @param advice  how to proceed, appended to the message
   /// @throws Error FileUnsupported
   void requireOnly(const CellKind& kind, const std::string& fileName,
                    std::string_view advice) const;
 
   [[nodiscard]] std::vector<CellCount> list() const;
-  /// "; it holds 1 prism and 8 hexahedra with 27 nodes", to end errors of files without cells of a
-  /// kind; empty for a file without any.
+  /// "; it holds 1 prism and 8 hexahedra with 27 nodes", to end messages about files that lack
+  /// cells of a kind; empty if the file has no volume cells.
   [[nodiscard]] std::string instead() const;
-  /// A sentence, to follow that, for who wants straight hexahedra; empty for a file without
+  /// A sentence to follow instead() where straight hexahedra are wanted; empty if the file has no
   /// hexahedra of order 2.
   [[nodiscard]] std::string adviceOnCurved() const;
 
@@ -140,7 +140,7 @@ class CellCounts {
   [[nodiscard]] std::string text() const;
 
   std::map<std::string_view, std::uint64_t> counts_;
-  std::map<std::int64_t, std::uint64_t> unknown_;  ///< of VTK, by type
+  std::map<std::int64_t, std::uint64_t> unknown_;  ///< VTK types not in the table
 };
 
 }  // namespace hexhex::io

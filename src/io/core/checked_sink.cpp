@@ -17,7 +17,7 @@
 namespace hexhex::io {
 namespace {
 
-/// Refuses an optional array that is there but has another size than what it describes.
+/// Refuses an optional array that is present but has the wrong size.
 void requireSize(std::size_t size, std::size_t expected, const char* elements, const char* values) {
   if (size == 0 || size == expected) return;
   throw Error(ErrorCode::InvalidArgument,
@@ -35,7 +35,7 @@ void requireFinite(std::span<const Vec3> points, Stage& stage) {
 
 std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage) {
   constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
-                                            << 14;  // a fraction of a millisecond's work
+                                            << 14;  // a fraction of a millisecond of work
   return firstFault(
       stage, points.size(), [&](std::size_t i) { return isFinite(points[i]); }, kCheckedSinkGrain);
 }
@@ -77,7 +77,7 @@ void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& st
 namespace {
 
 constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
-                                          << 14;  // a fraction of a millisecond's work
+                                          << 14;  // a fraction of a millisecond of work
 
 std::string numbers(std::uint64_t first, std::uint64_t size) {
   return concat(size, " from number ", first, " on");
@@ -107,7 +107,7 @@ void SinkCalls::run(const std::function<void()>& call) {
 
 void SinkCalls::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
   if (state_ != State::Fresh) refuse("begin() was called twice");
-  // So that no product of a count with the bytes of an element wraps around.
+  // Keeps products of a count and an element's bytes from overflowing.
   constexpr std::uint64_t kMost = std::uint64_t{1} << 48U;
   if (std::max(pointCount, cellCount) > kMost) {
     throw Error(ErrorCode::TooLarge, concat(name_, ": a mesh of ", pointCount, " vertices and ",
@@ -206,10 +206,10 @@ void SinkCalls::refuse(const std::string& sentence) const {
 
 namespace {
 
-// Points or cells of a piece: a few megabytes.
+// Points or cells per piece: a few megabytes.
 constexpr std::size_t kPiece = std::size_t{1} << 16;
 
-/// The values of elements [first, first + count); none if the array is empty.
+/// Elements [first, first + count); empty if the array is empty.
 template <class T>
 std::span<const T> part(const Array<T>& values, std::size_t first, std::size_t count) {
   if (values.empty()) return {};

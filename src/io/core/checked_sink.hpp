@@ -1,5 +1,5 @@
-// What all writers refuse; and what all sinks have in common: the order of calls, checks of what
-// comes, time and cancellation.
+// Validation shared by all writers, and what all sinks share: order of calls, checks of the data,
+// timing and cancellation.
 #pragma once
 
 #include <cstddef>
@@ -22,31 +22,33 @@
 
 namespace hexhex::io {
 
-/// The first point with a coordinate that is infinite or no number, or the number of points.
+/// The first point with an infinite or NaN coordinate; the number of points if there is none.
 [[nodiscard]] std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage);
 
 /// Refuses a map that could not be read back.
-/// @throws Error InvalidArgument if arrays disagree, IndexOutOfRange, NotFinite
+/// @throws Error InvalidArgument if array sizes disagree, IndexOutOfRange, NotFinite
 void requireWritable(const TetMap& map, Stage& stage);
 
-/// Refuses meshes that would crash a writer or could not be read back.
-/// @throws Error InvalidArgument if arrays disagree or a cell names no vertex, NotFinite
+/// Refuses a mesh that would crash a writer or could not be read back.
+/// @throws Error InvalidArgument if array sizes disagree or a cell refers to a missing vertex,
+///         NotFinite
 void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& stage);
 
-/// The calls of one sink: in the right order only, with finite coordinates and vertices that exist.
-/// Of a call inside run(), the functions throw if it is wrong.
+/// Validates the calls of one sink: their order, finite coordinates, vertex indices in range.
+/// begin(), points(), beginsCells(), cells() and end() are called inside run() and throw if the
+/// call is invalid.
 class SinkCalls {
  public:
-  /// @param name  what errors begin with, e.g. a file
-  /// @param stage  under which the time is noted; outlives this
+  /// @param name   prefix of error messages, e.g. a file name
+  /// @param stage  to which the time is added; must outlive this
   SinkCalls(std::string name, std::string_view stage, Context& context);
 
-  /// Does the work of one call. After a call that throws, all others are refused.
+  /// Performs one call. After a call has thrown, all further calls are refused.
   void run(const std::function<void()>& call);
 
   void begin(std::uint64_t pointCount, std::uint64_t cellCount);
   void points(const PointPiece& piece);
-  /// @return whether these are the first cells, or the end without any
+  /// @return true once: for the first cells, or for the end of a mesh without cells
   [[nodiscard]] bool beginsCells();
   template <class Cell>
   void cells(std::uint64_t first, std::span<const Cell> cells);
@@ -63,7 +65,7 @@ class SinkCalls {
   std::string name_;
   std::string_view stage_;
   Context& context_;
-  // The sink's loops are short and many: they report no progress of their own.
+  // A sink runs many short loops; none reports progress of its own.
   Context quiet_;
   State state_ = State::Fresh;
   std::uint64_t pointCount_ = 0;
@@ -74,14 +76,13 @@ class SinkCalls {
   bool hasCorners_ = false;
 };
 
-/// A sink that hands what it checked to the writer of a format.
-/// @tparam Writer  has begin(pointCount, cellCount); points(piece), with some points; beginCells(),
-///         called once, even if there are no cells; cells(first, cells) for both kinds of cells;
-///         and end()
+/// A sink that passes validated data to the writer of a format.
+/// @tparam Writer  has begin(pointCount, cellCount); points(piece), never empty; beginCells(),
+///         called once even if there are no cells; cells(first, cells) for Hex and Hex64; and end()
 template <class Writer>
 class CheckedSink : public MeshSink {
  public:
-  /// @param arguments  what the writer is made from; the others as SinkCalls has them
+  /// @param arguments  passed to the writer; for the others see SinkCalls
   template <class... Arguments>
   CheckedSink(std::string name, std::string_view stage, Context& context,
               const Arguments&... arguments)
@@ -127,7 +128,7 @@ class CheckedSink : public MeshSink {
   Writer writer_;
 };
 
-/// A writer with the file that it writes.
+/// A writer together with its output file.
 template <class Writer>
 class FileWriter {
  public:
@@ -151,7 +152,7 @@ class FileWriter {
   Writer writer_;
 };
 
-/// A sink over a writer that is made from an open file and a number of threads.
+/// Opens a sink for a writer that is constructed from an OutputFile and a number of threads.
 template <class Writer>
 [[nodiscard]] std::unique_ptr<MeshSink> openWriterSink(const std::filesystem::path& file,
                                                        Context& context) {
@@ -159,7 +160,7 @@ template <class Writer>
                                                            file, context.threads());
 }
 
-/// Hands a mesh over, from begin() to end(). Generators go along if there are as many as vertices.
+/// Sends a mesh to a sink, from begin() to end(), with its generators if it has any.
 void sendTo(MeshSink& sink, const HexMesh& mesh);
 
 }  // namespace hexhex::io

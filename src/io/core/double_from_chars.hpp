@@ -1,5 +1,5 @@
-// std::from_chars() of doubles, also where the C++ library has it for integers only (libc++ below
-// 20).
+// std::from_chars() for doubles, also where the standard library supports integers only (libc++
+// before 20).
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,14 @@ namespace hexhex::io {
 #if !defined(_WIN32)
 namespace detail {
 
-/// The same by a function of C.
+/// The same, based on strtod().
 inline std::from_chars_result doubleByStrtod(const char* first, const char* last, double& value) {
-  // Neither spaces nor plus signs may come first, and "0x1" is a 0.
+  // from_chars() accepts neither leading spaces nor plus signs, and reads "0x1" as 0.
   constexpr std::string_view kCharacters = "+-.0123456789eEinfatyINFATY()";
   const std::string_view text(first, static_cast<std::size_t>(last - first));
   const std::string number(text.substr(0, text.find_first_not_of(kCharacters)));
   if (number.empty() || number.front() == '+') return {first, std::errc::invalid_argument};
-  // Programs may have set a locale whose decimal point is none.
+  // The program may have set a locale with another decimal point.
   static const auto plain = newlocale(LC_ALL_MASK, "C", nullptr);
   char* end = nullptr;
   const double parsed = strtod_l(number.c_str(), &end, plain);
@@ -47,7 +47,7 @@ inline std::from_chars_result doubleByStrtod(const char* first, const char* last
 }  // namespace detail
 #endif
 
-/// @tparam T  double; a parameter, so that what a library lacks is no error
+/// @tparam T  double; a template parameter, so that a missing overload is not a compile error
 template <class T>
 std::from_chars_result doubleFromChars(const char* first, const char* last, T& value) {
 #if !defined(_WIN32)

@@ -1,5 +1,5 @@
-// Reads and writes files of any format, after a look at whether the format can do what is wanted:
-// the functions of <hexhex/io.hpp>, and those of other headers that open files.
+// Entry points that read and write files of any format: checks that the format supports the
+// request, then dispatches. Implements <hexhex/io.hpp> and the file functions of other headers.
 #include <array>
 #include <memory>
 #include <string>
@@ -35,7 +35,7 @@ constexpr std::array<WorkStep, 1> kReadTriangles = {{{"read triangles", 1}}};
 constexpr std::array<WorkStep, 1> kReadMesh = {{{"read mesh", 1}}};
 constexpr std::array<WorkStep, 2> kReadAny = {{{"read mesh", 1}, {"read map", 1}}};
 constexpr std::array<WorkStep, 1> kWriteMap = {{{"write map", 1}}};
-/// Its indices are checked first.
+/// The first step checks the indices.
 constexpr std::array<WorkStep, 2> kWriteMesh = {{{"write mesh", 0.02}, {"write mesh", 1}}};
 constexpr std::array<WorkStep, 1> kWriteCurved = {{{"write mesh", 1}}};
 constexpr std::array<WorkStep, 1> kWriteArcs = {{{"write arcs", 1}}};
@@ -51,7 +51,7 @@ constexpr std::array<WorkStep, 1> kWritePatches = {{{"write patches", 1}}};
          concat("files of the format \"", format.label.name, "\" are written, but not read."));
 }
 
-/// The format of a hex mesh that is to be read.
+/// The format of a hex mesh to read.
 const Format& readableFormat(const std::filesystem::path& file, std::string_view name) {
   const Format& format = findFormat(file, name, FileContent::HexMesh);
   if (format.meshes.read == nullptr) failToRead(file, format);
@@ -65,7 +65,7 @@ void refuseGzip(const std::filesystem::path& file) {
          "\".gz\", and compress it then.");
 }
 
-/// The format of a file that is to be written with these options.
+/// The format of a file to write with these options.
 const Format& writableFormat(const std::filesystem::path& file, const WriteOptions& options,
                              FileContent content) {
   refuseGzip(file);
@@ -91,8 +91,8 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
   return format;
 }
 
-/// Reports the volume cells that a reader found, and refuses those that it left out.
-/// @param allowed  whether they may be left out
+/// Reports the volume cells that a reader counted, and refuses files with cells it skipped.
+/// @param allowed  whether cells of other kinds may be skipped
 void settleCells(const Input& input, const CellKind& wanted, const ReadOptions& options,
                  bool allowed) {
   if (options.cellCounts != nullptr) *options.cellCounts = input.counts()->list();
@@ -121,7 +121,7 @@ HexMesh readMeshOf(const Input& input, const Format& format, const ReadOptions& 
   return mesh;
 }
 
-/// Hands a mesh on when its cells are settled, which readers have counted by then.
+/// Passes a mesh on; begin() first checks the cells that the reader has counted by then.
 class SettledSink final : public MeshSink {
  public:
   SettledSink(MeshSink& sink, const Input& input, const ReadOptions& options)
@@ -145,17 +145,17 @@ class SettledSink final : public MeshSink {
   const ReadOptions& options_;
 };
 
-/// The format of a file that may hold cells of higher order; null if there is none.
+/// The format of a file that may hold cells of higher order; null if it cannot.
 const Format* curvedFormat(const std::filesystem::path& file) {
   try {
     const Format& format = findFormat(file, {}, FileContent::HexMesh);
     return format.curved.read == nullptr ? nullptr : &format;
-  } catch (const Error&) {  // no mesh at all
+  } catch (const Error&) {  // not a mesh format
     return nullptr;
   }
 }
 
-/// The format of cells of higher order that are to be written.
+/// The format in which to write cells of higher order.
 /// @param order  0: not known yet
 const Format& curvedFormatToWrite(const std::filesystem::path& file, std::string_view name,
                                   int order) {
@@ -168,13 +168,13 @@ const Format& curvedFormatToWrite(const std::filesystem::path& file, std::string
   return format;
 }
 
-/// What the target of a format may be.
+/// The kind of target that a format can write to.
 OutputFile::Target targetOf(const Format& format) {
   return format.overHdf5 ? OutputFile::Target::Regular : OutputFile::Target::Any;
 }
 
-/// Opens a file, first, so that a folder that is not writable shows at once; has it written in a
-/// stage; and commits it.
+/// Writes a file within a stage and commits it. Opens the file first, so that an unwritable folder
+/// is reported at once.
 template <class Write>
 void writeFile(const std::filesystem::path& file, const Format& format, std::string_view stageName,
                Context& context, const Write& write) {
@@ -184,7 +184,7 @@ void writeFile(const std::filesystem::path& file, const Format& format, std::str
   output.commit();
 }
 
-/// The same of cells, with their measures where the format holds them.
+/// The same for cells, with their scaled Jacobians if the format stores them.
 /// @param write  WriteMesh or WriteCurved
 template <class Mesh, class Write>
 void writeMeasured(const Mesh& mesh, const std::filesystem::path& file, const Format& format,
@@ -200,7 +200,7 @@ void writeMeasured(const Mesh& mesh, const std::filesystem::path& file, const Fo
   output.commit();
 }
 
-/// @param map      null: not known
+/// @param map      null: not available
 /// @param content  Arcs or Patches
 void writePiecewise(const PiecewiseLinearMesh& mesh, const TetMapView* map,
                     const std::filesystem::path& file, FileContent content, Context& context) {
@@ -220,7 +220,7 @@ void requireForTeams(const std::filesystem::path& file, const Format& format) {
                       "\" together. They can write: ", teamFormats(), '.'));
 }
 
-/// Files of other names, or in other formats, are no set that can be read.
+/// Processes that disagree on names or formats would write an unreadable set of files.
 void requireSameOutput(ProcessTeam& team, const std::filesystem::path& file,
                        const WriteOptions& options) {
   team.requireSame(file.string(), "name of the file to write");
@@ -310,7 +310,8 @@ std::variant<TetMap, HexMesh> readMapOrHexMesh(const std::filesystem::path& file
     try {
       return io::readMeshOf(input, format, options, context);
     } catch (const Error& error) {
-      // There are no hexahedra; other mistakes, the other reader will find as well.
+      // Only a file without hexahedra is tried as a map; the map reader reports any other error
+      // itself.
       const io::CellCounts& counts = *input.counts();
       const bool hasOthers = !counts.list().empty();
       if (error.code() != ErrorCode::FileUnsupported || counts.of(io::kCellKind<8>) > 0 ||

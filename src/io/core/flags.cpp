@@ -1,4 +1,4 @@
-// Labels of a tet mesh's boundary: which way each triangle is to face in a polycube.
+// Labels of a tet mesh's boundary: the axis that each triangle faces in a polycube.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,8 +22,8 @@ namespace {
 using Flags = std::vector<std::array<std::int8_t, 4>>;
 using SurfaceTriangle = std::array<Index, 3>;
 
-/// As a share of the object's size, positions of a surface may differ from those of the tets: text
-/// has six digits.
+/// Tolerance, relative to the object's size, between positions of the surface and of the tets: text
+/// files may have only six digits.
 constexpr double kSamePosition = 1e-5;
 
 [[noreturn]] void refuseFlags(const std::filesystem::path& file, const std::string& sentence,
@@ -36,7 +36,7 @@ SurfaceTriangle sortedCorners(SurfaceTriangle triangle) {
   return triangle;
 }
 
-/// The faces of tets that only one of them has.
+/// The faces of a tet mesh; those of a single tet form the boundary.
 class TetBoundary {
  public:
   explicit TetBoundary(const TetMesh& tets) {
@@ -57,7 +57,7 @@ class TetBoundary {
     std::size_t face = 0;
     bool isInner = false;
   };
-  /// nullptr if no tet has such a face.
+  /// Null if no tet has this face.
   [[nodiscard]] const Face* find(const SurfaceTriangle& triangle) const {
     const auto found = faces_.find(sortedCorners(triangle));
     return found == faces_.end() ? nullptr : &found->second;
@@ -73,7 +73,7 @@ class TetBoundary {
     return static_cast<std::size_t>(std::count_if(faces_.begin(), faces_.end(),
                                                   [](const auto& f) { return !f.second.isInner; }));
   }
-  /// All vertices on it, ascending.
+  /// All boundary vertices, ascending.
   [[nodiscard]] std::vector<Index> vertices() const {
     std::vector<Index> all;
     for (const auto& [triangle, face] : faces_) {
@@ -88,7 +88,7 @@ class TetBoundary {
   std::map<SurfaceTriangle, Face> faces_;
 };
 
-/// Gives labels of triangles to the faces that they are.
+/// Assigns the labels of triangles to the matching faces of tets.
 Flags placed(const TriangleLabels& found, const TetMesh& tets, const TetBoundary& boundary,
              const std::filesystem::path& file) {
   Flags flags(tets.tets.size(), {-1, -1, -1, -1});
@@ -117,7 +117,7 @@ std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
   return numbers;
 }
 
-/// Finds boundary vertices by their positions.
+/// Finds boundary vertices by position.
 class Positions {
  public:
   Positions(const TetMesh& tets, const TetBoundary& boundary) : tets_(tets) {
@@ -156,7 +156,7 @@ class Positions {
   using Bucket = std::array<std::int64_t, 3>;
   [[nodiscard]] Bucket bucketOf(const Vec3& p) const {
     Bucket bucket{};
-    // All vertices are far below the limit; numbers that are none count as one.
+    // All vertices are far below the limit; NaN is clamped as well.
     constexpr double kLimit = 0x1p60;
     for (std::size_t k = 0; k < 3; ++k) {
       bucket[k] = std::llround(std::fmin(std::fmax(p[k] / tolerance_, -kLimit), kLimit));
@@ -169,7 +169,7 @@ class Positions {
   std::map<Bucket, std::vector<Index>> buckets_;
 };
 
-/// A number per triangle of a surface.
+/// Labels given per triangle of a surface.
 TriangleLabels onSurface(const FlagsFile& flags, std::vector<std::int64_t> labels,
                          const TetMesh& tets, const TetBoundary& boundary, Stage& stage) {
   const TriangleMesh surface = readObj(flags.surface, stage);
@@ -198,7 +198,7 @@ TriangleLabels onSurface(const FlagsFile& flags, std::vector<std::int64_t> label
   return result;
 }
 
-/// Four numbers per tet.
+/// Labels given per face of a tet, four for each tet.
 Flags perFace(const std::vector<std::int64_t>& numbers, const FlagsFile& flags, const TetMesh& tets,
               const TetBoundary& boundary) {
   if (numbers.size() != 4 * tets.tets.size()) {

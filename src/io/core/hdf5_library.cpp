@@ -22,13 +22,14 @@ namespace hexhex::io {
 namespace {
 
 void* load(const std::filesystem::path& file) {
-  // They take 21 MB of address space; some of those behind it complain where memory ends meanwhile.
+  // Loading takes 21 MB of address space, and some of HDF5's dependencies fail noisily without it:
+  // throw std::bad_alloc before that.
   constexpr std::size_t kBytes = std::size_t{1} << 25;
   static_cast<void>(Array<char>(kBytes));
   const char* const chosen = std::getenv("HEXHEX_HDF5");
   void* library = dlopen(chosen != nullptr ? chosen : HEXHEX_HDF5_NAME, RTLD_NOW);
   std::string problem = library == nullptr ? dlerror() : "";
-  // Where it was when hexhex was built, no folder of the system's perhaps.
+  // The path found at build time, which may lie outside the system's folders.
   if (library == nullptr && chosen == nullptr) library = dlopen(HEXHEX_HDF5_FILE, RTLD_NOW);
   if (library != nullptr) {
     std::array<unsigned, 3> version{};

@@ -1,20 +1,18 @@
-// The HDF5 library, which is loaded when the first file needs it: it brings some thirty others
-// along (curl, OpenSSL, Kerberos ...), which take longer to start than most of what the command
-// does.
+// The HDF5 library, loaded when the first file needs it: it depends on some thirty other libraries
+// (curl, OpenSSL, Kerberos ...), which take longer to load than most commands take to run.
 #pragma once
 
 #include <filesystem>
 
 namespace hexhex::io {
 
-/// Loads the library if it is not yet.
-/// @param file  which needs it
-/// @throws Error FileUnsupported if it is not there, is of another version, or this build is
-/// without;
-///         std::bad_alloc if memory does not suffice for it
+/// Loads the library unless it is loaded already.
+/// @param file  the file that needs it
+/// @throws Error FileUnsupported if the library is missing, has another version, or this build has
+///         no support for it; std::bad_alloc if there is not enough memory to load it
 void requireHdf5(const std::filesystem::path& file);
 
-/// What the library calls so. @pre  requireHdf5() was successful
+/// The address of a symbol of the library. @pre  requireHdf5() succeeded
 [[nodiscard]] void* hdf5Symbol(const char* name);
 
 }  // namespace hexhex::io

@@ -15,18 +15,18 @@
 namespace hexhex::io {
 namespace {
 
-/// What HDF5 knows as an open file; the first member is its own.
+/// An open file of the driver. HDF5 requires its own struct as the first member.
 struct OpenFile {
   H5FD_t ofHdf;
   HdfTarget* target;
-  haddr_t allocated;  ///< bytes that HDF5 has given away
-  haddr_t written;    ///< up to where
+  haddr_t allocated;  ///< end of the bytes that HDF5 has allocated
+  haddr_t written;    ///< end of the bytes written
 };
 
 OpenFile& fileOf(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
 const OpenFile& fileOf(const H5FD_t* file) { return *reinterpret_cast<const OpenFile*>(file); }
 
-/// Calls f() unless something went wrong before, and keeps what goes wrong in it.
+/// Calls f() unless an earlier call failed, and stores an exception in the target.
 template <class F>
 void guarded(HdfTarget& target, const F& f) noexcept {
   if (target.failure) return;
@@ -81,7 +81,7 @@ herr_t writeBytes(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t
   return 0;
 }
 
-/// Readers want the file as long as what was given away in it.
+/// Readers expect the file to be as long as its allocated size.
 herr_t makeLong(H5FD_t* file, hid_t transfer, hbool_t /*closing*/) {
   const OpenFile& open = fileOf(file);
   if (open.written >= open.allocated) return 0;
@@ -93,7 +93,7 @@ H5FD_class_t driverClass() {
   H5FD_class_t driver{};
 #if defined(H5FD_CLASS_VERSION)
   driver.version = H5FD_CLASS_VERSION;
-  driver.value = 600;  // of those that are for anybody
+  driver.value = 600;  // in the range for unregistered drivers
 #endif
   driver.name = "hexhex";
   driver.maxaddr = std::numeric_limits<std::int64_t>::max();
@@ -112,14 +112,14 @@ H5FD_class_t driverClass() {
   return driver;
 }
 
-/// Throws std::bad_alloc if there is no more memory than what HDF5 may need for itself: it crashes
-/// if there is not enough in the midst of its work.
+/// Throws std::bad_alloc if there is no more memory than HDF5 may need: it crashes if an allocation
+/// fails halfway.
 void requireSpareMemory() {
   constexpr std::size_t kMost = std::size_t{1} << 24;  // its caches take 2 MB to 4 MB
   const Array<char> spare(kMost);
 }
 
-/// HDF5 keeps its state in global variables.
+/// HDF5 keeps its state in global variables, so one thread uses it at a time.
 std::mutex& hdf5Lock() {
   static std::mutex lock;
   return lock;

@@ -1,8 +1,8 @@
-// HDF5 files that are written through OutputFile, and what reading takes as well (hdf_reader.cpp).
+// HDF5 files written through OutputFile, and RAII wrappers that the reader shares (hdf_reader.cpp).
 //
-// HDF5 cannot close a file that it could not write, and crashes when the process ends. So to it,
-// writing never fails here: what went wrong is kept and thrown by the next function of this header,
-// and what is written afterwards is lost.
+// HDF5 cannot close a file after a failed write, and crashes when the process ends. So the driver
+// never reports a failed write: the error is stored and thrown by the next function of this header,
+// and later writes are dropped.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@
 #include <io/core/hdf5_library.hpp>
 #include <io/core/output_file.hpp>
 
-/// HDF5(H5Dwrite) is that function, HDF5(H5T_NATIVE_INT32_g) that value of the library.
+/// A function or global of the library: HDF5(H5Dwrite), HDF5(H5T_NATIVE_INT32_g).
 #if defined(HEXHEX_HDF5_NAME)
 #define HDF5(name)                                                                                 \
   (*[] {                                                                                           \
     static const auto symbol = reinterpret_cast<decltype(&::name)>(hexhex::io::hdf5Symbol(#name)); \
     return symbol;                                                                                 \
   }())
-// Constants of its headers call it to see whether it is ready.
+// HDF5's macros for constants expand to these, which initialize the library.
 #undef H5OPEN
 #undef H5CHECK
 #define H5OPEN
@@ -34,18 +34,18 @@
 
 namespace hexhex::io {
 
-/// Where HDF5 writes or reads, and what went wrong there.
+/// The file that HDF5 writes or reads, and the first error there.
 struct HdfTarget {
-  const OutputFile* output = nullptr;  ///< null of a file that is read
-  std::string name = {};               ///< of that
+  const OutputFile* output = nullptr;  ///< null for a file that is read
+  std::string name = {};               ///< of the file that is read
   std::exception_ptr failure = nullptr;
 
-  /// Throws what went wrong, if anything.
-  /// @param status  of a call of HDF5: negative if it failed
+  /// Throws the stored error, or an error if the status is negative.
+  /// @param status  returned by HDF5
   void require(std::int64_t status) const;
 };
 
-/// An open object of HDF5. Every function throws as HdfTarget::require().
+/// An open HDF5 object. Every function throws as HdfTarget::require() does.
 class HdfObject {
  public:
   using Close = herr_t (*)(hid_t);
@@ -64,7 +64,7 @@ class HdfObject {
 
   [[nodiscard]] hid_t id() const noexcept { return id_; }
   void require(herr_t status) const { target_.require(status); }
-  /// Closes it now, since closing may fail, too.
+  /// Closes it now, so that an error on closing is thrown.
   void close();
 
  private:
@@ -73,7 +73,7 @@ class HdfObject {
   Close close_;
 };
 
-/// While it lives, no other thread uses HDF5 through this library, and HDF5 prints no errors.
+/// For its lifetime, no other thread uses HDF5 through this library, and HDF5 prints no errors.
 class HdfSession {
  public:
   /// @throws std::bad_alloc
@@ -88,11 +88,10 @@ class HdfSession {
   void* data_ = nullptr;
 };
 
-/// A file that is being written, in a session. Its bytes follow from what is written, not from
-/// when.
+/// An HDF5 file being written. Its bytes depend only on the content, not on the time of writing.
 class HdfFile {
  public:
-  /// Whether groups know the order of their members; a newer layout then.
+  /// Whether groups store the creation order of their members, which takes a newer file layout.
   enum class Order : bool { OfNames, OfCreation };
 
   HdfFile(const OutputFile& output, Order order);
@@ -102,24 +101,25 @@ class HdfFile {
 
   [[nodiscard]] hid_t root() const noexcept { return file_.id(); }
   [[nodiscard]] HdfObject group(hid_t parent, const std::string& name) const;
-  /// @param shape  none: a single value
+  /// @param shape  empty: a scalar
   [[nodiscard]] HdfObject space(std::initializer_list<hsize_t> shape) const;
   [[nodiscard]] HdfObject dataset(hid_t parent, const std::string& name, hid_t type,
                                   const HdfObject& space) const;
-  /// A dataset without rows, to which append() adds some. @param components  of a row; 1: numbers
+  /// An extensible dataset without rows, to be filled by append().
+  /// @param components  per row; 1 makes a one-dimensional dataset
   [[nodiscard]] HdfObject growing(hid_t parent, const std::string& name, hid_t type,
                                   hsize_t components) const;
-  /// Writes rows behind the last one.
-  /// @param rows  that there are; counted on
+  /// Appends rows to a dataset.
+  /// @param rows  the current number of rows; updated
   void append(const HdfObject& set, hid_t memoryType, hsize_t components, hsize_t& rows,
               const void* values, hsize_t count) const;
-  /// A dataset whose values lie one behind the other, from that byte of the file on, and are not
-  /// written: others do that.
+  /// A contiguous dataset whose values are not written: the caller writes them itself.
+  /// @return the position of the first value in the file
   [[nodiscard]] std::uint64_t reserve(hid_t parent, const std::string& name, hid_t type,
                                       hsize_t rows, hsize_t components) const;
   void writeAttribute(hid_t object, const char* name, hid_t type, const HdfObject& space,
                       const void* values) const;
-  /// A type of text of so many bytes. @param padding  what is behind shorter texts
+  /// A string type of fixed size. @param padding  how shorter strings are padded
   [[nodiscard]] HdfObject text(std::size_t bytes, H5T_str_t padding) const;
 
   /// Closes the file. Every object in it is closed.
@@ -131,7 +131,7 @@ class HdfFile {
   HdfSession session_;
   HdfTarget target_;
   HdfObject driver_;
-  HdfObject ofFiles_;  ///< how they are created, as the next two
+  HdfObject ofFiles_;  ///< creation properties of files; then of groups and datasets
   HdfObject ofGroups_;
   HdfObject ofDatasets_;
   HdfObject access_;

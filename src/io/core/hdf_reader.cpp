@@ -20,7 +20,7 @@ class OpenHdf final : public HdfReader {
         access_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_FILE_ACCESS_ID_g)), HDF5(H5Pclose)),
         links_(target_, HDF5(H5Pcreate)(HDF5(H5P_CLS_LINK_ACCESS_ID_g)), HDF5(H5Pclose)),
         file_(target_, openFile(input), HDF5(H5Fclose)) {
-    // No other file that this one names is opened, however long the way of links to its name.
+    // External links are refused, however indirectly a path reaches them.
     const H5L_elink_traverse_t refuse = [](const char*, const char*, const char*, const char*,
                                            unsigned*, hid_t, void*) -> herr_t { return -1; };
     links_.require(HDF5(H5Pset_elink_cb)(links_.id(), refuse, nullptr));
@@ -56,7 +56,7 @@ class OpenHdf final : public HdfReader {
       if (end == std::string::npos) break;
     }
     const hid_t object = HDF5(H5Oopen)(file_.id(), path.c_str(), links_.id());
-    if (object < 0) return false;  // a link to what is not there
+    if (object < 0) return false;  // a dangling link
     const HdfObject opened(target_, object, HDF5(H5Oclose));
     return HDF5(H5Iget_type)(object) == H5I_DATASET;
   }
@@ -129,7 +129,7 @@ class OpenHdf final : public HdfReader {
       space.require(HDF5(H5Sget_simple_extent_dims)(space.id(), lengths.data(), nullptr));
       shape.assign(lengths.begin(), lengths.end());
     }
-    /// How many values there are.
+    /// The number of values, checked against the bytes stored.
     [[nodiscard]] std::size_t count(const OpenHdf& file, const std::string& path) const {
       if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) return 0;
       const std::uint64_t stored = HDF5(H5Dget_storage_size)(set.id());
@@ -169,12 +169,12 @@ class OpenHdf final : public HdfReader {
 
   [[nodiscard]] hid_t openFile(const Input& input) const {
     if (!input.bytes()) return HDF5(H5Fopen)(input.path().c_str(), H5F_ACC_RDONLY, access_.id());
-    constexpr std::size_t kStep = std::size_t{1} << 16;  // by which memory would grow
+    constexpr std::size_t kStep = std::size_t{1} << 16;  // growth increment
     access_.require(HDF5(H5Pset_fapl_core)(access_.id(), kStep, false));
-    // HDF5 copies the bytes, and takes a pointer to such as it might change.
+    // HDF5 copies the bytes, although it takes a pointer to non-const.
     std::string bytes(*input.bytes());
     access_.require(HDF5(H5Pset_file_image)(access_.id(), bytes.data(), bytes.size()));
-    // HDF5 refuses a name that a file has, which nothing behind a device can be.
+    // HDF5 refuses the name of an existing file; no file can exist below a device.
     return HDF5(H5Fopen)("/dev/null/hexhex", H5F_ACC_RDONLY, access_.id());
   }
 
@@ -195,7 +195,7 @@ class OpenHdf final : public HdfReader {
   HdfSession session_;
   HdfTarget target_;
   HdfObject access_;
-  HdfObject links_;  ///< how they are followed
+  HdfObject links_;  ///< link access properties
   HdfObject file_;
 };
 

@@ -15,23 +15,23 @@
 namespace hexhex::io {
 namespace {
 
-// Files without a known size (pipes) are read in steps of at least this many bytes: large enough
-// that the number of system calls does not matter.
+// Minimum read size for files of unknown size (pipes), large enough that the number of system calls
+// does not matter.
 constexpr std::size_t kMinimumStep = std::size_t{1} << 20;
 
-// What one thread reads at once: large enough that system calls cost nothing, small enough that
-// files of some megabytes have work for several threads.
+// Bytes per read of a thread: large enough that system calls cost nothing, small enough that files
+// of a few megabytes keep several threads busy.
 constexpr std::size_t kInputFileGrain = std::size_t{1} << 20;
 
-// Bytes that suffice to recognize a format.
+// Enough bytes to recognize a format.
 constexpr std::size_t kHead = std::size_t{1} << 16;
 
 std::string reasonOf(int error) { return std::generic_category().message(error); }
 
-/// Whether a file may go on behind a head: it begins with one of these characters, and is no row of
-/// zero bytes.
+/// Whether these may be the first bytes of a file: the first character is one of `first`, and there
+/// are no zero bytes in the first word.
 bool mayBegin(std::string_view head, std::string_view first) {
-  constexpr std::size_t kWord = 8;  // all formats begin with a word, or with numbers in digits
+  constexpr std::size_t kWord = 8;  // all formats begin with a word or a number in digits
   head = withoutByteOrderMark(head);
   head.remove_prefix(
       static_cast<std::size_t>(std::find_if_not(head.begin(), head.end(), isSpace) - head.begin()));
@@ -104,7 +104,7 @@ Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::
                     "extension right, and is it complete?");
   }
   if (input.size() > size) {
-    // One byte more than the size, so that the end of the file shows without growing the array.
+    // One byte more than the size, so that reading on finds the end without growing the array.
     bytes.resize(input.size() + 1);
     parallelBlocks(stage, input.size() - size, kInputFileGrain,
                    [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
@@ -113,7 +113,7 @@ Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::
     size = input.size();
     input.moveTo(size);
   }
-  // The rest: of a file without a size everything, and what was appended in the meantime.
+  // The rest: a file of unknown size, or bytes appended in the meantime.
   do {
     if (size == bytes.size()) bytes.resize(size + std::max(size, kMinimumStep));
   } while (readOn());

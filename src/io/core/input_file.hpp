@@ -1,4 +1,4 @@
-// Files that are read: as a whole into memory, which is the fastest way to parse them, or in parts.
+// Input files: read as a whole into memory, which is fastest to parse, or in sections.
 #pragma once
 
 #include <cstdint>
@@ -19,27 +19,27 @@
 
 namespace hexhex::io {
 
-/// An open file. Every function throws Error FileNotFound, with the file and the system's reason,
-/// if it fails.
+/// An open file. On failure, every function throws Error FileNotFound with the file name and the
+/// system's reason.
 class InputFile {
  public:
   explicit InputFile(std::filesystem::path file);
 
-  /// Bytes, as of its opening; 0 if it is no regular file.
+  /// Size in bytes when the file was opened; 0 unless it is a regular file.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   [[nodiscard]] bool isRegular() const noexcept { return regular_; }
 
-  /// Reads so many bytes from a position of a regular file. A file that ends before them is an
-  /// error. Thread-safe.
+  /// Reads exactly `size` bytes at a position of a regular file; a shorter file is an error.
+  /// Thread-safe.
   void readAt(std::uint64_t position, void* bytes, std::size_t size) const;
 
-  /// Reads on from where this function or moveTo() stopped: up to `size` bytes.
+  /// Reads up to `size` bytes, sequentially or from the position given to moveTo().
   /// @return number of bytes, 0 at the end of the file
   [[nodiscard]] std::size_t read(void* bytes, std::size_t size) const;
   void moveTo(std::uint64_t position) const;
 
  private:
-  /// Closed at the end, even of a constructor that fails.
+  /// Closes the descriptor even if the constructor of InputFile throws.
   struct Descriptor {
     explicit Descriptor(int value_) : value(value_) {}
     ~Descriptor();
@@ -57,35 +57,35 @@ class InputFile {
 };
 
 /// The bytes of a file.
-/// @param first  what the file begins with, white space aside: one of these characters
+/// @param first  characters that the file may begin with, after white space; empty: any
 /// @throws Error FileNotFound if it does not exist, is a folder, or cannot be read to its end;
-///         FileSyntax, before the rest is read, if it is larger than 64 KiB and begins otherwise
-///         (for a smaller one, the parser reports more)
+///         FileSyntax, before the rest is read, if it is larger than 64 KiB and begins with another
+///         character (smaller files are left to the parser, whose message is more precise)
 [[nodiscard]] Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage,
                                         std::string_view first = {});
 
-/// The same bytes as text.
+/// The bytes as text.
 [[nodiscard]] inline std::string_view asText(const Array<char>& bytes) noexcept {
   return {bytes.data(), bytes.size()};
 }
 
-/// A text without the mark that some editors, mostly of Windows, put in front of UTF-8. No binary
-/// format begins with it.
+/// A text without its UTF-8 byte order mark, which some editors write, mostly on Windows. No binary
+/// format begins with those bytes.
 [[nodiscard]] constexpr std::string_view withoutByteOrderMark(std::string_view text) noexcept {
   constexpr std::string_view kMark = "\xef\xbb\xbf";
   if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
   return text;
 }
 
-/// What is read: a file, or bytes in memory.
+/// The source of a reader: a file, or bytes in memory.
 class Input {
  public:
   Input(const std::filesystem::path& file) : name_(file.string()), path_(file) {}
-  /// @param bytes  outlive this
-  /// @param name  for error messages
+  /// @param bytes  must outlive this
+  /// @param name   for error messages
   Input(std::string_view bytes, std::string name) : name_(std::move(name)), bytes_(bytes) {}
-  /// Of a compressed file.
-  /// @param bytes  what it holds
+  /// For a compressed file.
+  /// @param bytes  its uncompressed content
   Input(const std::filesystem::path& file, Array<char> bytes)
       : name_(file.string()),
         path_(file),
@@ -96,9 +96,9 @@ class Input {
   /// Empty for bytes in memory.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
-  /// What readers of this input count.
+  /// The cells that readers of this input have counted.
   [[nodiscard]] const std::shared_ptr<CellCounts>& counts() const noexcept { return counts_; }
-  /// All bytes except a byte-order mark. A file is read into `room`; `first` is as in
+  /// All bytes except a byte order mark. A file is read into `room`; for `first` see
   /// readWholeFile().
   [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage,
                                       std::string_view first) const {
@@ -117,11 +117,11 @@ class Input {
 
 /// Whether a file's name ends in ".gz".
 [[nodiscard]] bool isGzip(const std::filesystem::path& file);
-/// A file as its readers get it: one whose name ends in ".gz" is unpacked first.
+/// Opens a file for its readers; ".gz" files are uncompressed first.
 /// @throws Error FileNotFound, and as inflateGzip()
 [[nodiscard]] Input openInput(const std::filesystem::path& file, Context& context);
 
-/// What work(stage) returns, with the context's threads.
+/// Runs work(stage) with the context's threads and returns its result.
 template <class Work>
 [[nodiscard]] auto inStage(Context& context, std::string_view name, const Work& work) {
   Stage stage(context, name);
@@ -130,11 +130,11 @@ template <class Work>
   return result;
 }
 
-/// What a reader makes of an input.
-/// @tparam Reader  made from a text, a name for error messages and a stage; has read(), and kFirst,
-///         what a text begins with (as of readWholeFile()). If it can be made from an open file,
-///         too, a regular file is never in memory as a whole
-/// @param more  what else the reader's constructor takes
+/// Runs a reader on an input and returns its result.
+/// @tparam Reader  constructed from a text, a name for error messages and a stage; has read(), and
+///         kFirst, the characters that a text may begin with (see readWholeFile()). If it can also
+///         be constructed from an InputFile, regular files are not loaded as a whole
+/// @param more  further arguments of the reader's constructor
 template <class Reader, class... More>
 [[nodiscard]] auto readWith(const Input& input, Stage& stage, const More&... more) {
   const auto read = [&](const auto& source) {

@@ -1,4 +1,4 @@
-// Formats text in parallel and writes it in order, with bounded memory: formatting numbers takes
+// Formats text in parallel and writes it in order, in bounded memory: formatting numbers takes
 // longer than writing them.
 #pragma once
 
@@ -26,10 +26,10 @@ class LineWriter {
     sizes_.resize(count);
   }
 
-  /// Writes what format(place, i) puts at its place, a char*, for every i in [0, n) in order.
-  /// @param room    the most that one call of format puts there, at most kBlockBytes
-  /// @param format  returns the place behind its text; called from several threads
-  /// @param progress  advances by n if not null
+  /// Writes the text that format(place, i) stores at `place`, a char*, for i in [0, n) in order.
+  /// @param room    maximum size of one call's text, at most kBlockBytes
+  /// @param format  returns the end of its text; called from several threads
+  /// @param progress  advanced by n unless null
   template <class Format>
   void write(std::size_t n, std::size_t room, const Format& format, LoopProgress* progress) {
     const std::size_t grain = kBlockBytes / room;
@@ -45,9 +45,9 @@ class LineWriter {
   }
 
  private:
-  // Fits in the second-level cache, and makes the cost of a block's start negligible.
+  // Fits in the L2 cache, and makes the overhead of starting a block negligible.
   static constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
-  // Blocks take different times; with several for each thread no thread waits long for the others.
+  // Blocks take different times; with several per thread, no thread waits long for the others.
   static constexpr std::size_t kBlocksPerThread = 8;
 
   template <class Format>
@@ -63,7 +63,7 @@ class LineWriter {
   }
 
   OutputFile& output_;
-  // Rounds are no matter of the caller's: progress is reported across all of them.
+  // Rounds are internal: progress is reported across all of them.
   Context quiet_;
   Stage stage_;
   std::vector<std::unique_ptr<char[]>> blocks_;

@@ -38,14 +38,14 @@ Array<std::size_t> orderByTag(std::span<const Tag> tags) {
   return order;
 }
 
-/// What the names of groups are made of, for elements with a tag and without.
+/// Words that names of groups are built from, for elements with and without a tag.
 struct GroupWords {
   std::string tagged;
   const char* untagged = "boundary";
-  std::map<Tag, std::string> names = {};  ///< of their own
+  std::map<Tag, std::string> names = {};  ///< names given by the features
 };
 
-/// A name as every format holds it: letters, digits and '_', 32 at most, no digit first.
+/// A name valid in every format: letters, digits and '_', at most 32, not starting with a digit.
 std::string wordOf(std::string_view name) {
   constexpr std::size_t kLongest = 32;
   std::string word;
@@ -58,8 +58,8 @@ std::string wordOf(std::string_view name) {
   return word;
 }
 
-/// What the file that the mesh came from calls groups. Formats that do not tell capital letters
-/// apart need names that differ all the same: one that is like an earlier one is left out.
+/// Names of groups given by the file that the mesh came from. Some formats ignore case, so a name
+/// that equals an earlier one up to case is dropped.
 /// @param dimension  of the elements
 std::map<Tag, std::string> givenNames(std::span<const TagName> names, int dimension) {
   std::map<Tag, std::string> given;
@@ -83,13 +83,13 @@ std::string groupName(const GroupWords& words, Tag tag) {
   return concat(words.tagged, (wide < 0 ? "_m" : "_"), wide < 0 ? -wide : wide);
 }
 
-/// Whether groups are numbered by tags: the largest one needs a successor for untagged elements.
+/// Whether tags serve as group numbers: all nonnegative, with a successor for untagged elements.
 bool numbersAreTags(std::span<const Tag> tags) {
   return std::all_of(tags.begin(), tags.end(),
                      [](Tag tag) { return tag >= 0 && tag < std::numeric_limits<Tag>::max(); });
 }
 
-/// @param order  of all elements, by tag
+/// @param order  indices of all elements, sorted by tag
 std::vector<ElementGroup> groupsOf(std::span<const Tag> tags, std::span<const std::size_t> order,
                                    const GroupWords& words) {
   const bool byTag = numbersAreTags(tags);
@@ -120,7 +120,7 @@ void requireVertices(const HexMesh& mesh, const Vertices& vertices, const char* 
 std::array<Index, 1> verticesOf(const FeatureVertex& feature) { return {feature.vertex}; }
 std::array<Index, 2> verticesOf(const FeatureEdge& feature) { return feature.vertices; }
 
-/// The groups of all features but those of tag 0, which means "no feature".
+/// Groups of all features except those with tag 0, which means "no feature".
 template <std::size_t n, class Feature>
 ElementGroups<n> groupFeatures(const HexMesh& mesh, const std::vector<Feature>& all,
                                const char* what, const GroupWords& words) {
@@ -146,10 +146,10 @@ struct TaggedQuads {
   Array<Quad> quads;
   std::vector<std::uint64_t> places;
   Array<Tag> tags;
-  Tag lastTag = std::numeric_limits<Tag>::max();  ///< those beyond are of smooth patches
+  Tag lastTag = std::numeric_limits<Tag>::max();  ///< larger tags denote smooth patches
 };
 
-/// Tags boundary quads by smooth patch, with numbers behind the tags that there are.
+/// Tags boundary quads by smooth patch, with numbers above all existing tags.
 void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& stage) {
   const mesh::SmoothPatches patches =
       mesh::findSmoothPatches(mesh.points, found.quads, angle, mesh.features.edges, stage);
@@ -172,7 +172,7 @@ TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   found.quads = adjacency::quadsAt(mesh, found.places);
   found.tags.resize(found.quads.size());
   std::fill(found.tags.begin(), found.tags.end(), Tag{0});
-  std::vector<std::pair<Quad, std::size_t>> table;  // by vertices, in whatever order
+  std::vector<std::pair<Quad, std::size_t>> table;  // by sorted vertices
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (features[i].tag != 0) table.emplace_back(sorted(features[i].vertices), i);
   }

@@ -1,6 +1,5 @@
-// What formats with groups of elements hold beside points and cells: the boundary and the tagged
-// vertices, edges and quads of a mesh, sorted into groups with a number and a name each; and the
-// cells by region.
+// Groups of elements for formats that store them: the boundary and the tagged vertices, edges and
+// quads of a mesh, sorted into groups with a number and a name each; and the cells by region.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +18,19 @@
 
 namespace hexhex::io {
 
-/// "No face of a cell": see QuadGroups.
+/// Marks a quad that is not on the boundary: see QuadGroups.
 inline constexpr std::uint64_t kNoPlace = ~std::uint64_t{0};
 
 /// Consecutive elements that have the same tag.
 struct ElementGroup {
-  /// In [1, 2^31), different within one kind of elements: the tag where all tags are positive, and
+  /// In [1, 2^31), unique within one kind of elements: the tag where all tags are positive,
   /// otherwise the number of the group from 1 on. Untagged boundary quads come last.
   std::uint32_t number = 0;
   std::string name;  ///< letters, digits and '_': "boundary", "surface_7", "curve_m2" (tag -2), or
-                     ///< what the features name it
+                     ///< the name that the features give
   std::size_t begin = 0;
   std::size_t end = 0;
-  std::int32_t tag = 0;  ///< 0 for elements without one
+  std::int32_t tag = 0;  ///< 0: untagged
 };
 
 template <std::size_t vertices>
@@ -42,73 +41,71 @@ struct ElementGroups {
 using VertexGroups = ElementGroups<1>;
 using EdgeGroups = ElementGroups<2>;
 
-/// All boundary quads, facing outwards, and the tagged quads inside.
+/// All boundary quads, facing outwards, and the tagged interior quads.
 struct QuadGroups : ElementGroups<4> {
-  Array<std::uint64_t> places;  ///< per quad: 8 * cell + face; kNoPlace inside the mesh
+  Array<std::uint64_t> places;  ///< per quad: 8 * cell + face; kNoPlace in the interior
 
-  /// The end of a group's boundary quads; those inside the mesh come last.
+  /// The end of a group's boundary quads; interior quads come last.
   [[nodiscard]] std::size_t boundaryEnd(const ElementGroup& group) const;
 };
 
-/// Names are "point_TAG" and "curve_TAG".
-/// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
+/// Default names are "point_TAG" and "curve_TAG".
+/// @throws Error InvalidArgument for a feature with a vertex index out of range
 [[nodiscard]] VertexGroups groupVertices(const HexMesh& mesh);
 [[nodiscard]] EdgeGroups groupEdges(const HexMesh& mesh);
 
-/// Names are "surface_TAG", and "boundary" for boundary quads without a tag. If no
-/// boundary quad has a tag, they are in the smooth patches of boundaryPatches(), "patch_1" and so
-/// on, unless there is only one; their numbers come behind the tags of quads inside. Groups are in
-/// order of their tags, quads of a group in order of (cell, face), then those inside as the
-/// features list them.
+/// Default names are "surface_TAG", and "boundary" for untagged boundary quads. If no boundary quad
+/// is tagged, they are grouped into the smooth patches of boundaryPatches(), "patch_1" and so on,
+/// unless there is only one; patch numbers follow the tags of interior quads. Groups are sorted by
+/// tag, quads of a group by (cell, face), followed by interior quads in the order of the features.
 /// @param patchAngle  in degrees; 0: no patches
-/// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
-/// @param isInside  of a place: whether its quad is inside the mesh though it has one cell only, as
-///                  quads between parts have; null: there are none
+/// @param isInside  whether a quad is interior though only one cell has it, as between parts, given
+///                  its place; null: no such quads
+/// @throws Error InvalidArgument for a feature with a vertex index out of range
 [[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
                                     const std::function<bool(std::uint64_t)>& isInside = nullptr);
 
-/// The name of the group of quads with a tag, of those that have one, and of boundary quads
-/// without.
+/// The default name of a group of quads; tag 0: untagged boundary quads.
 [[nodiscard]] std::string quadGroupName(std::int32_t tag);
 
 /// The cells by region, for formats that list them group by group.
 struct CellGroups {
   std::vector<ElementGroup> groups;  ///< at least one
-  Array<Index> order;                ///< the cells, group by group; empty: as they are
+  Array<Index> order;                ///< cell indices, group by group; empty: the original order
 
-  /// Which cell stands at place i.
+  /// The cell at position i of the list.
   [[nodiscard]] std::size_t at(std::size_t i) const noexcept {
     return order.empty() ? i : order[i];
   }
 };
 
-/// Names are "region_TAG", and "hexahedra" for cells of region 0 and in meshes without regions.
+/// Default names are "region_TAG", and "hexahedra" for region 0 and meshes without regions.
 [[nodiscard]] CellGroups groupCells(const HexMesh& mesh);
 
-/// Adds groups without elements, so that groups, their numbers and names are the same for all
-/// meshes with these tags.
+/// Adds empty groups, so that all meshes with these tags have the same groups with the same numbers
+/// and names.
 /// @param tags      ascending, without 0
-/// @param untagged  whether there is a group of elements without tag, too
-/// @param word      of names: "surface"
-/// @param nameless  the name of the group without tag
+/// @param untagged  whether to have a group of untagged elements
+/// @param word      prefix of names, e.g. "surface"
+/// @param nameless  the name of the untagged group
 void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_t> tags,
                       bool untagged, const std::string& word, const char* nameless);
 
-/// Everything that formats list by group.
+/// All groups of a mesh.
 struct MeshGroups {
   VertexGroups vertices;
   EdgeGroups edges;
   QuadGroups quads;
   CellGroups cells;
 
-  /// @throws Error InvalidArgument for a feature with a vertex that is none of the mesh
+  /// @throws Error InvalidArgument for a feature with a vertex index out of range
   MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage);
   MeshGroups(VertexGroups vertices_, EdgeGroups edges_, QuadGroups quads_, CellGroups cells_)
       : vertices(std::move(vertices_)),
         edges(std::move(edges_)),
         quads(std::move(quads_)),
         cells(std::move(cells_)) {}
-  /// Of cells alone.
+  /// For a mesh of cells only.
   explicit MeshGroups(std::size_t cellCount) : cells{{{1, "hexahedra", 0, cellCount}}, {}} {}
 
   [[nodiscard]] std::size_t elementCount() const {
@@ -117,7 +114,7 @@ struct MeshGroups {
   }
 };
 
-/// The different vertices of a group's elements, ascending.
+/// The distinct vertices of a group's elements, ascending.
 template <class Groups>
 [[nodiscard]] Array<Index> verticesOf(const Groups& groups, const ElementGroup& group) {
   Array<Index> vertices;
@@ -130,32 +127,31 @@ template <class Groups>
   return vertices;
 }
 
-/// Refuses more elements than 32 bits with a sign can number.
-/// @param numbers  who numbers what: "OpenFOAM numbers faces"
-/// @param instead  what else can be done
+/// Refuses more elements than a signed 32-bit integer can number.
+/// @param numbers  start of the message, e.g. "OpenFOAM numbers faces"
+/// @param instead  a suggestion
 /// @throws Error TooLarge
 void requireInt32(std::size_t count, const std::string& numbers,
                   const std::string& instead = "choose another format");
 
-/// What stands for elements without a tag beside others that have one.
+/// How untagged elements are numbered beside tagged ones: as their group, or 0.
 enum class Untagged : std::uint8_t { Numbered, Zero };
 
-/// The number of each cell's group, for formats that list cells in order. Empty: all are 1.
+/// The group number of each cell, for formats that list cells in order; empty if all are 1.
 [[nodiscard]] Array<std::uint32_t> cellReferences(const HexMesh& mesh,
                                                   Untagged untagged = Untagged::Numbered);
 
-/// For formats with one reference per vertex: the number of the vertex's group, 0 without.
+/// The group number of each vertex, 0 if none, for formats with one reference per vertex.
 [[nodiscard]] Array<std::uint32_t> vertexReferences(const HexMesh& mesh,
                                                     const VertexGroups& groups);
-/// The number of the group of each element.
+/// The group number of each element.
 [[nodiscard]] Array<std::uint32_t> groupNumbers(const std::vector<ElementGroup>& groups,
                                                 Untagged untagged = Untagged::Numbered);
 
-// The groups of a part's elements: the same in all parts, some of them empty.
-
-/// Boundary quads are those of the whole mesh; quads between parts are in groups if they are
-/// tagged. Groups of boundary quads are "surface_TAG" and "boundary", as in a whole mesh with a
-/// patch angle of 0. Cells are own cells.
+/// The groups of a part's elements: the same in all parts, some of them empty. Boundary quads are
+/// those of the whole mesh; quads between parts are grouped if they are tagged. Groups of boundary
+/// quads are "surface_TAG" and "boundary", as for a whole mesh with patch angle 0. Only owned cells
+/// are grouped.
 [[nodiscard]] MeshGroups groupPart(const MeshPart& part, const PartsInfo& info, Stage& stage);
 
 }  // namespace hexhex::io

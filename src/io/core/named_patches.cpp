@@ -1,4 +1,4 @@
-// The boundary by name: the groups that files get, measured.
+// Named boundary patches: the groups that files get, with area, centre and normal.
 #include <algorithm>
 #include <cmath>
 
@@ -15,8 +15,8 @@ namespace hexhex {
 namespace io {
 namespace {
 
-/// Area, centre and normal from the triangles at the corners of quads: those of both ways to split
-/// each quad in two, so that each counts by half.
+/// Sums area, centre and normal over the corner triangles of quads. These cover each quad twice,
+/// once per diagonal, so each counts half.
 void measurePatch(std::span<const Vec3> points, NamedPatch& patch) {
   Vec3 moment{};
   for (const Quad& quad : patch.quads) {
@@ -50,7 +50,7 @@ std::vector<NamedPatch> namedPatches(const HexMesh& mesh, double angle, Context&
       adjacency::requireCornersInRange(mesh, stage);
       groups = io::groupQuads(mesh, angle, stage);
     });
-    std::int32_t lastTag = 0;  // numbers of smooth patches are beyond
+    std::int32_t lastTag = 0;  // larger tags denote smooth patches
     for (const FeatureQuad& quad : mesh.features.quads) lastTag = std::max(lastTag, quad.tag);
     std::vector<NamedPatch> patches;
     for (const io::ElementGroup& group : groups.groups) {
@@ -58,7 +58,7 @@ std::vector<NamedPatch> namedPatches(const HexMesh& mesh, double angle, Context&
         return groups.elements.begin() + static_cast<std::ptrdiff_t>(i);
       };
       const std::size_t end = groups.boundaryEnd(group);
-      if (end == group.begin) continue;  // all inside
+      if (end == group.begin) continue;  // all interior
       NamedPatch& patch = patches.emplace_back();
       patch.name = group.name;
       patch.tag = group.tag > lastTag ? 0 : group.tag;

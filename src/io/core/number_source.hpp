@@ -1,8 +1,8 @@
-// The numbers of a file, for readers that need not know whether they are text or bytes.
+// Sources of numbers that let readers ignore whether a file is text or binary.
 //
-// A source stands somewhere in the file; records, which are equal runs of numbers, are read in
-// parallel through a function f(record, i), where a record has numbers as its source has. Of
-// several errors the first one is reported, for any number of threads.
+// A source has a position in the file. Records, which are runs of numbers of equal shape, are read
+// in parallel by a function f(record, i); a record offers the same functions as its source. If
+// several records are wrong, the first one is reported, for any number of threads.
 #pragma once
 
 #include <algorithm>
@@ -23,14 +23,14 @@
 
 namespace hexhex::io {
 
-/// How many numbers of each kind a record has.
+/// The number of values of each kind in a record.
 struct RecordShape {
-  std::size_t sizes = 0;     ///< integers of 8 bytes, none negative
-  std::size_t integers = 0;  ///< integers and single precision numbers: 4 bytes
-  std::size_t reals = 0;     ///< double precision: 8 bytes
+  std::size_t sizes = 0;     ///< nonnegative integers of 8 bytes
+  std::size_t integers = 0;  ///< integers or floats of 4 bytes
+  std::size_t reals = 0;     ///< doubles
 
   [[nodiscard]] std::size_t tokens() const { return sizes + integers + reals; }
-  /// With 64 bits, as a file can tell any number of tags.
+  /// In 64 bits, since a file may claim any number of tags.
   [[nodiscard]] std::uint64_t bytes() const {
     return std::uint64_t{8} * sizes + std::uint64_t{4} * integers + std::uint64_t{8} * reals;
   }
@@ -39,8 +39,8 @@ struct RecordShape {
 /// Numbers as text.
 class TextSource {
  public:
-  /// @param scanner  which the source moves
-  /// @param index  of its text; null for a text with comments, in which nothing can be skipped
+  /// @param scanner  moved by the source
+  /// @param index  of its text; null for a text with comments, which cannot be skipped
   TextSource(TextScanner& scanner, const TokenIndex* index, Stage& stage)
       : scanner_(&scanner), index_(index), stage_(&stage) {}
 
@@ -54,20 +54,20 @@ class TextSource {
 
   [[nodiscard]] std::size_t position() const { return scanner_->position(); }
   void moveTo(std::size_t position) { scanner_->moveTo(position); }
-  /// Refuses a text that ends after so many elements.
+  /// Throws if the text ends after `done` elements.
   void failIfAtEnd(std::size_t done, std::size_t count, std::string_view what) const {
     scanner_->failIfAtEnd(done, count, what);
   }
-  /// How the file spells the number that was read last.
+  /// The last number read, as spelled in the file.
   [[nodiscard]] std::string spelling(std::uint64_t /*number*/) const {
     return std::string(scanner_->currentToken());
   }
 
-  /// How many records there can be in the rest of the file.
+  /// Maximum number of records in the rest of the file.
   [[nodiscard]] std::size_t room(RecordShape shape) const {
     return (index_->count() - index_->countBefore(position())) / shape.tokens();
   }
-  /// Goes on behind n records, for which there is room.
+  /// Skips n records. @pre  n <= room(shape)
   void skip(std::size_t n, RecordShape shape) {
     moveTo(index_->find(index_->countBefore(position()) + n * shape.tokens()));
   }
@@ -80,7 +80,7 @@ class TextSource {
                  });
   }
 
-  /// As TextScanner::fail().
+  /// See TextScanner::fail().
   template <class... Parts>
   [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     scanner_->fail(code, sentence...);
@@ -92,25 +92,25 @@ class TextSource {
   Stage* stage_;
 };
 
-/// Bytes of a file, in memory or on the disk.
+/// Bytes of a file, in memory or on disk.
 class ByteFile {
  public:
-  /// @param bytes  outlive this, and so does the name
+  /// @param bytes  must outlive this, as must the name
   ByteFile(std::string_view bytes, const std::string& name)
       : bytes_(bytes), size_(bytes.size()), name_(&name) {}
-  /// @param input  a regular file; outlives this
+  /// @param input  a regular file; must outlive this
   ByteFile(const InputFile& input, const std::string& name)
       : input_(&input), size_(input.size()), name_(&name) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] bool isInMemory() const noexcept { return input_ == nullptr; }
-  /// Bytes of the file; `room` is for as many if they are not in memory. Thread-safe.
+  /// Bytes of the file, read into `room` unless they are in memory. Thread-safe.
   [[nodiscard]] const char* view(std::size_t position, std::size_t size, char* room) const {
     if (isInMemory()) return bytes_.data() + position;
     input_->readAt(position, room, size);
     return room;
   }
-  /// The same, copied. Thread-safe.
+  /// Copies bytes of the file. Thread-safe.
   void readAt(std::uint64_t position, char* to, std::size_t size) const {
     if (!isInMemory()) return input_->readAt(position, to, size);
     std::copy_n(bytes_.data() + position, size, to);
@@ -133,7 +133,7 @@ class ByteFile {
   const std::string* name_;
 };
 
-/// Numbers as bytes, the least first.
+/// Little-endian binary numbers.
 /// @tparam Derived  has read<T>(name), which reads the bytes of a T, and fail()
 template <class Derived>
 class LittleEndianNumbers {
@@ -141,7 +141,7 @@ class LittleEndianNumbers {
   [[nodiscard]] std::uint64_t size(const NumberName& name) { return read<std::uint64_t>(name); }
   [[nodiscard]] std::int64_t integer(const NumberName& name) { return read<std::int32_t>(name); }
   [[nodiscard]] double real(const NumberName& name) { return finite(read<double>(name), name); }
-  /// A number of single precision.
+  /// A single-precision number.
   [[nodiscard]] double shortReal(const NumberName& name) {
     return finite(double{read<float>(name)}, name);
   }
@@ -157,10 +157,10 @@ class LittleEndianNumbers {
   }
 };
 
-/// The numbers of one record, whose bytes are all at hand.
+/// The numbers of one record, whose bytes are all in memory.
 class BinaryRecord : public LittleEndianNumbers<BinaryRecord> {
  public:
-  /// @param position  of its bytes in the file
+  /// @param position  of the record in the file
   BinaryRecord(const ByteFile& file, std::size_t position, const char* bytes)
       : file_(&file), begin_(bytes), next_(bytes), position_(position) {}
 
@@ -190,10 +190,10 @@ class BinaryRecord : public LittleEndianNumbers<BinaryRecord> {
   std::size_t position_;
 };
 
-/// The numbers of a file.
+/// The numbers of a binary file.
 class BinarySource : public LittleEndianNumbers<BinarySource> {
  public:
-  /// @param file  outlives this
+  /// @param file  must outlive this
   BinarySource(const ByteFile& file, std::size_t position, Stage& stage)
       : file_(&file), position_(position), stage_(&stage) {}
 
@@ -215,15 +215,15 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
     return (file_->size() - position_) / shape.bytes();
   }
   void skip(std::size_t n, RecordShape shape) { position_ += n * shape.bytes(); }
-  /// There is room for so many.
+  /// @pre  n <= room(shape)
   template <class F>
   void records(std::size_t n, RecordShape shape, const F& f) {
     std::size_t wrong = firstUnreadable(
         *stage_, n, kElementGrain, [&](std::size_t /*begin*/, std::size_t end, std::size_t& i) {
           readRecords(i, end, shape, f);
         });
-    // Normally nothing is left. Otherwise the first of these throws, now as if alone; unless it was
-    // the disk that failed, and does not again.
+    // Normally nothing is left. Otherwise, reading sequentially from the first failure throws its
+    // error again, unless it was an I/O error that does not recur.
     while (wrong < n) readRecords(wrong, std::min(n, wrong + kElementGrain), shape, f);
     skip(n, shape);
   }
@@ -234,7 +234,7 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
   }
 
  private:
-  /// Reads records [i, end), and moves i on.
+  /// Reads records [i, end) and advances i.
   template <class F>
   void readRecords(std::size_t& i, std::size_t end, RecordShape shape, const F& f) const {
     const std::size_t each = shape.bytes();
@@ -253,7 +253,7 @@ class BinarySource : public LittleEndianNumbers<BinarySource> {
   Stage* stage_;
 };
 
-/// Refuses n records if the rest of the file has no room for so many.
+/// Refuses n records if the rest of the file is too short for them.
 /// @param what  plural, e.g. "nodes"
 template <class Source>
 void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, std::string_view what) {
@@ -262,7 +262,7 @@ void requireRoom(const Source& source, std::uint64_t n, RecordShape shape, std::
   source.fail(ErrorCode::FileSyntax, lacksRoom(std::to_string(n), what, room));
 }
 
-/// Refuses more elements than indices can number.
+/// Refuses more elements than an Index can number.
 template <class Source>
 void requireIndexable(const Source& source, std::uint64_t n, std::string_view what) {
   if (n <= kNone) return;

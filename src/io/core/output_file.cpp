@@ -14,8 +14,8 @@
 namespace hexhex::io {
 namespace {
 
-/// A name that no other file of this process uses; other processes are kept out by O_EXCL. It does
-/// not contain the target's name, which may be as long as the file system allows.
+/// A name unique within this process; O_EXCL guards against other processes. It does not contain
+/// the target's name, which may already have the maximum length.
 std::string temporaryName() {
   static std::atomic<unsigned> counter{0};
   return concat(".hexhex-", system_call::processId(), "-", counter++, ".tmp");
@@ -25,7 +25,7 @@ std::filesystem::path folderOf(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-/// Makes what was written survive a power failure, where the file system knows how to.
+/// Flushes to disk (fsync), where the file system supports it.
 bool synced(int descriptor) {
   return uninterrupted([descriptor] { return system_call::sync(descriptor); }) == 0 ||
          errno == EINVAL;
@@ -40,13 +40,13 @@ void failToWrite(const std::filesystem::path& target, const std::string& reason,
 }
 
 std::filesystem::path temporaryBeside(const std::filesystem::path& target) {
-  // As one string: libstdc++'s paths that grow leave a broken path where memory ends.
+  // Built as one string: growing a libstdc++ path leaves it broken when memory runs out.
   return folderOf(target).string() + '/' + temporaryName();
 }
 
 std::filesystem::path realTarget(const std::filesystem::path& target) {
   std::error_code error;
-  // What a link to a pipe says of it is no name.
+  // The link of a pipe (as in /proc/self/fd) does not hold a path.
   if (!std::filesystem::is_symlink(target, error) || std::filesystem::is_other(target, error)) {
     return target;
   }
@@ -58,7 +58,7 @@ std::filesystem::path realTarget(const std::filesystem::path& target) {
 ChangedFolder::ChangedFolder(const std::filesystem::path& target)
     : target_(target),
       descriptor_(uninterrupted([&target] { return system_call::openFolder(folderOf(target)); })) {
-  // A folder may be one that can be written, but not read.
+  // The folder may be writable but not readable.
   if (descriptor_ < 0 && errno != EACCES) failToWrite(target, "its folder cannot be opened", errno);
 }
 
@@ -119,7 +119,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::openTemporary() {
-  // A signal may interrupt open(); a file of that name may be there from an earlier process.
+  // open() may be interrupted by a signal, or find a file left by an earlier process.
   do {
     temporary_ = temporaryBeside(target_);
     descriptor_ = system_call::create(temporary_);
@@ -146,8 +146,8 @@ void OutputFile::flush() {
   used_ = 0;
 }
 
-/// @param write  write(bytes, size, done) writes some of so many bytes, after `done` others, and
-///               returns how many, as the system does
+/// @param write  write(bytes, size, done) writes some of `size` bytes after the first `done`, and
+///               returns how many, as write(2) does
 template <class Write>
 void OutputFile::writeAll(const void* bytes, std::size_t size, const Write& write) const {
   const char* const data = static_cast<const char*>(bytes);
@@ -203,7 +203,7 @@ void OutputFile::resume() {
 
 void OutputFile::finish(bool sync) {
   flush();
-  // Some file systems report a full disk only in these two.
+  // Some file systems report a full disk only on fsync or close.
   if (sync && !synced(descriptor_)) fail("it cannot be written completely", errno);
   const int closed = system_call::close(std::exchange(descriptor_, -1));
   if (closed != 0 && errno != EINTR) fail("it cannot be written completely", errno);

@@ -1,4 +1,4 @@
-// Numbers as text and bytes, and files that appear complete or not at all.
+// Numbers as text and bytes, and output files that appear complete or not at all.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace hexhex::io {
 /// Room for any number: the longest, -1.2345678901234567e-308, has 24 characters.
 inline constexpr std::size_t kNumberRoom = 24;
 
-// Each puts text at a place that has room for it, and returns the place behind.
+// Each writes text at `place`, which must have room for it, and returns the end of the text.
 [[nodiscard]] inline char* put(char* place, char character) {
   *place = character;
   return place + 1;
@@ -30,11 +30,11 @@ inline constexpr std::size_t kNumberRoom = 24;
 [[nodiscard]] inline char* put(char* place, std::string_view text) {
   return std::copy(text.begin(), text.end(), place);
 }
-/// With the fewest digits (at most 17) that read back to the same value.
+/// The fewest digits (at most 17) that read back to the same value.
 [[nodiscard]] inline char* put(char* place, double number) {
-  // Whole numbers, a fifth to a third of those of real maps, take a fifth of the time as integers;
-  // without this, writing a map as text takes 15 % longer.
-  // Of up to five digits, none has a shorter form with an exponent; 0 may be negative.
+  // A fifth to a third of the numbers in real maps are whole. Formatted as integers they take a
+  // fifth of the time; without this, writing a map as text takes 15 % longer. Up to five digits, no
+  // number is shorter with an exponent. Zero is excluded, since it may be negative.
   constexpr double kMost = 99999;
   if (number >= -kMost && number <= kMost && number != 0) {
     const auto whole = static_cast<std::int32_t>(number);
@@ -50,7 +50,7 @@ inline constexpr std::size_t kNumberRoom = 24;
 [[nodiscard]] inline char* put(char* place, std::unsigned_integral auto number) {
   return std::to_chars(place, place + kNumberRoom, number).ptr;
 }
-/// Numbers with a space between them.
+/// Numbers separated by spaces.
 template <class Number, std::size_t n>
 [[nodiscard]] char* putNumbers(char* place, const std::array<Number, n>& numbers) {
   place = put(place, numbers[0]);
@@ -61,14 +61,14 @@ template <class Number, std::size_t n>
   return place;
 }
 
-/// Puts the bytes of a number, least first, and returns the place behind.
+/// Writes the little-endian bytes of a number and returns their end.
 template <class T>
 [[nodiscard]] char* putBytes(char* place, T number) {
   const auto bytes = littleBytes(number);
   return std::copy(bytes.begin(), bytes.end(), place);
 }
 
-/// Puts the bytes of a number, the largest first, and returns the place behind.
+/// Writes the big-endian bytes of a number and returns their end.
 template <class T>
 [[nodiscard]] char* putBigBytes(char* place, T number) {
   const auto bytes = littleBytes(number);
@@ -83,19 +83,19 @@ template <class T>
 
 /// Throws Error FileWrite.
 /// @param reason  why the target was not written
-/// @param error   the system's number of the reason, or 0
+/// @param error   errno, or 0
 [[noreturn]] void failToWrite(const std::filesystem::path& target, const std::string& reason,
                               int error = 0);
 
-/// A name in the folder of a target that this process has not used yet; one of another process or
-/// machine may be there already.
+/// A path in the target's folder that this process has not used yet; a file of another process or
+/// machine may exist there.
 [[nodiscard]] std::filesystem::path temporaryBeside(const std::filesystem::path& target);
 
-/// What a target is in the end if it is a link: renaming onto a link would replace the link.
+/// The target with symbolic links resolved: renaming onto a link would replace the link.
 [[nodiscard]] std::filesystem::path realTarget(const std::filesystem::path& target);
 
-/// The folder of a target, opened before the target is renamed: afterwards nothing but sync() can
-/// fail. What functions of this header throw is Error FileWrite.
+/// The folder of a target, opened before the rename, so that only sync() can fail afterwards. Like
+/// the functions above, its members throw Error FileWrite.
 class ChangedFolder {
  public:
   explicit ChangedFolder(const std::filesystem::path& target);
@@ -115,19 +115,19 @@ class ChangedFolder {
 /// @throws Error FileWrite
 void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target);
 
-/// A buffered file that is written to a temporary beside its target and, when it is safe on the
-/// disk, renamed by commit(). Without commit() the temporary vanishes and the target stays as it
-/// was. A target that exists and is no regular file (a device, a pipe) is written directly.
+/// A buffered file, written to a temporary beside its target. commit() syncs it to disk and renames
+/// it; without commit(), the temporary is removed and the target left unchanged. An existing target
+/// that is not a regular file (a device, a pipe) is written directly.
 ///
-/// Every function throws Error FileWrite, with the target and the system's reason, if it fails.
+/// On failure, every function throws Error FileWrite with the target and the system's reason.
 class OutputFile {
  public:
-  /// What the target may be. Libraries, which write at any position, need a regular file.
+  /// Allowed targets. Libraries such as HDF5 write at arbitrary positions and need a regular file.
   enum class Target { Any, Regular };
 
   explicit OutputFile(std::filesystem::path target, Target kind = Target::Any);
-  /// The temporary of another process, which gives it its name when this one is done with it; until
-  /// then it vanishes with any of them.
+  /// Opens the temporary of another process, which will rename it after this process has called
+  /// handOver(); until then either process removes it on failure.
   OutputFile(std::filesystem::path target, std::filesystem::path temporary);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -142,9 +142,9 @@ class OutputFile {
     writeBytes(text.data(), text.size());
     return *this;
   }
-  // Without it a string literal would convert to a number.
+  // Otherwise a string literal would convert to a number.
   OutputFile& write(const char* text) { return write(std::string_view(text)); }
-  /// As put() spells it.
+  /// Writes a number as put() does.
   template <class Number>
   requires std::is_arithmetic_v<Number> OutputFile& write(Number number) {
     makeRoom(kNumberRoom);
@@ -152,42 +152,40 @@ class OutputFile {
     return *this;
   }
 
-  /// Writes memory as it is.
+  /// Writes raw bytes.
   void writeBytes(const void* bytes, std::size_t size);
 
-  /// Whether the target can be written at any position: not if it is a device or a pipe.
+  /// Whether random access is possible: not for a device or a pipe.
   [[nodiscard]] bool hasPositions() const noexcept { return !temporary_.empty(); }
-  /// @param why  it has to be one where all positions can be written, e.g. "to which no compressed
-  ///             .vtu file can be written"
+  /// @param why  clause of the message, e.g. "to which no compressed .vtu file can be written"
   void requirePositions(const std::string& why) const;
-  /// Writes memory at a position, whatever is written elsewhere in whatever order; only if
-  /// hasPositions(). The buffered functions above go on where they were. Thread-safe.
+  /// Writes bytes at a position, in any order and independently of the buffered functions above.
+  /// Thread-safe. @pre  hasPositions()
   void writeBytesAt(std::uint64_t position, const void* bytes, std::size_t size) const;
-  /// Reads back what was written there; only if hasPositions().
+  /// Reads back bytes. @pre  hasPositions()
   void readBytesAt(std::uint64_t position, void* bytes, std::size_t size) const;
 
-  /// Where the buffered functions write next.
+  /// Position of the next buffered write.
   [[nodiscard]] std::uint64_t position() const noexcept { return written_ + used_; }
-  /// Writes what is buffered; afterwards, writeBytesAt() may replace it.
+  /// Writes the buffer to the file; afterwards, writeBytesAt() may overwrite it.
   void flush();
 
-  /// Writes what is buffered, and lets go of the descriptor and the buffer until resume(), for
-  /// those who have more files than the system allows to be open. Only if hasPositions(); nothing
-  /// but resume() may follow.
+  /// Flushes, and releases the descriptor and the buffer until resume(), for callers with more
+  /// files than may be open at once. Only resume() may follow. @pre  hasPositions()
   void suspend();
   void resume();
 
-  /// Writes what is buffered, closes the file, and gives it its name.
+  /// Flushes, syncs and closes the file, then renames it to its target.
   void commit();
-  /// The same without a name: for another process's temporary, which stays.
+  /// Finishes another process's temporary without renaming it.
   void handOver();
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
   /// Empty if the target is written directly.
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
-  /// Whether commit() gave a temporary its name, also if its folder could not be synced then.
+  /// Whether commit() has renamed the temporary, even if syncing its folder failed afterwards.
   [[nodiscard]] bool isNamed() const noexcept { return descriptor_ < 0 && temporary_.empty(); }
 
-  /// As failToWrite().
+  /// See failToWrite().
   [[noreturn]] void fail(const std::string& reason, int error = 0) const;
 
  private:
@@ -208,20 +206,20 @@ class OutputFile {
   int descriptor_ = -1;
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
-  std::uint64_t written_ = 0;  ///< bytes of earlier buffers
+  std::uint64_t written_ = 0;  ///< bytes flushed so far
 };
 
-/// Writes the bytes of a number, least first.
+/// Writes the little-endian bytes of a number.
 template <class T>
 void writeBytesOf(OutputFile& output, T number) {
   const auto bytes = littleBytes(number);
   output.writeBytes(bytes.data(), bytes.size());
 }
 
-/// Buffers what goes to consecutive places of a file.
+/// Buffers writes to consecutive positions of a file.
 class FilePart {
  public:
-  /// @param file  outlives this; has positions
+  /// @param file  must outlive this; has positions
   FilePart(const OutputFile& file, std::uint64_t position)
       : file_(&file), position_(position), buffer_(new char[kBufferSize]) {}
 
@@ -234,7 +232,7 @@ class FilePart {
     used_ += size;
   }
 
-  /// Writes what is buffered. Without it, it is lost.
+  /// Writes the buffer to the file; data that is not flushed is lost.
   void flush() {
     writeThrough(buffer_.get(), used_);
     used_ = 0;

@@ -16,9 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Gives each of two folders the other's name, by way of a third one where the system does not know
-/// how to do it at once.
-/// @return whether it worked; otherwise errno says why, and all is as it was
+/// Swaps the names of two folders, via a third name where the system has no atomic exchange.
+/// @return whether it succeeded; otherwise errno gives the reason and nothing has changed
 bool exchange(const fs::path& a, const fs::path& b, const fs::path& aside) noexcept {
   if (system_call::exchange(a, b) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
@@ -30,8 +29,8 @@ bool exchange(const fs::path& a, const fs::path& b, const fs::path& aside) noexc
   return false;
 }
 
-/// Copies a file, a link, or a folder with all that is in it; nothing is left if it fails.
-/// @param way  whether files are linked or copied
+/// Copies a file, a link, or a folder recursively; on failure, removes the partial copy.
+/// @param way  whether files are hard-linked or copied
 std::error_code copyAs(const fs::path& from, const fs::path& to, fs::copy_options way) {
   std::error_code error;
   fs::copy(from, to, way | fs::copy_options::recursive | fs::copy_options::copy_symlinks, error);
@@ -65,7 +64,7 @@ void OutputFolder::takeName() {
 
 OutputFolder::~OutputFolder() {
   std::vector<char>().swap(spare_);
-  // It takes a descriptor, too, which a moment later there may be again.
+  // Removal takes a descriptor, which may become available a moment later.
   for (int attempt = 0; attempt < 3; ++attempt) {
     try {
       std::error_code error;
@@ -117,7 +116,7 @@ void OutputFolder::carryOver() const {
     const fs::path place = temporary_ / entry->path().filename();
     std::error_code missing;
     if (fs::exists(fs::symlink_status(place, missing))) continue;
-    // Links to files take no room, and leave the old folder whole until it is replaced.
+    // Hard links take no space, and keep the old folder intact until it is replaced.
     if (!copyAs(entry->path(), place, fs::copy_options::create_hard_links)) continue;
     const std::error_code failure = copyAs(entry->path(), place, fs::copy_options::none);
     if (!failure) continue;
@@ -154,7 +153,7 @@ void OutputFolder::takeBack() noexcept {
 }
 
 void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>& change) {
-  barrier(team_);  // all are written
+  barrier(team_);  // wait until all files are written
   std::size_t done = 0;
   try {
     for (; done < files_.size(); ++done) {
@@ -186,14 +185,14 @@ void refuseGhosts(std::uint32_t layers, const std::string& what) {
 void PartFolder::commit(std::uint32_t parts) {
   folder_->commit();
   try {
-    // From now on nothing names them.
+    // Part files beyond the new number of parts are stale.
     std::error_code error;
     for (std::uint32_t part = parts;
          std::filesystem::remove_all(target_ / name_(part), error) > 0;) {
       if (error) break;
       ++part;
     }
-  } catch (...) {  // no memory for a name
+  } catch (...) {  // out of memory for a name
     takeBack();
     throw;
   }

@@ -1,4 +1,4 @@
-// Folders that appear complete or not at all.
+// Output folders that appear complete or not at all.
 #pragma once
 
 #include <filesystem>
@@ -15,15 +15,15 @@
 
 namespace hexhex::io {
 
-/// The same error, with the name of the target in place of that of a temporary.
+/// The error with the temporary's path replaced by the target's.
 [[nodiscard]] Error inTermsOf(const std::filesystem::path& target,
                               const std::filesystem::path& temporary, const Error& error);
 
-/// A folder that is filled beside its target and takes the target's place by commit(). Without
-/// commit() it vanishes, with the folders above it that it took, and the target stays as it was.
+/// A folder that is filled beside its target and replaces it by commit(). Without commit(), it is
+/// removed along with the parent folders created for it, and the target is left unchanged.
 ///
-/// What else there was in the target is in the new folder, too. Every function throws Error
-/// FileWrite, with the target and the system's reason, if it fails.
+/// Other contents of an existing target are carried over. On failure, every function throws Error
+/// FileWrite with the target and the system's reason.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& target);
@@ -31,16 +31,16 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Where its files are to be written.
+  /// The folder to write into.
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
-  /// Puts the folder in the place of its target, in one step where the file system knows how to:
-  /// otherwise there is a moment when the target is missing.
+  /// Replaces the target, atomically where the file system supports it; elsewhere, the target is
+  /// missing for a moment.
   void commit();
-  /// Undoes commit(), as long as this lives, as far as that is possible.
+  /// Undoes commit() as far as possible.
   void takeBack() noexcept;
 
-  /// The same error, in terms of the target instead of the temporary.
+  /// The error with the temporary's path replaced by the target's.
   [[nodiscard]] Error named(const Error& error) const;
 
  private:
@@ -49,22 +49,22 @@ class OutputFolder {
   void removeParents() noexcept;
   void carryOver() const;
 
-  /// Looking into a folder, to remove it, takes memory, of which there may be none then: that of
-  /// four folders inside of each other.
+  /// Reserved for the destructor: removing a folder reads its entries, which takes memory that may
+  /// have run out. Enough for four nested folders.
   static constexpr std::size_t kSpareBytes = std::size_t{4} * 40 * 1024;
 
   std::vector<char> spare_ = std::vector<char>(kSpareBytes);
   std::filesystem::path target_;
-  std::filesystem::path temporary_;             ///< after commit() what there was before
-  std::filesystem::path aside_;                 ///< a name for the time between two steps
-  std::vector<std::filesystem::path> parents_;  ///< that were missing, innermost first
-  bool replaces_ = false;                       ///< there was a folder before
+  std::filesystem::path temporary_;             ///< after commit(): what it replaced
+  std::filesystem::path aside_;                 ///< used if folders cannot be exchanged atomically
+  std::vector<std::filesystem::path> parents_;  ///< parents created, innermost first
+  bool replaces_ = false;                       ///< whether the target existed
   bool committed_ = false;
 };
 
-// Files that get their names together, few of which are open at a time.
+// Sets of files that are renamed together, few of which are open at a time.
 
-// Sinks work in one process, without a team, or in each process of one.
+// Sinks run in a single process without a team, or in each process of a team.
 [[nodiscard]] inline bool isFirst(const ProcessTeam* team) {
   return team == nullptr || team->rank() == 0;
 }
@@ -72,23 +72,23 @@ inline void barrier(ProcessTeam* team) {
   if (team != nullptr) team->barrier();
 }
 
-/// One file for each part, side by side; in a team, those of all processes get names, or none.
+/// One file per part, side by side. In a team, the files of all processes are renamed, or none.
 class FileSet {
  public:
   explicit FileSet(ProcessTeam* team) : team_(team) {}
 
-  /// Begins the file of the next part.
+  /// Opens the file of the next part.
   OutputFile& add(const std::filesystem::path& file) {
     files_.push_back({file, std::make_unique<OutputFile>(file, OutputFile::Target::Regular)});
     return *files_.back().output;
   }
-  /// Puts the last file aside.
+  /// Suspends the last file.
   void finishLast() { files_.back().output->suspend(); }
 
   [[nodiscard]] std::size_t size() const noexcept { return files_.size(); }
 
-  /// Calls change(file) for each file, by writeBytesAt(), and names all. If one cannot be named,
-  /// those before it vanish.
+  /// Calls change(i, file), which may use writeBytesAt(), for each file and renames it. If a file
+  /// cannot be renamed, those before it are removed.
   void commit(const std::function<void(std::size_t i, OutputFile& file)>& change = nullptr);
 
  private:
@@ -100,20 +100,21 @@ class FileSet {
   std::vector<File> files_;
 };
 
-/// The number of a part with as many digits as the last one has.
+/// The number of a part, zero-padded to the width of the last part's number.
 [[nodiscard]] std::string padded(std::uint32_t part, std::uint32_t parts);
 
-/// @param what  "OpenFOAM's decomposed cases"
-/// @throws Error FileUnsupported if ghosts are asked for
+/// @param what  subject of the message, e.g. "OpenFOAM's decomposed cases"
+/// @throws Error FileUnsupported if ghost layers are requested
 void refuseGhosts(std::uint32_t layers, const std::string& what);
 
-// A folder with a file for each part, for formats that have one.
+// Folders with a file per part.
 
-/// Files appear with the folder. Those of earlier runs with more parts are removed; what else is in
-/// the folder stays. In a team of processes, the folder is the first one's, and all write into it.
+/// A folder whose part files appear together. Stale files of earlier runs with more parts are
+/// removed; other contents are kept. In a team, the first process owns the folder and all processes
+/// write into it.
 class PartFolder {
  public:
-  /// The name of the file of a part, in the folder.
+  /// The name of a part's file within the folder.
   using FileName = std::function<std::string(std::uint32_t part)>;
 
   PartFolder(std::filesystem::path folder, FileName name, ProcessTeam* team)
@@ -122,11 +123,11 @@ class PartFolder {
     if (team != nullptr) temporary_ = team->shareText(temporary_.string());
   }
 
-  /// Where the file of a part is to be written.
+  /// Where to write the file of a part.
   [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
     return temporary_ / name_(part);
   }
-  /// Runs write(), whose errors name the target instead of the temporary folder.
+  /// Runs write(); its errors name the target instead of the temporary folder.
   template <class Write>
   void run(const Write& write) const {
     try {
@@ -135,22 +136,22 @@ class PartFolder {
       throw inTermsOf(target_, temporary_, error);
     }
   }
-  /// Of the first process, as takeBack().
-  /// @param parts  that there are
+  /// For the first process only, as is takeBack().
+  /// @param parts  number of parts
   void commit(std::uint32_t parts);
   void takeBack() noexcept { folder_->takeBack(); }
 
  private:
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  std::optional<OutputFolder> folder_;  ///< of the first process
+  std::optional<OutputFolder> folder_;  ///< null except in the first process
   FileName name_;
 };
 
-// One file that the processes of a team write together: each its own bytes.
+// A file written jointly by the processes of a team, each its own bytes.
 
-/// The file is the first process's, and others open its temporary. Without a team, the one of this
-/// process. All processes make it, and commit it, together.
+/// The first process creates the file, and the others open its temporary. Construction and commit()
+/// are collective. Without a team, an ordinary file.
 class SharedFile {
  public:
   SharedFile(const std::filesystem::path& file, ProcessTeam* team) : team_(team) {
@@ -160,12 +161,12 @@ class SharedFile {
     if (!output_) output_.emplace(file, temporary);
   }
 
-  /// In a team, to be written by FilePart.
+  /// In a team, write through FilePart only.
   [[nodiscard]] OutputFile& output() noexcept { return *output_; }
 
   void commit() {
     if (!isFirst(team_)) output_->handOver();
-    barrier(team_);  // all is written
+    barrier(team_);  // wait until all bytes are written
     if (isFirst(team_)) output_->commit();
     barrier(team_);
   }

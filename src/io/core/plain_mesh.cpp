@@ -17,20 +17,21 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kTextAtOnce = std::size_t{1} << 20;  // that one thread reads
+constexpr std::size_t kTextAtOnce = std::size_t{1} << 20;  // per read of a thread
 
 [[noreturn]] void failPlain(const char* what) {
   throw Error(ErrorCode::FileSyntax, concat("The file has ", what, "."));
 }
 
-/// The vertex that a file calls so. @throws Error
+/// The index of the vertex with this number in the file. @throws Error
 std::uint64_t vertexOf(std::uint64_t number, const PlainLayout& layout) {
-  // What is too small becomes a large number.
+  // Numbers below firstVertex wrap around.
   if (number - layout.firstVertex < layout.points.count) return number - layout.firstVertex;
   failPlain("a cell with a vertex that does not exist");
 }
 
-/// Reads the next points or cells. Errors are as good as any: the reader of whole files tells them.
+/// Reads consecutive points or cells. Error messages are terse: the whole-file reader repeats them
+/// with details.
 class PlainText {
  public:
   PlainText(const ByteFile& file, const PlainLayout& layout, Context& context)
@@ -110,7 +111,7 @@ class PlainBytes {
     });
   }
 
-  /// Calls f(bytes, i) for the next n records, and goes on behind them.
+  /// Calls f(bytes, i) for the next n records and advances past them.
   template <class F>
   void forEach(std::size_t n, std::size_t bytesEach, const F& f) {
     constexpr std::size_t kGrain = 4096;
@@ -129,12 +130,12 @@ class PlainBytes {
   std::uint64_t position_ = 0;
 };
 
-/// A file turned out to be wrong when some pieces of it had been sent.
+/// The file turned out to be invalid after some pieces had been sent.
 struct WrongFile {
   Error error;
 };
 
-/// Reads and sends the elements of a run.
+/// Reads the elements of a run and sends them in pieces.
 template <class T, class Reader, class Send>
 void sendRun(Reader& reader, const PlainRun& run, const Send& send, LoopProgress& progress) {
   Array<T> piece;
@@ -173,7 +174,7 @@ std::optional<PlainLayout> lookAt(const PlainFormat& format, const ByteFile& fil
     return format.look(file, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled) throw;
-    return {};  // the other reader tells what is wrong
+    return {};  // the whole-file reader reports what is wrong
   }
 }
 
@@ -186,7 +187,7 @@ void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input
                    [&](Stage& stage) { return format.readWhole(input, stage); });
   };
   std::error_code unknown;
-  // A pipe can be opened but once.
+  // A pipe can be opened only once.
   if (!input.bytes() && std::filesystem::is_regular_file(input.path(), unknown)) {
     const InputFile opened(input.path());
     const ByteFile file(opened, input.name());
@@ -199,7 +200,7 @@ void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input
         return send(file, *layout, sink, stage);
       }
     } catch (const WrongFile& wrong) {
-      // Whatever is wrong: the other reader tells the line, and the first of several mistakes.
+      // The whole-file reader reports the first error, with its line.
       static_cast<void>(readWhole());
       throw wrong.error;
     }
@@ -234,7 +235,7 @@ bool TextWindow::fill() {
                    file_.readAt(begin_ + kept + from, bytes_.data() + kept + from, to - from);
                  });
   size_ = kept + more;
-  // A token that may go on waits for its rest.
+  // A token at the end of the window may be incomplete: keep it for the next fill.
   std::string_view text(bytes_.data(), size_);
   if (more < left) {
     while (!text.empty() && !isSpace(text.back())) text.remove_suffix(1);
@@ -256,7 +257,7 @@ std::optional<std::uint64_t> TextWindow::count() {
   const std::string word = token();
   std::uint64_t number = 0;
   const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
-  // Products with the bytes of a record cannot overflow then.
+  // The limit keeps products with a record's bytes from overflowing.
   if (result.ec != std::errc{} || result.ptr != word.data() + word.size() ||
       number > file_.size()) {
     return {};
@@ -269,7 +270,7 @@ bool TextWindow::skip(std::uint64_t tokens) {
     const std::size_t left = tokensLeft();
     if (tokens <= left) {
       const std::size_t first = index_->countBefore(scanner_->position());
-      // Behind the last of them, not in front of the next: that may be bytes.
+      // Stop after the last token, not at the next one: binary data may follow.
       if (tokens > 0) {
         scanner_->moveTo(index_->find(first + static_cast<std::size_t>(tokens) - 1));
         static_cast<void>(scanner_->readToken());

@@ -1,6 +1,6 @@
-// Files that are read piece by piece: those with vertices and hexahedra in two runs of equal
-// records, as nearly all files are. Other files, and broken ones, are left to the readers of whole
-// files, which know all forms and report every mistake.
+// Streaming readers for the common layout: vertices and hexahedra in two runs of equal records.
+// Other layouts and invalid files are left to the whole-file readers, which support every variant
+// and report every error.
 #pragma once
 
 #include <algorithm>
@@ -21,28 +21,28 @@
 
 namespace hexhex::io {
 
-/// Points or cells of a piece: a few megabytes.
+/// Points or cells per piece: a few megabytes.
 inline constexpr std::size_t kPieceElements = std::size_t{1} << 16;
 
-/// Equal records, one after the other.
+/// Consecutive records of equal shape.
 struct PlainRun {
-  std::uint64_t position = 0;  ///< of the first, in the file; 0: there is no such run
+  std::uint64_t position = 0;  ///< of the first record in the file; 0: no such run
   std::uint64_t count = 0;
 };
 
-/// Where a file has its vertices and hexahedra, and what their records are.
+/// The location and record layout of a file's vertices and hexahedra.
 struct PlainLayout {
   PlainRun points = {};
   PlainRun cells = {};
-  bool isText = false;              ///< numbers between white space; otherwise bytes
-  bool isBigEndian = false;         ///< of bytes
-  std::size_t coordinateBytes = 8;  ///< 4: of single precision
+  bool isText = false;              ///< numbers separated by white space; otherwise binary
+  bool isBigEndian = false;         ///< for binary files
+  std::size_t coordinateBytes = 8;  ///< 4: single precision
   std::size_t integerBytes = 4;
-  std::uint64_t firstVertex = 1;  ///< how the first vertex is numbered
-  std::size_t behindPoint = 0;    ///< integers behind the coordinates of a point
-  std::size_t inFrontOfCell = 0;  ///< integers in front of the corners of a cell
-  std::size_t behindCell = 0;     ///< ... and behind them
-  bool tellsCorners = false;      ///< whether those in front say how many corners there are
+  std::uint64_t firstVertex = 1;  ///< number of the first vertex
+  std::size_t behindPoint = 0;    ///< integers after the coordinates of a point
+  std::size_t inFrontOfCell = 0;  ///< integers before the corners of a cell
+  std::size_t behindCell = 0;     ///< integers after them
+  bool tellsCorners = false;      ///< whether the integers before the corners give their number
 
   [[nodiscard]] std::size_t pointBytes() const {
     return 3 * coordinateBytes + behindPoint * integerBytes;
@@ -50,46 +50,46 @@ struct PlainLayout {
   [[nodiscard]] std::size_t cellBytes() const {
     return (inFrontOfCell + 8 + behindCell) * integerBytes;
   }
-  /// Whether both are there, in this order.
+  /// Whether both runs were found, points first.
   [[nodiscard]] bool isComplete() const {
     return 0 < points.position && points.position < cells.position;
   }
 };
 
-/// How one format is read in pieces.
+/// How a format is read in pieces.
 struct PlainFormat {
-  /// Looks through a regular file; nothing, or an Error, if it is not of the form.
+  /// Finds the layout of a regular file; empty, or throws an Error, if it has another one.
   std::optional<PlainLayout> (*look)(const ByteFile& file, Context& context);
   HexMesh (*readWhole)(const Input& input, Stage& stage);
 };
 
-/// Reads a file into a sink: piece by piece if it has the form, or else as a whole.
-/// @throws Error  as the reader of whole files; what the sink throws
+/// Reads a file into a sink: piece by piece if the layout permits, otherwise as a whole.
+/// @throws Error  as the whole-file reader does; and what the sink throws
 void readPlainMesh(const PlainFormat& format, MeshSink& sink, const Input& input, Context& context);
 
-/// A text that is read from front to back, with some megabytes of it in memory.
+/// A text file read from front to back through a window of a few megabytes.
 class TextWindow {
  public:
-  /// @param context  ends reading where it is cancelled
-  /// @param size     how much is in memory: for files of bytes, the words between them need little
+  /// @param context  may cancel reading
+  /// @param size     of the window; kWords suffices for the words between binary data
   TextWindow(const ByteFile& file, Context& context, std::size_t size = kText);
   static constexpr std::size_t kText = std::size_t{1} << 23;
   static constexpr std::size_t kWords = std::size_t{1} << 16;
 
-  /// Goes to a byte of the file.
+  /// Moves to a position in the file.
   void moveTo(std::uint64_t position);
-  /// The byte that comes next.
+  /// Position in the file of the next byte.
   [[nodiscard]] std::uint64_t position() const { return begin_ + scanner_->position(); }
 
-  /// The rest of a line at the beginning of the file; it is in memory.
+  /// The rest of the line. @pre  the line is in the window, as at the beginning of the file
   [[nodiscard]] std::string takeLine() { return std::string(scanner_->takeLine()); }
   /// The next token; empty at the end of the file.
   [[nodiscard]] std::string token();
-  /// The next token as a number from 0; nothing if it is none.
+  /// The next token as a nonnegative integer; empty if it is not one.
   [[nodiscard]] std::optional<std::uint64_t> count();
-  /// Skips so many tokens. @return whether there were as many
+  /// Skips tokens. @return false if the file ends before
   [[nodiscard]] bool skip(std::uint64_t tokens);
-  /// Goes behind a line break. @return whether there is one
+  /// Skips a line break. @return false if there is none
   [[nodiscard]] bool skipLineBreak();
 
   /// Calls read(scanner, i), which reads element i or throws an Error, for the next n elements,
@@ -107,17 +107,17 @@ class TextWindow {
     }
   }
 
-  /// For short loops, which report no progress.
+  /// A stage for short loops; reports no progress.
   [[nodiscard]] Stage& stage() noexcept { return stage_; }
   [[nodiscard]] const ByteFile& file() const noexcept { return file_; }
-  /// Whether there were marks of comments in what was in memory so far.
+  /// Whether the part of the file read so far contains '#'.
   [[nodiscard]] bool sawComments() const noexcept { return sawComments_; }
 
  private:
   [[nodiscard]] std::size_t tokensLeft() const {
     return index_->count() - index_->countBefore(scanner_->position());
   }
-  /// Drops what is behind and reads on. @return whether there was more
+  /// Discards the text already read and refills the window. @return false at the end of the file
   bool fill();
 
   ByteFile file_;
@@ -125,8 +125,8 @@ class TextWindow {
   Context quiet_;  ///< many short loops, which report no progress
   Stage stage_;
   Array<char> bytes_;
-  std::uint64_t begin_ = 0;  ///< in the file, of the bytes
-  std::size_t size_ = 0;     ///< how many there are
+  std::uint64_t begin_ = 0;  ///< position of the window in the file
+  std::size_t size_ = 0;     ///< bytes in the window
   std::optional<TextScanner> scanner_;
   std::optional<TokenIndex> index_;
   bool sawComments_ = false;

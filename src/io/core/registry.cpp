@@ -28,7 +28,7 @@ TetCells readHexexTets(const Input& input, Stage& stage) {
   return tets;
 }
 
-// Formats over HDF5, which not every build has.
+// Functions of formats based on HDF5, null in builds without it.
 #if defined(HEXHEX_HAS_HDF5)
 template <auto& function>
 constexpr auto* kOverHdf5 = &function;
@@ -169,7 +169,7 @@ constexpr std::array kFormatTable = {
     Format{.label = {"ply", ".ply", "surface of polygons"}, .readTriangles = readPly},
 };
 
-/// Other names for formats.
+/// Aliases of formats.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherFormatNames = {
     {{"gmsh", "msh"},
      {"gmsh41", "msh"},
@@ -177,7 +177,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherFor
      {"gmsh22", "msh22-ascii"},
      {"medit", "mesh"}}};
 
-/// The name in the table of what may be called by another name, or by a solver's.
+/// Resolves an alias or a solver's name to the name of a format in the table.
 std::string_view usualName(const std::filesystem::path& file, std::string_view name,
                            FileContent content) {
   if (const SolverFormat* const solver = findSolver(name)) {
@@ -205,13 +205,13 @@ bool holdsMeshes(const Format& format) {
   return format.meshes.read != nullptr || writesMeshes(format) || format.overHdf5;
 }
 
-/// What a format is looked for.
+/// A use of formats: which ones fit, and its name in messages.
 struct Purpose {
   bool (*fits)(const Format& format);
   const char* what;
 };
 
-/// By FileContent.
+/// Indexed by FileContent.
 constexpr std::array<Purpose, 9> kPurposes = {
     {{holdsMaps, "maps"},
      {holdsMeshes, "hexahedral meshes"},
@@ -228,7 +228,7 @@ constexpr const Purpose& purposeOf(FileContent content) {
   return kPurposes[static_cast<std::size_t>(content)];
 }
 
-/// What a format is called where its name is, or where its extension is.
+/// Keys by which formats are looked up: name or extension.
 std::string_view nameOf(const Format& format, FileContent /*content*/) { return format.label.name; }
 std::string_view extensionOf(const Format& format, FileContent content) {
   const bool own = content == FileContent::CurvedCells && !format.curved.extension.empty();
@@ -236,7 +236,7 @@ std::string_view extensionOf(const Format& format, FileContent content) {
 }
 using Word = std::string_view (*)(const Format& format, FileContent content);
 
-/// ".mesh, .vtu": the names or extensions of the formats that fit.
+/// The names or extensions of the formats that fit: ".mesh, .vtu".
 std::string listed(bool (*fits)(const Format&), Word wordOf,
                    FileContent content = FileContent::HexMesh) {
   std::string list;
@@ -253,7 +253,8 @@ std::string listed(FileContent content, Word wordOf) {
   return listed(purposeOf(content).fits, wordOf, content);
 }
 
-/// @param key  the format's name or its extension; null if there is no such one
+/// The first suitable format with this key; null if there is none.
+/// @param key  a name or an extension, depending on `wordOf`
 const Format* formatWith(std::string_view key, Word wordOf, FileContent content) {
   const auto found =
       std::find_if(kFormatTable.begin(), kFormatTable.end(), [&](const Format& format) {
@@ -269,7 +270,7 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
                                               ".");
 }
 
-/// What to do with a file that holds something else than what was asked for.
+/// Advice for a file that holds something other than the requested content.
 std::string adviceOn(const std::string& extension, FileContent content) {
   if (formatWith(extension, extensionOf, FileContent::Triangles) != nullptr) {
     return ' ' + extension +
@@ -348,7 +349,7 @@ std::span<const FileFormat> fileFormats() {
                               format.pieces.openSink != nullptr,
                               format.compresses && io::hasZlib(),
                               format.readTriangles != nullptr};
-      // Not in this build, or for parts, arcs and patches alone.
+      // Skips formats that this build lacks, and those for parts, arcs or patches only.
       if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces ||
           row.readsTets) {
         result.push_back(row);

@@ -1,6 +1,6 @@
-// The table of file formats: all that a format can do is in its row. A new format is a file in
-// formats/, its functions in formats.hpp, and a row in registry.cpp; whatever lists formats reads
-// the table.
+// The table of file formats: one row describes all that a format can do. To add a format, add a
+// file in formats/, declare its functions in formats.hpp, and add a row in registry.cpp; everything
+// that lists formats reads the table.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@
 
 namespace hexhex::io {
 
-/// What a format is called.
+/// The names of a format.
 struct FormatLabel {
   std::string_view name;  ///< as in ReadOptions::format and WriteOptions::format
-  /// In lower case, with the dot. Of several formats with one extension, the first that can do what
-  /// is asked for is what a file name means; empty if the format has to be asked for by name.
+  /// Lower case, with the dot. A file name selects the first format with its extension that fits
+  /// the request; empty if the format must be selected by name.
   std::string_view extension;
   std::string_view description = {};
 };
 
-/// A format and what can be done with it; functions are null for what cannot.
+/// A format and its functions; null where it lacks a capability.
 struct Format {
   FormatLabel label;
 
@@ -32,7 +32,7 @@ struct Format {
     ReadMap* read = nullptr;
     WriteMap* write = nullptr;
   } maps = {};
-  /// Tets without a map, whether there is one or not.
+  /// Reads tets, ignoring a map if there is one.
   ReadTets* readTets = nullptr;
   TriangleMesh (*readTriangles)(const Input& input, Stage& stage) = nullptr;
   struct {
@@ -40,15 +40,15 @@ struct Format {
     WriteMesh* write = nullptr;
     WriteFolder* writeFolder = nullptr;
   } meshes = {};
-  /// Cells of higher order, which are looked for first where meshes may have them.
+  /// Cells of higher order; tried before `meshes` where a file may hold either.
   struct {
     HoldsCurved* isIn = nullptr;
     ReadCurved* read = nullptr;
     WriteCurved* write = nullptr;
-    std::string_view extension = {};  ///< of what is written, if it is not the label's
-    int onlyOrder = 0;                ///< that is written; 0: all are
+    std::string_view extension = {};  ///< of files written, if not the label's
+    int onlyOrder = 0;                ///< the only order that can be written; 0: any
   } curved = {};
-  /// Meshes piece by piece.
+  /// Meshes streamed piece by piece.
   struct {
     OpenSink* openSink = nullptr;
     ReadPieces* read = nullptr;
@@ -56,16 +56,16 @@ struct Format {
   /// Meshes in parts.
   struct {
     OpenPartSink* open = nullptr;
-    std::string_view description = {};  ///< which files there are; empty: the format has no parts
-    bool byTeams = true;                ///< whether processes can write it together
+    std::string_view description = {};  ///< the files written; empty: parts are not supported
+    bool byTeams = true;                ///< whether the processes of a team can write it together
   } parts = {};
   WritePiecewise* writeArcs = nullptr;
   WritePiecewise* writePatches = nullptr;
 
-  bool compresses = false;  ///< heeds WriteOptions::compress
-  bool measures = false;    ///< holds WriteOptions::scaledJacobians
-  bool groups = true;       ///< of boundary quads: heeds WriteOptions::patchAngle
-  /// Writing takes requireHdf5(); in builds without HDF5 all functions are null.
+  bool compresses = false;  ///< supports WriteOptions::compress
+  bool measures = false;    ///< stores WriteOptions::scaledJacobians
+  bool groups = true;       ///< stores groups of boundary quads: supports WriteOptions::patchAngle
+  /// Writing requires requireHdf5(); in builds without HDF5 all functions are null.
   bool overHdf5 = false;
 };
 
@@ -76,20 +76,20 @@ enum class FileContent : std::uint8_t {
   Tets,
   Triangles,
   Parts,
-  CurvedCells,  ///< to be written
+  CurvedCells,  ///< for writing
   Arcs,
   Patches
 };
 
-/// The format of a file that holds, or will hold, such content: the one of this name or, if it is
-/// empty, what the extension means. It reads or writes such files, if not both.
-/// @throws Error FileUnsupported, naming the extensions or the formats that are known
+/// The format of a file with such content: the named one or, if the name is empty, the one that the
+/// extension selects. It may support reading only or writing only.
+/// @throws Error FileUnsupported, listing the known extensions or names
 [[nodiscard]] const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                                        FileContent content);
 
-/// "vtu, mesh": the names of all formats that take meshes in pieces.
+/// The names of all formats that can be written piece by piece: "vtu, mesh".
 [[nodiscard]] std::string streamingFormats();
-/// The names of all formats of parts that processes can write together.
+/// The names of all formats of parts that a team of processes can write together.
 [[nodiscard]] std::string teamFormats();
 
 }  // namespace hexhex::io

@@ -1,4 +1,4 @@
-// Features that files list more than once.
+// Removes duplicate features.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace hexhex::io {
 
-/// The vertices of a feature in ascending order.
+/// The vertices of a feature in ascending order, to compare features.
 [[nodiscard]] inline std::array<std::uint32_t, 1> keyOf(const FeatureVertex& feature) {
   return {feature.vertex};
 }
@@ -20,7 +20,7 @@ template <class Feature>
   return sorted(feature.vertices);
 }
 
-/// Leaves out what is listed before, with whatever tag.
+/// Keeps the first feature of each set of vertices, whatever the tags.
 template <class Feature>
 void removeRepeated(std::vector<Feature>& features) {
   std::set<decltype(keyOf(features[0]))> seen;

@@ -1,4 +1,4 @@
-// Which format each solver reads: the one table of them. A name here is also one of
+// The table of solvers and the formats they read. A name here is also valid for
 // WriteOptions::format (registry.cpp).
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 namespace hexhex {
 
 std::span<const SolverFormat> solverFormats() noexcept {
-  // MSH 2.2 as text where a reader knows no newer version, or no bytes.
+  // MSH 2.2 text for readers that support neither newer versions nor binary files.
   static constexpr std::array kSolvers = {
       SolverFormat{"abaqus", "Abaqus", "inp", ".inp", "inp"},
       SolverFormat{"calculix", "CalculiX", "inp", ".inp", "inp"},

@@ -11,11 +11,12 @@
 namespace hexhex::io {
 namespace {
 
-constexpr std::size_t kSummaryGrain = std::size_t{1} << 13;  // a fraction of a millisecond's work
+constexpr std::size_t kSummaryGrain = std::size_t{1} << 13;  // a fraction of a millisecond of work
 
-/// What number `place` of an array adds to its checksum: all bits of both matter for all bits.
+/// The contribution of one number of an array to its checksum: a mix of all bits of both
+/// (the finalizer of SplitMix64).
 std::uint64_t summand(std::uint64_t place, std::uint64_t value) {
-  std::uint64_t z = value ^ ((place + 1) * 0x9e3779b97f4a7c15U);  // odd, without pattern
+  std::uint64_t z = value ^ ((place + 1) * 0x9e3779b97f4a7c15U);  // odd: 2^64 / golden ratio
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
   z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
   return z ^ (z >> 31U);
@@ -30,7 +31,7 @@ void enlarge(Vec3& lower, Vec3& upper, const Vec3& point) {
 
 }  // namespace
 
-/// Integers add up to the same in any order, and so do boxes.
+/// Accumulates a summary. Sums of integers and bounding boxes do not depend on the order.
 class SummaryWriter {
  public:
   explicit SummaryWriter(int threads) : quiet_(threads) {}

@@ -10,7 +10,7 @@
 namespace hexhex::io::system_call {
 namespace {
 
-// Less what the user's umask takes away.
+// Restricted by the user's umask.
 constexpr mode_t kFilePermissions = 0666;
 constexpr mode_t kFolderPermissions = 0777;
 
@@ -104,11 +104,11 @@ namespace hexhex::io::system_call {
 namespace {
 
 constexpr int kFlags = _O_BINARY | _O_NOINHERIT;
-constexpr std::size_t kMost = std::size_t{1} << 30;  ///< that one call of the system is told
+constexpr std::size_t kMost = std::size_t{1} << 30;  ///< bytes per system call
 
 int open(const Path& file, int flags) noexcept {
   int descriptor = -1;
-  // Where sharing is denied, other programs could not even look at the file.
+  // Share the file, so that other programs can open it meanwhile.
   const int error =
       ::_wsopen_s(&descriptor, file.c_str(), flags | kFlags, _SH_DENYNO, _S_IREAD | _S_IWRITE);
   if (error == 0) return descriptor;
@@ -122,7 +122,7 @@ Status statusFrom(const struct _stat64& status) noexcept {
           .size = static_cast<std::uint64_t>(status.st_size)};
 }
 
-/// errno for what the last function of Windows said.
+/// Sets errno from GetLastError().
 void noteError() noexcept {
   switch (::GetLastError()) {
     case ERROR_FILE_NOT_FOUND:
@@ -151,8 +151,8 @@ HANDLE handleOf(int descriptor) noexcept {
   return reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
 }
 
-/// What call(most, count, place) moves at a position. Unlike pread() and pwrite(), it also changes
-/// where read() and write() go on, so that has to be put back before another thread does the same.
+/// Runs call(size, count, place) to read or write at a position. Unlike pread() and pwrite(), it
+/// also moves the file pointer, which is restored before another thread may do the same.
 template <class Call>
 std::ptrdiff_t atPosition(int descriptor, std::size_t size, std::uint64_t position,
                           const Call& call) noexcept {
@@ -172,7 +172,7 @@ std::ptrdiff_t atPosition(int descriptor, std::size_t size, std::uint64_t positi
 }  // namespace
 
 int openToRead(const Path& file) noexcept {
-  Status status;  // which open() does not tell of folders
+  Status status;  // open() does not report folders
   if (statusOf(file, status) == 0 && status.isFolder) {
     errno = EISDIR;
     return -1;

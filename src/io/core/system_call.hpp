@@ -1,5 +1,5 @@
-// Files by the functions of the system: of POSIX, or what Windows has instead. Those that return a
-// number return a negative one if they fail, and errno says why.
+// System calls on files: POSIX, or the equivalents of Windows. Functions that return a number
+// return a negative one on failure and set errno.
 #pragma once
 
 #include <cerrno>
@@ -9,8 +9,8 @@
 
 namespace hexhex::io {
 
-/// Calls a function of the system again if a signal interrupted it.
-/// @param call  returns a negative number if it fails
+/// Repeats a system call that was interrupted by a signal.
+/// @param call  returns a negative number on failure
 template <class Call>
 auto uninterrupted(const Call& call) {
   while (true) {
@@ -32,19 +32,19 @@ struct Status {
 // These return a descriptor.
 [[nodiscard]] int openToRead(const Path& file) noexcept;
 [[nodiscard]] int openToWrite(const Path& file) noexcept;
-/// A new file, to write and read back; fails with EEXIST if there is one of the name.
+/// Creates a file for writing and reading; fails with EEXIST if it exists.
 [[nodiscard]] int create(const Path& file) noexcept;
-/// A file that create() made.
+/// Reopens a file made by create().
 [[nodiscard]] int openAgain(const Path& file) noexcept;
-/// To sync() it. Fails with EACCES if that is possible, but not for this folder, or this system.
+/// Opens a folder for sync(). Fails with EACCES if this folder or system does not permit that.
 [[nodiscard]] int openFolder(const Path& folder) noexcept;
 
 int close(int descriptor) noexcept;
 [[nodiscard]] int statusOf(int descriptor, Status& status) noexcept;
 [[nodiscard]] int statusOf(const Path& file, Status& status) noexcept;
 
-// These return how many bytes: some, but not necessarily all. Those with a position leave alone
-// where the others go on, and may run on several threads.
+// These return the number of bytes transferred, possibly fewer than requested. Those with a
+// position do not move the file pointer and are thread-safe.
 [[nodiscard]] std::ptrdiff_t read(int descriptor, void* bytes, std::size_t size) noexcept;
 [[nodiscard]] std::ptrdiff_t write(int descriptor, const void* bytes, std::size_t size) noexcept;
 [[nodiscard]] std::ptrdiff_t readAt(int descriptor, void* bytes, std::size_t size,
@@ -52,12 +52,12 @@ int close(int descriptor) noexcept;
 [[nodiscard]] std::ptrdiff_t writeAt(int descriptor, const void* bytes, std::size_t size,
                                      std::uint64_t position) noexcept;
 [[nodiscard]] int moveTo(int descriptor, std::uint64_t position) noexcept;
-/// Makes what was written survive a power failure.
+/// Flushes a file to disk, so that it survives a power failure.
 [[nodiscard]] int sync(int descriptor) noexcept;
 
-/// Replaces a file that has the new name.
+/// Renames a file, replacing an existing one.
 [[nodiscard]] int rename(const Path& from, const Path& to) noexcept;
-/// Gives each of two folders the other's name at once. Fails with ENOSYS where there is no way.
+/// Swaps the names of two folders atomically. Fails with ENOSYS where this is not supported.
 [[nodiscard]] int exchange(const Path& a, const Path& b) noexcept;
 [[nodiscard]] int makeFolder(const Path& folder) noexcept;
 int removeFolder(const Path& folder) noexcept;

@@ -1,4 +1,4 @@
-// A map as two tet meshes.
+// Builds a map from a pair of tet meshes: the object and its polycube.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTetPairGrain = std::size_t{1} << 13;
 
-/// What two meshes are called in sentences, and what it is if they do not belong together.
+/// How messages name the two meshes, and the error if they do not match.
 struct PairNames {
   std::string tets;
   std::string polycube;
@@ -37,7 +37,7 @@ void requireSame(std::size_t tets, std::size_t polycube, const char* what, const
              ": the two meshes must have the same vertices and tets, in the same order."));
 }
 
-/// The corners of a tet may be listed in another order.
+/// Whether two tets have the same corners, in any order.
 bool sameVertices(const Tet& a, const Tet& b) {
   return std::is_permutation(a.begin(), a.end(), b.begin());
 }

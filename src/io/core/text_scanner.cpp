@@ -19,7 +19,7 @@ namespace {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// Removes a leading sign and tells whether it was a minus.
+/// Removes a leading sign; returns whether it was a minus.
 bool takeSign(std::string_view& token) {
   if (token.empty() || (token.front() != '-' && token.front() != '+')) return false;
   const bool negative = token.front() == '-';
@@ -47,8 +47,8 @@ NumberProblem parseRational(std::string_view numerator, std::string_view denomin
   return NumberProblem::None;
 }
 
-/// Whether a decimal number, known to be outside of the range of doubles, is too large (not too
-/// small): decided by the decimal exponent of its first digit that is not 0.
+/// Whether a decimal number outside the range of doubles is too large rather than too small:
+/// decided by the decimal exponent of its first nonzero digit.
 bool isTooLarge(std::string_view decimal) {
   const std::size_t mantissaEnd = std::min(decimal.find_first_of("eE"), decimal.size());
   const std::string_view mantissa = decimal.substr(0, mantissaEnd);
@@ -157,7 +157,7 @@ Natural shiftedLeft(const Natural& value, std::int64_t bits) {
   const auto factor = std::uint32_t{1} << (static_cast<std::size_t>(bits) % kLimbBits);
   Natural result(limbs, 0);
   result.insert(result.end(), value.begin(), value.end());
-  // The low limbs are 0, so that multiplying everything shifts the value alone.
+  // The low limbs are 0, so multiplying all limbs shifts the value only.
   multiplyAdd(result, factor, 0);
   return result;
 }
@@ -178,8 +178,8 @@ void subtract(Natural& a, const Natural& b) {
   while (!a.empty() && a.back() == 0) a.pop_back();
 }
 
-/// The double nearest to quotient * 2^exponent, ties to even. The lowest bit of the quotient stands
-/// for everything below it; the quotient has at least 55 bits.
+/// The double nearest to quotient * 2^exponent, ties to even. The lowest bit of the quotient is
+/// sticky: it stands for all bits below. The quotient has at least 55 bits.
 double roundToNearest(std::uint64_t quotient, std::int64_t exponent) {
   constexpr std::int64_t kSmallestExponent = -1074;  // of a subnormal double
   constexpr std::int64_t kMantissaBits = 53;
@@ -196,10 +196,10 @@ double roundToNearest(std::uint64_t quotient, std::int64_t exponent) {
   return std::ldexp(static_cast<double>(kept), static_cast<int>(std::min(lowest, kHugeExponent)));
 }
 
-/// Any quotient, by long division bit by bit.
+/// Divides integers of any size, by long division bit by bit.
 double divideExactly(const Natural& numerator, const Natural& denominator) {
-  // Both are brought to the same length, so that their quotient lies between 1/2 and 2; 56 bits of
-  // it are at least 55 significant ones: 53 for the double, one for rounding, one for the rest.
+  // Shifted to equal length, their quotient lies between 1/2 and 2. Its 56 bits have at least 55
+  // significant ones: 53 for the double, a rounding bit and a sticky bit.
   constexpr int kQuotientBits = 56;
   const std::int64_t excess = bitLength(numerator) - bitLength(denominator);
   Natural remainder = excess < 0 ? shiftedLeft(numerator, -excess) : numerator;
@@ -292,7 +292,7 @@ bool TextScanner::readUnusualNumber(double& value) {
 std::size_t TextScanner::readCount(std::string_view what, std::size_t bytesEach) {
   const std::int64_t count = integer({"the number of ", what});
   if (count < 0) fail(ErrorCode::FileSyntax, "the number of ", what, " is negative.");
-  // The last one may lack its separator at the end of the file.
+  // The last element may lack its separator at the end of the file.
   const std::size_t room = (static_cast<std::size_t>(end_ - position_) + 1) / bytesEach;
   if (static_cast<std::uint64_t>(count) > room) {
     fail(ErrorCode::FileSyntax, lacksRoom(currentToken(), what, room));
@@ -337,7 +337,7 @@ std::size_t TextScanner::countTokensOnLine() {
 }
 
 std::uint64_t TextScanner::line() const {
-  // An end in front of which nothing but line breaks stand belongs to the last line with content.
+  // At the end of the file, report the last line with content, not trailing blank lines.
   const char* last = token_;
   if (last == end_) {
     while (last != begin_ && isSpace(last[-1])) --last;
@@ -393,21 +393,20 @@ void TextScanner::failIfRepeated(bool present, std::string_view section) const {
 
 namespace {
 
-// What find() scans in vain: little compared with what a thread then reads from there, and with
-// what else a section takes that has nothing in it.
+// find() scans at most one block: little compared with what a thread then reads from there.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 10;
-// Blocks that one thread counts at once.
+// Blocks counted per task.
 constexpr std::size_t kTextScannerGrain = 512;
 
 constexpr unsigned isGap(char c) { return isSpace(c) ? 1 : 0; }
 
-/// Number of places where a token begins; `previous` is the character before the text.
+/// Number of tokens that begin in the text; `previous` is the character before it.
 std::size_t countTokens(char previous, std::string_view text) {
   if (text.empty()) return 0;
   std::uint32_t count = isGap(previous) & (1U - isGap(text[0]));
   for (std::size_t i = 1; i < text.size(); ++i) {
-    // Not &&, whose branch keeps the loop from being one of vectors, four times as fast: reading
-    // text takes a third longer then.
+    // A branch (&&) would keep the loop from being vectorized, which is four times as fast; reading
+    // text would take a third longer.
     count += isGap(text[i - 1]) & (1U - isGap(text[i]));
   }
   return count;

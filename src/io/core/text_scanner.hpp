@@ -1,5 +1,6 @@
-// Text in memory: tokens between white space, numbers (decimals of any length, and rationals p/q),
-// and clear errors; and many elements of the same number of tokens, read in parallel.
+// Scans text in memory: tokens separated by white space, numbers (decimals of any length, and
+// rationals p/q), errors with line numbers; reads elements with equal numbers of tokens in
+// parallel.
 #pragma once
 
 #include <algorithm>
@@ -23,46 +24,46 @@
 
 namespace hexhex::io {
 
-/// White space of all text formats.
+/// White space in all text formats.
 [[nodiscard]] constexpr bool isSpace(char c) noexcept {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/// Words and file names whose letter case means nothing. ASCII only: no locale has a say.
+/// Lower case of ASCII letters, independent of the locale.
 [[nodiscard]] constexpr char lowerCase(char c) noexcept {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 [[nodiscard]] std::string lowerCase(std::string_view word);
-/// With the dot; empty if the file's name has none.
+/// The extension with its dot; empty if there is none.
 [[nodiscard]] std::string lowerCaseExtension(const std::filesystem::path& file);
 
 enum class NumberProblem {
   None,
   NotANumber,
-  NotFinite,        ///< infinity or NaN, spelled out
+  NotFinite,        ///< infinity or NaN, written as a word
   Overflow,         ///< beyond the largest double
   ZeroDenominator,  ///< p/0
   TooLong           ///< a rational with more digits than kMaxRationalDigits
 };
 
-/// The longest numerator or denominator that is accepted. Far beyond what exact maps hold (some
-/// hundred digits); it keeps a file of nothing but digits from taking hours.
+/// Limit for numerators and denominators. Far beyond what exact maps contain (a few hundred
+/// digits); prevents a file of nothing but digits from taking hours.
 inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
 
 /// Parses one whole token: an optional sign; then a decimal number with or without a point and an
-/// exponent (also as Fortran spells it, 1.5D+01), or two integers with '/' between them. The result
-/// is the nearest double, ties to even; numbers too small for a double become 0.
+/// exponent (Fortran's 1.5D+01 included), or two integers separated by '/'. The result is the
+/// nearest double, ties to even; numbers too small for a double become 0.
 /// @param[out] value  set if the result is None
 [[nodiscard]] NumberProblem parseNumber(std::string_view token, double& value);
 
-/// The double nearest to numerator / denominator, ties to even; infinity if it exceeds the largest
-/// double; subnormal or 0 if it is that small.
+/// The double nearest to numerator / denominator, ties to even; infinity on overflow; subnormal or
+/// 0 on underflow.
 ///
-/// Both are decimal digits only, at least one, without a sign; the denominator is not 0. Time grows
-/// with the square of the number of digits.
+/// Both consist of decimal digits, at least one, without a sign; the denominator is not 0. Time is
+/// quadratic in the number of digits.
 [[nodiscard]] double nearestQuotient(std::string_view numerator, std::string_view denominator);
 
-/// What a number is called in messages: "the dimension", "a coordinate of vertex 12".
+/// Name of a number in messages: "the dimension", "a coordinate of vertex 12".
 struct NumberName {
   static constexpr std::size_t kNoNumber = ~std::size_t{0};
 
@@ -80,8 +81,8 @@ struct NumberName {
   std::size_t number = kNoNumber;
 };
 
-/// Where the n-th token (run of other characters than white space) of a text is, so that several
-/// threads can read a text whose lines, if it has any, mean nothing.
+/// Finds the n-th token (run of non-space characters) of a text, so that several threads can read
+/// it. Only for texts in which line breaks have no meaning.
 class TokenIndex {
  public:
   /// @param text  must outlive the index
@@ -93,7 +94,7 @@ class TokenIndex {
   /// Number of tokens that begin before this position.
   [[nodiscard]] std::size_t countBefore(std::size_t position) const;
 
-  /// Position of the first character of a token; the size of the text if there are not so many.
+  /// Position of the first character of a token; the size of the text if there is no such token.
   [[nodiscard]] std::size_t find(std::size_t token) const;
 
  private:
@@ -105,9 +106,9 @@ class TokenIndex {
   Array<std::size_t> before_;  ///< per block: tokens that begin before it; last: all
 };
 
-/// Reads tokens one after the other. Functions that read return false, and stay before the token,
-/// if it is not what they want or the text ends; then a fail... function says why. Line numbers are
-/// counted only when an error is raised, so that reading does not pay for them.
+/// Reads tokens in sequence. Functions named read... return false and do not advance if the next
+/// token is not of the expected kind or the text ends; a fail... function then reports why. Lines
+/// are counted only when an error is raised, so that reading does not pay for them.
 class TextScanner {
  public:
   enum class Comments {
@@ -125,9 +126,9 @@ class TextScanner {
         fileName_(std::move(fileName)),
         comments_(comments) {}
 
-  /// Goes on from the i-th character of the text.
+  /// Moves to the i-th character of the text.
   void moveTo(std::size_t i) { position_ = token_ = begin_ + i; }
-  /// How many characters have been read.
+  /// Number of characters read.
   [[nodiscard]] std::size_t position() const noexcept {
     return static_cast<std::size_t>(position_ - begin_);
   }
@@ -161,7 +162,7 @@ class TextScanner {
     return readUnusualNumber(value);
   }
 
-  /// Reads a whole number; one beyond 64 bits becomes the largest or smallest.
+  /// Reads an integer; beyond 64 bits, the result saturates.
   bool readInteger(std::int64_t& value) {
     if (!skipSpace()) return false;
     const char* const first = skipPlus(position_);
@@ -172,7 +173,7 @@ class TextScanner {
     return true;
   }
 
-  // The same of numbers that have to be there: errors say what was found instead.
+  // The same for mandatory numbers: errors say what was found instead.
   [[nodiscard]] double number(const NumberName& name) {
     double value = 0;
     if (!readNumber(value)) failNumber(name.text());
@@ -184,33 +185,33 @@ class TextScanner {
     return value;
   }
 
-  /// Reads a whole number of things that follow, each taking at least so many bytes of the file,
-  /// and refuses what cannot be true before memory is allocated for it.
+  /// Reads the number of elements that follow, each taking at least `bytesEach` bytes of the file,
+  /// and refuses impossible numbers before memory is allocated for them.
   /// @param what  plural, e.g. "vertices"
   [[nodiscard]] std::size_t readCount(std::string_view what, std::size_t bytesEach);
 
   /// The next token, without reading it; empty at the end of the text.
   [[nodiscard]] std::string_view peekToken();
-  /// Reads the next token, whatever it is; empty at the end of the text.
+  /// Reads the next token of any kind; empty at the end of the text.
   std::string_view readToken();
-  /// The token that was read last, or the one that could not be read.
+  /// The last token read, or the one that could not be read.
   [[nodiscard]] std::string_view currentToken() const;
 
-  /// Reads the rest of the line, whatever it is, without the end of the line.
+  /// Reads the rest of the line, without the line break.
   std::string_view takeLine();
-  /// Moves to the next line, where bytes of numbers begin: nothing else may stand on this one.
+  /// Moves to the next line, where binary data begins; the rest of this line must be blank.
   void skipLineBreak();
 
-  /// How many tokens stand on the line of the next token, counted from that token.
+  /// Number of tokens from the next one to the end of its line.
   [[nodiscard]] std::size_t countTokensOnLine();
 
-  /// The 1-based line of the token that was read last, or that could not be read.
+  /// The 1-based line of the current token.
   [[nodiscard]] std::uint64_t line() const;
 
   [[nodiscard]] const std::string& fileName() const noexcept { return fileName_; }
 
   /// Throws an error about the current token: "<file>, line 12: <sentence>".
-  /// @param sentence  its parts, as of concat()
+  /// @param sentence  its parts, as for concat()
   template <class... Parts>
   [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     fail(code, Place{PlaceKind::Line, line()}, sentence...);
@@ -220,15 +221,15 @@ class TextScanner {
   [[noreturn]] void fail(ErrorCode code, Place place, Parts... sentence) const {
     throw Error(code, concat(fileName_, ", line ", line(), ": ", sentence...), place);
   }
-  /// After readNumber returned false: throws an error that tells what was found instead of `what`.
+  /// After readNumber returned false: throws an error that says what was found instead of `what`.
   [[noreturn]] void failNumber(std::string_view what) const;
   /// After readInteger returned false: the same.
   [[noreturn]] void failInteger(std::string_view what) const;
-  /// After readToken returned another token: the same.
+  /// After readToken returned an unexpected token: the same.
   [[noreturn]] void failToken(std::string_view what) const;
-  /// Refuses a text that ends after so many elements.
+  /// Throws if the text ends after `done` elements.
   void failIfAtEnd(std::size_t done, std::size_t count, std::string_view what);
-  /// Refuses a section that is present already.
+  /// Throws if a section was read already.
   void failIfRepeated(bool present, std::string_view section) const;
 
  private:
@@ -236,7 +237,7 @@ class TextScanner {
   [[nodiscard]] bool endsToken(const char* place) const {
     return place == end_ || isSpace(*place) || isComment(*place);
   }
-  /// std::from_chars knows no plus sign.
+  /// std::from_chars does not accept a plus sign.
   [[nodiscard]] const char* skipPlus(const char* place) const {
     const bool plus = *place == '+' && place + 1 != end_ && place[1] != '-';
     return plus ? place + 1 : place;
@@ -245,7 +246,7 @@ class TextScanner {
     while (position_ != end_ && *position_ != '\n') ++position_;
   }
   bool readUnusualNumber(double& value);
-  /// Throws an error about the current token, or about the end of the file if there is none.
+  /// Throws an error about the current token, or about the end of the file.
   [[noreturn]] void failFound(ErrorCode code, std::string_view what,
                               std::string_view problem) const;
 
@@ -265,16 +266,16 @@ class TextScanner {
 [[nodiscard]] std::string lacksRoom(std::string_view count, std::string_view what,
                                     std::size_t room);
 
-/// A token as an error message shows it: in quotes, shortened, without control characters.
+/// A token for error messages: quoted, truncated, without control characters.
 [[nodiscard]] std::string quoted(std::string_view token);
 
-/// Elements that a thread reads at once, which takes less than a millisecond.
+/// Elements per task of a thread, which take less than a millisecond.
 inline constexpr std::size_t kElementGrain = 1024;
 
-/// Calls read(begin, end, i), which reads elements [begin, end) and counts i up from begin, for all
-/// elements of [0, n), in parallel and at most `grain` at once. At an element that is wrong it
-/// stops or throws an Error.
-/// @return the first element that is wrong, or n
+/// Calls read(begin, end, i), which reads elements [begin, end) and advances i from begin to end,
+/// for blocks of at most `grain` elements of [0, n), in parallel. At an invalid element it stops or
+/// throws an Error.
+/// @return the first invalid element, or n
 template <class Read>
 [[nodiscard]] std::size_t firstUnreadable(Stage& stage, std::size_t n, std::size_t grain,
                                           const Read& read) {
@@ -284,7 +285,7 @@ template <class Read>
     std::size_t i = begin;
     try {
       read(begin, end, i);
-    } catch (const Error&) {  // element i is wrong, and told about by the caller
+    } catch (const Error&) {  // element i is invalid; the caller reports it
     }
     if (i < end) lowerTo(i, firstWrong);
   });
@@ -292,11 +293,10 @@ template <class Read>
 }
 
 /// Calls read(scanner, i), which reads element i or throws an Error about it, for all i in [0, n),
-/// from several threads, each with a scanner of its own. Then `scanner`, which stands before the
-/// first element, is behind the last.
+/// from several threads with a scanner each. `scanner` must be at the first element, and is moved
+/// past the last.
 ///
-/// If elements are wrong or missing, the error is that of the first of them, for any number of
-/// threads.
+/// If elements are invalid or missing, the error is about the first one, for any number of threads.
 /// @param index  of the text of `scanner`; null for a text with comments, which one thread reads
 template <class Read>
 void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, std::size_t n,
@@ -320,7 +320,7 @@ void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, s
         moveTo(local, begin);
         for (; i < end; ++i) read(local, i);
       });
-  // Normally nothing is left. Otherwise the first of these throws, now as if alone.
+  // Normally nothing is left. Otherwise, reading sequentially throws the error of the first one.
   moveTo(scanner, wrong);
   for (std::size_t i = wrong; i < n; ++i) read(scanner, i);
 }

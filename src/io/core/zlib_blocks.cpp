@@ -15,7 +15,7 @@ namespace hexhex::io {
 bool hasZlib() noexcept { return true; }
 
 bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept {
-  // uLong has 32 bits on some machines; blocks are far smaller.
+  // uLong has 32 bits on some platforms; blocks are far smaller.
   constexpr std::size_t kMost = std::numeric_limits<uInt>::max();
   if (compressed.size() > kMost || bytes.size() > kMost) return false;
   auto size = static_cast<uLongf>(bytes.size());
@@ -27,20 +27,20 @@ bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept {
 
 namespace {
 
-/// What zlib makes of a gzip file, step by step.
+/// Decompresses a gzip file step by step.
 class GzipStream {
  public:
   explicit GzipStream(std::string_view compressed) : rest_(compressed) {
-    constexpr int kGzipOnly = 16;  // added to the size of the window
+    constexpr int kGzipOnly = 16;  // added to the window size
     if (::inflateInit2(&stream_, MAX_WBITS + kGzipOnly) != Z_OK) throw std::bad_alloc();
   }
   ~GzipStream() { ::inflateEnd(&stream_); }
   GzipStream(const GzipStream&) = delete;
   GzipStream& operator=(const GzipStream&) = delete;
 
-  /// Fills what it can of `room`. @return the number of bytes; `good` is false for damage
+  /// Fills as much of `room` as possible. @return number of bytes; `good` is false for corrupt data
   [[nodiscard]] std::size_t read(std::span<char> room, bool& good) {
-    constexpr std::size_t kStep = std::size_t{1} << 30;  // counts have 32 bits
+    constexpr std::size_t kStep = std::size_t{1} << 30;  // zlib's counts have 32 bits
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest_.data()));
     stream_.avail_in = static_cast<uInt>(std::min(rest_.size(), kStep));
     stream_.next_out = reinterpret_cast<Bytef*>(room.data());
@@ -84,14 +84,14 @@ Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
 }
 
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
-  constexpr int kLevel = 1;  // levels above take three times as long for a tenth less
+  constexpr int kLevel = 1;  // higher levels take three times as long for 10 % less
   const std::size_t before = compressed.size();
   uLongf size = ::compressBound(static_cast<uLong>(bytes.size()));
   compressed.resize(before + size);
   const int status = ::compress2(reinterpret_cast<Bytef*>(compressed.data() + before), &size,
                                  reinterpret_cast<const Bytef*>(bytes.data()),
                                  static_cast<uLong>(bytes.size()), kLevel);
-  if (status != Z_OK) throw std::bad_alloc();  // there is room, so it can only lack memory
+  if (status != Z_OK) throw std::bad_alloc();  // the buffer is large enough, so memory ran out
   compressed.resize(before + size);
 }
 

@@ -1,4 +1,4 @@
-// Blocks of bytes, and files, compressed with zlib; only if the library was built with it.
+// zlib-compressed blocks and gzip files; available only if built with zlib.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,21 @@
 
 namespace hexhex::io {
 
-/// Whether the functions below work.
+/// Whether this build has zlib, without which the functions below fail.
 [[nodiscard]] bool hasZlib() noexcept;
 
-/// What zlib can make of a compressed byte at most: a file that promises more is wrong.
+/// Maximum compression ratio of zlib: a file that claims more is invalid.
 inline constexpr std::size_t kLargestZlibRatio = 1032;
 
-/// Whether `compressed` is a whole block of exactly so many bytes, which then are at their place.
+/// Decompresses a block into `bytes`. @return whether it is complete and has exactly this size
 [[nodiscard]] bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept;
 
 /// The bytes of a gzip file of one or more members.
-/// @param name  for errors
+/// @param name  for error messages
 /// @throws Error FileSyntax for a file that is damaged or incomplete; FileUnsupported without zlib
 [[nodiscard]] Array<char> inflateGzip(std::string_view compressed, const std::string& name);
 
-/// Appends a block, compressed fast rather than small.
+/// Appends a compressed block, favouring speed over size.
 /// @throws std::bad_alloc
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed);
 

@@ -1,4 +1,4 @@
-// `.inp` files (see formats.hpp): keywords in lines that begin with '*', and lines of data below.
+// Abaqus input files, `.inp` (see formats.hpp): keyword lines begin with '*', data lines follow.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -33,9 +33,9 @@ namespace hexhex::io {
 
 namespace {
 
-/// Abaqus' numbers of the faces of kHexFaces.
+/// Abaqus' face numbers, in the order of kHexFaces.
 constexpr std::array<char, 6> kAbaqusFaces = {'6', '4', '3', '5', '1', '2'};
-/// The corner of a tetrahedron that each of its faces lacks: from '1' on.
+/// The corner opposite each face of a tetrahedron, by the digit of the face, '1' first.
 constexpr std::array<std::size_t, 6> kAbaqusOpposite = {3, 2, 0, 1, 4, 4};
 constexpr std::string_view kAbaqusHeading = "hexahedral mesh by hexhex";
 
@@ -47,7 +47,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The next word of a line, up to a comma; the line goes on behind it.
+/// Removes and returns the next word of a line, up to a comma.
 std::string_view takeField(std::string_view& line) {
   const std::size_t comma = std::min(line.find(','), line.size());
   const std::string_view word = trimmed(line.substr(0, comma));
@@ -55,7 +55,7 @@ std::string_view takeField(std::string_view& line) {
   return word;
 }
 
-/// "*Element, type=C3D8": all in lower case; the value of a parameter without one is empty.
+/// A keyword line such as "*Element, type=C3D8", in lower case; a flag has an empty value.
 struct AbaqusKeyword {
   std::string name;
   std::map<std::string, std::string> parameters;
@@ -69,10 +69,10 @@ struct AbaqusKeyword {
   }
 };
 
-/// What an element type is: of the names that end in "C3D" and a number of nodes, and letters for
-/// the formulation.
+/// An element type. Names of volumes begin with "C3D" and a number of nodes, followed by letters
+/// for the formulation.
 struct AbaqusType {
-  const VolumeCells* cells = nullptr;  ///< null if it is no volume
+  const VolumeCells* cells = nullptr;  ///< null unless it is a volume
   std::size_t nodes = 0;
 };
 
@@ -89,8 +89,8 @@ AbaqusType abaqusType(std::string_view name) {
   return type;
 }
 
-/// The number of nodes of a shell or membrane (3) or of a beam or truss (2), as Gmsh writes groups
-/// of triangles and lines; 0 of other elements.
+/// The number of nodes of a shell or membrane (3) or of a beam or truss (2), as which Gmsh writes
+/// groups of triangles and lines; 0 for other elements.
 std::size_t nodesOfFacet(std::string_view name) {
   constexpr std::array<std::string_view, 8> kTriangles = {"cps3", "cpe3",  "s3",   "s3r",
                                                           "ds3",  "stri3", "m3d3", "sfm3d3"};
@@ -124,14 +124,14 @@ class AbaqusReader {
     std::vector<ElementSide> sides;
   };
   using Sets = std::map<std::string, Set>;
-  /// An element that is no volume.
+  /// An element that is not a volume.
   struct Facet {
     std::uint64_t number;
-    std::size_t count;  ///< of nodes
+    std::size_t count;  ///< number of nodes
     std::array<std::uint64_t, 3> nodes;
   };
 
-  static constexpr std::uint64_t kItemsPerByte = 2;  // of a text: 16 times its size
+  static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
 
   void readFile(std::string_view text, const std::string& name, const std::filesystem::path& path) {
@@ -141,7 +141,7 @@ class AbaqusReader {
     while (nextLine()) {
       if (!line_.starts_with("*")) {
         failIfFirst();
-        continue;  // data of a keyword that is not needed
+        continue;  // data of an ignored keyword
       }
       const AbaqusKeyword keyword = readKeyword();
       if (keyword.name == "*include") {
@@ -153,7 +153,8 @@ class AbaqusReader {
     scanner_ = outer;
   }
 
-  /// Goes to the next line that is no comment. @return false at the end of the file
+  /// Moves to the next line that is neither blank nor a comment. @return false at the end of the
+  /// file
   bool nextLine() {
     while (scanner_->position() < scanner_->text().size()) {
       line_ = scanner_->takeLine();
@@ -161,7 +162,7 @@ class AbaqusReader {
     }
     return false;
   }
-  /// The same for a line of data; stays before a keyword.
+  /// Moves to the next data line; returns false and stays in place at a keyword.
   bool nextData() {
     const std::size_t before = scanner_->position();
     if (nextLine() && !line_.starts_with("*")) return true;
@@ -183,7 +184,7 @@ class AbaqusReader {
         value = value.substr(1, value.size() - 2);
       }
       const std::string name = lowerCase(trimmed(word.substr(0, equals)));
-      // The case of file names means something.
+      // File names are case-sensitive.
       keyword.parameters[name] = name == "input" ? std::string(value) : lowerCase(value);
     }
     return keyword;
@@ -212,7 +213,7 @@ class AbaqusReader {
     }
   }
 
-  /// Keywords that would change the mesh.
+  /// Refuses keywords that generate or transform parts of the mesh.
   void refuse(const std::string& keyword) const {
     constexpr std::array<std::string_view, 8> kMakers = {
         "*ngen",  "*nfill",  "*ncopy",  "*nmap",
@@ -261,7 +262,7 @@ class AbaqusReader {
       nodeNumbers_.push_back(integer(takeField(rest), "the number of a node"));
       Vec3 point{};
       for (double& coordinate : point) {
-        if (rest.empty()) break;  // those that are left out are 0
+        if (rest.empty()) break;  // missing coordinates are 0
         const std::string_view word = takeField(rest);
         if (!word.empty()) coordinate = real(word);
       }
@@ -347,7 +348,7 @@ class AbaqusReader {
     return quotes ? word.substr(1, word.size() - 2) : word;
   }
 
-  /// "first, last, step"
+  /// Adds a range "first, last, step" to a set.
   void addRange(std::string_view rest, Set& set) {
     const std::uint64_t first = integer(takeField(rest), "the first of a range");
     const std::uint64_t last = integer(takeField(rest), "the last of a range");
@@ -360,7 +361,7 @@ class AbaqusReader {
       if (last - i < step) break;
     }
   }
-  /// Sets that few lines make must not take far more memory than the file.
+  /// Bounds the size of sets: a short line may generate a huge range.
   void takeRoom(std::uint64_t items) {
     if (items > itemsLeft_) {
       fail("the sets have far more members than the file has nodes and elements",
@@ -380,7 +381,7 @@ class AbaqusReader {
       const auto* const found = face.size() == 2 && face[0] == 's'
                                     ? std::find(kAbaqusFaces.begin(), kAbaqusFaces.end(), face[1])
                                     : kAbaqusFaces.end();
-      if (found == kAbaqusFaces.end()) continue;  // the whole surface, or sides of shells
+      if (found == kAbaqusFaces.end()) continue;  // the whole surface, or a side of a shell
       const auto row = static_cast<std::size_t>(found - kAbaqusFaces.begin());
       const std::size_t opposite = kAbaqusOpposite[static_cast<std::size_t>(face[1] - '1')];
       const auto set = elementSets_.find(lowerCase(unquoted(elements)));
@@ -396,7 +397,7 @@ class AbaqusReader {
     }
   }
 
-  /// Names become nodes; names of groups become tags.
+  /// Resolves node numbers, and turns names of groups into tags.
   void finish() {
     if (nodeNumbers_.empty()) {
       throw Error(ErrorCode::FileUnsupported, input_.name() + ": the file has no *NODE section.");
@@ -421,15 +422,15 @@ class AbaqusReader {
     }
   }
 
-  /// Without the letter and '_' that the writer puts in front.
+  /// The name of a group without the prefix "E_", "N_" or "S_" that the writer adds.
   [[nodiscard]] std::string ownName(const std::string& name) const {
     const bool prefixed = name.size() > 2 && name[1] == '_' &&
                           std::string_view("ens").find(name[0]) != std::string_view::npos;
     return prefixed && (isOwn_ || tagInGroupName(name.substr(2))) ? name.substr(2) : name;
   }
 
-  /// Regions are the sets that *ELEMENT and *SOLID SECTION name, numbered from 1 in their order,
-  /// and those that the writer makes.
+  /// Tags regions: the sets named by *ELEMENT and *SOLID SECTION, numbered from 1 in file order,
+  /// and the sets that this library writes.
   void tagRegions() {
     std::vector<std::string>& names = blockSets_;
     names.insert(names.end(), sections_.begin(), sections_.end());
@@ -468,8 +469,8 @@ class AbaqusReader {
     }
   }
 
-  /// Triangles or lines have the tag of the first set of nothing else; those that *ELEMENT names
-  /// come last.
+  /// A triangle or line gets the tag of the first set that contains nothing else; sets named by
+  /// *ELEMENT come last.
   void tagFacets(std::size_t corners, const NodeTags& nodes) {
     std::map<std::uint64_t, std::pair<const Facet*, std::int32_t>> facets;
     for (const Facet& facet : facets_) {
@@ -522,7 +523,7 @@ class AbaqusReader {
   void failIfFirst() const {
     if (!begun_) fail("a file of Abaqus begins with a keyword like *NODE, found " + quoted(line_));
   }
-  /// About the line that was read last.
+  /// Throws an error at the last line read.
   [[noreturn]] void fail(const std::string& sentence,
                          ErrorCode code = ErrorCode::FileSyntax) const {
     TextScanner at = *scanner_;
@@ -537,20 +538,20 @@ class AbaqusReader {
   std::string_view line_;
   bool begun_ = false;
   bool isOwn_ = false;  ///< whether this library wrote the file
-  int depth_ = 0;       ///< of files in files
+  int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
   int instances_ = 0;
-  std::uint64_t itemsLeft_ = 1024;  ///< how many members sets may have yet
+  std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
-  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block, by their numbers
+  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block: node numbers
   Sets nodeSets_;
   Sets elementSets_;
-  std::vector<std::string> blockSets_;  ///< names of sets that are regions: those of *ELEMENT,
-  std::vector<std::string> sections_;   ///< and of *SOLID SECTION
+  std::vector<std::string> blockSets_;  ///< names of sets that are regions: from *ELEMENT,
+  std::vector<std::string> sections_;   ///< and from *SOLID SECTION
   std::vector<Surface> surfaces_;
   std::vector<Facet> facets_;
-  Sets facetSets_;  ///< that *ELEMENT names
+  Sets facetSets_;  ///< named by *ELEMENT
   GroupTags facetTags_;
 };
 
@@ -565,7 +566,7 @@ namespace {
 constexpr std::size_t kLongestNumber = 20;
 constexpr std::size_t kNamesPerLine = 16;
 
-/// Puts a number of at most 20 characters.
+/// Writes a number with at most 20 characters.
 char* putShort(char* place, double number) {
   char* end = put(place, number);
   // 13 digits always fit: sign, digit, point, 12 digits, and an exponent like "e-308".
@@ -582,21 +583,21 @@ std::string upperCase(std::string name) {
   return name;
 }
 
-/// The vertices of an edge, the smaller one first, and the node in its middle.
+/// The vertices of an edge, the smaller one first, and its midpoint node.
 using EdgeMiddle = std::pair<std::array<Index, 2>, Index>;
 EdgeMiddle edgeMiddle(Index a, Index b, Index node) {
   return {{std::min(a, b), std::max(a, b)}, node};
 }
 
-/// Cells of order 2 without the nodes in their faces and inside, as C3D20 has them.
+/// Cells of order 2 without face and interior nodes, as in C3D20.
 struct QuadraticCells {
   Array<Vec3> points;
   Array<std::array<Index, 20>> cells;
   Array<EdgeMiddle> middles;  ///< ascending
 
   explicit QuadraticCells(const LagrangeMesh& mesh) : cells(mesh.cellCount()) {
-    // As VTK has them: corners, and the middles of the edges around the bottom, around the top, and
-    // between.
+    // VTK's order: corners, then midpoints of the edges around the bottom, around the top, and of
+    // the vertical ones.
     std::vector<std::uint32_t> places = vtkNodeOrder(2);
     places.resize(20);
     auto edges = adjacency::kHexEdges;
@@ -630,14 +631,14 @@ class AbaqusWriter {
   AbaqusWriter(OutputFile& output, Stage& stage)
       : output_(output), lines_(output, stage.context().threads()), stage_(stage) {}
 
-  /// @param middles  of edges, ascending; empty for straight cells
+  /// @param middles  midpoint nodes of edges, ascending; empty for straight cells
   template <class Cells>
   void write(const Array<Vec3>& points, const Cells& cells, const MeshGroups& groups,
              const Array<EdgeMiddle>& middles) {
     output_.write("*HEADING\n").write(kAbaqusHeading).write('\n');
     writeNodes(points);
     writeElements(cells);
-    // The set of all elements is there in any case.
+    // writeElements() has written the set of all elements.
     for (const ElementGroup& group : groups.cells.groups) {
       if (group.name == "hexahedra") continue;
       writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,
@@ -686,7 +687,7 @@ class AbaqusWriter {
     }
   }
 
-  /// Adds the nodes in the middle of the edges of a group's elements.
+  /// Appends the midpoint nodes of the edges of a group's elements.
   template <class Groups>
   static void addMiddles(const Groups& groups, const ElementGroup& group,
                          const Array<EdgeMiddle>& middles, Array<Index>& nodes) {
@@ -702,7 +703,7 @@ class AbaqusWriter {
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   }
 
-  /// @param indexAt  of the i-th of n members
+  /// @param indexAt  returns the index of the i-th of n members
   template <class F>
   void writeSet(std::string_view keyword, const ElementGroup& group, std::size_t n,
                 const F& indexAt) {
@@ -714,7 +715,7 @@ class AbaqusWriter {
     lines_.write(n, kNumberRoom + 2, entry, nullptr);
   }
 
-  /// Quads inside the mesh are on no surface.
+  /// Writes a surface of a group's boundary quads, without interior ones.
   void writeSurface(const QuadGroups& quads, const ElementGroup& group) {
     const std::size_t count = quads.boundaryEnd(group) - group.begin;
     if (count == 0) return;

@@ -1,5 +1,5 @@
-// The tree of nodes that a CGNS file is, as the standard maps it to HDF5 ("SIDS-to-HDF"): a node is
-// a group with its name, its label, the type of its data, and the data.
+// Writes CGNS files: a tree of nodes in HDF5, as the standard maps it ("SIDS-to-HDF"). A node is a
+// group with its name, label, data type and data.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -34,7 +34,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// The standard's numbers of elements with so many nodes: of order 1, or 2.
+/// CGNS element types by number of nodes, for orders 1 and 2.
 constexpr int elementType(std::size_t nodes) {
   switch (nodes) {
     case 27:
@@ -54,19 +54,19 @@ constexpr int elementType(std::size_t nodes) {
   }
 }
 
-/// What cells of order 2 have in place of the corners of straight ones.
+/// The nodes of order-2 cells, which replace the corners of straight ones.
 struct QuadraticNodes {
   const LagrangeMesh& mesh;
   GroupNodes ofGroups;
   std::vector<std::uint32_t> order = quadraticOrder(kCgnsPlaces);
 };
 
-/// Numbers of nodes; "MT" of those without.
+/// The data of a tree node; type "MT" if it has none.
 struct CgnsData {
   const char* type = "MT";
   hid_t ofHdf = -1;
   const void* values = nullptr;
-  std::initializer_list<hsize_t> shape = {};  ///< the last index runs fastest
+  std::initializer_list<hsize_t> shape = {};  ///< the last index varies fastest
 
   CgnsData() = default;
   CgnsData(std::string_view text, std::initializer_list<hsize_t> size)
@@ -86,7 +86,7 @@ struct CgnsData {
   }
 };
 
-/// A file of nodes.
+/// A CGNS tree being written.
 class CgnsFile {
  public:
   explicit CgnsFile(const OutputFile& output) : file_(output, HdfFile::Order::OfCreation) {
@@ -103,7 +103,7 @@ class CgnsFile {
 
   [[nodiscard]] hid_t root() const noexcept { return file_.root(); }
 
-  /// @param name  at most 32 characters, as the label
+  /// @param name  at most 32 characters, as is the label
   HdfObject add(hid_t parent, const std::string& name, const char* label,
                 const CgnsData& data = {}) const {
     constexpr std::int32_t kFlags = 1;
@@ -143,7 +143,7 @@ class CgnsFile {
   HdfFile file_;
 };
 
-/// Begins the tree. @return  the base, in which zones are
+/// Begins the tree. @return  the base, which holds the zones
 HdfObject addBase(const CgnsFile& file) {
   constexpr float kVersion = 3.4F;
   constexpr std::array<std::int32_t, 2> kDimensions = {3, 3};
@@ -152,7 +152,7 @@ HdfObject addBase(const CgnsFile& file) {
   return file.add(file.root(), "Base", "CGNSBase_t", {kDimensions.data(), {2}});
 }
 
-/// @tparam Number  numbers all vertices and elements from 1 on
+/// @tparam Number  integer type for the 1-based numbers of vertices and elements
 template <class Number>
 class CgnsWriter {
  public:
@@ -178,7 +178,7 @@ class CgnsWriter {
     }
     progress_.advance(mesh_.cells.size());
     const Number firstQuad = next_;
-    // Elements, or their nodes if they are curved.
+    // Writes corners of elements, or all nodes of curved ones.
     const auto writeAll = [&](const auto& ofKind, const Array<Index>* nodes) {
       for (const ElementGroup& group : ofKind.groups) {
         const std::size_t corners = std::tuple_size_v<std::decay_t<decltype(ofKind.elements[0])>>;
@@ -197,7 +197,7 @@ class CgnsWriter {
   }
 
  private:
-  /// The node that a cell lists at place k.
+  /// Node k of a cell in CGNS order.
   [[nodiscard]] Index nodeOf(std::size_t cell, std::size_t k) const {
     if (curved_ == nullptr) return mesh_.cells[cell][k];
     return curved_->mesh.nodes[cell * kCgnsPlaces.size() + curved_->order[k]];
@@ -214,8 +214,8 @@ class CgnsWriter {
     progress_.advance(points_.size());
   }
 
-  /// @param each  nodes of an element
-  /// @param nodeAt  the k-th node of the element at a place of the sorted list
+  /// @param each  nodes per element
+  /// @param nodeAt  returns the k-th node of an element, given its position in the sorted list
   template <class F>
   void writeSection(hid_t zone, const ElementGroup& group, std::size_t each, const F& nodeAt) {
     if (group.begin == group.end) return;
@@ -236,7 +236,7 @@ class CgnsWriter {
                                 {vertices.data(), {vertices.size()}}));
   }
 
-  /// A condition of each group, with a family of its name. Quads inside the mesh are no boundary.
+  /// Writes a boundary condition and a family for each group. Interior quads are not boundary.
   void writeBoundary(hid_t zone, const QuadGroups& quads, Number firstQuad) {
     const HdfObject conditions = file_.add(zone, "ZoneBC", "ZoneBC_t");
     for (const ElementGroup& group : quads.groups) {
@@ -263,7 +263,7 @@ class CgnsWriter {
   Number next_ = 1;  ///< number of the next element
 };
 
-/// Whether libraries, which count the numbers of a section with the same integers, need wide ones.
+/// Whether numbers need 64 bits; libraries use the same type for the sizes of sections.
 bool needsWide(const HexMesh& mesh, const MeshGroups& groups,
                const QuadraticNodes* curved = nullptr) {
   const std::size_t nodes = curved != nullptr ? curved->mesh.nodes.size() : 8 * mesh.cells.size();
@@ -271,7 +271,7 @@ bool needsWide(const HexMesh& mesh, const MeshGroups& groups,
   return largest > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
 }
 
-/// A zone for each part. Which vertices are the same in two zones is said when both are there.
+/// Writes a zone for each part. Connections between two zones are written once both are known.
 class CgnsPartSink final : public PartSink {
  public:
   CgnsPartSink(const std::filesystem::path& path, Context& context)
@@ -326,7 +326,7 @@ class CgnsPartSink final : public PartSink {
   [[nodiscard]] std::string nameOf(std::uint32_t part) const {
     return "Part_" + padded(part, info_.parts);
   }
-  /// Numbers in the mesh, from 1 on, as a solution of the zone's vertices or cells.
+  /// Writes global numbers, from 1 on, as a solution on the zone's vertices or cells.
   template <class At>
   void addGlobal(hid_t zone, const char* name, const char* location,
                  const Array<std::uint64_t>& numbers, const At& at) const {
@@ -362,7 +362,7 @@ class CgnsPartSink final : public PartSink {
   PartsInfo info_;
   std::optional<CgnsFile> file_;
   std::optional<HdfObject> base_;
-  std::deque<std::optional<HdfObject>> zones_;                              ///< none if empty
+  std::deque<std::optional<HdfObject>> zones_;                              ///< empty: no zone
   std::vector<std::map<std::uint32_t, std::vector<std::int32_t>>> shared_;  ///< by neighbour
 };
 

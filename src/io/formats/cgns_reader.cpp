@@ -1,5 +1,5 @@
-// Reads CGNS files (see formats.hpp) over HDF5: zones with sections of elements, conditions that
-// name elements, and connections of zones.
+// Reads CGNS files (see formats.hpp) through HDF5: zones with sections of elements, boundary
+// conditions that name elements, and connections between zones.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -30,12 +30,12 @@ constexpr std::int64_t kCgnsMixed = 20;
 constexpr std::int64_t kCgnsPolygons = 22;
 constexpr std::int64_t kCgnsPolyhedra = 23;
 
-/// A type of elements of the standard.
+/// An element type of the standard.
 struct CgnsType {
   std::int64_t number;
   std::size_t nodes;
-  std::size_t corners;         ///< of those that are no volumes: up to 4
-  std::string_view noun = {};  ///< of volumes
+  std::size_t corners;         ///< up to 4; for types that are not volumes
+  std::string_view noun = {};  ///< for volumes
 };
 
 constexpr std::array<CgnsType, 20> kCgnsTypes = {{{2, 1, 1},
@@ -82,15 +82,15 @@ class CgnsReader {
     std::string path;
     std::size_t firstPoint = 0;
     std::size_t points = 0;
-    std::uint64_t before = 0;  ///< added to the numbers of its elements
-    std::uint64_t last = 0;    ///< the largest of these in the file
+    std::uint64_t before = 0;  ///< offset of its element numbers
+    std::uint64_t last = 0;    ///< largest element number in the file
   };
-  /// Elements with a name; numbers of all zones are different.
+  /// A named set of elements, numbered uniquely across zones.
   struct Group {
     std::string name;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;  ///< first and last
   };
-  /// An element that is no volume.
+  /// An element that is not a volume.
   struct Flat {
     std::uint64_t number;
     std::size_t corners;
@@ -102,9 +102,9 @@ class CgnsReader {
     throw Error(code, concat(input_.name(), ": ", sentence...));
   }
 
-  // The tree: a node is a group, with a label that says what it is.
+  // The tree: a node is a group with a label that gives its kind.
 
-  /// The paths of the nodes with a label in another one.
+  /// The paths of the children with this label.
   [[nodiscard]] std::vector<std::string> nodes(const std::string& parent, std::string_view label,
                                                std::string_view name = {}) const {
     std::vector<std::string> found;
@@ -128,12 +128,12 @@ class CgnsReader {
     text.resize(std::min(text.find('\0'), text.size()));
     return text.substr(0, text.find_last_not_of(' ') + 1);
   }
-  /// The text of the first such node; empty without one.
+  /// The text of the first child with this label; empty if there is none.
   [[nodiscard]] std::string textIn(const std::string& parent, std::string_view label) const {
     const std::vector<std::string> found = nodes(parent, label);
     return found.empty() ? std::string() : textOf(found[0]);
   }
-  /// The integers of a node with this label and name; empty without one.
+  /// The integers of the child with this label and name; empty if there is none.
   [[nodiscard]] std::vector<std::int64_t> integersIn(const std::string& parent,
                                                      std::string_view label,
                                                      std::string_view name) const {
@@ -203,12 +203,13 @@ class CgnsReader {
     zone.last = std::max(zone.last, last);
     const std::string name = nameOf(section);
     const bool isOwn = tagInGroupName(name).has_value();
-    if (blocks.empty() && !isOwn) return;  // conditions say what other flat elements are
+    if (blocks.empty() && !isOwn) return;  // boundary conditions tag other flat elements
     (blocks.empty() ? flatGroups_ : volumeGroups_)
         .push_back({name, {{zone.before + first, zone.before + last}}});
   }
 
-  /// Null for polygons and polyhedra, whose sections have another form.
+  /// The type of a section's elements; null for polygons and polyhedra, which are stored
+  /// differently.
   [[nodiscard]] const CgnsType* typeOf(std::int64_t number, const std::string& section) const {
     if (number == kCgnsPolygons || number == kCgnsPolyhedra) return nullptr;
     const auto* const found =
@@ -251,7 +252,8 @@ class CgnsReader {
     }
   }
 
-  /// Conditions name elements or vertices, by lists or ranges; those of one family are one group.
+  /// Boundary conditions name elements or vertices, by lists or ranges; those of one family form
+  /// one group.
   void readConditions(const Zone& zone) {
     for (const std::string& all : nodes(zone.path, "ZoneBC_t")) {
       for (const std::string& condition : nodes(all, "BC_t")) {
@@ -289,7 +291,7 @@ class CgnsReader {
     const std::vector<std::int64_t> range = integersIn(condition, "IndexRange_t", what + "Range");
     if (range.size() == 2) add(range[0], range[1]);
     for (const std::int64_t i : integersIn(condition, "IndexArray_t", what + "List")) add(i, i);
-    // A range takes few bytes, whatever is in it.
+    // A range takes few bytes, however many elements it has.
     constexpr std::uint64_t kMostTimes = 8;
     if (members_ > kMostTimes * (lastNumber_ + lists_.points.size())) {
       fail(ErrorCode::TooLarge, "conditions have far more members than the file has elements.");
@@ -308,7 +310,7 @@ class CgnsReader {
 
   // Several zones.
 
-  /// Vertices that connections name in two zones become one.
+  /// Merges the vertices that connections identify.
   void connect() {
     if (zones_.size() == 1) return;
     DisjointSets same(lists_.points.size());
@@ -329,7 +331,7 @@ class CgnsReader {
     }
     const NumberedSets numbered = numberSets(same, lists_.points.size());
     Array<Vec3> kept(numbered.count);
-    // Of a set the first point stays: it comes last.
+    // Iterating backwards keeps the first point of each set.
     for (std::size_t v = numbered.setOf.size(); v > 0; --v) {
       kept[numbered.setOf[v - 1]] = lists_.points[v - 1];
     }
@@ -342,7 +344,7 @@ class CgnsReader {
     for (Flat& flat : flats_) renumber(flat.nodes);
   }
 
-  /// Pairs of vertices that a connection says are the same; none of a periodic one.
+  /// Pairs of vertices identified by a connection; none for a periodic one.
   [[nodiscard]] std::vector<std::pair<Index, Index>> sharedBy(const Zone& zone,
                                                               const std::string& path) const {
     const std::string location = textIn(path, "GridLocation_t");
@@ -377,7 +379,7 @@ class CgnsReader {
   // Tags.
 
   void tagElements() {
-    // One section of cells means nothing, unless this library named it.
+    // A single section of cells is not a region, unless this library named it.
     if (volumeGroups_.size() == 1 && !tagInGroupName(volumeGroups_[0].name)) volumeGroups_.clear();
     ElementTags tags;
     std::vector<TagName> names;
@@ -424,7 +426,7 @@ class CgnsReader {
   ElementLists lists_;
   std::vector<Zone> zones_;
   std::uint64_t lastNumber_ = 0;
-  std::uint64_t members_ = 0;  ///< of all conditions
+  std::uint64_t members_ = 0;  ///< of all boundary conditions
   std::vector<Flat> flats_;
   std::vector<Group> volumeGroups_;
   std::vector<Group> flatGroups_;

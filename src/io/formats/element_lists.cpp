@@ -41,7 +41,7 @@ bool isCurvedHexahedron(const ElementBlock& block) {
   throw Error(ErrorCode::FileUnsupported, sentence);
 }
 
-/// The cells of one kind, with their regions, and their numbers in the file.
+/// Takes the cells of one kind and their regions; returns their numbers in the file.
 template <std::size_t corners>
 Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh<corners>& mesh) {
   count(lists, input);
@@ -56,7 +56,7 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
     }
     numbers.insert(numbers.end(), block.numbers.begin(), block.numbers.end());
     mesh.regions.insert(mesh.regions.end(), block.regions.begin(), block.regions.end());
-    block.nodes = {};  // its memory is free again
+    block.nodes = {};  // frees its memory
   }
   if (mesh.cells.empty()) failWithout(kKind, input);
   const auto isZero = [](std::int32_t region) { return region == 0; };
@@ -79,7 +79,7 @@ std::vector<FeatureFace> trianglesOf(const ElementLists& lists, const Array<std:
 }
 
 /// Tagged quads.
-/// @param cellAt  the corners of the cell with an index
+/// @param cellAt  returns the corners of a cell
 template <class CellAt>
 std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
                                  const CellAt& cellAt) {
@@ -87,7 +87,7 @@ std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uin
   const NodeTags cells(numbers);
   for (const ElementSide& side : lists.sides) {
     const Index cell = cells.find(side.element);
-    if (cell == kNone || side.tag == 0) continue;  // of an element that is no hexahedron
+    if (cell == kNone || side.tag == 0) continue;  // not a side of a hexahedron
     FeatureQuad& quad = quads.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) {
       quad.vertices[k] = cellAt(cell, adjacency::kHexFaces[side.face][k]);
@@ -108,7 +108,7 @@ std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
   return vertices;
 }
 
-/// Those of regions and faces, and of sets of one node.
+/// Names of regions and faces, and of sets of one node.
 std::vector<TagName> namesOf(ElementLists& lists) {
   for (const NodeSet& set : lists.nodeSets) {
     if (set.nodes.size() == 1) lists.addName(0, set.number, set.name);
@@ -116,7 +116,7 @@ std::vector<TagName> namesOf(ElementLists& lists) {
   return std::move(lists.names);
 }
 
-/// The edges of cells between the nodes of sets that name curves.
+/// The cell edges between nodes of sets that name curves.
 template <class CellAt>
 std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, const CellAt& cellAt,
                                  const auto& cellEdges) {
@@ -158,7 +158,7 @@ HexFeatures hexFeaturesOf(ElementLists& lists, const Array<std::uint64_t>& numbe
           quadsOf(lists, numbers, cellAt), namesOf(lists)};
 }
 
-/// A face without a node of its own: its corners, sorted, and where it is.
+/// A face without a midpoint node: its sorted corners and its location.
 struct NodelessFace {
   Quad corners{};
   std::size_t cell = 0;
@@ -169,17 +169,17 @@ struct NodelessFace {
   }
 };
 
-/// The number of the edge between two corners, in VTK's order of cells with 20 nodes.
+/// The index of the edge between two corners, in VTK's order for cells with 20 nodes.
 std::size_t edgeBetween(std::size_t a, std::size_t b) {
   constexpr std::array<std::size_t, 12> kPlaces = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 10};
   for (std::size_t e = 0; e < kPlaces.size(); ++e) {
     const auto& [from, to] = adjacency::kHexEdges[e];
     if ((from == a && to == b) || (from == b && to == a)) return kPlaces[e];
   }
-  return 0;  // corners of a face that follow each other always have one
+  return 0;  // unreachable: consecutive corners of a face always share an edge
 }
 
-/// Where the shape functions of 20 nodes place the middle of a face.
+/// The midpoint of a face, by the shape functions of 20 nodes.
 Vec3 middleOf(const Array<Vec3>& points, const Index* nodes, std::size_t face) {
   Vec3 middle{};
   const auto& corners = adjacency::kHexFaces[face];
@@ -191,7 +191,7 @@ Vec3 middleOf(const Array<Vec3>& points, const Index* nodes, std::size_t face) {
   return middle;
 }
 
-/// The same of the middle of a cell.
+/// The midpoint of a cell, likewise.
 Vec3 middleOf(const Array<Vec3>& points, const Index* nodes) {
   Vec3 middle{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
-// Exodus II (see formats.hpp): dimensions, attributes and variables of a NetCDF file that have the
-// names by which its library knows them; of whole meshes, and of parts with Nemesis' maps.
+// Exodus II (see formats.hpp): dimensions, attributes and variables of a NetCDF file with the names
+// that the Exodus library expects; for whole meshes, and for parts with Nemesis maps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,38 +32,38 @@ namespace hexhex::io {
 
 namespace {
 
-/// Exodus' numbers of the faces of kHexFaces.
+/// Exodus side numbers, in the order of kHexFaces.
 constexpr std::array<std::int32_t, 6> kExodusSides = {4, 2, 1, 3, 5, 6};
-/// The corner of a tetrahedron that each of its sides lacks.
+/// The corner opposite each side of a tetrahedron.
 constexpr std::array<std::size_t, 6> kExodusOpposite = {2, 0, 1, 3, 4, 4};
 
-/// VTK's place k is this place of Exodus, which lists the edges along z before those of the top,
-/// and the node inside before those of the faces.
+/// Entry k: the Exodus position of VTK's node k. Exodus lists the vertical edges before those of
+/// the top, and the interior node before those of the faces.
 constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
                                                         9,  10, 11, 16, 17, 18, 19, 12, 13,
                                                         14, 15, 23, 24, 25, 26, 21, 22, 20};
 
-/// Bytes of a name; the last one is 0.
+/// Bytes of a name, including the terminating zero.
 constexpr std::size_t kExodusNameBytes = 33;
 constexpr std::size_t kExodusLineBytes = 81;
 
-/// Exodus counts from 1 on.
+/// Converts an index to Exodus' 1-based numbers.
 constexpr std::int32_t fromOne(std::size_t i) { return static_cast<std::int32_t>(i) + 1; }
 
-/// Where each cell stands in the order of the blocks; empty: as they are.
+/// The position of each cell in block order; empty: the identity.
 Array<Index> cellPlacesOf(const CellGroups& cells) {
   Array<Index> places(cells.order.size());
   for (std::size_t i = 0; i < places.size(); ++i) places[cells.at(i)] = static_cast<Index>(i);
   return places;
 }
 
-/// The lists that describe all blocks, or all sets of a kind.
+/// Describes all blocks, or all sets of a kind.
 struct ExodusList {
   std::vector<std::int32_t> numbers;
   std::vector<std::string> names;
-  std::vector<std::uint64_t> counts;  ///< of elements; without any it has no variables
+  std::vector<std::uint64_t> counts;  ///< of elements; empty blocks and sets have no variables
 
-  /// @return  the end of the names of its variables
+  /// @return  the suffix of the names of its variables
   std::string add(std::int32_t number, const std::string& name, std::uint64_t count) {
     numbers.push_back(number);
     names.push_back(name);
@@ -74,8 +74,9 @@ struct ExodusList {
 
 class ExodusFile {
  public:
-  /// @param allGroups  whether there are sets for groups without elements, too
-  /// @param curved  of order 2: what the mesh is the straight one of; null: cells are straight
+  /// @param allGroups  whether to write sets for empty groups
+  /// @param curved  the order-2 mesh that `mesh` is the straight version of; null: cells are
+  /// straight
   /// @param edgeNodes  of its tagged edges, as nodesOfGroups() returns them
   ExodusFile(const HexMesh& mesh, const MeshGroups& groups, Stage& stage, bool allGroups = false,
              const LagrangeMesh* curved = nullptr, Array<Index> edgeNodes = {})
@@ -101,19 +102,19 @@ class ExodusFile {
  protected:
   using Write = std::function<void(LineWriter&)>;
 
-  /// The place of a dimension that there is.
+  /// The index of an existing dimension.
   [[nodiscard]] std::uint32_t dimensionOf(const std::string& name) const {
     const auto found =
         std::find_if(file_.dimensions.begin(), file_.dimensions.end(),
                      [&name](const NetcdfDimension& dimension) { return dimension.name == name; });
     return static_cast<std::uint32_t>(found - file_.dimensions.begin());
   }
-  /// @return  its place
+  /// @return  its index
   std::uint32_t addDimension(const std::string& name, std::size_t length) {
     file_.dimensions.push_back({name, length});
     return static_cast<std::uint32_t>(file_.dimensions.size() - 1);
   }
-  /// @param text  of an attribute, if there is one
+  /// @param text  value of the attribute, if there is one
   void addVariable(const std::string& name, NetcdfType type, std::vector<std::uint32_t> dimensions,
                    Write write, const char* attribute = nullptr, const std::string& text = {}) {
     file_.variables.push_back({name, type, std::move(dimensions), {}, std::move(write)});
@@ -153,7 +154,7 @@ class ExodusFile {
     file_.attributes = {{"api_version", kVersion},
                         {"version", kVersion},
                         {"floating_point_word_size", std::int32_t{sizeof(double)}},
-                        {"file_size", std::int32_t{1}},  // each axis is a variable
+                        {"file_size", std::int32_t{1}},  // each axis is a separate variable
                         {"maximum_name_length", std::int32_t{kExodusNameBytes - 1}},
                         {"int64_status", std::int32_t{0}},  // integers have 32 bits
                         {"title", concat("hexahedral mesh by hexhex", '\0')}};
@@ -203,20 +204,20 @@ class ExodusFile {
     addList("eb", "num_el_blk", blocks);
   }
 
-  /// The node that a cell lists at place k.
+  /// Node k of a cell in Exodus order.
   [[nodiscard]] std::int32_t nodeOf(std::size_t cell, std::size_t k) const {
     if (curved_ == nullptr) return fromOne(mesh_.cells[cell][k]);
     return fromOne(curved_->nodes[cell * kExodusPlaces.size() + order_[k]]);
   }
 
-  /// The sides of each group of boundary quads.
+  /// Adds a side set for each group of boundary quads.
   void addSideSets() {
     const Array<Index> places = cellPlacesOf(groups_.cells);
     ExodusList& sets = sides_;
     for (const ElementGroup& group : groups_.quads.groups) {
       std::vector<std::int32_t> cells;
       std::vector<std::int32_t> sides;
-      const std::size_t end = groups_.quads.boundaryEnd(group);  // behind it, quads inside the mesh
+      const std::size_t end = groups_.quads.boundaryEnd(group);  // interior quads follow
       for (std::size_t i = group.begin; i < end; ++i) {
         const std::size_t cell = groups_.quads.places[i] / 8;
         cells.push_back(fromOne(places.empty() ? cell : places[cell]));
@@ -233,7 +234,7 @@ class ExodusFile {
     addList("ss", "num_side_sets", sets);
   }
 
-  /// The nodes of each group of edges and of vertices.
+  /// Adds a node set for each group of edges and of vertices.
   void addNodeSets() {
     ExodusList& sets = nodes_;
     const auto add = [&](const auto& ofKind) {
@@ -242,7 +243,7 @@ class ExodusFile {
         for (const Index vertex : verticesOf(ofKind, group)) vertices.push_back(fromOne(vertex));
         if (curved_ != nullptr && &ofKind.groups == &groups_.edges.groups) {
           for (std::size_t i = group.begin; i < group.end; ++i) {
-            vertices.push_back(fromOne(edgeNodes_[3 * i + 2]));  // between two vertices
+            vertices.push_back(fromOne(edgeNodes_[3 * i + 2]));  // midpoint of the edge
           }
         }
         const std::string n = sets.add(fromOne(sets.names.size()), group.name, vertices.size());
@@ -260,12 +261,12 @@ class ExodusFile {
   const LagrangeMesh* curved_;
   const Array<Vec3>& points_;
   std::vector<std::uint32_t> order_ = quadraticOrder(kExodusPlaces);  ///< of curved cells
-  Array<Index> edgeNodes_;  ///< of curved meshes: three of each tagged edge
+  Array<Index> edgeNodes_;  ///< of curved meshes: three per tagged edge
   const MeshGroups& groups_;
   bool allGroups_;
   mutable LoopProgress progress_;
   NetcdfFile file_;
-  std::uint32_t ofNames_ = 0;  ///< the dimension of their bytes
+  std::uint32_t ofNames_ = 0;  ///< dimension of their length
   ExodusList blocks_;
   ExodusList sides_;
   ExodusList nodes_;
@@ -353,7 +354,7 @@ class ExodusReader {
     const Groups groups = groupsOf("eb");
     std::uint64_t next = 1;
     for (std::size_t b = 0; b < groups.size(); ++b) {
-      // Blocks without elements have no variable.
+      // Empty blocks have no variable.
       const NetcdfValues* const values = file_.find(concat("connect", b + 1));
       if (values == nullptr) continue;
       readBlock(*values, groups.tagOf(b), next);
@@ -390,7 +391,7 @@ class ExodusReader {
     }
   }
 
-  /// @param name  in lower case; often without the number of nodes
+  /// @param name  in lower case; often lacks the number of nodes
   [[nodiscard]] const VolumeCells* typeOf(const std::string& name, std::size_t nodes) const {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kNouns = {
         {{"hex", "hexahedra"}, {"tet", "tetrahedra"}, {"wedge", "prisms"}, {"pyr", "pyramids"}}};
@@ -433,7 +434,7 @@ class ExodusReader {
       lists_.addName(2, tag, groups.nameOf(s));
       for (std::size_t i = 0; i < sides.size(); ++i) {
         const auto* const face = std::find(kExodusSides.begin(), kExodusSides.end(), sides[i]);
-        if (face == kExodusSides.end() || elements[i] < 1) continue;  // of no known cell
+        if (face == kExodusSides.end() || elements[i] < 1) continue;  // not a side of a known cell
         lists_.sides.push_back({static_cast<std::uint64_t>(elements[i]),
                                 static_cast<std::size_t>(face - kExodusSides.begin()),
                                 kExodusOpposite[static_cast<std::size_t>(sides[i] - 1)], tag});
@@ -465,7 +466,7 @@ ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
   const auto readNewer = [&](const Input& file) {
     return ExodusReader({HdfReader::open(file), input.name()}, input, parts).read();
   };
-  // Files of other formats are refused before they are read as a whole.
+  // Refuse other formats before reading the whole file.
   const std::string head = firstBytes(input);
   if (head == kHdfMark) return readNewer(input);
   if (!head.empty()) requireNetcdf(head, input.name());
@@ -477,8 +478,8 @@ ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
 
 namespace {
 
-// Exodus files of parts with Nemesis' maps, `NAME.e.N.K`: which nodes and cells are shared, and
-// what the whole mesh has.
+// Exodus files of parts with Nemesis maps, `NAME.e.N.K`: shared nodes and cells, and the sizes of
+// the whole mesh.
 
 std::vector<std::int32_t> fromOneAll(const Array<std::uint64_t>& numbers, std::size_t count) {
   std::vector<std::int32_t> result;
@@ -487,7 +488,7 @@ std::vector<std::int32_t> fromOneAll(const Array<std::uint64_t>& numbers, std::s
   return result;
 }
 
-/// Numbers in a file that are sums over all parts.
+/// Numbers in a file that are sums over all parts, filled in later.
 struct GlobalCounts {
   std::uint64_t position;
   std::vector<std::uint64_t> ofPart;
@@ -508,8 +509,8 @@ class NemesisFile final : public ExodusFile {
     addCells();
   }
 
-  /// Where the sizes of the mesh's blocks and sets stand, and what this part has of them; each
-  /// node of a set counts where it is owned.
+  /// The file positions for the sizes of the mesh's blocks and sets, and this part's contributions;
+  /// each node of a set counts in the part that owns it.
   [[nodiscard]] std::vector<GlobalCounts> globalCounts(std::uint64_t mostBytes) const {
     std::vector<GlobalCounts> counts;
     if (!blocks_.numbers.empty()) {
@@ -547,7 +548,7 @@ class NemesisFile final : public ExodusFile {
     };
     addVariable(name, NetcdfType::Int, {}, write);
   }
-  /// A list, and its length as a dimension; nothing if it is empty, as NetCDF expects.
+  /// Adds a list, and its length as a dimension; nothing if it is empty, as NetCDF expects.
   void addListOf(const std::string& name, const std::string& dimension,
                  std::vector<std::int32_t> numbers) {
     if (numbers.empty()) return;
@@ -558,7 +559,7 @@ class NemesisFile final : public ExodusFile {
     addNumbers(name, inFile_, {isThere ? 1 : 0});
   }
 
-  /// Blocks and sets of the whole mesh. How many elements they have is known when all parts are.
+  /// Adds blocks and sets of the whole mesh. Their sizes are filled in once all parts are known.
   void addGlobalSets() {
     addCounted("el_blk", "num_el_blk_global", blocks_, {"el_blk_cnt_global"});
     addCounted("ss", "num_ss_global", sides_, {"ss_side_cnt_global", "ss_df_cnt_global"});
@@ -574,7 +575,7 @@ class NemesisFile final : public ExodusFile {
     }
   }
 
-  /// Global numbers of nodes, and of cells in the order of the blocks.
+  /// Adds global numbers of nodes, and of cells in block order.
   void addMaps() {
     if (part_.ownCells == 0) return;
     addNumbers("node_num_map", dimensionOf("num_nodes"),
@@ -586,7 +587,7 @@ class NemesisFile final : public ExodusFile {
     addNumbers("elem_num_map", dimensionOf("num_elem"), std::move(cells));
   }
 
-  /// Nodes or cells that are shared, part by part.
+  /// Shared nodes or cells, grouped by part.
   struct Shared {
     std::vector<std::int32_t> ids;
     std::vector<std::int32_t> ends;
@@ -603,7 +604,7 @@ class NemesisFile final : public ExodusFile {
     }
   };
 
-  /// Which nodes or cells are inside, and which at the border.
+  /// Adds the lists of interior and of border nodes or cells.
   /// @param kind  "n" or "e"
   /// @param word  "node" or "elem"
   void addBorder(const std::string& kind, const std::string& word,
@@ -619,7 +620,7 @@ class NemesisFile final : public ExodusFile {
     addListOf(word + "_mapi", "num_int_" + word, std::move(inner));
     addListOf(word + "_mapb", "num_bor_" + word, std::move(border));
   }
-  /// @return  the dimension of all that is shared
+  /// @return  the dimension of the concatenated lists
   std::uint32_t addShared(const std::string& kind, Shared shared) {
     const std::size_t count = shared.ids.size();
     const std::uint32_t maps = addDimension("num_" + kind + "_cmaps", count);
@@ -632,7 +633,7 @@ class NemesisFile final : public ExodusFile {
     return all;
   }
 
-  /// With whom nodes are shared.
+  /// Adds the nodes shared with each neighbour.
   void addNodes() {
     std::vector<bool> atBorder(part_.ownPoints, false);
     Shared shared;
@@ -647,7 +648,7 @@ class NemesisFile final : public ExodusFile {
     if (!shared.ids.empty()) addShared("n", std::move(shared));
   }
 
-  /// Faces to other parts.
+  /// Adds the faces shared with each neighbour.
   void addCells() {
     const Array<Index> places = cellPlacesOf(groups_.cells);
     std::vector<bool> atBorder(part_.ownCells, false);
@@ -715,7 +716,7 @@ class ExodusSink final : public PartSink {
   }
 
  private:
-  /// Sums of all processes; their lists have the same lengths.
+  /// Adds up the sums of all processes; their lists have equal lengths.
   void addUp() {
     std::vector<std::uint64_t> mine;
     for (const auto& sums : sums_) mine.insert(mine.end(), sums.begin(), sums.end());
@@ -739,7 +740,7 @@ class ExodusSink final : public PartSink {
   PartsInfo info_;
   FileSet files_;
   std::vector<std::vector<GlobalCounts>> counts_;  ///< per part
-  std::vector<std::vector<std::uint64_t>> sums_;   ///< of all parts
+  std::vector<std::vector<std::uint64_t>> sums_;   ///< over all parts
 };
 
 }  // namespace

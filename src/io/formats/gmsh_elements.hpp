@@ -1,7 +1,7 @@
-// What the elements of a `.msh` file are tagged with: the number of their physical group, or what
-// its name says; and the nodes that they name, by tags of the file's choice. This library calls
-// groups "point_7", "curve_7", "surface_7" and "region_7" for the tag 7 ("_m7" for -7), and
-// "boundary", "hexahedra" and "patch_7" where there is no tag.
+// The section $Elements of `.msh` files: cells, their regions, and features. An element's tag is
+// the number of its physical group or comes from the group's name. This library names groups
+// "point_7", "curve_7", "surface_7" and "region_7" for the tag 7 ("_m7" for -7), and "boundary",
+// "hexahedra" and "patch_7" without a tag.
 #pragma once
 
 #include <algorithm>
@@ -32,22 +32,22 @@
 
 namespace hexhex::io {
 
-// Types of elements in files of all versions.
+// Element types common to all versions.
 inline constexpr unsigned kGmshLine = 1;
 inline constexpr unsigned kGmshTriangle = 2;
 inline constexpr unsigned kGmshQuad = 3;
 inline constexpr unsigned kGmshHexahedron = 5;
 inline constexpr unsigned kGmshPoint = 15;
-// Of order 2, without nodes in faces and inside.
+// Order 2, without face and interior nodes.
 inline constexpr unsigned kGmshQuad8 = 16;
 inline constexpr unsigned kGmshHexahedron20 = 17;
-// With all nodes, of order 1 to 9.
+// Complete elements of order 1 to 9.
 using GmshTypes = std::array<unsigned, kMaxOrder>;
 inline constexpr GmshTypes kGmshLines = {kGmshLine, 8, 26, 27, 28, 62, 63, 64, 65};
 inline constexpr GmshTypes kGmshQuads = {kGmshQuad, 10, 36, 37, 38, 47, 48, 49, 50};
 inline constexpr GmshTypes kGmshHexahedra = {kGmshHexahedron, 12, 92, 93, 94, 95, 96, 97, 98};
 
-/// The order of elements of a type that is in a table; 0 of others.
+/// The order of a type in a table; 0 if it is not there.
 [[nodiscard]] constexpr int orderIn(const GmshTypes& types, std::int64_t type) noexcept {
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (std::int64_t{types[i]} == type) return static_cast<int>(i) + 1;
@@ -58,16 +58,16 @@ inline constexpr GmshTypes kGmshHexahedra = {kGmshHexahedron, 12, 92, 93, 94, 95
   return type == kGmshHexahedron20 || orderIn(kGmshHexahedra, type) > 0;
 }
 
-/// Dimension of elements, and the number of a physical group.
+/// Dimension of elements, and number of a physical group.
 using GmshGroup = std::pair<std::int64_t, std::int64_t>;
 
-/// The number of a group. Its sign tells the direction of an entity.
+/// The number of a group without the sign, which gives the orientation of an entity.
 [[nodiscard]] constexpr std::int64_t withoutSign(std::int64_t number) noexcept {
   if (number == std::numeric_limits<std::int64_t>::min()) return 0;
   return number < 0 ? -number : number;
 }
 
-/// The tag that a name of this library gives, or nothing if another program chose it.
+/// The tag encoded in a group name of this library; empty for other names.
 [[nodiscard]] inline std::optional<std::int32_t> tagInGroupName(std::string_view name) {
   constexpr std::array<std::string_view, 4> kTagged = {"point_", "curve_", "surface_", "region_"};
   if (name == "boundary" || name == "hexahedra" || name.starts_with("patch_")) return 0;
@@ -76,7 +76,7 @@ using GmshGroup = std::pair<std::int64_t, std::int64_t>;
     std::string_view digits = name.substr(prefix.size());
     const bool negative = digits.starts_with('m');
     if (negative) digits.remove_prefix(1);
-    if (negative && digits.starts_with('-')) return {};  // one sign is enough
+    if (negative && digits.starts_with('-')) return {};  // only one sign is allowed
     std::int64_t tag = 0;
     const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), tag);
     if (result.ec != std::errc{} || result.ptr != digits.data() + digits.size()) return {};
@@ -87,15 +87,14 @@ using GmshGroup = std::pair<std::int64_t, std::int64_t>;
   return {};
 }
 
-/// Gives groups of all dimensions numbers of their own, since programs such as meshio and GetFEM
-/// take groups with one number for one group. Numbers that are tags stay where they can, those of
-/// the first kinds first.
+/// Gives groups unique numbers across dimensions, since programs such as meshio and GetFEM merge
+/// groups with equal numbers. Numbers that are tags are kept where possible, earlier kinds first.
 inline void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds) {
   std::set<std::uint32_t> taken;
   std::vector<ElementGroup*> others;
   for (std::vector<ElementGroup>* const groups : kinds) {
     for (ElementGroup& group : *groups) {
-      // Groups with names of their own say it by themselves.
+      // Given names do not encode the tag.
       const auto tag = tagInGroupName(group.name).value_or(group.tag);
       const bool isTag = tag == static_cast<std::int64_t>(group.number);
       if (!isTag || !taken.insert(group.number).second) others.push_back(&group);
@@ -109,10 +108,10 @@ inline void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds)
   }
 }
 
-/// Tags of elements by their groups or entities.
+/// Maps groups and entities to tags of elements.
 class GmshTags {
  public:
-  /// The name of a physical group.
+  /// Adds the name of a physical group.
   void addName(GmshGroup group, std::string_view name) {
     if (const std::optional<std::int32_t> tag = tagInGroupName(name)) {
       named_.emplace(group, *tag);
@@ -120,11 +119,11 @@ class GmshTags {
       names.push_back({static_cast<int>(group.first), ofPhysical(group), std::string(name)});
     }
   }
-  std::vector<TagName> names;  ///< that another program chose
-  /// The first physical group of an entity of MSH 4.1; 0 if it has none.
+  std::vector<TagName> names;  ///< given by other programs
+  /// Sets the first physical group of an MSH 4.1 entity; 0 if it has none.
   void addEntity(GmshGroup entity, std::int64_t physical) { physicals_.emplace(entity, physical); }
 
-  /// The tag of a physical group; 0 without one.
+  /// The tag of a physical group; 0 if there is none.
   [[nodiscard]] std::int32_t ofPhysical(GmshGroup group) const {
     const auto found = named_.find(group);
     if (found != named_.end()) return found->second;
@@ -141,13 +140,12 @@ class GmshTags {
   std::map<GmshGroup, std::int64_t> physicals_;
 };
 
-// The section $Elements of `.msh` files: cells of one kind, their regions, and features. Blocks of
-// elements of one type make up the section of version 4, and that of version 2 in bytes; as text,
-// each element of versions 1 and 2 says its type.
+// The section consists of blocks of elements of one type in version 4, and in binary files of
+// version 2; in text files of versions 1 and 2, each element gives its type.
 
-/// The number of nodes, or 0 if it is not known.
+/// The number of nodes; 0 if unknown.
 [[nodiscard]] constexpr std::size_t nodesOfGmshType(std::int64_t type) noexcept {
-  // By type; 0 for types without a fixed number. From Gmsh's documentation.
+  // By type; 0 for types of variable size. From Gmsh's documentation.
   constexpr std::array<std::uint8_t, 32> kNodes = {0,  2,  3,  4,  4, 8, 6,  5,  3,  6, 9,
                                                    10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10,
                                                    12, 15, 15, 21, 4, 5, 6,  20, 35, 56};
@@ -163,7 +161,7 @@ class GmshTags {
   return nodes > 1 ? nodes : 0;
 }
 
-/// The dimension of elements that may be cells or features.
+/// The dimension of element types that may be cells or features.
 [[nodiscard]] constexpr std::int64_t dimensionOfGmshType(std::int64_t type) noexcept {
   if (type == kGmshPoint) return 0;
   if (orderIn(kGmshLines, type) > 0) return 1;
@@ -171,22 +169,21 @@ class GmshTags {
   return flat ? 2 : 3;
 }
 
-/// What differs between versions: 1 has text only; 4.0 numbers nodes and elements with 4 bytes, 4.1
-/// with 8.
+/// Versions that differ: 1 is text only; 4.0 uses 4-byte tags of nodes and elements, 4.1 uses 8.
 enum class GmshVersion : std::uint8_t { V1, V2, V40, V41 };
 
 [[nodiscard]] constexpr bool hasEntities(GmshVersion version) noexcept {
   return version >= GmshVersion::V40;
 }
 
-/// The tag of a node or element. A negative one becomes large.
+/// The tag of a node or element. Negative tags wrap to large numbers.
 template <class Record>
 [[nodiscard]] std::uint64_t readGmshTag(Record& record, GmshVersion version, const char* what) {
   if (version == GmshVersion::V41) return record.size(what);
   return static_cast<std::uint64_t>(record.integer(what));
 }
 
-/// Dimension and tag of an entity, at the head of a block.
+/// Dimension and tag of an entity, from the head of a block.
 template <class Source>
 [[nodiscard]] GmshGroup readGmshEntity(Source& source, GmshVersion version) {
   const auto tag = [&source] { return source.integer("the tag of an entity"); };
@@ -197,13 +194,13 @@ template <class Source>
   return entity;
 }
 
-/// Elements of one type that follow each other.
+/// Consecutive elements of one type.
 struct GmshBlock {
   GmshVersion version = GmshVersion::V2;
   std::int64_t type = 0;
-  std::size_t nodes = 0;  ///< of each element
+  std::size_t nodes = 0;  ///< per element
   std::size_t count = 0;
-  std::size_t tags = 0;      ///< version 2: of each element, in front of its nodes
+  std::size_t tags = 0;      ///< version 2: per element, before its nodes
   std::int32_t tag = 0;      ///< version 4: of all elements
   std::size_t position = 0;  ///< version 4: in the file
 
@@ -221,7 +218,7 @@ template <class Source>
               " have a number of nodes that is not known here, so that they cannot be skipped.");
 }
 
-/// How many blocks and elements the section of version 4 has.
+/// The numbers of blocks and elements in the section, in version 4.
 template <class Source>
 [[nodiscard]] std::array<std::uint64_t, 2> readGmshCounts4(Source& source, GmshVersion version) {
   const std::uint64_t blocks = source.size("the number of blocks of elements");
@@ -233,7 +230,7 @@ template <class Source>
   return {blocks, total};
 }
 
-/// @param tags  of all entities; null: not asked for
+/// @param tags  of all entities; null: not needed
 template <class Source>
 [[nodiscard]] GmshBlock readGmshHead4(Source& source, GmshVersion version, const GmshTags* tags) {
   GmshBlock block{.version = version};
@@ -248,7 +245,7 @@ template <class Source>
   return block;
 }
 
-/// @param left  elements that have not been read
+/// @param left  elements not read yet
 [[nodiscard]] inline GmshBlock readGmshHead22(BinarySource& source, std::size_t left) {
   GmshBlock block{.type = source.integer("the type of elements")};
   const std::int64_t follow = source.integer("the number of elements that follow");
@@ -265,7 +262,7 @@ template <class Source>
 }
 
 /// An element of version 1 or 2 as text, up to its nodes.
-/// @param[out] physical  its physical group, which is the first of its tags in version 2, or 0
+/// @param[out] physical  its physical group, the first of its tags in version 2, or 0
 template <class Source>
 [[nodiscard]] GmshBlock readGmshElement(Source& source, GmshVersion version,
                                         std::int64_t& physical) {
@@ -290,8 +287,8 @@ template <class Source>
               " nodes, found ", nodes, ".");
 }
 
-/// The type of the first hexahedra of a section, straight or curved; 0 without any.
-/// @param source  behind the name of the section, or the number of elements of versions 1 and 2
+/// The type of the first hexahedra of a section, straight or curved; 0 if there are none.
+/// @param source  after the section's name or, in versions 1 and 2, after the number of elements
 template <class Source>
 [[nodiscard]] std::int64_t firstGmshHexahedra(Source& source, GmshVersion version,
                                               std::uint64_t count) {
@@ -319,19 +316,19 @@ template <class Source>
   return 0;
 }
 
-/// Instead of a number of corners: cells of higher order.
+/// Stands for cells of higher order where a number of corners is expected.
 inline constexpr std::size_t kCurved = 0;
 template <std::size_t corners>
 using GmshMesh = std::conditional_t<corners == kCurved, LagrangeMesh, CellMesh<corners>>;
 
-/// Fills the cells of a mesh, hexahedra (8 corners), tetrahedra (4), or hexahedra of higher order,
-/// and its features.
+/// Reads the cells of a mesh and its features. Cells are hexahedra (8 corners), tetrahedra (4), or
+/// hexahedra of higher order.
 template <std::size_t corners>
 class GmshElements {
  public:
   /// @param kind  of the cells
-  /// @param places  of curved cells: where in its row each node goes
-  /// @param tags  of all groups and entities; outlive this, and so do the others
+  /// @param places  of curved cells: position of each node in its row
+  /// @param tags  of all groups and entities; must outlive this, as must the other references
   GmshElements(const CellKind& kind, const std::vector<std::uint32_t>& places, const GmshTags& tags,
                const NodeTags& nodes, GmshMesh<corners>& mesh, CellCounts& counts, Stage& stage)
       : kind_(kind),
@@ -343,7 +340,7 @@ class GmshElements {
         stage_(stage) {}
 
   /// Reads the section.
-  /// @param count  in versions 1 and 2, of all elements, which was read before
+  /// @param count  versions 1 and 2: number of elements, already read
   /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, TooLarge
   template <class Source>
   void read(Source& source, GmshVersion version, std::size_t count) {
@@ -355,11 +352,11 @@ class GmshElements {
     }
   }
 
-  /// Whether there are other elements than cells.
+  /// Whether there are elements other than cells.
   [[nodiscard]] bool hasOthers() const noexcept { return hasOthers_; }
 
  private:
-  /// Of version 4. Cells are read last, when it is known how many there are.
+  /// Version 4. Reads cells last, once their number is known.
   template <class Source>
   void read4(Source& source, GmshVersion version) {
     const auto [blocks, total] = readGmshCounts4(source, version);
@@ -394,7 +391,7 @@ class GmshElements {
     source.moveTo(end);
   }
 
-  /// The same of version 2, behind the number of elements.
+  /// Version 2, binary, after the number of elements.
   void read22(BinarySource& source, std::size_t count) {
     makeRoom(source, count);
     std::size_t cells = 0;
@@ -412,7 +409,7 @@ class GmshElements {
     keep(cells);
   }
 
-  /// The same of versions 1 and 2 as text.
+  /// Versions 1 and 2 as text.
   void readText(TextSource& source, GmshVersion version, std::size_t count) {
     LoopProgress progress(stage_, count);
     makeRoom(source, count);
@@ -436,7 +433,7 @@ class GmshElements {
 
   [[nodiscard]] bool isCell(std::int64_t type) const { return type == kind_.gmshType; }
   static constexpr unsigned kFace = corners == 4 ? kGmshTriangle : kGmshQuad;
-  /// The number of corners of elements that can be features of a mesh of these cells; else 0.
+  /// The number of corners of elements that can be features in a mesh of these cells; otherwise 0.
   [[nodiscard]] static constexpr std::size_t featureCorners(std::int64_t type) {
     if (type == kGmshPoint) return 1;
     if (type == kGmshLine) return 2;
@@ -450,7 +447,7 @@ class GmshElements {
     return tags_.ofPhysical({dimensionOfGmshType(block.type), withoutSign(physical)});
   }
 
-  /// Makes room for as many cells as there can be in versions 1 and 2, which do not count them.
+  /// Allocates for the maximum number of cells in versions 1 and 2, which do not count them.
   template <class Source>
   void makeRoom(const Source& source, std::size_t count) {
     // The last one may be incomplete.
@@ -465,8 +462,7 @@ class GmshElements {
     room_ = cells;
   }
 
-  /// The physical group of an element in a block, or 0; reads all that stands in front of an
-  /// element's nodes.
+  /// Reads the part of an element in a block before its nodes. @return its physical group, or 0
   template <class Record>
   [[nodiscard]] static std::int64_t readPhysical(Record& record, const GmshBlock& block) {
     static_cast<void>(readGmshTag(record, block.version, "the tag of an element"));
@@ -476,7 +472,7 @@ class GmshElements {
     return physical;
   }
 
-  /// Reads cells of a block, from number `first` on.
+  /// Reads the cells of a block, from index `first` on.
   template <class Source>
   void readCells(Source& source, const GmshBlock& block, std::size_t first) {
     Array<std::int64_t> physicals(block.tags > 0 ? block.count : 0);
@@ -486,7 +482,7 @@ class GmshElements {
       readCorners(record, block.version, first + i);
     });
     if (physicals.empty()) return setRegions(first, block.count, tagOf(block, 0));
-    // Cells of a group mostly follow each other.
+    // Cells of a group are mostly consecutive.
     for (std::size_t begin = 0; begin < block.count;) {
       std::size_t end = begin + 1;
       while (end < block.count && physicals[end] == physicals[begin]) ++end;
@@ -510,7 +506,7 @@ class GmshElements {
     }
   }
 
-  // A function of its own that takes the record by value, so that the loop keeps it in registers.
+  // A separate function that takes the record by value, so that the loop keeps it in registers.
   template <class Record>
   [[noreturn]] void failCorner(Record record, std::uint64_t tag, std::size_t cell) const {
     record.fail(ErrorCode::IndexOutOfRange, Place{kind_.place, cell}, kind_.singular, " ", cell,
@@ -518,20 +514,20 @@ class GmshElements {
                 ", which is not in the section $Nodes.");
   }
 
-  /// Regions of consecutive cells. Without any, there is no array.
+  /// Sets the region of consecutive cells. The array is allocated for the first nonzero region.
   void setRegions(std::size_t first, std::size_t count, std::int32_t region) {
     if (mesh_.regions.empty() && region != 0) mesh_.regions.assign(room_, 0);
     if (mesh_.regions.empty()) return;
     std::fill_n(mesh_.regions.begin() + static_cast<std::ptrdiff_t>(first), count, region);
   }
 
-  /// Keeps so many cells.
+  /// Truncates the mesh to this number of cells.
   void keep(std::size_t cells) {
     resize(cells);
     if (!mesh_.regions.empty()) mesh_.regions.resize(cells);
   }
 
-  /// Goes behind elements that are no cells, and takes features.
+  /// Skips elements that are not cells, and reads features.
   template <class Source>
   void readOthers(Source& source, const GmshBlock& block) {
     if (block.count > 0) hasOthers_ = true;
@@ -580,7 +576,7 @@ class GmshElements {
   GmshMesh<corners>& mesh_;
   CellCounts& counts_;
   Stage& stage_;
-  std::size_t room_ = 0;  ///< for so many cells
+  std::size_t room_ = 0;  ///< number of cells allocated
   bool hasOthers_ = false;
 };
 

@@ -1,5 +1,5 @@
-// Gmsh 4.1 with partitioned entities, binary: one file with all parts, or a file for each part. A
-// file is
+// Gmsh 4.1 with partitioned entities, binary: one file with all parts, or a file per part. The
+// sections of a file are
 //
 //     head, nodes of each part, head of elements, elements of each part, head of ghosts, ghosts of
 //     each part, end.
@@ -32,7 +32,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// Bytes that are collected.
+/// A byte buffer.
 class GmshBytes {
  public:
   void integers(std::initializer_list<std::uint32_t> numbers) {
@@ -62,16 +62,16 @@ struct PartitionEntity {
   std::uint32_t dimension;
   std::uint32_t tag;
   std::uint32_t parent;  ///< also the physical group
-  std::uint32_t part;    ///< from 1
+  std::uint32_t part;    ///< from 1 on
   Vec3 low;
   Vec3 high;
 };
 
-/// Numbers of GmshSums::packed(): those of an entity, and others.
+/// Numbers in GmshSums::packed(): per entity, and others.
 constexpr std::size_t kOfEntity = 10;
 constexpr std::size_t kOthers = 6;
 
-/// How much there is in a file, or of one part.
+/// The contents of a file, or of one part, in numbers.
 struct GmshSums {
   std::uint64_t nodeBlocks = 0;
   std::uint64_t nodes = 0;
@@ -81,7 +81,7 @@ struct GmshSums {
   std::uint64_t largestElement = 0;
   std::vector<PartitionEntity> entities;
 
-  /// Those of the next part.
+  /// Adds the next part.
   void add(const GmshSums& part) {
     nodeBlocks += part.nodeBlocks;
     nodes += part.nodes;
@@ -91,7 +91,7 @@ struct GmshSums {
     largestElement = std::max(largestElement, part.largestElement);
     entities.insert(entities.end(), part.entities.begin(), part.entities.end());
   }
-  /// As numbers, and back from them.
+  /// Conversion to numbers, and back.
   [[nodiscard]] std::vector<std::uint64_t> packed() const {
     std::vector<std::uint64_t> numbers = {nodeBlocks, nodes,  elementBlocks,
                                           elements,   ghosts, largestElement};
@@ -121,7 +121,7 @@ struct GmshSums {
   }
 };
 
-/// What one part adds to a file.
+/// The contribution of one part to a file.
 struct PartSections {
   GmshSums sums;
   GmshBytes nodes;  ///< one block, if there are any nodes
@@ -129,7 +129,7 @@ struct PartSections {
   GmshBytes ghosts;
 };
 
-/// Numbers of entities and elements, across all parts.
+/// Assigns numbers to entities and elements, across all parts.
 class GmshNumbers {
  public:
   explicit GmshNumbers(const PartsInfo& info) : info_(info), nextQuad_(info.cellCount + 1) {
@@ -141,7 +141,7 @@ class GmshNumbers {
   [[nodiscard]] const std::vector<ElementGroup>& groups(std::size_t dimension) const {
     return dimension == 3 ? volumes_ : surfaces_;
   }
-  /// The entity of a group in a part: behind those of whole meshes, and different for all.
+  /// The entity of a group in a part: unique, and above the entities of whole meshes.
   [[nodiscard]] std::uint32_t entityOf(std::size_t dimension, std::size_t group,
                                        std::uint32_t part) const {
     const std::vector<ElementGroup>& all = groups(dimension);
@@ -168,10 +168,10 @@ class GmshNumbers {
   std::uint64_t nextQuad_;
 };
 
-/// Makes the sections of one part.
+/// Builds the sections of one part.
 class SectionMaker {
  public:
-  /// @param onlyOwned  whether vertices that another part owns are left out, and ghosts' elements
+  /// @param onlyOwned  whether to leave out vertices of other parts and ghost elements
   SectionMaker(const MeshPart& part, const MeshGroups& groups, GmshNumbers& numbers, bool onlyOwned)
       : part_(part), groups_(groups), numbers_(numbers), onlyOwned_(onlyOwned) {}
 
@@ -234,7 +234,7 @@ class SectionMaker {
       }
     }
   }
-  /// Which own cells of others are ghosts here.
+  /// Lists the ghosts by number: cells owned by other parts.
   void addGhosts() {
     for (std::size_t c = part_.ownCells; c < part_.mesh.cells.size(); ++c) {
       sections_.ghosts.sizes({part_.globalCells[c] + 1});
@@ -244,7 +244,7 @@ class SectionMaker {
       ++sections_.sums.ghosts;
     }
   }
-  /// Those of others are in entities of their parts.
+  /// Adds the elements of ghost cells, in entities of the parts that own them.
   void addGhostCells() {
     std::map<std::pair<std::uint32_t, std::size_t>, std::vector<std::size_t>> byEntity;
     for (std::size_t c = part_.ownCells; c < part_.mesh.cells.size(); ++c) {
@@ -272,7 +272,7 @@ class SectionMaker {
     if (nodes.empty()) return;
     sections_.sums.nodes = nodes.size();
     sections_.sums.nodeBlocks = 1;
-    // Of the part's first volume.
+    // In the part's first volume.
     const std::vector<PartitionEntity>& entities = sections_.sums.entities;
     const auto volume =
         std::find_if(entities.begin(), entities.end(),
@@ -369,9 +369,9 @@ std::string gmshEnd(const GmshSums& sums) {
   return sums.ghosts == 0 ? "" : "\n$EndGhostElements\n";
 }
 
-// Gmsh 4.1 with partitioned entities, binary: one file with all parts, or a file for each part.
+// The two kinds of sinks.
 
-/// Copies all that was written to a file.
+/// Copies everything written to a file.
 void copyAll(OutputFile& from, OutputFile& to) {
   from.flush();
   std::string bytes;
@@ -383,7 +383,7 @@ void copyAll(OutputFile& from, OutputFile& to) {
   }
 }
 
-/// What both kinds of files have in common.
+/// Base of the sinks for one file and for split files.
 class GmshSink : public PartSink {
  public:
   GmshSink(Context& context, ProcessTeam* team) : context_(context), team_(team) {}
@@ -404,7 +404,7 @@ class GmshSink : public PartSink {
   std::optional<GmshNumbers> numbers_;
 
  private:
-  /// Quads of processes before this one have smaller numbers.
+  /// Reserves smaller numbers for the quads of processes of lower rank.
   void passQuadsBefore(std::uint64_t own) {
     const GatheredNumbers all = team_->gather(std::span(&own, 1));
     for (std::uint32_t r = 0; r < team_->rank(); ++r) {
@@ -413,8 +413,8 @@ class GmshSink : public PartSink {
   }
 };
 
-/// How much there is of everything is said in front, and known in the end: nodes and elements wait
-/// in files of their own. In a team, all know it when each has its part.
+/// Counts of everything precede the data but are known only at the end: nodes and elements are kept
+/// in temporary files. In a team, the counts are known once each process has written its part.
 class OneGmshFile final : public GmshSink {
  public:
   OneGmshFile(const std::filesystem::path& file, Context& context, ProcessTeam* team)
@@ -483,7 +483,7 @@ class OneGmshFile final : public GmshSink {
   }
 
   SharedFile output_;
-  std::optional<OutputFile> nodes_;     ///< never committed
+  std::optional<OutputFile> nodes_;     ///< temporary, never committed
   std::optional<OutputFile> elements_;  ///< likewise
   GmshBytes ghosts_;
   GmshSums sums_;

@@ -1,5 +1,4 @@
-// Reads `.msh` files (see formats.hpp): their sections, in order; binary ones of version 4.1 also
-// piece by piece.
+// Reads `.msh` files (see formats.hpp) section by section; streams binary files of version 4.1.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -46,11 +45,11 @@ std::optional<GmshVersion> gmshVersionOf(std::string_view version) {
   return {};
 }
 
-/// The frame of a file: its version and encoding, and its sections one after the other.
+/// The frame of a file: version, encoding, and the sequence of sections.
 class GmshFile {
  public:
-  /// Reads the section $MeshFormat, which version 1 lacks, and what stands before it.
-  /// @param text  must outlive this, and so must the others
+  /// Reads the section $MeshFormat, which version 1 lacks, and any comments before it.
+  /// @param text  must outlive this, as must the other references
   /// @throws Error FileSyntax, FileUnsupported
   GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
       : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
@@ -72,7 +71,7 @@ class GmshFile {
 
   [[nodiscard]] GmshVersion version() const noexcept { return version_; }
 
-  /// Goes to the next section and returns its name, without '$'; nothing at the end of the file.
+  /// Moves to the next section and returns its name without '$'; empty at the end of the file.
   [[nodiscard]] std::optional<std::string_view> nextSection() {
     if (!scanner_.skipSpace()) return {};
     const std::string_view token = scanner_.readToken();
@@ -89,7 +88,7 @@ class GmshFile {
     if (scanner_.readToken() != end) scanner_.failToken('"' + end + '"');
   }
 
-  /// Skips the rest of a section, and returns what that is, with the end.
+  /// Skips and returns the rest of a section; reads its end.
   std::string_view skipSection(std::string_view name) {
     const std::string end = endOf(name);
     const std::size_t begin = scanner_.position();
@@ -103,10 +102,10 @@ class GmshFile {
   }
 
   [[nodiscard]] Stage& stage() const noexcept { return stage_; }
-  /// Stands where the file is read, and moves on with it.
+  /// The scanner at the current position.
   [[nodiscard]] TextScanner& scanner() noexcept { return scanner_; }
-  /// Calls f(source) with a source of numbers that stands at the scanner's place (if they are
-  /// bytes, on the next line), and goes on behind what it read.
+  /// Calls f(source) with a source of numbers at the scanner's position (for binary files, on the
+  /// next line), and advances past what it reads.
   template <class F>
   void withSource(const F& f) {
     if (binary_) {
@@ -125,7 +124,7 @@ class GmshFile {
     return concat((version_ == GmshVersion::V1 ? "$END" : "$End"), name);
   }
 
-  /// Passes over lines of comment and sections $Comments.
+  /// Skips comment lines and sections $Comments.
   void skipComments() {
     for (std::string_view token = scanner_.peekToken(); !token.empty();
          token = scanner_.peekToken()) {
@@ -133,7 +132,7 @@ class GmshFile {
         static_cast<void>(scanner_.takeLine());
       } else if (token == "$Comments") {
         static_cast<void>(scanner_.readToken());
-        version_ = GmshVersion::V2;  // has this way to end sections
+        version_ = GmshVersion::V2;  // has version 2's ends of sections
         skipSection("Comments");
       } else {
         break;
@@ -182,13 +181,13 @@ class GmshFile {
   ByteFile bytes_;
   TextScanner scanner_;
   Stage& stage_;
-  std::optional<TokenIndex> index_;  ///< only of text
+  std::optional<TokenIndex> index_;  ///< text files only
   bool binary_ = false;
   GmshVersion version_ = GmshVersion::V1;
 };
 
-/// Takes the names of groups from the section $PhysicalNames: lines "dimension number name", as
-/// text in binary files, too. Lines of another form are passed over.
+/// Reads names of groups from the section $PhysicalNames: lines "dimension number name", which are
+/// text even in binary files. Other lines are ignored.
 void readNames(std::string_view section, GmshTags& tags) {
   while (!section.empty()) {
     const std::size_t length = std::min(section.find('\n'), section.size());
@@ -206,7 +205,7 @@ void readNames(std::string_view section, GmshTags& tags) {
   }
 }
 
-/// The first number of a list, which begins with its length; 0 if it is empty.
+/// Reads a list preceded by its length; returns its first number, 0 if it is empty.
 template <class Source>
 std::int64_t firstOfGmshList(Source& source, const char* what) {
   const std::uint64_t count = source.size("the length of a list");
@@ -216,7 +215,7 @@ std::int64_t firstOfGmshList(Source& source, const char* what) {
   return first;
 }
 
-/// Entities of one dimension: their tags, where they are, their groups and bounding entities.
+/// Reads entities of one dimension: tags, bounding boxes, groups and bounding entities.
 template <class Source>
 void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, std::uint64_t count,
                     GmshTags& tags) {
@@ -233,7 +232,7 @@ void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, 
   }
 }
 
-/// Reads the groups of entities in the section $Entities of version 4.
+/// Reads the groups of entities from the section $Entities of version 4.
 template <class Source>
 void readEntities(Source& source, GmshVersion version, GmshTags& tags) {
   std::array<std::uint64_t, 4> counts{};
@@ -243,7 +242,7 @@ void readEntities(Source& source, GmshVersion version, GmshTags& tags) {
   }
 }
 
-/// Points, and the tag of each.
+/// Points with their tags.
 class GmshNodes {
  public:
   template <class Source>
@@ -279,7 +278,7 @@ class GmshNodes {
 
   [[nodiscard]] Array<Vec3>& points() noexcept { return points_; }
 
-  /// @throws Error FileSyntax for two nodes with one tag
+  /// @throws Error FileSyntax if two nodes have the same tag
   [[nodiscard]] NodeTags index(const TextScanner& scanner) const {
     NodeTags index(tags_);
     const Index repeated = index.repeated();
@@ -288,15 +287,15 @@ class GmshNodes {
   }
 
  private:
-  /// A node with its tag.
+  /// The record of a node with its tag.
   [[nodiscard]] static RecordShape nodeShape(GmshVersion version, std::size_t reals) {
     if (version == GmshVersion::V41) return {.sizes = 1, .reals = reals};
     return {.integers = 1, .reals = reals};
   }
 
-  /// Nodes of one entity: in version 4.1 all tags, then all points.
-  /// @param done  nodes before them
-  /// @return how many they are
+  /// Reads the nodes of one entity; version 4.1 lists all tags, then all points.
+  /// @param done  number of nodes read before
+  /// @return number of nodes in the block
   template <class Source>
   std::size_t readBlock(Source& source, GmshVersion version, std::size_t done) {
     const std::int64_t dimension = readGmshEntity(source, version).first;
@@ -339,15 +338,15 @@ class GmshNodes {
   Array<std::uint64_t> tags_;
 };
 
-/// The cells that are wanted, for messages; the type of curved ones is not known yet.
+/// The kind of the requested cells, for messages; for curved cells, the type is not known yet.
 template <std::size_t corners>
 constexpr CellKind kGmshKind = kCellKind<corners>;
 template <>
 constexpr CellKind kGmshKind<kCurved> = {
     .singular = "hexahedron", .plural = "hexahedra of higher order", .place = PlaceKind::Cell};
 
-/// Reads the sections of one file from top to bottom.
-/// @tparam corners  of the cells; or kCurved: hexahedra of the type that the file has first
+/// Reads the sections of a file in order.
+/// @tparam corners  per cell; kCurved: hexahedra of the type that comes first in the file
 template <std::size_t corners>
 class GmshReader {
  public:
@@ -417,9 +416,9 @@ class GmshReader {
     });
   }
 
-  // Cells of higher order. Rows of nodes are in VTK's order.
+  // Cells of higher order. Rows of nodes are in VTK order.
 
-  /// @param type  that is wanted, if it is one of cells of higher order
+  /// @param type  requested if it is of higher order
   void beginCurved(std::int64_t type) {
     const bool isCurved = isGmshHexahedron(type) && type != kGmshHexahedron;
     kind_.gmshType = isCurved ? type : kGmshHexahedron20;
@@ -483,7 +482,7 @@ class GmshReader {
   bool hasElements_ = false;
   bool hasOtherElements_ = false;
   CellKind kind_ = kGmshKind<corners>;
-  std::vector<std::uint32_t> places_;  ///< of the nodes of a curved cell in its row
+  std::vector<std::uint32_t> places_;  ///< position of each node of a curved cell in its row
   GmshMesh<corners> mesh_;
 };
 
@@ -503,9 +502,9 @@ LagrangeMesh readCurvedGmsh(const Input& input, Stage& stage) {
 
 namespace {
 
-// Whether cells are of higher order, without the whole of a file in memory.
+// Detects cells of higher order without loading the whole file.
 
-/// Numbers of a text that passes by.
+/// A source of numbers over a text window.
 class WindowSource {
  public:
   explicit WindowSource(TextWindow& words) : words_(words) {}
@@ -526,11 +525,11 @@ class WindowSource {
     if (!words_.skip(n * shape.tokens())) fail(ErrorCode::FileSyntax, "the end of the file");
   }
   [[nodiscard]] std::uint64_t position() const { return words_.position(); }
-  /// It shows when they are skipped.
+  /// Unknown; a file that is too short fails in skip().
   [[nodiscard]] static std::size_t room(RecordShape /*shape*/) {
     return std::numeric_limits<std::size_t>::max();
   }
-  /// The reader of whole files reports what is wrong.
+  /// Errors lack details, since the whole-file reader reports them.
   template <class... Parts>
   [[noreturn]] static void fail(ErrorCode code, Parts... sentence) {
     throw Error(code, concat(sentence...));
@@ -540,7 +539,7 @@ class WindowSource {
   TextWindow& words_;
 };
 
-/// Where a text first stands in a file, at or behind a place; nothing if it does not.
+/// The first occurrence of a text in a file, at or after a position; empty if there is none.
 std::optional<std::uint64_t> findInFile(const ByteFile& file, std::uint64_t from,
                                         std::string_view text, Context& context) {
   constexpr std::size_t kAtOnce = std::size_t{1} << 22;
@@ -556,7 +555,7 @@ std::optional<std::uint64_t> findInFile(const ByteFile& file, std::uint64_t from
   return {};
 }
 
-/// Reads the type of the first hexahedra of a file; 0 without any.
+/// Reads the type of the first hexahedra of a file; 0 if there are none.
 class FirstHexahedra {
  public:
   static constexpr std::string_view kFirst = "$#/";
@@ -601,7 +600,7 @@ bool holdsCurvedGmsh(const Input& input, Stage& stage) {
   try {
     type = readWith<FirstHexahedra>(input, stage);
   } catch (const Error& error) {
-    // The reader reports what is wrong.
+    // The whole-file reader reports what is wrong.
     if (error.code() != ErrorCode::FileSyntax && error.code() != ErrorCode::FileUnsupported) throw;
   }
   return isGmshHexahedron(type) && type != kGmshHexahedron;
@@ -609,19 +608,19 @@ bool holdsCurvedGmsh(const Input& input, Stage& stage) {
 
 namespace {
 
-// Binary `.msh` files of version 4.1 piece by piece.
+// Streams binary `.msh` files of version 4.1.
 
 constexpr RecordShape kTag{.sizes = 1};
 constexpr RecordShape kPoint{.reals = 3};
 
-/// A file with one block of nodes, which are numbered from 1, and one of hexahedra, as this library
-/// writes them. Functions throw Error for most others.
+/// A file with one block of nodes, numbered from 1, and one of hexahedra, as this library writes
+/// them. Functions throw Error for most other files.
 class GmshPieces {
  public:
   GmshPieces(const ByteFile& file, Context& context)
       : words_(file, context, TextWindow::kWords), source_(words_.file(), 0, words_.stage()) {}
 
-  /// @return whether the file is of the form
+  /// @return whether the file has this layout
   [[nodiscard]] bool look() {
     if (!lookAtFormat()) return false;
     for (std::string word = words_.token(); !word.empty(); word = words_.token()) {
@@ -630,7 +629,7 @@ class GmshPieces {
       } else if (word == "$Elements") {
         if (!lookInside([this] { return lookAtElements(); })) return false;
       } else if (word == "$Entities") {
-        // Only groups of whole elements are told by entities, which pieces do not carry.
+        // Entities only assign groups to whole blocks, which pieces do not carry.
         GmshTags ignored;
         if (!lookInside([&] { return readEntities(source_, GmshVersion::V41, ignored), true; })) {
           return false;
@@ -649,7 +648,7 @@ class GmshPieces {
   PlainLayout layout{.integerBytes = 8, .inFrontOfCell = 1};
 
  private:
-  /// The section $MeshFormat.
+  /// Checks the section $MeshFormat.
   [[nodiscard]] bool lookAtFormat() {
     for (const char* const expected : {"$MeshFormat", "4.1", "1", "8"}) {
       if (words_.token() != expected) return false;
@@ -658,7 +657,7 @@ class GmshPieces {
            words_.token() == "$EndMeshFormat";
   }
 
-  /// Reads what begins on the next line, and goes on behind it.
+  /// Runs look() on the data that begins on the next line, and moves past it.
   template <class Look>
   [[nodiscard]] bool lookInside(const Look& look) {
     if (!words_.skipLineBreak()) return false;
@@ -672,7 +671,7 @@ class GmshPieces {
     const bool isFirst = layout.points.position == 0;
     const std::uint64_t blocks = source_.size("the number of blocks");
     const std::uint64_t points = source_.size("the number of nodes");
-    source_.skip(2, kTag);  // the smallest and the largest
+    source_.skip(2, kTag);  // minimum and maximum tag
     const bool isOfVolume = readGmshEntity(source_, GmshVersion::V41).first == 3;
     const bool hasParameters = source_.integer("whether nodes have parameters") != 0;
     const std::uint64_t count = source_.size("the number of nodes of a block");
@@ -684,7 +683,7 @@ class GmshPieces {
     return true;
   }
 
-  /// Whether the tags that come next are 1, 2, 3, ...
+  /// Whether the next tags are 1, 2, 3, ...
   [[nodiscard]] bool areNumbered(std::uint64_t points) {
     std::atomic<bool> all{true};
     for (std::uint64_t first = 0; first < points && all; first += kPieceElements) {

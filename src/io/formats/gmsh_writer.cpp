@@ -1,5 +1,5 @@
-// Writes `.msh` files (see formats.hpp): MSH 4.1 as text and as bytes, where what differs is how a
-// number looks, of whole meshes, in pieces, and of higher order; and MSH 2.2.
+// Writes `.msh` files (see formats.hpp): MSH 4.1 in text and binary, which share a writer over two
+// encodings of numbers, for whole meshes, in pieces, and of higher order; and MSH 2.2.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -32,7 +32,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// Elements of one kind that belong together.
+/// A set of elements of one kind.
 struct GmshEntity {
   std::uint32_t tag;
   std::uint32_t physical;  ///< number of the physical group
@@ -42,13 +42,13 @@ struct GmshEntity {
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-/// What the elements of a file are sorted into.
+/// The groups and entities of a file.
 struct GmshGroups : MeshGroups {
   std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
 
   explicit GmshGroups(MeshGroups all) : MeshGroups(std::move(all)) {
     numberApart({&quads.groups, &cells.groups, &edges.groups, &vertices.groups});
-    // A point entity is one point: each vertex of a group is an entity of its own.
+    // A point entity is a single point, so each vertex of a group gets its own.
     for (const ElementGroup& group : vertices.groups) {
       for (std::size_t i = group.begin; i < group.end; ++i) {
         entities[0].push_back({static_cast<std::uint32_t>(i + 1), group.number, i, i + 1});
@@ -67,13 +67,13 @@ struct GmshGroups : MeshGroups {
 };
 
 /// The elements of one dimension.
-/// @tparam Count  a number, or a constant
+/// @tparam Count  an integer or std::integral_constant
 /// @tparam At     at(i)[k] is node k of element i
 template <class Count, class At>
 struct GmshKind {
   unsigned dimension;
-  unsigned type;  ///< Gmsh's
-  Count nodes;    ///< of each element
+  unsigned type;  ///< Gmsh's element type
+  Count nodes;    ///< per element
   At at;
 };
 template <class Count, class At>
@@ -92,7 +92,7 @@ void writePhysicalNames(OutputFile& output, const GmshGroups& groups) {
   output.write("$EndPhysicalNames\n");
 }
 
-/// Numbers of MSH 4.1 as text: with a space or a line break behind each.
+/// Numbers of MSH 4.1 as text: followed by a space or a line break.
 class TextNumbers {
  public:
   static constexpr bool kIsBinary = false;
@@ -107,7 +107,7 @@ class TextNumbers {
   }
 };
 
-/// Numbers of MSH 4.1 as bytes.
+/// Numbers of MSH 4.1 in binary.
 class BinaryNumbers {
  public:
   static constexpr bool kIsBinary = true;
@@ -122,13 +122,13 @@ class BinaryNumbers {
   }
 };
 
-/// Writes one file front to back.
+/// Writes a file front to back.
 template <class Numbers>
 class Msh41Writer {
  public:
   Msh41Writer(OutputFile& output, int threads) : output_(output), lines_(output, threads) {}
 
-  /// A whole mesh.
+  /// Writes a whole mesh.
   /// @param forEachKind  calls its argument with the GmshKind of each dimension, 0 to 3
   template <class ForEachKind>
   void write(std::span<const Vec3> points, const GmshGroups& groups, const ForEachKind& forEachKind,
@@ -140,7 +140,7 @@ class Msh41Writer {
     beginEntities(groups);
     forEachKind([&](const auto& kind) {
       for (const GmshEntity& entity : groups.entities[kind.dimension]) {
-        // The box of a volume is that of all points: no need to visit its cells.
+        // Use the box of all points for volumes: no need to visit their cells.
         const Box box = kind.dimension == 3 ? boxOfAll : boxOf(kind, entity, points);
         this->writeEntity(kind.dimension, entity, box);
       }
@@ -162,7 +162,7 @@ class Msh41Writer {
   }
 
  protected:
-  /// The smallest box around points; around none, all of it is 0.
+  /// The bounding box of points; all 0 if there are none.
   class Box {
    public:
     void add(const Vec3& point) {
@@ -182,9 +182,9 @@ class Msh41Writer {
     Vec3 upper_ = {-kFar, -kFar, -kFar};
   };
 
-  // The parts of a file, in their order. Each ends the section before it.
+  // The sections of a file, in order. Each function ends the section before it.
 
-  /// All before the entities.
+  /// Writes everything before the entities.
   void beginEntities(const GmshGroups& groups) {
     output_.write("$MeshFormat\n4.1 ").write(Numbers::kIsBinary ? '1' : '0').write(" 8\n");
     if (Numbers::kIsBinary) {
@@ -208,11 +208,11 @@ class Msh41Writer {
     }
     sizes({1});
     integers({entity.physical});
-    // What bounds an entity is left open: patches of features need not be whole boundaries.
+    // No bounding entities: patches of features need not be closed.
     if (dimension > 0) sizes({0});
     endLine();
   }
-  /// Replaces the box of the last entity, in a file of bytes.
+  /// Overwrites the box of the last entity; binary files only.
   void rewriteBox(const Box& box) {
     output_.flush();
     std::array<char, sizeof(Vec3) * 2> bytes;  // NOLINT(*-member-init): filled at once
@@ -221,7 +221,7 @@ class Msh41Writer {
     output_.writeBytesAt(boxPosition_, bytes.data(), bytes.size());
   }
 
-  /// All before the points.
+  /// Writes everything before the points.
   void beginNodes(const GmshGroups& groups, std::size_t count) {
     endSection("$EndEntities\n");
     output_.write("$Nodes\n");
@@ -257,7 +257,7 @@ class Msh41Writer {
     endLine();
   }
 
-  /// The elements of an entity have a block, if there are any.
+  /// Begins the block of an entity, if it has elements.
   void beginBlock(unsigned dimension, const GmshEntity& entity, unsigned type) {
     if (entity.size() == 0) return;
     integers({dimension, entity.tag, type});
@@ -303,7 +303,7 @@ class Msh41Writer {
     if (!Numbers::kIsBinary) output_.write('\n');
   }
   void endSection(std::string_view end) {
-    // Behind bytes the end has to begin a line.
+    // After binary data, the end marker must start a new line.
     if (Numbers::kIsBinary) output_.write('\n');
     output_.write(end);
   }
@@ -314,12 +314,12 @@ class Msh41Writer {
   std::uint64_t boxPosition_ = 0;
 };
 
-// Whole meshes and meshes in pieces.
+// Whole meshes, and meshes in pieces.
 
 template <std::size_t n>
 constexpr std::integral_constant<std::size_t, n> kNodes;
 
-/// Calls f(kind) for the elements of each dimension, in the order of the file.
+/// Calls f(kind) for the elements of each dimension, in file order.
 template <class F>
 void forEachKind(const HexMesh& mesh, const GmshGroups& groups, const F& f) {
   const auto of = [](const auto& elements) {
@@ -341,8 +341,8 @@ void writeMsh41(const HexMesh& mesh, OutputFile& output, const WriteOptions& opt
           mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
 }
 
-/// A mesh in pieces: one volume. Its box stands in front of the nodes but is known only behind
-/// them, and is written to its place in the end.
+/// Streams a mesh as one volume. Its box precedes the nodes but is known only after them, so it is
+/// overwritten at the end.
 class GmshStream : private Msh41Writer<BinaryNumbers> {
  public:
   GmshStream(OutputFile& output, int threads) : Msh41Writer(output, threads) {
@@ -435,9 +435,9 @@ std::unique_ptr<MeshSink> openGmsh41BinarySink(const std::filesystem::path& file
 
 namespace {
 
-// Gmsh's files of Lagrange cells.
+// Lagrange cells.
 
-/// The nodes of a cell in the order of a file.
+/// The nodes of a cell in file order.
 struct NodesInOrder {
   const Index* nodes;
   const std::uint32_t* order;

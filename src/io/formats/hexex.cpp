@@ -24,18 +24,17 @@ namespace hexhex::io {
 
 namespace {
 
-// The shortest that a vertex ("0 0 0") and a tet ("0 1 2 3" and twelve digits) can be, with
-// separators.
+// Minimum bytes of a vertex ("0 0 0") and a tet ("0 1 2 3" and twelve digits), with separators.
 constexpr std::size_t kMinimumVertexBytes = 6;
 constexpr std::size_t kMinimumTetBytes = 32;
 
-// A coordinate or corner or parameter each.
+// Each is a coordinate, corner or parameter.
 constexpr std::size_t kTokensOfVertex = 3;
 constexpr std::size_t kTokensOfTet = 16;
 
-/// The triangles of one tet alone, the vertices of each ascending, in lexicographic order.
+/// The boundary triangles: vertices ascending, in lexicographic order.
 std::vector<std::array<Index, 3>> boundaryTriangles(const TetMap& map, Stage& stage) {
-  constexpr std::size_t kGrain = 4096;  // vertices per block: some tenths of a millisecond
+  constexpr std::size_t kGrain = 4096;  // vertices per block: a few tenths of a millisecond
   const adjacency::VertexLists<Index, std::uint64_t> tetsAt(
       map.points.size(), stage, [&map](const auto& add) {
         for (std::size_t t = 0; t < map.tets.size(); ++t) {
@@ -54,10 +53,10 @@ std::vector<std::array<Index, 3>> boundaryTriangles(const TetMap& map, Stage& st
       });
 }
 
-/// Reads one file from top to bottom.
+/// Reads a file from top to bottom.
 class HexexReader {
  public:
-  static constexpr std::string_view kFirst = "+0123456789";  // a number of vertices
+  static constexpr std::string_view kFirst = "+0123456789";  // begins with the number of vertices
 
   HexexReader(std::string_view text, const std::string& fileName, Stage& stage, bool keepWalls)
       : scanner_(text, fileName), index_(text, stage), stage_(stage), keepWalls_(keepWalls) {}
@@ -126,8 +125,9 @@ class HexexReader {
     keepFacesThatSaySomething(std::move(walls));
   }
 
-  /// All of the boundary, in a format without tags, says nothing about it, and would hide its
-  /// patches. Programs that trace motorcycle complexes list it, among walls and among features.
+  /// Adds interior walls to the features, and drops features on the boundary if they cover all of
+  /// it: without tags they carry no information, and would hide its smooth patches. Programs that
+  /// trace motorcycle complexes list the boundary among both walls and features.
   void keepFacesThatSaySomething(std::vector<FeatureFace> walls) {
     std::vector<FeatureFace>& faces = map_.features.faces;
     if (faces.empty() && walls.empty()) return;
@@ -138,7 +138,7 @@ class HexexReader {
     const auto listed = std::count_if(faces.begin(), faces.end(), isOnBoundary);
     if (static_cast<std::size_t>(listed) == boundary.size()) std::erase_if(faces, isOnBoundary);
     std::erase_if(walls, isOnBoundary);
-    // Features come first: a wall that is one as well is left out.
+    // Features first, so that they win over walls with the same vertices.
     faces.insert(faces.end(), walls.begin(), walls.end());
     removeRepeated(faces);
   }
@@ -208,7 +208,7 @@ void requireFeaturesInRange(const TetMap& map) {
                      " vertices, numbered from 0."));
 }
 
-/// The format has lists, but no place for tags.
+/// Writes tagged features; the format has no place for their tags.
 void writeFeatures(const Features& features, LineWriter& lines, OutputFile& output) {
   const auto isTagged = [](const auto& feature) { return feature.tag != 0; };
   const auto count = [&](const auto& list) {

@@ -1,4 +1,4 @@
-// Nodes of Lagrange cells, of their edges and of their faces, in the orders of formats.
+// Nodes of Lagrange cells and of their edges and faces, in the orders of the formats.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -20,21 +20,21 @@ namespace hexhex::io {
 
 namespace {
 
-/// A cell, and which of its edges or faces an element is.
+/// A cell, and the slot of an edge or face in it.
 struct ElementPlace {
   std::uint64_t cell;
   std::size_t slot;
 };
 
-/// Finds elements, which are few, in the cells that have them.
+/// Locates a few elements in the cells that have them.
 class ElementFinder {
  public:
   ElementFinder(const HexMesh& mesh, Stage& stage) : mesh_(mesh), stage_(stage) {}
 
-  /// The first place of an element.
-  /// @param corners  of such elements of a cell, by slot
+  /// The first location of an element.
+  /// @param corners  per slot: the cell corners of its element
   /// @param what  for the message
-  /// @throws Error InvalidArgument for an element that is none of a cell
+  /// @throws Error InvalidArgument if the element belongs to no cell
   template <std::size_t n, std::size_t slots>
   ElementPlace find(const std::array<Index, n>& element,
                     const std::array<std::array<std::uint8_t, n>, slots>& corners,
@@ -57,12 +57,12 @@ class ElementFinder {
  private:
   const HexMesh& mesh_;
   Stage& stage_;
-  adjacency::VertexCells around_;  ///< found when it is needed
+  adjacency::VertexCells around_;  ///< built on first use
 };
 
-/// Appends the nodes from + i * stepI + j * stepJ of a cell, where (i, j, 0) are the nodes of a
-/// list. Steps lead from one corner towards two others.
-/// @param corners  the one and the two others
+/// Appends the nodes from + i * stepI + j * stepJ of a cell, for all (i, j, 0) of a list. The steps
+/// lead from one corner towards two others.
+/// @param corners  the first corner and the two others
 void appendNodes(const LagrangeMesh& mesh, std::uint64_t cell,
                  const std::array<std::size_t, 3>& corners, const std::vector<Node>& list,
                  Array<Index>& nodes) {

@@ -1,4 +1,4 @@
-// Nodes of Lagrange hexahedra, for the orders in which formats list them.
+// Nodes of Lagrange hexahedra, in the orders of the formats.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace hexhex::io {
 
-/// Where a node is in a cell, from 0 to the order along each axis.
+/// Position of a node in a cell, from 0 to the order along each axis.
 using Node = std::array<int, 3>;
 
-/// Corners in VTK's order, which Gmsh shares, on a cube from `low` to `high`.
+/// Corner i in the order of VTK and Gmsh, on a cube from `low` to `high`.
 [[nodiscard]] inline Node corner(std::size_t i, int low, int high) {
   return {i % 4 == 1 || i % 4 == 2 ? high : low, i % 4 >= 2 ? high : low, i >= 4 ? high : low};
 }
 
-/// Nodes strictly between two corners, from the first on; their steps are of length 1.
+/// `count` nodes strictly between two corners, starting next to the first, one unit step apart.
 [[nodiscard]] inline std::vector<Node> between(const Node& from, const Node& to, int count) {
   std::vector<Node> nodes;
   for (int step = 1; step <= count; ++step) {
@@ -34,7 +34,7 @@ using Node = std::array<int, 3>;
   return nodes;
 }
 
-/// Places in the order of LagrangeMesh, i + (p + 1) (j + (p + 1) k).
+/// Indices in the order of LagrangeMesh, i + (p + 1) (j + (p + 1) k).
 [[nodiscard]] inline std::vector<std::uint32_t> placesOf(const std::vector<Node>& nodes,
                                                          int order) {
   std::vector<std::uint32_t> places;
@@ -49,43 +49,43 @@ inline void append(std::vector<Node>& nodes, const std::vector<Node>& more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
 
-/// Appends the nodes of a quadrangle: its corners, sides, and what is inside, which is a smaller
-/// one.
+/// Appends the nodes of a quadrangle: its corners, sides, and interior, which is a smaller
+/// quadrangle.
 void appendQuad(std::vector<Node>& nodes, std::array<Node, 4> corners, int order);
 
-/// How Lagrange cells of VTK list their edges along z: around the cell, or, as before VTK 9 and in
-/// its XML files before version 2.1, row by row.
+/// The order of the vertical edges of VTK's Lagrange cells: around the cell or, before VTK 9 and in
+/// XML files before version 2.1, row by row.
 enum class VtkEdges : std::uint8_t { Around, RowByRow };
 
-/// Entry k: the place of the node that VTK lists at place k: corners, edges, faces, inside; edges
-/// along x and y around the bottom, then around the top, then those along z; faces across x, y, z,
-/// the lower of each pair first.
+/// Entry k: the LagrangeMesh index of VTK's node k. VTK lists corners, edges, faces, interior:
+/// edges around the bottom, around the top, then vertical ones; faces across x, y, z, the lower of
+/// each pair first.
 [[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order,
                                                       VtkEdges upright = VtkEdges::Around);
 
-/// Entry k: the place of the node that Gmsh lists at place k: corners, edges, faces, inside, which
-/// is a smaller cell. The first 20 of order 2 are those of cells with 20 nodes.
+/// Entry k: the LagrangeMesh index of Gmsh's node k. Gmsh lists corners, edges, faces, interior,
+/// which is a smaller cell. The first 20 of order 2 are those of 20-node hexahedra.
 [[nodiscard]] std::vector<std::uint32_t> gmshNodeOrder(int order);
 
-/// The same of cells of order 2 in another format.
-/// @param places  entry k: where the format lists the node that VTK lists at place k
+/// The same for cells of order 2 in another format.
+/// @param places  entry k: the position in the format of VTK's node k
 [[nodiscard]] std::vector<std::uint32_t> quadraticOrder(const std::array<std::uint8_t, 27>& places);
 
-/// Such places of CGNS, which lists upright edges before those of the top, and faces from the
-/// bottom on around the cell.
+/// Such a table for CGNS, which lists vertical edges before those of the top, and faces from the
+/// bottom, around the cell, to the top.
 inline constexpr std::array<std::uint8_t, 27> kCgnsPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
                                                              9,  10, 11, 16, 17, 18, 19, 12, 13,
                                                              14, 15, 24, 22, 21, 23, 20, 25, 26};
 
-/// Nodes of tagged edges and of quads, order + 1 or (order + 1)^2 each, as Gmsh and CGNS list them:
-/// corners, nodes on sides, nodes inside. Boundary quads run counter-clockwise seen from outside,
-/// quads inside the mesh so seen from outside of the first cell that they belong to.
+/// Nodes of tagged edges and of quads, order + 1 or (order + 1)^2 each, in the order of Gmsh and
+/// CGNS: corners, side nodes, interior nodes. Boundary quads are counter-clockwise seen from
+/// outside; interior quads, seen from outside the first cell that has them.
 struct GroupNodes {
   Array<Index> edges;
   Array<Index> quads;
 };
-/// @param straight  what straightMesh() returns
-/// @throws Error InvalidArgument for an element that is none of a cell
+/// @param straight  the result of straightMesh()
+/// @throws Error InvalidArgument for an element that belongs to no cell
 [[nodiscard]] GroupNodes nodesOfGroups(const LagrangeMesh& mesh, const HexMesh& straight,
                                        const EdgeGroups& edges, const QuadGroups& quads,
                                        Stage& stage);

@@ -1,5 +1,5 @@
 // `.mesh` and `.meshb` files (see formats.hpp): one reader and one writer of sections over two
-// encodings of numbers, for whole files and piece by piece.
+// encodings of numbers, for whole files and for streaming.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -31,7 +31,7 @@
 namespace hexhex::io {
 namespace {
 
-/// Sections, and their codes in binary files.
+/// Sections, by their codes in binary files.
 enum class MeditSection : std::uint32_t {
   Dimension = 3,
   Vertices = 4,
@@ -45,7 +45,7 @@ enum class MeditSection : std::uint32_t {
   End = 54
 };
 
-/// What sections are called in text.
+/// Keywords of sections in text files.
 constexpr std::array<std::pair<MeditSection, std::string_view>, 10> kMeditKeywords = {
     {{MeditSection::Dimension, "Dimension"},
      {MeditSection::Vertices, "Vertices"},
@@ -61,11 +61,12 @@ constexpr std::array<std::pair<MeditSection, std::string_view>, 10> kMeditKeywor
 constexpr const auto& edgesOf(const Hex& /*cell*/) { return adjacency::kHexEdges; }
 constexpr const auto& edgesOf(const Tet& /*cell*/) { return adjacency::kTetEdges; }
 
-/// References of which a vertex has two neighbours along edges of cells, ascending.
+/// References of some vertex and two of its neighbours along cell edges, ascending: these mark
+/// curves or surfaces, not single vertices.
 template <class Cell>
 std::vector<std::int32_t> crowdedReferences(const Array<std::int32_t>& references,
                                             const Array<Cell>& cells) {
-  Array<Index> neighbours(references.size(), kNone);  // with the same reference; itself: several
+  Array<Index> neighbours(references.size(), kNone);  // with equal reference; self: several
   const auto note = [&](Index vertex, Index other) {
     Index& known = neighbours[vertex];
     known = known == kNone || known == other ? other : vertex;
@@ -117,17 +118,17 @@ std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
   return tags;
 }
 
-// Reading: one reader of sections over two encodings of numbers.
+// Reading.
 
 constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
 constexpr CellKind kMeditQuads = {
     .corners = 4, .singular = "quadrilateral", .plural = "quadrilaterals"};
-/// Faces of tets, and of hexahedra.
+/// Faces of tets, or of hexahedra.
 template <std::size_t corners>
 constexpr CellKind kMeditFaces = corners == 4 ? kTriangleKind : kMeditQuads;
 constexpr CellKind kMeditCorners = {.corners = 1, .singular = "corner", .plural = "corners"};
 
-/// `.mesh`: keywords and numbers between white space.
+/// `.mesh`: keywords and numbers separated by white space.
 class MeditText {
  public:
   static constexpr bool kIsText = true;
@@ -187,7 +188,7 @@ class MeditText {
   [[nodiscard]] static double coordinate(TextSource& record, std::size_t i) {
     return record.real({"a coordinate of ", "vertex", i + 1});
   }
-  /// A negative one becomes large.
+  /// Negative numbers wrap to large ones.
   [[nodiscard]] static std::uint64_t vertex(TextSource& record, const NumberName& name) {
     return static_cast<std::uint64_t>(record.integer(name));
   }
@@ -200,17 +201,17 @@ class MeditText {
 
  private:
   TextScanner scanner_;
-  std::optional<TokenIndex> index_;  ///< only for a text without comments
+  std::optional<TokenIndex> index_;  ///< only for text without comments
   std::optional<TextSource> source_;
 };
 
-/// `.meshb`: each section says where the next one begins.
+/// `.meshb`: each section stores the position of the next one.
 class MeditBytes {
  public:
   static constexpr bool kIsText = false;
-  static constexpr std::string_view kFirst = {};  // its head says more
+  static constexpr std::string_view kFirst = {};  // its header is checked instead
 
-  /// @param file  the bytes of the file, or the open file, a regular one
+  /// @param file  the bytes of the file, or an open regular file
   template <class File>
   MeditBytes(const File& file, const std::string& fileName, Stage& stage)
       : MeditBytes(ByteFile(file, fileName), stage) {}
@@ -239,14 +240,14 @@ class MeditBytes {
   }
 
   std::optional<MeditSection> nextSection() {
-    if (next_ == 0) return {};  // how some programs mark the last section
+    if (next_ == 0) return {};  // marks the last section in files of some programs
     const std::uint64_t begin = next_;
     source_.moveTo(static_cast<std::size_t>(begin));
     const auto section = static_cast<MeditSection>(source_.integer("the keyword of a section"));
     if (section == MeditSection::End) return {};
     const char* const what = "the position of the next section";
     next_ = version_ >= 3 ? source_.size(what) : static_cast<std::uint64_t>(source_.integer(what));
-    // Only forwards, so that reading ends.
+    // Only forward jumps, so that reading terminates.
     if (next_ != 0 && (next_ <= begin || next_ > bytes_.size())) {
       source_.fail(ErrorCode::FileSyntax, "the section that begins at byte ", begin,
                    " says that the next one begins at byte ", next_, " of ", bytes_.size(),
@@ -256,7 +257,7 @@ class MeditBytes {
     return section;
   }
 
-  /// Nothing in version 1, whose coordinates have single precision.
+  /// Empty for version 1, whose coordinates have single precision.
   [[nodiscard]] std::optional<std::size_t> integerBytes() const {
     if (version_ == 1) return {};
     return version_ >= 4 ? 8 : 4;
@@ -268,7 +269,7 @@ class MeditBytes {
                  "the section Dimension has to stand before the other sections.");
   }
 
-  /// Integers have 64 bits from version 4 on, coordinates in version 1 single precision.
+  /// Integers have 64 bits from version 4 on; coordinates of version 1 have single precision.
   [[nodiscard]] RecordShape shape(std::size_t integers, std::size_t reals = 0) const {
     RecordShape shape;
     (version_ >= 4 ? shape.sizes : shape.integers) = integers;
@@ -300,7 +301,7 @@ class MeditBytes {
   ByteFile bytes_;
   BinarySource source_;
   std::int64_t version_ = 0;
-  std::uint64_t next_ = 0;  ///< where the next section begins; 0: there is none
+  std::uint64_t next_ = 0;  ///< position of the next section; 0: none
   bool hasDimension_ = false;
 };
 
@@ -309,7 +310,7 @@ class SeenReferences {
  public:
   void add(std::int64_t reference) noexcept {
     const unsigned kind = reference == 0 ? kZero : (reference == 1 ? kOne : kOther);
-    // Threads share one number, but change it three times at most.
+    // Threads share one variable, but change it at most three times.
     if ((seen_.load(std::memory_order_relaxed) & kind) == 0) {
       seen_.fetch_or(kind, std::memory_order_relaxed);
     }
@@ -326,7 +327,7 @@ class SeenReferences {
   std::atomic<unsigned> seen_{0};
 };
 
-/// Reads one file from top to bottom.
+/// Reads a file from top to bottom.
 template <class Encoding, std::size_t corners>
 class MeditReader {
  public:
@@ -360,14 +361,14 @@ class MeditReader {
         return countCells(type);
       }
     }
-    // What stands before the vertices cannot be checked, and no known program writes it there.
+    // Elements before the vertices cannot be validated, and no known program writes them there.
     if (!hasVertices_) return;
     constexpr MeditSection kFaces =
         corners == 4 ? MeditSection::Triangles : MeditSection::Quadrilaterals;
     if (section == MeditSection::Edges) {
       static_cast<void>(readFeatures(mesh_.features.edges, kMeditEdges));
     } else if (section == kFaces) {
-      // Those of a boundary without tags are no features.
+      // Faces of an untagged boundary are not features.
       auto& faces = facesIn(mesh_.features);
       if (!readFeatures(faces, kMeditFaces<corners>)) faces.clear();
     } else if (section == MeditSection::Corners || section == MeditSection::RequiredVertices) {
@@ -405,7 +406,7 @@ class MeditReader {
     });
   }
 
-  /// Counts those of a section, and leaves them where they are.
+  /// Counts the cells of a section without reading them.
   void countCells(const VolumeCells& type) {
     counts_.add(type, encoding_.readCount(type.plural, encoding_.shape(type.meditVertices + 1)));
   }
@@ -426,8 +427,8 @@ class MeditReader {
     mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, "the reference of a cell", read);
   }
 
-  /// Edges or quads, with their references as tags; without those of reference 0.
-  /// @return whether references say anything
+  /// Reads edges or quads with their references as tags; drops those with reference 0.
+  /// @return whether the references carry information
   template <class Feature>
   [[nodiscard]] bool readFeatures(std::vector<Feature>& features, const CellKind& elements) {
     const RecordShape shape = encoding_.shape(elements.corners + 1);
@@ -446,9 +447,9 @@ class MeditReader {
     return seen.saySomething();
   }
 
-  /// Reads elements: what stands in front of the reference of each, and the references.
-  /// @param integers, reals  how many numbers stand in front
-  /// @return the references; nothing if they say nothing
+  /// Reads elements, each followed by its reference.
+  /// @param integers, reals  how many numbers precede the reference
+  /// @return the references; empty if they carry no information
   template <class F>
   [[nodiscard]] Array<std::int32_t> readReferenced(std::size_t count, std::size_t integers,
                                                    std::size_t reals, const char* what,
@@ -466,7 +467,7 @@ class MeditReader {
     });
     if (!seen.saySomething()) return {};
     if constexpr (!Encoding::kIsText) {
-      // Only now, so that the usual file takes no memory for references.
+      // Second pass, so that the usual file takes no memory for references.
       references.resize(count);
       source.moveTo(begin);
       source.records(count, shape, [&](auto& record, std::size_t i) {
@@ -483,19 +484,19 @@ class MeditReader {
     return references;
   }
 
-  /// One vertex of an element.
-  /// @param begin  where the element stands
+  /// Reads one vertex of an element.
+  /// @param begin  position of the element
   template <class Record>
   [[nodiscard]] Index readVertex(Record& record, const CellKind& elements, std::size_t i,
                                  std::size_t begin) const {
     const std::uint64_t vertex =
         encoding_.vertex(record, {"a vertex of ", elements.singular, i + 1});
-    // 0, which is too small, becomes a large number.
+    // 0 wraps to a large number.
     if (vertex - 1 < mesh_.points.size()) return static_cast<Index>(vertex - 1);
     failVertex(record, vertex, elements, i, begin);
   }
 
-  // A function of its own that takes records by value, so that the loop keeps them in registers.
+  // A separate function that takes records by value, so that the loop keeps them in registers.
   template <class Record>
   [[noreturn]] void failVertex(Record record, std::uint64_t vertex, const CellKind& elements,
                                std::size_t i, std::size_t begin) const {
@@ -528,8 +529,8 @@ class MeditReader {
   CellCounts& counts_;
   bool hasVertices_ = false;
   bool hasCells_ = false;
-  std::vector<Index> corners_;           ///< of the sections Corners and RequiredVertices
-  Array<std::int32_t> references_ = {};  ///< of vertices, if they say something
+  std::vector<Index> corners_;           ///< from the sections Corners and RequiredVertices
+  Array<std::int32_t> references_ = {};  ///< of vertices, if they carry information
   CellMesh<corners> mesh_;
 };
 
@@ -553,7 +554,7 @@ TetCells readMeshbTets(const Input& input, Stage& stage) {
 
 namespace {
 
-// `.mesh` and `.meshb` piece by piece.
+// Streaming.
 
 /// Whether a section holds cells other than hexahedra.
 template <class Fits>
@@ -563,7 +564,7 @@ bool isOtherCells(const Fits& fits) {
   });
 }
 
-/// A text with one section of vertices, and one of hexahedra behind it.
+/// The layout of a text file with a section of vertices followed by one of hexahedra.
 std::optional<PlainLayout> lookAtText(const ByteFile& file, Context& context) {
   TextWindow text(file, context);
   PlainLayout layout{.isText = true, .behindPoint = 1, .behindCell = 1};
@@ -584,7 +585,7 @@ std::optional<PlainLayout> lookAtText(const ByteFile& file, Context& context) {
   return layout;
 }
 
-/// The same as bytes, of version 2 or later.
+/// The same for binary files, version 2 or later.
 std::optional<PlainLayout> lookAtBytes(const ByteFile& file, Context& context) {
   Context quiet(context.threads());
   Stage stage(quiet, "read");
@@ -631,8 +632,7 @@ void readMeshbTo(MeshSink& sink, const Input& input, Context& context) {
 
 namespace {
 
-// Writes `.mesh` and `.meshb` files (see formats.hpp): one writer of sections over two encodings of
-// numbers. A mesh in memory is one piece of a stream, with groups.
+// Writing. A mesh in memory is written as a stream of one piece, with groups.
 
 struct MeditCounts {
   std::uint64_t vertices = 0;
@@ -641,14 +641,14 @@ struct MeditCounts {
   std::uint64_t hexahedra = 0;
 };
 
-/// Everything beside vertices and cells.
+/// Everything except vertices and cells.
 struct MeditGroups {
-  Array<std::uint32_t> vertexReferences;  ///< empty: all are 0
+  Array<std::uint32_t> vertexReferences;  ///< empty: all 0
   EdgeGroups edges;
   Array<std::uint32_t> edgeReferences;
   QuadGroups quads;
   Array<std::uint32_t> quadReferences;
-  Array<std::uint32_t> cellReferences;  ///< empty: all are 1
+  Array<std::uint32_t> cellReferences;  ///< empty: all 1
 
   MeditGroups(const HexMesh& mesh, bool withEdges, double patchAngle, Stage& stage)
       : vertexReferences(io::vertexReferences(mesh, groupVertices(mesh))),
@@ -660,12 +660,12 @@ struct MeditGroups {
   }
 };
 
-/// `.mesh`: a line for each element. Tagged edges are left out: viewers that only read what they
-/// show fail on the section.
+/// `.mesh`: a line per element. Tagged edges are left out: viewers that read only what they display
+/// fail on the section.
 class MeditLines {
  public:
   static constexpr bool kHoldsEdges = false;
-  static constexpr std::size_t kRoom = kNumberRoom + 1;  // of a number
+  static constexpr std::size_t kRoom = kNumberRoom + 1;  // per number
 
   explicit MeditLines(OutputFile& output) : output_(output) {}
 
@@ -683,7 +683,7 @@ class MeditLines {
   static char* point(char* place, const Vec3& point) { return put(putNumbers(place, point), ' '); }
   static char* vertex(char* place, std::uint64_t number) { return put(put(place, number), ' '); }
   static char* reference(char* place, std::uint32_t number) {
-    // Nearly all are 0 or 1, which cost a tenth of the writing otherwise.
+    // Nearly all are 0 or 1; to_chars() for these would take 10 % of the writing time.
     place = number < 10 ? put(place, static_cast<char>('0' + number)) : put(place, number);
     return put(place, '\n');
   }
@@ -692,7 +692,7 @@ class MeditLines {
   OutputFile& output_;
 };
 
-/// `.meshb`: each section says where the next one begins.
+/// `.meshb`: each section stores the position of the next one.
 class MeditRecords {
  public:
   static constexpr bool kHoldsEdges = true;
@@ -703,7 +703,7 @@ class MeditRecords {
   /// @param version  0: the lowest that can hold the mesh
   void begin(const MeditCounts& counts, std::uint32_t version) {
     setVersion(version == 0 ? versionFor(counts) : version);
-    writeBytesOf(output_, std::uint32_t{1});  // tells the byte order
+    writeBytesOf(output_, std::uint32_t{1});  // marks the byte order
     writeBytesOf(output_, version_);
     position_ = 8;
     beginSection(MeditSection::Dimension, 4 + positionBytes() + 4);
@@ -729,7 +729,7 @@ class MeditRecords {
  private:
   [[nodiscard]] std::uint64_t positionBytes() const { return version_ >= 3 ? 8 : 4; }
   [[nodiscard]] std::uint64_t integerBytes() const { return version_ >= 4 ? 8 : 4; }
-  /// Of a section, with its head.
+  /// Bytes of a section with its header.
   [[nodiscard]] std::uint64_t bytesOf(std::uint64_t count, std::uint64_t integers,
                                       std::uint64_t reals) const {
     return 4 + positionBytes() + integerBytes() + count * (integers * integerBytes() + 8 * reals);
@@ -760,13 +760,13 @@ class MeditRecords {
   std::uint64_t position_ = 0;
 };
 
-/// Writes one file front to back.
+/// Writes a file front to back.
 template <class Encoding>
 class MeditWriter {
  public:
   MeditWriter(OutputFile& output, int threads) : lines_(output, threads), encoding_(output) {}
 
-  /// A whole mesh.
+  /// Writes a whole mesh.
   void write(const HexMesh& mesh, const MeditGroups& groups, std::uint32_t version, Stage& stage) {
     const MeditCounts counts = {mesh.points.size(), groups.edges.elements.size(),
                                 groups.quads.elements.size(), mesh.cells.size()};
@@ -785,7 +785,7 @@ class MeditWriter {
     end();
   }
 
-  // A mesh in pieces.
+  // Meshes in pieces.
   void begin(std::uint64_t vertices, std::uint64_t cells) {
     cells_ = cells;
     encoding_.begin({.vertices = vertices, .hexahedra = cells}, 0);
@@ -815,7 +815,7 @@ class MeditWriter {
   void writeElements(std::span<const std::array<Vertex, n>> elements,
                      std::span<const std::uint32_t> references, LoopProgress* progress) {
     const auto element = [&](char* place, std::size_t i) {
-      // 64 bits: 32 would wrap for the last vertex of the largest mesh.
+      // In 64 bits: 32 would overflow for the last vertex of the largest mesh.
       for (const Vertex vertex : elements[i]) {
         place = encoding_.vertex(place, std::uint64_t{vertex} + 1);
       }

@@ -1,4 +1,4 @@
-// MFEM meshes (see formats.hpp): of straight cells, of Lagrange cells, and in parts.
+// Writes MFEM meshes (see formats.hpp): straight cells, Lagrange cells, and parts.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -25,12 +25,12 @@ namespace hexhex::io {
 
 namespace {
 
-/// Writes what all files have.
+/// Writes the sections common to all files.
 class MfemWriter {
  public:
   MfemWriter(OutputFile& output, int threads) : output_(output), lines_(output, threads) {}
 
-  /// Cells and quads by their vertices, with attributes.
+  /// Writes cells and quads with their attributes.
   /// @param regions  of the cells; empty: all are 1
   /// @param progress  may be null
   void writeElements(std::string_view version, std::span<const Hex> cells,
@@ -39,21 +39,21 @@ class MfemWriter {
     output_.write("MFEM mesh ").write(version).write("\n\ndimension\n3\n\nelements\n");
     output_.write(cells.size()).write('\n');
     const auto cell = [&](char* place, std::size_t i) {
-      place = put(put(place, regions.empty() ? 1U : regions[i]), " 5 ");  // 5: a cube
+      place = put(put(place, regions.empty() ? 1U : regions[i]), " 5 ");  // 5: cube
       return put(putNumbers(place, cells[i]), '\n');
     };
     lines_.write(cells.size(), 10 * (kNumberRoom + 1), cell, progress);
     output_.write("\nboundary\n").write(quads.elements.size()).write('\n');
     for (const ElementGroup& group : quads.groups) {
       const auto quad = [&](char* place, std::size_t i) {
-        place = put(put(place, group.number), " 3 ");  // 3: a square
+        place = put(put(place, group.number), " 3 ");  // 3: square
         return put(putNumbers(place, quads.elements[group.begin + i]), '\n');
       };
       lines_.write(group.end - group.begin, 6 * (kNumberRoom + 1), quad, progress);
     }
     output_.write("\nvertices\n");
   }
-  /// @param pointAt  of n points
+  /// @param pointAt  returns the i-th of n points
   template <class F>
   void writePoints(std::size_t n, const F& pointAt, LoopProgress* progress) {
     const auto point = [&](char* place, std::size_t i) {
@@ -74,10 +74,10 @@ QuadGroups quadsOfWhole(const HexMesh& mesh, const WriteOptions& options, Stage&
   return quads;
 }
 
-/// Parts that share something, ascending; at least two.
+/// A set of parts that share something, ascending; at least two.
 using PartGroup = std::vector<std::uint32_t>;
 
-/// What a group shares, by local vertices; in the same order for all its parts.
+/// What the parts of a group share, as local vertices; in the same order in all these parts.
 struct SharedElements {
   std::vector<Index> vertices;
   std::vector<std::array<Index, 2>> edges;
@@ -101,14 +101,15 @@ class SharedByGroup {
     for (const PartNeighbour& neighbour : part_.neighbours) {
       for (const Index v : neighbour.vertices) parts_[v].push_back(neighbour.part);
     }
-    // Local numbers of own vertices have the order of global ones.
+    // Local numbers of own vertices are in order of global ones.
     for (Index v = 0; v < parts_.size(); ++v) {
       if (parts_[v].empty()) continue;
       groups_[withOwn(parts_[v])].vertices.push_back(v);
     }
   }
 
-  /// Other parts have an edge if one of their cells does: the first layer of ghosts tells.
+  /// Finds shared edges: another part has an edge if one of its cells does, found among the first
+  /// layer of ghosts.
   void addEdges() {
     std::map<std::array<Index, 2>, PartGroup> edges;
     for (std::size_t c = 0; c < part_.mesh.cells.size(); ++c) {
@@ -129,7 +130,7 @@ class SharedByGroup {
     }
   }
 
-  /// From the smallest vertex to its smaller neighbour.
+  /// Orients faces from the smallest vertex to its smaller neighbour.
   void addFaces() {
     for (const PartNeighbour& neighbour : part_.neighbours) {
       for (const PartFace& face : neighbour.faces) {
@@ -148,12 +149,12 @@ class SharedByGroup {
   }
 
   const MeshPart& part_;
-  std::vector<PartGroup> parts_;  ///< per own vertex: the others that have it
+  std::vector<PartGroup> parts_;  ///< per own vertex: the other parts that have it
   std::map<PartGroup, SharedElements> groups_;
 };
 
-/// A serial mesh for each part, and the vertices, edges and faces that it shares, by the group of
-/// parts that share them.
+/// Writes a serial mesh for each part, followed by the vertices, edges and faces that it shares,
+/// grouped by the set of parts that share them.
 class MfemSink final : public PartSink {
  public:
   MfemSink(std::filesystem::path file, Context& context, ProcessTeam* team)
@@ -221,7 +222,7 @@ class MfemSink final : public PartSink {
       }
       output.write("\nshared_faces ").write(shared.faces.size()).write('\n');
       for (const Quad& face : shared.faces) {
-        output.write('3');  // a square
+        output.write('3');  // square
         for (const Index v : face) output.write(' ').write(v);
         output.write('\n');
       }
@@ -254,8 +255,8 @@ void writeLagrangeMfem(const LagrangeMesh& mesh, OutputFile& output, const Write
   const QuadGroups quads = quadsOfWhole(straight, options, stage);
   LoopProgress progress(stage, straight.cells.size() + quads.elements.size() + mesh.nodes.size());
   writer.writeElements("v1.0", straight.cells, cellReferences(straight), quads, &progress);
-  // L2_T4: polynomials on each cell, given by their values at equidistant nodes, x first: the order
-  // of LagrangeMesh. Ordering 1: all coordinates of one node together.
+  // L2_T4: per-cell polynomials given by values at equidistant nodes, x fastest: the order of
+  // LagrangeMesh. Ordering 1: the coordinates of a node are consecutive.
   output.write(straight.points.size());
   output.write("\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: L2_T4_3D_P");
   output.write(static_cast<unsigned>(mesh.order)).write("\nVDim: 3\nOrdering: 1\n\n");

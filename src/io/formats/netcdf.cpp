@@ -1,4 +1,4 @@
-// Writes and reads NetCDF's classic format.
+// Writes and reads NetCDF files in the classic formats; reads NetCDF-4 as well.
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -23,7 +23,7 @@ std::uint64_t bytesInFile(const NetcdfFile& file, const NetcdfVariable& variable
   return bytes;
 }
 
-/// Makes the head of a file.
+/// Builds the header of a file.
 struct NetcdfHead {
   bool wide;  ///< counts take 8 bytes instead of 4
   std::string bytes;
@@ -64,7 +64,7 @@ struct NetcdfHead {
   }
 };
 
-/// @param begin  where the values begin
+/// @param begin  position of the values
 std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
   NetcdfHead head{wide, wide ? "CDF\5" : "CDF\2"};
   head.addCount(0);  // records
@@ -75,7 +75,7 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
   }
   head.addAttributes(file.attributes);
   head.beginList(11, file.variables.size());
-  // Records, of which there are none, begin behind all else: NetCDF refuses a file otherwise.
+  // The file has no records, but NetCDF requires their position to be after everything else.
   std::uint64_t records = begin;
   for (const NetcdfVariable& variable : file.variables) {
     records += aligned(bytesInFile(file, variable));
@@ -94,7 +94,7 @@ std::string headOf(const NetcdfFile& file, bool wide, std::uint64_t begin) {
   return std::move(head.bytes);
 }
 
-/// Whether the file takes the newer layout.
+/// Whether the file needs the layout with 64-bit sizes.
 bool isWide(const NetcdfFile& file, std::uint64_t mostBytes) {
   return std::any_of(
       file.variables.begin(), file.variables.end(),
@@ -125,11 +125,11 @@ void NetcdfFile::write(OutputFile& output, int threads, std::uint64_t mostBytes)
 
 namespace {
 
-// Types of values, and what each takes.
+// Type codes, and the bytes of a value by type.
 constexpr std::uint32_t kChar = 2;
 constexpr std::array<std::uint8_t, 12> kNetcdfBytes = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
-/// Reads the head from front to back.
+/// Reads the header front to back.
 class NetcdfHeadReader {
  public:
   NetcdfHeadReader(std::string_view bytes, const std::string& fileName)
@@ -141,7 +141,7 @@ class NetcdfHeadReader {
   }
 
   std::vector<NetcdfValues> read() {
-    static_cast<void>(count());  // of records
+    static_cast<void>(count());  // number of records
     const std::uint64_t dimensions = beginList(10);
     for (std::uint64_t i = 0; i < dimensions; ++i) {
       static_cast<void>(text());
@@ -174,7 +174,7 @@ class NetcdfHeadReader {
     skipPadding();
     return result;
   }
-  /// @return its length
+  /// @return the number of entries
   std::uint64_t beginList(std::uint32_t tag) {
     const std::uint32_t found = word();
     const std::uint64_t length = count();
@@ -185,7 +185,7 @@ class NetcdfHeadReader {
     if (type == 0 || type >= kNetcdfBytes.size()) fail("values are of an unknown type.");
     return kNetcdfBytes[type];
   }
-  /// @return the attribute with the type of elements
+  /// @return the value of "elem_type", the type of elements
   std::string attributes() {
     std::string elementType;
     const std::uint64_t all = beginList(12);
@@ -209,7 +209,7 @@ class NetcdfHeadReader {
     for (std::uint64_t i = 0; i < dimensions; ++i) {
       const std::uint64_t dimension = count();
       if (dimension >= lengths_.size()) fail("a variable has a dimension that does not exist.");
-      // Of length 0: records, which hold results.
+      // Length 0 marks the record dimension, used for results.
       const std::uint64_t length = lengths_[static_cast<std::size_t>(dimension)];
       variable.lengths.push_back(length);
       if (length > 0 && variable.count > bytes_.size() / length) {
@@ -225,7 +225,7 @@ class NetcdfHeadReader {
     const bool fits =
         variable.begin <= bytes_.size() && variable.count * each <= bytes_.size() - variable.begin;
     if (variable.count > 0 && !fits) fail("the file ends within the values of a variable.");
-    // Or else many variables of the same values would take far more memory than the file.
+    // Otherwise many variables that share the same values could take far more memory than the file.
     valueBytes_ += variable.count * each;
     if (valueBytes_ > bytes_.size()) fail("variables have more values than the file has bytes.");
     return variable;
@@ -267,7 +267,7 @@ NetcdfReader::NetcdfReader(std::unique_ptr<HdfReader> file, const std::string& f
     : hdf_(std::move(file)), fileName_(fileName) {
   for (const std::string& name : hdf_->members("/")) {
     if (!hdf_->has(name)) continue;
-    // A dimension is a dataset, too.
+    // A dimension is stored as a dataset, too.
     if (hdf_->attribute(name, "NAME").starts_with("This is a netCDF dimension")) continue;
     NetcdfValues& values = variables_.emplace_back();
     values.name = name;

@@ -1,5 +1,5 @@
-// Files in NetCDF's classic format: a head with dimensions, attributes and variables, then the
-// values of one variable after the other, the largest byte of each first.
+// NetCDF files in the classic format: a header with dimensions, attributes and variables, then the
+// values of each variable, big-endian.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ enum class NetcdfType : std::uint32_t {
   Int = 4,
   Float = 5,
   Double = 6
-};  ///< the format's
+};  ///< codes of the format
 
 struct NetcdfDimension {
   std::string name;
-  std::uint64_t length = 0;  ///< 0: the number of records, of which there are none
+  std::uint64_t length = 0;  ///< 0: the record dimension, which has no records
 };
 struct NetcdfAttribute {
   std::string name;
@@ -37,9 +37,9 @@ struct NetcdfVariable {
   std::string name;
   NetcdfType type = NetcdfType::Int;
   std::vector<std::uint32_t>
-      dimensions;  ///< by their places in the file; the last one runs fastest
+      dimensions;  ///< by their indices in the file; the last one varies fastest
   std::vector<NetcdfAttribute> attributes;
-  std::function<void(LineWriter&)> write;  ///< all values; null if there is none
+  std::function<void(LineWriter&)> write;  ///< writes all values; null if there are none
 };
 
 struct NetcdfFile {
@@ -47,25 +47,25 @@ struct NetcdfFile {
   std::vector<NetcdfAttribute> attributes;
   std::vector<NetcdfVariable> variables;
 
-  /// Where the values of the variable of that name begin in the file.
+  /// Position in the file of a variable's values.
   [[nodiscard]] std::uint64_t positionOf(std::string_view name, std::uint64_t mostBytes) const;
 
   /// @param threads    as in Context
-  /// @param mostBytes  of a variable in the layout "CDF-2"; larger ones take the newer "CDF-5"
+  /// @param mostBytes  maximum size of a variable in the layout CDF-2; larger ones require CDF-5
   void write(OutputFile& output, int threads, std::uint64_t mostBytes) const;
 };
 
-// Reads files in NetCDF's classic layouts, "CDF-1", "CDF-2" and "CDF-5", and its newer files, which
-// are HDF5 files with a dataset for each variable ("NetCDF-4").
+// Reads the classic layouts CDF-1, CDF-2 and CDF-5, and NetCDF-4, which is an HDF5 file with a
+// dataset per variable.
 
-/// Of a file, or its first bytes, whether it is in one of these layouts.
+/// Refuses a file, given its first bytes, that is not in a classic layout.
 /// @throws Error FileSyntax
 void requireNetcdf(std::string_view head, const std::string& fileName);
 
-/// A variable of a file: where its values are, and how many.
+/// A variable of a file: position, type and shape of its values.
 struct NetcdfValues {
   std::string name;
-  std::uint32_t type = 0;  ///< the format's
+  std::uint32_t type = 0;  ///< type code of the format
   std::vector<std::uint64_t> lengths;
   std::string elementType;  ///< the attribute "elem_type"
   std::uint64_t count = 0;
@@ -74,29 +74,29 @@ struct NetcdfValues {
 
 class NetcdfReader {
  public:
-  /// Reads the head.
-  /// @param bytes  of the whole file; outlive this, and so does the name
+  /// Reads the header.
+  /// @param bytes  of the whole file; must outlive this, as must the name
   /// @throws Error FileSyntax with the byte
   NetcdfReader(std::string_view bytes, const std::string& fileName);
-  /// Of a newer file.
+  /// Opens a NetCDF-4 file.
   NetcdfReader(std::unique_ptr<HdfReader> file, const std::string& fileName);
 
-  /// Null if there is none.
+  /// The variable of a name; null if there is none.
   [[nodiscard]] const NetcdfValues* find(std::string_view name) const;
-  /// The same of one that must be there. @throws Error FileSyntax
+  /// The same for a mandatory variable. @throws Error FileSyntax
   [[nodiscard]] const NetcdfValues& get(std::string_view name) const;
 
-  /// @throws Error FileSyntax for values of another kind
+  /// @throws Error FileSyntax if values are of another kind
   [[nodiscard]] std::vector<std::int64_t> integers(const NetcdfValues& values) const;
   [[nodiscard]] std::vector<double> reals(const NetcdfValues& values) const;
-  /// Rows of letters, each up to its first zero.
+  /// Rows of characters, each up to its first zero byte.
   [[nodiscard]] std::vector<std::string> texts(const NetcdfValues& values) const;
 
  private:
   std::string_view bytes_;
-  std::unique_ptr<HdfReader> hdf_;  ///< of a newer file; null: it is in bytes_
+  std::unique_ptr<HdfReader> hdf_;  ///< NetCDF-4 files only; null: classic layout in bytes_
   const std::string& fileName_;
-  std::vector<NetcdfValues> variables_;  ///< by name
+  std::vector<NetcdfValues> variables_;  ///< sorted by name
 };
 
 }  // namespace hexhex::io

@@ -1,4 +1,4 @@
-// OpenFOAM's polyMesh (see formats.hpp): of a whole mesh, and of a decomposed case.
+// Writes OpenFOAM's polyMesh (see formats.hpp): for a whole mesh, and as a decomposed case.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -36,13 +36,13 @@ namespace hexhex::io {
 
 namespace {
 
-/// Faces as OpenFOAM lists them; quads look out of their owners.
+/// Faces in OpenFOAM's order; quads face out of their owners.
 struct PolyMesh {
   struct Patch {
     std::string name;
     std::size_t begin;
     std::size_t end;
-    /// Of a patch between two parts: lines of its dictionary, the type among them.
+    /// For processor patches: lines of the patch dictionary, including the type.
     std::string entries;
   };
   Array<Quad> faces;
@@ -51,7 +51,7 @@ struct PolyMesh {
   std::vector<Patch> patches;
 };
 
-/// Writes the files of a mesh; commit() gives them their names.
+/// Writes the files of a mesh; commit() renames them.
 class PolyMeshWriter {
  public:
   PolyMeshWriter(std::filesystem::path folder, int threads)
@@ -67,7 +67,7 @@ class PolyMeshWriter {
          [&](char* place, std::size_t i) {
            return put(putNumbers(put(place, "4("), poly.faces[i]), ")\n");
          });
-    // A note with which OpenFOAM's tools know the sizes without reading everything.
+    // OpenFOAM's tools read sizes from this note instead of from the files.
     const std::string note = concat("    note        \"nPoints:", mesh.points.size(),
                                     "  nCells:", mesh.cells.size(), "  nFaces:", poly.faces.size(),
                                     "  nInternalFaces:", poly.neighbours.size(), "\";\n");
@@ -96,8 +96,8 @@ class PolyMeshWriter {
     }
     output.write(")\n");
   }
-  /// A file that is a list of labels.
-  /// @param labelOf  of (place with room for a number, index): puts a label, returns the end
+  /// Writes a file with a list of labels.
+  /// @param labelOf  writes label i at a char* with room for a number, and returns its end
   void writeLabels(std::string_view object, std::size_t n, Stage& stage,
                    const std::function<char*(char*, std::size_t)>& labelOf) {
     LoopProgress progress(stage, n);
@@ -145,26 +145,26 @@ class PolyMeshWriter {
   std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
-// The numbers that faces of parts have in the mesh in one piece, from the parts alone.
+// Global face numbers of parts, computed from the parts alone.
 
-/// Faces of a part, in the order that they have in the mesh in one piece. They follow one another
-/// there, too, as long as their cells do, which are a run then: there are about as many runs as
-/// tets, however many cells.
+/// The faces of a part, in global order. Faces of cells with consecutive global numbers are
+/// consecutive, too, so they are stored as runs: about as many as there are tets, however many
+/// cells.
 class FaceRuns {
  public:
   struct Run {
-    std::uint64_t cell;    ///< its first one
-    std::uint64_t before;  ///< faces of the part
+    std::uint64_t cell;    ///< global number of the first cell
+    std::uint64_t before;  ///< faces of the part before it
   };
 
-  /// Adds a face. @param run  the first cell of that of its cell
+  /// Adds a face. @param run  the first cell of the run of its cell
   void add(std::uint64_t run) {
     if (runs_.empty() || runs_.back().cell != run) runs_.push_back({run, count_});
     ++count_;
   }
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] const std::vector<Run>& runs() const noexcept { return runs_; }
-  /// Where a run ends, by faces of the part.
+  /// End of a run, as a face number of the part.
   [[nodiscard]] std::uint64_t endOf(std::size_t run) const {
     return run + 1 < runs_.size() ? runs_[run + 1].before : count_;
   }
@@ -174,8 +174,8 @@ class FaceRuns {
   std::uint64_t count_ = 0;
 };
 
-/// The numbers of faces of one kind in the mesh in one piece, as writeOpenFoam() lists them: inner
-/// ones by the smaller of their cells, then by the larger; boundary ones of a tag by cell and side.
+/// Global numbers of the faces of one kind, in the order of writeOpenFoam(): inner faces by the
+/// smaller of their cells, then by the larger; boundary faces of a tag by cell and side.
 class FaceNumbers {
  public:
   void add(const FaceRuns& faces) {
@@ -184,7 +184,8 @@ class FaceNumbers {
       table_.insert(table_.end(), {run.cell, faces.endOf(i) - run.before});
     }
   }
-  /// When all are there. @param first  the number of the first. @return  that behind the last
+  /// To be called after the last add(). @param first  the first number. @return  the end of the
+  /// numbers
   std::uint64_t finish(std::uint64_t first, ProcessTeam* team) {
     if (team != nullptr) table_ = team->gather(table_).numbers;
     begins_.resize(table_.size() / 2);
@@ -227,12 +228,12 @@ class FaceNumbers {
   }
 
   std::vector<std::uint64_t> table_;                             ///< cells and numbers of faces
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> begins_;  ///< per run, by its first cell
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> begins_;  ///< per run: first cell, number
 };
 
 constexpr std::size_t kOpenfoamGrain = 4096;
 
-/// Inner faces: those of each cell with larger neighbours, in order of the neighbours.
+/// Adds inner faces: those of each cell towards larger neighbours, sorted by neighbour.
 void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
   const adjacency::FaceNeighbours neighbours = adjacency::findFaceNeighbours(mesh, stage);
   const auto isOwned = [&neighbours](std::size_t cell, std::size_t face) {
@@ -264,7 +265,7 @@ void addInnerFaces(const HexMesh& mesh, PolyMesh& poly, Stage& stage) {
   });
 }
 
-/// Boundary faces, group by group.
+/// Adds boundary faces, group by group.
 void addPatches(const QuadGroups& quads, PolyMesh& poly) {
   for (const ElementGroup& group : quads.groups) {
     const std::size_t begin = poly.faces.size();
@@ -285,7 +286,7 @@ bool isMarker(const std::filesystem::path& file) { return lowerCaseExtension(fil
 void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
                    const WriteOptions& options, Context& context) {
   Stage stage(context, "write mesh");
-  // First, so that a target that is not writable shows at once.
+  // First, so that an unwritable target is reported at once.
   OutputFolder folder(isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file);
   std::optional<OutputFile> marker;
   if (isMarker(file)) marker.emplace(file);
@@ -302,7 +303,7 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
     PolyMeshWriter writer(folder.temporary(), context.threads());
     writer.write(mesh, poly, stage);
     writer.writeBoundary(poly.patches);
-    // Without regions there are no zones, which has to be said where an earlier mesh had some.
+    // Without regions, writes empty zones, which replace those of an earlier mesh.
     writer.writeZones(mesh.regions.empty() ? CellGroups{} : groupCells(mesh));
     writer.commit();
   } catch (const Error& error) {
@@ -320,36 +321,36 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
 
 namespace {
 
-// OpenFOAM's decomposed case: `processorK/constant/polyMesh` for each part, with the addresses that
+// A decomposed case: `processorK/constant/polyMesh` for each part, with the addressing files that
 // decomposePar writes.
 
-/// A face of a part that is not between two of its cells.
+/// A face of a part that is not between two of its own cells.
 struct OuterFace {
   std::int32_t tag;
-  std::uint64_t run;  ///< as of FaceRuns
+  std::uint64_t run;  ///< see FaceRuns
   Index cell;
   std::uint8_t side;
 };
 
-/// Tags are in order, and faces without come last.
+/// Orders tags ascending, untagged faces last.
 bool comesBefore(std::int32_t a, std::int32_t b) { return (a == 0) != (b == 0) ? b == 0 : a < b; }
 
-/// Of a face that a part has, but whose smaller cell is in another.
+/// Marks a face whose smaller cell is in another part.
 constexpr std::uint64_t kOfOther = ~std::uint64_t{0};
 
-/// What remains to be written of a part once all parts are known.
+/// The data of a part that cannot be written before all parts are known.
 struct OpenPart {
   struct Border {
     std::uint32_t part;
-    std::vector<std::uint64_t> faces;  ///< of `owned`, or kOfOther
+    std::vector<std::uint64_t> faces;  ///< indices in `owned`, or kOfOther
   };
   std::uint32_t part = 0;
-  FaceRuns owned;  ///< inner faces by their smaller cells, those of borders, too
-  std::vector<std::pair<std::int32_t, FaceRuns>> patches;  ///< by tags, in order
+  FaceRuns owned;  ///< inner faces, and faces to other parts, owned by their smaller cells
+  std::vector<std::pair<std::int32_t, FaceRuns>> patches;  ///< sorted by tag
   std::vector<Border> borders;
 };
 
-/// The faces of one part, as its polyMesh lists them.
+/// The faces of one part, in the order of its polyMesh.
 class PartFaces {
  public:
   PartFaces(const MeshPart& part, Stage& stage)
@@ -401,7 +402,7 @@ class PartFaces {
     return found != tags_.end() && found->first == quad ? found->second : 0;
   }
 
-  /// Inner faces to larger cells, in order of these; and faces that are not inside of the part.
+  /// Adds the inner faces of a cell to larger cells, sorted by these, and collects its outer faces.
   void addCell(Index cell, std::vector<OuterFace>& outer) {
     owned_.clear();
     const std::uint64_t number = part_.globalCells[cell];
@@ -429,7 +430,8 @@ class PartFaces {
     }
   }
 
-  /// Faces as both parts list them: beginning at the same vertex, in opposite directions.
+  /// Adds the faces to a neighbour. Both parts list them from the same vertex, in opposite
+  /// directions.
   void addBorder(const PartNeighbour& neighbour) {
     if (neighbour.faces.empty()) return;
     OpenPart::Border& border = open.borders.emplace_back();
@@ -443,17 +445,17 @@ class PartFaces {
     }
   }
 
-  /// A face of a cell, by the other one.
+  /// A face of a cell, sorted by the cell on its other side.
   struct Owned {
-    std::uint64_t other;  ///< global
+    std::uint64_t other;  ///< global number
     std::uint8_t side;
     Index local;  ///< kNone if in another part
   };
 
   const MeshPart& part_;
   adjacency::FaceNeighbours neighbours_;
-  std::vector<Owned> owned_;                           ///< of one cell
-  std::uint64_t run_ = 0;                              ///< of that cell
+  std::vector<Owned> owned_;                           ///< of the current cell
+  std::uint64_t run_ = 0;                              ///< of the current cell
   std::map<std::uint64_t, std::uint64_t> outside_;     ///< of faces between parts: the other cell
   std::map<std::uint64_t, std::uint64_t> outerFaces_;  ///< of those whose smaller cell is here
   std::vector<std::pair<Quad, std::int32_t>> tags_;
@@ -481,7 +483,7 @@ class OpenFoamSink final : public PartSink {
     info_ = info;
     refuseGhosts(info.ghostLayers, "OpenFOAM's decomposed cases");
     requireInt32(info.pointCount, "OpenFOAM numbers vertices");
-    // OpenFOAM counts folders to learn the number of parts.
+    // OpenFOAM counts the folders to find the number of parts.
     const std::filesystem::path next = case_ / (concat("processor", info.parts));
     std::error_code unknown;
     if (std::filesystem::exists(next, unknown)) {
@@ -514,7 +516,7 @@ class OpenFoamSink final : public PartSink {
         throw folders_[p].named(error);
       }
     }
-    barrier(team_);  // all parts are written
+    barrier(team_);  // wait until all parts are written
     nameAll();
   }
 
@@ -559,7 +561,7 @@ class OpenFoamSink final : public PartSink {
     if (team_ != nullptr) exchangeBorders();
   }
 
-  /// Takes the numbers of common faces from other processes.
+  /// Receives the numbers of shared faces from other processes.
   void exchangeBorders() {
     std::vector<std::uint64_t> mine;
     for (const auto& [parts, numbers] : borders_) {
@@ -577,7 +579,7 @@ class OpenFoamSink final : public PartSink {
     });
   }
 
-  /// What takes the numbers of all faces.
+  /// Writes the files of a part that need global face numbers.
   void finishPart(const OpenPart& open, const OutputFolder& folder, Stage& stage) {
     std::vector<std::int64_t> addresses = innerAddresses(open);
     std::vector<PolyMesh::Patch> patches;
@@ -622,7 +624,7 @@ class OpenFoamSink final : public PartSink {
     writer.commit();
   }
 
-  /// Of faces between two cells of the part.
+  /// The addresses of faces between two cells of the part.
   [[nodiscard]] std::vector<std::int64_t> innerAddresses(const OpenPart& open) const {
     std::vector<bool> isOuter(open.owned.count(), false);
     for (const OpenPart::Border& border : open.borders) {
@@ -637,10 +639,10 @@ class OpenFoamSink final : public PartSink {
     });
     return addresses;
   }
-  /// From 1 on, so that a sign can say that the face is turned around.
+  /// From 1 on: a negative address means that the face is reversed.
   static std::int64_t addressOf(std::uint64_t face) { return static_cast<std::int64_t>(face) + 1; }
 
-  /// Gives all folders their names, and the marker, which comes last.
+  /// Renames all folders to their targets; the marker comes last.
   void nameAll() {
     std::size_t done = 0;
     try {
@@ -649,7 +651,7 @@ class OpenFoamSink final : public PartSink {
       if (marker_) marker_->commit();
       barrier(team_);
     } catch (...) {
-      // A marker that is there is only not yet safe on the disk; other processes cannot know.
+      // A named marker is complete but not yet synced to disk; other processes cannot know that.
       const bool isNamed = marker_ && marker_->isNamed();
       if (isNamed && team_ == nullptr) throw;
       std::error_code unknown;
@@ -667,13 +669,13 @@ class OpenFoamSink final : public PartSink {
   std::filesystem::path file_;
   std::filesystem::path case_;
   ProcessTeam* team_;
-  std::optional<OutputFile> marker_;  ///< of the first process
+  std::optional<OutputFile> marker_;  ///< first process only
   PartsInfo info_;
   std::deque<OutputFolder> folders_;
-  std::vector<OpenPart> open_;  ///< those of this process
+  std::vector<OpenPart> open_;  ///< parts of this process
   FaceNumbers inner_;
   std::map<std::int32_t, FaceNumbers, Before> boundary_;  ///< by tag
-  /// From one part to another: numbers of their common faces, of those whose smaller cell the first
+  /// By sending and receiving part: numbers of their shared faces whose smaller cell the sender
   /// has.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint64_t>> borders_;
 };

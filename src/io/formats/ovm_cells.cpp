@@ -1,4 +1,4 @@
-// Hex meshes, and maps on tets, from and to polyhedral meshes (see ovm_cells.hpp).
+// Converts hex meshes, and maps on tets, to and from polyhedral meshes (see ovm_cells.hpp).
 #include <algorithm>
 
 #include <hexhex/error.hpp>
@@ -14,17 +14,17 @@ namespace hexhex::io {
 namespace {
 
 constexpr std::size_t kOvmHexesGrain = 4096;
-constexpr std::size_t kReversed = 4;  // the order of a cell that begins alike but turns round
+constexpr std::size_t kReversed = 4;  // added for the reverse order from the same corner
 
 using QuadLoops = std::array<std::array<Index, 4>, 6>;
 
-/// Where a vertex stands in a loop, or 4.
+/// The position of a vertex in a loop; 4 if it is not there.
 std::size_t placeIn(const std::array<Index, 4>& loop, Index vertex) {
   return static_cast<std::size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
 }
 
-/// Where side i of the base begins in the loop of a face that passes it in the other direction; or
-/// 4, also if the face shares more with the base.
+/// The side i of the base that a face's loop traverses in reverse; 4 if there is none, or if the
+/// face shares more with the base.
 std::size_t sideOfBase(const std::array<Index, 4>& base, const std::array<Index, 4>& loop) {
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t place = placeIn(loop, base[(i + 1) % 4]);
@@ -33,8 +33,9 @@ std::size_t sideOfBase(const std::array<Index, 4>& base, const std::array<Index,
   return 4;
 }
 
-/// The hexahedron with the six half-faces in VTK's order: the loop of the first one, then the
-/// vertices that edges join to them. Positive if loops run counter-clockwise seen from inside.
+/// Assembles the hexahedron with these six half-faces in VTK order: the loop of the first one, then
+/// the vertices joined to it by edges. Its volume is positive if loops are counter-clockwise seen
+/// from inside.
 /// @return false if they do not bound a hexahedron
 bool assembleHex(const QuadLoops& loops, Hex& hex) {
   const std::array<Index, 4>& base = loops[0];
@@ -60,7 +61,7 @@ bool assembleHex(const QuadLoops& loops, Hex& hex) {
   if (sides != 15U || lid == 0) return false;
   hex = {base[0], base[1], base[2], base[3], top[0], top[1], top[2], top[3]};
   if (hasVertexTwice(hex)) return false;
-  // The lid passes the vertices above the base in the other direction.
+  // The lid traverses the vertices above the base in reverse.
   const std::size_t start = placeIn(loops[lid], top[3]);
   if (start == 4) return false;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -69,8 +70,8 @@ bool assembleHex(const QuadLoops& loops, Hex& hex) {
   return true;
 }
 
-/// Whether most hexahedra have a negative volume (that of their mean edge vectors). Of a large
-/// mesh, some tens of thousands are asked: positions are far from each other in memory.
+/// Whether most hexahedra have a negative volume, computed from their mean edge vectors. Large
+/// meshes are sampled at some ten thousand cells, since positions are scattered in memory.
 bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells, Stage& stage) {
   constexpr std::size_t kAsked = std::size_t{1} << 16;
   const std::size_t step = cells.size() / kAsked + 1;
@@ -129,8 +130,8 @@ class HexReader : OvmCellReader<8, kHexOrders> {
     if (fault < hexes_.cells.size()) failToBound(fault);
   }
 
-  /// Restores generators that this library wrote. Those of other programs name entities of a tet
-  /// mesh that is not here.
+  /// Restores generators written by this library. Those of other programs refer to a tet mesh that
+  /// is not in the file.
   void readGenerators() {
     const Array<std::int32_t>& tets = properties_[OvmInteger::GeneratorTet];
     const Array<std::int32_t>& corners = properties_[OvmInteger::GeneratorCorners];
@@ -152,15 +153,16 @@ class HexReader : OvmCellReader<8, kHexOrders> {
   HexMesh hexes_;
 };
 
-/// Tells how cells are listed, which a reader finds from where their first half-faces begin.
-/// @param cells   those of the mesh as the topology was built from them
-/// @param turned  whether they begin alike but turn the other way
+/// Sets the corner order of cells, which a reader would derive from the start of their first
+/// half-faces.
+/// @param cells   of the mesh, as the topology was built from them
+/// @param turned  whether their corners start alike but run the other way
 void setCornerOrder(OvmProperties& properties, const OvmTopology& topology,
                     std::span<const Hex> cells, bool turned, Stage& stage) {
   const auto orderOf = [&](std::size_t c) {
     const std::size_t direction = turned ? kReversed : 0;
     const Index first = topology.cells.handles[6 * c];
-    if (first % 2 == 0) return direction;  // begins where its cell does
+    if (first % 2 == 0) return direction;  // starts where its cell does
     const Index begin = topology.from(topology.faces.handles[4 * std::size_t{first / 2}]);
     return (4 - placeIn({cells[c][0], cells[c][1], cells[c][2], cells[c][3]}, begin)) % 4 +
            direction;
@@ -230,7 +232,7 @@ OvmOutput toOvm(const HexMesh& mesh, Stage& stage) {
 
 namespace {
 
-// Maps on tets from and to polyhedral meshes (see ovm_cells.hpp).
+// Maps on tets.
 
 constexpr std::size_t kOvmTetsGrain = 4096;
 
@@ -243,20 +245,21 @@ constexpr std::array<TetOrder, 24> kTetOrders = {
      {1, 0, 2, 3}, {1, 0, 3, 2}, {1, 2, 0, 3}, {1, 2, 3, 0}, {1, 3, 0, 2}, {1, 3, 2, 0},
      {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3}, {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0},
      {3, 0, 1, 2}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}, {3, 2, 1, 0}}};
-/// Where most tets are inside out, two corners of each are exchanged.
+/// If most tets are inverted, two corners of each are swapped.
 constexpr std::size_t kAsListed = 0;
 constexpr std::size_t kTurned = 2;
 
-/// The three vertices of each half-face, in order.
+/// The three vertices of each half-face, in loop order.
 using TriangleLoops = std::array<std::array<Index, 3>, 4>;
 
-/// A cell that was read: its corners, and half-face s of its list is opposite corner `opposite[s]`.
+/// A cell as assembled: half-face s of its list is opposite corner `opposite[s]`.
 struct AssembledTet {
   Tet corners{};
   std::array<std::uint8_t, 4> opposite{};
 };
 
-/// The tet with the four half-faces: the loop of the first one, then the vertex opposite it.
+/// Assembles the tet with these four half-faces: the loop of the first one, then the opposite
+/// vertex.
 /// @return false if they do not bound a tet
 bool assembleTet(const TriangleLoops& loops, AssembledTet& tet) {
   const std::array<Index, 3>& base = loops[0];
@@ -273,7 +276,7 @@ bool assembleTet(const TriangleLoops& loops, AssembledTet& tet) {
     };
     const auto opposite = static_cast<std::size_t>(
         std::find_if_not(tet.corners.begin(), tet.corners.end(), inLoop) - tet.corners.begin());
-    // All half-faces run the same way round, seen from inside.
+    // All half-faces have the same orientation, seen from inside.
     if (!adjacency::areOpposite(loopOfHalfFace(loops[s], 1),
                                 adjacency::faceVertices(tet.corners, opposite)))
       return false;
@@ -285,14 +288,15 @@ bool assembleTet(const TriangleLoops& loops, AssembledTet& tet) {
 
 bool isRotation(std::int32_t rotation) { return rotation >= -1 && rotation < 24; }
 
-/// Makes tets out of a mesh's cells, with all that belongs to their corners and faces.
+/// Builds tets from the cells of a mesh, with all data attached to their corners and faces.
 class TetReader : OvmCellReader<4, kTetOrders.size()> {
  public:
   using OvmCellReader::OvmCellReader;
 
   TetMap read() {
     requireMap();
-    // Four sides of faces each, none of them twice: else the check throws before there is room.
+    // With four half-faces per cell, none twice, there are at least 2 faces per cell; otherwise
+    // requireProper() throws before memory is allocated.
     if (2 * topology_.cells.size() > topology_.faces.size()) requireProper();
     map_.points.assign(mesh_.points.begin(), mesh_.points.end());
     map_.parameters.resize(topology_.cells.size());
@@ -356,7 +360,7 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
                 Place{PlaceKind::Tet, fault});
   }
 
-  /// Reads a tet with the parameters and rotations that the map has room for.
+  /// Reads a tet with its parameters, and rotations if the map has any.
   bool readTet(std::size_t cell, const TriangleLoops& loops, const TetOrder& order) {
     AssembledTet tet;
     if (!assembleTet(loops, tet)) return false;
@@ -378,7 +382,7 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
     return true;
   }
 
-  /// Refuses values beyond the 24 rotations, except at the boundary, where they mean nothing.
+  /// Refuses values beyond the 24 rotations, except at the boundary, where they have no meaning.
   void requireRotations() const {
     const Array<std::int32_t>& rotations = properties_[OvmInteger::Transition];
     if (std::all_of(rotations.begin(), rotations.end(), isRotation)) return;
@@ -398,7 +402,7 @@ class TetReader : OvmCellReader<4, kTetOrders.size()> {
   TetMap map_;
 };
 
-/// The number of the order that tets are written in.
+/// The number of the corner order in which to write tets.
 std::size_t writtenOrder(std::span<const Vec3> points, std::span<const Tet> tets, Stage& stage) {
   const auto volumeOf = [&](std::size_t t) {
     const Vec3& origin = points[tets[t][0]];
@@ -417,7 +421,7 @@ OvmTopology topologyOf(std::size_t points, std::span<const Tet> tets, const TetO
   return buildOvmTopology(points, ordered, stage);
 }
 
-/// Makes a mesh out of a map.
+/// Builds a mesh from a map.
 class TetWriter {
  public:
   TetWriter(const TetMap& map, Stage& stage)
@@ -436,9 +440,9 @@ class TetWriter {
   }
 
  private:
-  /// How the corners of a tet are listed, against the order in which a reader finds them.
+  /// The corner order of a tet, relative to the order that a reader derives.
   [[nodiscard]] std::size_t listedOrder(std::size_t tet) const {
-    // A tet begins with its first half-face, and nearly all half-faces begin where the tet does.
+    // A tet starts with its first half-face, and nearly all half-faces start where the tet does.
     const Index first = topology_.cells.handles[4 * tet];
     if (first % 2 == 0) return orderNumber_;
     const std::array<Index, 3> loop = loopOfHalfFace(loopOfFace<3>(topology_, first / 2), first);
@@ -461,11 +465,11 @@ class TetWriter {
     if (unlike < orders.size()) properties_[OvmInteger::CornerOrder] = std::move(orders);
   }
 
-  /// Parameters and rotations, which half-faces carry for the corners opposite them.
+  /// Sets parameters and rotations, which half-faces store for their opposite corners.
   void setHalfFaceValues() {
     Array<Vec3>& parameters = properties_.parametrization;
     Array<std::int32_t>& rotations = properties_[OvmInteger::Transition];
-    // The half-faces at the boundary have no cell; all others are overwritten.
+    // Boundary half-faces have no cell; all others are overwritten.
     parameters.assign(2 * topology_.faces.size(), Vec3{});
     if (!map_.rotations.empty()) rotations.assign(parameters.size(), -1);
     parallelFor(stage_, map_.tets.size(), kOvmTetsGrain, [&](std::size_t t) {

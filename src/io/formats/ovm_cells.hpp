@@ -1,5 +1,5 @@
-// Maps and hex meshes, whose cells are lists of corners, from and to polyhedral meshes, whose cells
-// are lists of half-faces.
+// Conversions between maps and hex meshes, whose cells are lists of corners, and polyhedral meshes,
+// whose cells are lists of half-faces.
 #pragma once
 
 #include <algorithm>
@@ -31,27 +31,27 @@
 
 namespace hexhex::io {
 
-/// The map of a tet mesh.
+/// Converts a mesh to a map.
 /// @param fileName  for error messages
-/// @throws Error FileUnsupported if a cell is no tet or there is no map; FileSyntax if cells are
-///         wrong; NotFinite
+/// @throws Error FileUnsupported if a cell is not a tet or there is no map; FileSyntax if cells are
+///         invalid; NotFinite
 [[nodiscard]] TetMap toTetMap(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
-/// The same tets without a map, whether there is one or not.
+/// Converts a mesh to tets, ignoring a map if there is one.
 [[nodiscard]] TetCells toTetCells(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
-/// The cells of a hex mesh. Half-faces may come in any order; if most cells are inside out, all are
-/// turned.
-/// @throws Error FileUnsupported if a cell is no hexahedron; FileSyntax if cells are wrong
+/// Converts a mesh to a hex mesh. Half-faces may be in any order; if most cells are inverted, all
+/// are reversed.
+/// @throws Error FileUnsupported if a cell is not a hexahedron; FileSyntax if cells are invalid
 [[nodiscard]] HexMesh toHexMesh(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
 
-/// What a file holds. Half-faces point into their cells, and the first slots of cells begin with
-/// the cells' corners where neighbours allow it; elsewhere, the property CornerOrder tells the
-/// order.
+/// The content of a file. Half-faces point into their cells, and the loops of a cell's first slots
+/// start at its first corner where neighbours allow it; elsewhere, the property CornerOrder gives
+/// the order.
 /// @param mesh  with corners and generators in range
-/// @throws Error InvalidArgument if arrays disagree, or features and valences name what is not in
-///         the mesh; IndexOutOfRange, RepeatedVertex, NotFinite, NonManifoldFace, Orientation,
-///         TooLarge
+/// @throws Error InvalidArgument if array sizes disagree, or features or valences refer to elements
+///         that are not in the mesh; IndexOutOfRange, RepeatedVertex, NotFinite, NonManifoldFace,
+///         Orientation, TooLarge
 [[nodiscard]] OvmOutput toOvm(const TetMap& map, Stage& stage);
 [[nodiscard]] OvmOutput toOvm(const HexMesh& mesh, Stage& stage);
 
@@ -60,7 +60,7 @@ namespace hexhex::io {
 [[nodiscard]] OvmTopology ovmTopologyOf(std::span<const Vec3> points, std::span<const Tet> tets,
                                         Stage& stage);
 
-/// Whether valueOf(i) is negative for more of the i in [0, n) than it is positive.
+/// Whether valueOf(i) is negative more often than positive, for i in [0, n).
 template <class F>
 [[nodiscard]] bool areMostlyNegative(Stage& stage, std::size_t n, const F& valueOf) {
   constexpr std::size_t kGrain = 4096;
@@ -79,19 +79,19 @@ template <class F>
 /// Whether two corners are the same vertex.
 template <std::size_t corners>
 [[nodiscard]] bool hasVertexTwice(const std::array<Index, corners>& cell) noexcept {
-  Index alike = 0;  // pairs of corners, each with itself among them
+  Index alike = 0;  // pairs of equal corners, each paired with itself, too
   for (const Index a : cell) {
     for (const Index b : cell) alike += a == b ? 1U : 0U;
   }
   return alike > corners;
 }
 
-/// Orders of a hexahedron's corners, which the property CornerOrder numbers. The first face is
-/// always the same: 0 to 3 begin with that corner of it, 4 to 7 go round in the other direction.
+/// Corner orders of a hexahedron, as numbered by the property CornerOrder. The first face is always
+/// the same: orders 0 to 3 start at that corner of it, 4 to 7 run in the other direction.
 inline constexpr std::size_t kHexOrders = 8;
 [[nodiscard]] Hex inHexOrder(const Hex& assembled, std::size_t order) noexcept;
 
-/// The n vertices of a face, in loop order; all are kNone if it has no closed loop of n half-edges.
+/// The n vertices of a face in loop order; all kNone if it is not a closed loop of n half-edges.
 template <std::size_t n>
 [[nodiscard]] std::array<Index, n> loopOfFace(const OvmTopology& topology, std::size_t face) {
   const std::span<const Index> halfEdges = topology.faces[face];
@@ -105,7 +105,7 @@ template <std::size_t n>
   return loop;
 }
 
-/// The same of a half-face, given the loop of its face.
+/// The same for a half-face, given the loop of its face.
 template <std::size_t n>
 [[nodiscard]] std::array<Index, n> loopOfHalfFace(const std::array<Index, n>& ofFace,
                                                   Index halfFace) noexcept {
@@ -115,67 +115,67 @@ template <std::size_t n>
   return reversed;
 }
 
-/// Faces of a tet as lists of its corners, in the order in which tools of the field list them.
-/// Counter-clockwise seen from inside, if det(v1 - v0, v2 - v0, v3 - v0) > 0.
+/// Faces of a tet by corners, in the order that other tools use. Counter-clockwise seen from inside
+/// if det(v1 - v0, v2 - v0, v3 - v0) > 0.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOvmTetFaces = {
     {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
 /// The corner opposite each of them, and the face opposite each corner.
 inline constexpr std::array<std::uint8_t, 4> kOvmTetOpposite = {3, 1, 2, 0};
 
-/// Faces of a hexahedron in VTK's order: three pairs of opposite faces, counter-clockwise seen from
+/// Faces of a hexahedron in VTK order: three pairs of opposite faces, counter-clockwise seen from
 /// inside.
 inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kOvmHexFaces = {
     {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {3, 2, 6, 7}, {1, 5, 6, 2}, {0, 3, 7, 4}}};
 
-/// Finds the faces and edges of cells. Half-face 2f begins with the first corner of the slot of the
-/// cell that it points into; that is a cell that has the face in the first slot of its list, if
-/// there is one.
+/// Finds the faces and edges of cells. A face is owned by a cell that has it in the first slot of
+/// its list, if there is one; half-face 2f points into the owner and starts at the first corner of
+/// its slot.
 ///
-/// Of tets, edges go from the smaller to the larger vertex. Edges and faces come in the order of
-/// their smallest vertices, and those of a vertex in the order in which its tets have them.
+/// For tets, edges run from the smaller to the larger vertex. Edges and faces are sorted by
+/// smallest vertex; those of a vertex are in the order in which its tets have them.
 ///
-/// Of hexahedra, edges along seams (HexMates) come first, from the smaller to the larger vertex and
+/// For hexahedra, edges along seams (HexMates) come first, from the smaller to the larger vertex,
 /// in lexicographic order; then the others, cell by cell, away from the cell's corner 0. Faces are
 /// numbered cell by cell, slot by slot.
 /// @param cells  corners of tets or hexahedra, vertices in range
 /// @throws Error NonManifoldFace, Orientation if a face is shared by more than two cells, or by two
-///         that do not run in opposite directions; RepeatedVertex; TooLarge
+///         with the same orientation; RepeatedVertex; TooLarge
 [[nodiscard]] OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells,
                                            Stage& stage);
 [[nodiscard]] OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells,
                                            Stage& stage);
 
-/// The part of buildOvmTopology() that numbers hexahedra, once their faces are matched.
-/// @return nothing if a cell has a vertex twice
+/// The part of buildOvmTopology() that numbers hexahedra once their faces are matched.
+/// @return empty if a cell has a vertex twice
 [[nodiscard]] std::optional<OvmTopology> numberHexes(std::size_t vertexCount,
                                                      std::span<const Hex> cells,
                                                      adjacency::HexMates mates, Stage& stage);
 
-/// @param what  e.g. "edges"
-/// @throws Error TooLarge if there are more than the format can hold
+/// @param what  plural, e.g. "edges"
+/// @throws Error TooLarge if there are more than the format supports
 void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what);
 
-/// Finds edges that are listed in the order of their smaller vertices, which come first.
+/// Finds edges in a list sorted by their smaller vertices, which come first.
 class OvmEdgeFinder {
  public:
-  /// @param edges  those of tets, or those of hexahedra along seams
+  /// @param edges  of tets, or of hexahedra along seams
   OvmEdgeFinder(std::size_t vertexCount, std::span<const std::array<Index, 2>> edges);
   /// The edge between two vertices, or kNone.
   [[nodiscard]] Index find(Index a, Index b) const noexcept;
-  /// The half-edge of an edge that there is.
+  /// The half-edge between two vertices. @pre  the edge exists
   [[nodiscard]] Index halfEdge(Index from, Index to) const noexcept {
     return 2 * find(from, to) + (from < to ? 0U : 1U);
   }
 
  private:
   std::span<const std::array<Index, 2>> edges_;
-  Array<Index> begins_;  ///< per vertex (+1): its edges to larger vertices
+  Array<Index> begins_;  ///< per vertex (+1): start of its edges to larger vertices
 };
 
-// What tets and hexahedra have in common when they are made of the half-faces that a file lists.
+// Shared by tets and hexahedra: building cells from half-faces.
 
-/// Makes cells of what was read.
-/// @tparam orders  how many orders of a cell's corners the property CornerOrder numbers
+/// Builds cells from a mesh that was read.
+/// @tparam orders  number of corner orders that the property CornerOrder distinguishes
 template <std::size_t corners, std::size_t orders>
 class OvmCellReader {
   using Cell = std::array<Index, corners>;
@@ -184,7 +184,7 @@ class OvmCellReader {
   static constexpr std::size_t kFaceCorners = adjacency::kFaceSize<Cell>;
 
  public:
-  /// @param fileName  outlives this
+  /// @param fileName  must outlive this
   OvmCellReader(OvmMesh&& mesh, const std::string& fileName, Stage& stage)
       : mesh_(std::move(mesh)),
         topology_(mesh_.topology),
@@ -198,8 +198,8 @@ class OvmCellReader {
 
  protected:
   /// Calls read(cell, loops of its half-faces, number of its corner order) for all cells, in
-  /// parallel. It is false if these do not bound a cell, or what belongs to the cell is wrong.
-  /// @return the first cell for which it is false, or the number of cells
+  /// parallel. read() returns false if the half-faces do not bound a cell, or its data are invalid.
+  /// @return the first cell for which it returned false, or the number of cells
   /// @throws Error as requireProper()
   template <class Read>
   [[nodiscard]] std::size_t firstUnreadable(const Read& read) const {
@@ -219,7 +219,7 @@ class OvmCellReader {
       return readCell(c, read);
     };
     const std::size_t fault = firstFault(stage_, cells, isGood, kGrain);
-    // No half-face occurs twice if as many occur as there are places for them.
+    // No half-face is used twice if there are as many different ones as uses.
     const auto different = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
     if (fault < cells || different < topology_.cells.handles.size()) requireProper();
     return fault;
@@ -238,8 +238,8 @@ class OvmCellReader {
     return order < orders && read(cell, loops, order);
   }
 
-  /// Throws unless all cells have the right number of half-faces, none is in two cells, and all
-  /// have good loops.
+  /// Throws unless all cells have the right number of half-faces, no half-face is used twice, and
+  /// all have valid loops.
   void requireProper() const {
     const auto fail = [&](std::size_t cell, ErrorCode code, const std::string& sentence) {
       throw Error(code, concat(fileName_, ": cell ", cell, " ", sentence),
@@ -269,7 +269,7 @@ class OvmCellReader {
     }
   }
 
-  /// Throws an error about a cell whose half-faces bound none.
+  /// Throws an error about a cell whose half-faces do not bound one.
   [[noreturn]] void failToBound(std::size_t cell) const {
     throw Error(ErrorCode::FileSyntax,
                 concat(fileName_, ": the half-faces of cell ", cell, " do not bound a ",
@@ -277,7 +277,7 @@ class OvmCellReader {
                 Place{kKind.place, cell});
   }
 
-  /// @param faces  those of `features`
+  /// @param faces  the faces of `features`
   template <class Features, class FaceFeature>
   void readFeatures(Features& features, std::vector<FaceFeature>& faces) const {
     forEachTag(OvmInteger::FeatureVertices, [&](std::size_t v, std::int32_t tag) {
@@ -297,7 +297,7 @@ class OvmCellReader {
     });
   }
 
-  /// Calls f(element, value) for all elements with a value other than 0.
+  /// Calls f(element, value) for all elements with a nonzero value.
   template <class F>
   void forEachTag(OvmInteger property, const F& f) const {
     const Array<std::int32_t>& tags = properties_[property];
@@ -314,21 +314,21 @@ class OvmCellReader {
 
  private:
   static constexpr std::size_t kGrain = 2048;
-  /// Faces of a cell may be far from each other in memory, so those of later cells are fetched
-  /// ahead: else, reading a mesh with cells in random order takes half as long again.
+  /// Prefetch distance: the faces of a cell may be scattered in memory. Without prefetching,
+  /// reading a mesh with cells in random order takes 50 % longer.
   static constexpr std::size_t kAhead = 16;
 
   [[nodiscard]] bool isGoodFace(std::size_t face) const { return loops_[face][0] != kNone; }
 
-  /// The vertices of each face, in loop order, from the half-face 2f on; kNone if it has no closed
-  /// loop of as many half-edges.
+  /// The vertices of each face in loop order, as of half-face 2f; kNone if it is not a closed loop
+  /// of the expected length.
   Array<std::array<Index, kFaceCorners>> loops_;
 };
 
-// Features and regions of maps and hex meshes, which list few elements, from and to properties,
-// which have a value for each.
+// Features and regions, converted between lists of the few tagged elements and properties with a
+// value per element.
 
-/// Gives one element its value, which must be there and not have one yet.
+/// Sets the value of one element, which must exist and have none yet.
 /// @param element  index, or kNone; @param what  e.g. "feature edge 3-17", for the message
 inline void setOvmValue(Array<std::int32_t>& values, Index element, std::int32_t value,
                         const std::string& what, Place place) {
@@ -341,9 +341,9 @@ inline void setOvmValue(Array<std::int32_t>& values, Index element, std::int32_t
   values[element] = value;
 }
 
-/// Gives tagged elements with n vertices their tags.
-/// @param features  their vertices need not be in the order of the element
-/// @param verticesOf  of an element by its number, in any order
+/// Sets the tags of elements with n vertices.
+/// @param features  with vertices in any order
+/// @param verticesOf  the vertices of an element, in any order
 /// @param nameOf, placeOf  of a feature, for messages
 template <std::size_t n, class Feature, class Vertices, class Name, class At>
 void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t vertexCount,
@@ -356,7 +356,7 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t ver
     Index element;
   };
   std::multimap<std::array<Index, n>, Wanted> wanted;
-  // Few vertices of a mesh are the smallest ones of a feature, and all elements are asked.
+  // Filter by smallest vertex: all elements are checked, but few have one that a feature has.
   Array<std::uint8_t> isSmallest(vertexCount, 0);
   for (const Feature& feature : features) {
     const auto place = wanted.emplace(sorted(feature.vertices), Wanted{&feature, kNone});
@@ -374,11 +374,11 @@ void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t ver
   }
 }
 
-/// Makes properties of features and regions.
-/// @param faces  those of `features`
+/// Adds the properties of features and regions.
+/// @param faces  the faces of `features`
 /// @param regions  one per cell, or none
-/// @throws Error InvalidArgument if they name what is not in the mesh, or twice; or if there are
-///         regions for another number of cells
+/// @throws Error InvalidArgument if they refer to a missing element, or to one twice; or if the
+///         number of regions is wrong
 template <std::size_t n, class Features, class FaceFeature, class Regions>
 void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
                     const Features& features, const std::vector<FaceFeature>& faces,

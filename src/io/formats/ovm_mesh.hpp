@@ -1,12 +1,12 @@
-// What `.ovm` and `.ovmb` files hold: a polyhedral mesh of vertices, edges, faces and cells, and
-// the properties of them that this library knows; and what reads and writes them.
+// The content of `.ovm` and `.ovmb` files: a polyhedral mesh of vertices, edges, faces and cells,
+// and those of their properties that this library supports; and its readers and writers.
 //
-// Half-edge 2e is edge e as stored, 2e + 1 the same edge reversed. Half-face 2f is face f as stored
-// (a closed loop of half-edges), 2f + 1 the reversed loop.
+// Half-edge 2e is edge e as stored, 2e + 1 its reverse. Half-face 2f is face f as stored (a closed
+// loop of half-edges), 2f + 1 its reverse.
 //
-// A text has the sections Vertices, Edges, Faces, Polyhedra, each with a count and one element per
-// line; then properties: a line `HFProp vec3d "name"`, and a value per element. Binary files are a
-// header and chunks (ovmb_reader.cpp).
+// Text files have the sections Vertices, Edges, Faces, Polyhedra, each with a count and one element
+// per line; then properties: a line `HFProp vec3d "name"`, and a value per element. Binary files
+// are a header and chunks (ovmb_reader.cpp).
 #pragma once
 
 #include <array>
@@ -26,17 +26,17 @@
 
 namespace hexhex::io {
 
-/// What a property belongs to; the numbers are those of `.ovmb`.
+/// The kind of elements that a property is attached to; numbered as in `.ovmb`.
 enum class OvmEntity : std::uint8_t { Vertex, Edge, Face, Cell, HalfEdge, HalfFace, Mesh };
 
-/// Vertices, edges, faces and cells as files and sentences call them.
+/// Names of vertices, edges, faces and cells in files and messages.
 struct OvmElements {
-  const char* section;  ///< of `.ovm`
+  const char* section;  ///< in `.ovm`
   const char* one;
   const char* many;
-  const char* parts;           ///< what an element names
+  const char* parts;           ///< what an element consists of
   std::uint32_t leastValence;  ///< fewer half-edges or half-faces enclose nothing
-  std::size_t fewestBytes;     ///< of the shortest lines, e.g. "0 0 0", "0 1", "3 0 2 4", with ends
+  std::size_t fewestBytes;     ///< of the shortest line and its end, e.g. "0 0 0", "0 1", "3 0 2 4"
 };
 /// By entity.
 inline constexpr std::array<OvmElements, 4> kOvmElements = {
@@ -45,19 +45,19 @@ inline constexpr std::array<OvmElements, 4> kOvmElements = {
      {"Faces", "face", "faces", "half-edge", 3, 8},
      {"Polyhedra", "cell", "cells", "half-face", 4, 10}}};
 
-/// By entity: the first word of the line of `.ovm` that begins a property.
+/// By entity: the keyword in `.ovm` that begins a property.
 inline constexpr std::array<std::string_view, 7> kOvmPropertyWords = {
     "VProp", "EProp", "FProp", "CProp", "HEProp", "HFProp", "MProp"};
 
-/// Indices of half-entities have to fit into 32 bits, so there are at most this many entities of a
-/// kind. It is also the limit of OpenVolumeMesh.
+/// Maximum number of entities of a kind, so that indices of half-entities fit in 32 bits. It is
+/// also the limit of OpenVolumeMesh.
 inline constexpr std::uint64_t kMaxOvmEntities = (std::uint64_t{1} << 31) - 1;
 
-/// Lists of handles, one after the other.
+/// Lists of handles, concatenated.
 struct OvmLists {
   Array<Index> handles;
-  std::size_t length = 0;        ///< of each list, if all have the same; else 0
-  Array<std::uint64_t> offsets;  ///< if they have not: list i is [offsets[i], offsets[i + 1])
+  std::size_t length = 0;        ///< common length of all lists; 0 if they differ
+  Array<std::uint64_t> offsets;  ///< if lengths differ: list i is [offsets[i], offsets[i + 1])
 
   [[nodiscard]] std::size_t size() const noexcept {
     if (length > 0) return handles.size() / length;
@@ -85,36 +85,35 @@ struct OvmTopology {
                                                1};
     return counts[static_cast<std::size_t>(entity)];
   }
-  /// The vertex that a half-edge comes from.
+  /// The start vertex of a half-edge.
   [[nodiscard]] Index from(Index halfEdge) const noexcept {
     return edges[halfEdge / 2][halfEdge % 2];
   }
-  /// The vertex that a half-edge goes to.
+  /// The end vertex of a half-edge.
   [[nodiscard]] Index to(Index halfEdge) const noexcept { return from(halfEdge ^ 1U); }
 };
 
-/// The map: for each half-face the parameters of the vertex opposite it in its cell, in the cell's
-/// chart. Half-faces without a cell have values without meaning.
+/// The map: for each half-face, the parameters of the opposite vertex in its cell, in the cell's
+/// chart. Values of half-faces without a cell have no meaning.
 inline constexpr std::string_view kParametrizationName = "HexHex::Parametrization";
 
-/// Properties of integers (C++ `int`) that are read and written, in the order in
-/// which they are written.
+/// Properties of integers (C++ `int`) that are read and written, in the order of writing.
 enum class OvmInteger : std::uint8_t {
   FeatureVertices,
-  GeneratorType,     ///< of hex meshes: dimension of the simplex of the tets that holds the vertex
-  GeneratorTet,      ///< the simplex as HexMesh has it, so that it comes back as it was
+  GeneratorType,     ///< of hex meshes: dimension of the tet simplex that contains the vertex
+  GeneratorTet,      ///< the simplex as in HexMesh, to restore it exactly
   GeneratorCorners,  ///< likewise
   EdgeValence,
   FeatureEdges,
   FeatureFaces,
   Transition,
-  CornerOrder,  ///< of cells: how their corners were listed, which the format does not say
+  CornerOrder,  ///< of cells: the order of their corners, which the format does not define
   Region        ///< of cells: TetMap::regions, HexMesh::regions
 };
 
 struct OvmIntegerName {
   OvmEntity entity;
-  std::string_view name;  ///< some are misspelt, and known so
+  std::string_view name;  ///< some are misspelt, as in other programs
 };
 inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
     {{OvmEntity::Vertex, "AlgoHex::FeatureVertices"},
@@ -128,15 +127,14 @@ inline constexpr std::array<OvmIntegerName, 10> kOvmIntegers = {
      {OvmEntity::Cell, "hexhex::corner_order"},
      {OvmEntity::Cell, "hexhex::region"}}};
 
-/// A property as it is written: integers, points, or pairs of numbers.
+/// A property to write: integers, points, or pairs of numbers.
 struct OvmProperty {
   OvmEntity entity = OvmEntity::Vertex;
   std::string_view name;
   std::variant<Array<std::int32_t>, Array<Vec3>, Array<std::array<double, 2>>> values = {};
 };
 
-/// Values of the properties that this library knows, one per element of the entity; empty if there
-/// is no such property.
+/// Values of the supported properties, one per element; empty if a property is missing.
 struct OvmProperties {
   Array<Vec3> parametrization;  ///< per half-face
   std::array<Array<std::int32_t>, kOvmIntegers.size()> integers;
@@ -147,7 +145,7 @@ struct OvmProperties {
   [[nodiscard]] const Array<std::int32_t>& operator[](OvmInteger property) const noexcept {
     return integers[static_cast<std::size_t>(property)];
   }
-  /// All properties that there are, in the order in which they are written.
+  /// All properties present, in the order of writing.
   [[nodiscard]] std::vector<OvmProperty> listed() && {
     std::vector<OvmProperty> list;
     for (std::size_t i = 0; i < integers.size(); ++i) {
@@ -161,18 +159,18 @@ struct OvmProperties {
   }
 };
 
-/// What the values of a property are.
+/// The kind of a property's values.
 enum class OvmNumbers : std::uint8_t { Integers, Points, Others };
 
-/// A mesh as it was read.
+/// A mesh as read.
 struct OvmMesh {
   Array<Vec3> points;
   OvmTopology topology;
   OvmProperties properties;
-  /// Whether the file has a property of the map's name that is no map, for error messages.
+  /// Whether a property has the map's name but another type; for error messages.
   bool hasForeignParametrization = false;
 
-  /// Where the values of a property go. Both are null if it is not known, or came before.
+  /// The target for a property's values. Both are null if it is unknown or a repetition.
   struct Destination {
     Array<Vec3>* points = nullptr;
     Array<std::int32_t>* integers = nullptr;
@@ -194,12 +192,12 @@ struct OvmMesh {
   }
 };
 
-/// A mesh as it is written.
+/// A mesh to write.
 struct OvmOutput {
-  std::span<const Vec3> points;  ///< of the mesh that it was made from
+  std::span<const Vec3> points;  ///< of the source mesh
   OvmTopology topology;
-  std::vector<OvmProperty> properties;  ///< in the order in which they are written
-  bool hasWideHandles = false;  ///< handles of `.ovmb` have four bytes, even if fewer would do
+  std::vector<OvmProperty> properties;  ///< in the order of writing
+  bool hasWideHandles = false;  ///< whether `.ovmb` handles have four bytes even if fewer would do
 };
 
 inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
@@ -208,18 +206,18 @@ inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
   return bytes.starts_with(kOvmbMagic);
 }
 
-/// Read the mesh and the properties that this library knows. Handles are in range; nothing else
-/// about the topology is checked.
+/// Read the mesh and the supported properties. Handles are checked to be in range; the topology is
+/// not checked otherwise.
 /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite, TooLarge, with the line
 ///         or byte
 [[nodiscard]] OvmMesh parseOvmText(std::string_view text, const std::string& fileName,
                                    Stage& stage);
 [[nodiscard]] OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage);
 
-/// Write a mesh in the layout of OpenVolumeMesh's own files: for each kind of element
-/// one chunk or section, handles without offset; numbers of `.ovm` have the fewest digits that read
-/// back to the same double.
-/// @param mesh  for `.ovm` with faces and cells of one valence each
+/// Write a mesh in the layout of OpenVolumeMesh's own files: one chunk or section for each kind of
+/// element, handles without offset. Numbers in `.ovm` have the fewest digits that read back to the
+/// same double.
+/// @param mesh  for `.ovm`: all faces have equal valence, and so have all cells
 /// @throws Error FileWrite
 void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage);
 void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage);

@@ -1,4 +1,4 @@
-// Arcs and patches as polyhedral meshes (see formats.hpp).
+// Writes arcs and patches as polyhedral meshes (see formats.hpp).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -36,8 +36,8 @@ using Integers = Array<std::int32_t>;
       "extracted from: after a repair, the repaired one.");
 }
 
-/// The tets that generators name, and how the `.ovm` or `.ovmb` file of their map numbers
-/// simplices.
+/// Numbers the simplices of the tets that generators refer to, as in the `.ovm` or `.ovmb` file of
+/// their map.
 class TetSimplices {
  public:
   TetSimplices(const TetMapView& map, Stage& stage)
@@ -65,8 +65,8 @@ class TetSimplices {
     return tet;
   }
 
-  /// A simplex of one tet as corners of another that has it, too.
-  /// @throws Error InvalidArgument if it has not
+  /// Translates a simplex from corners of one tet to corners of another that shares it.
+  /// @throws Error InvalidArgument if the other tet does not have it
   [[nodiscard]] CornerSet translated(CornerSet corners, Index from, Index to) const {
     if (from == to) return corners;
     if (from >= tets_.size() || to >= tets_.size()) failAboutMap();
@@ -99,10 +99,10 @@ class TetSimplices {
   OvmEdgeFinder edges_;
 };
 
-/// The simplices that hold elements, as properties.
+/// Collects the simplices that contain elements, as properties.
 class CarrierProperties {
  public:
-  /// @param simplices  null: without their indices
+  /// @param simplices  null: indices are left out
   CarrierProperties(OvmEntity entity, std::string_view typeName, std::string_view indexName,
                     const TetSimplices* simplices)
       : entity_(entity), typeName_(typeName), indexName_(indexName), simplices_(simplices) {}
@@ -118,11 +118,11 @@ class CarrierProperties {
   void add(std::span<const Index> tets, std::span<const CornerSet> corners) {
     for (std::size_t i = 0; i < corners.size(); ++i) add(tets[i], corners[i]);
   }
-  /// One whose simplex is not known.
+  /// Adds an element whose simplex is unknown.
   void addUnknown() {
     for (Integers* const values : {&types_, &tets_, &corners_}) values->push_back(-1);
   }
-  /// The simplex of an element by corners of a tet that has it.
+  /// The simplex of an element, as corners of a tet that has it.
   [[nodiscard]] CornerSet simplexIn(Index tet, std::size_t element) const {
     return simplices_->translated(static_cast<CornerSet>(corners_[element]),
                                   static_cast<Index>(tets_[element]), tet);
@@ -146,7 +146,7 @@ class CarrierProperties {
   Integers corners_;
 };
 
-/// An edge by its ends in ascending order, and its number.
+/// An edge: its ends in ascending order, and its number.
 struct KnownEdge {
   EdgeEnds ends;
   Index number;
@@ -155,10 +155,10 @@ struct KnownEdge {
 
 EdgeEnds ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Collects what a file will hold, and writes it.
+/// Collects the content of a file and writes it.
 class PiecewiseWriter {
  public:
-  /// @param map  where the mesh comes from, or null
+  /// @param map  the source of the mesh, or null
   PiecewiseWriter(const PiecewiseLinearMesh& mesh, const TetMapView* map, Stage& stage)
       : mesh_(mesh),
         stage_(stage),
@@ -248,8 +248,8 @@ class PiecewiseWriter {
     content_.properties.push_back({OvmEntity::Face, "f_intersected_tet_index", std::move(tets)});
   }
 
-  /// A side inside a face, of a polygon in this tet. By convexity, the smallest simplex that has
-  /// the generators of both ends holds it.
+  /// Adds a side inside a face, of a polygon in this tet. By convexity, it lies in the smallest
+  /// simplex that has the generators of both ends.
   Index addInnerSide(const EdgeEnds& ends, Index tet) {
     edges().push_back(ends);
     hexEdges_.push_back(-1);
@@ -275,7 +275,7 @@ class PiecewiseWriter {
     }
   }
 
-  /// Adds the polygons of a face, and the sides that no arc has.
+  /// Adds the polygons of a face, and the sides that are not on arcs.
   void addFace(std::size_t face) {
     const Patches& patches = mesh_.patches;
     known_.clear();
@@ -290,7 +290,7 @@ class PiecewiseWriter {
     const std::size_t border = known_.size();
     forEachSide(face, [&](Index a, Index b, std::uint64_t polygon) {
       const KnownEdge side{ascending(a, b), kNone};
-      // Sides inside the face come twice, once in each direction.
+      // Sides inside the face occur twice, once in each direction.
       const auto bordering = std::span(known_).first(border);
       if (a > b || std::binary_search(bordering.begin(), bordering.end(), side)) return;
       known_.push_back({side.ends, addInnerSide(side.ends, patches.polygonTet[polygon])});
@@ -312,10 +312,10 @@ class PiecewiseWriter {
   std::vector<Vec3> points_;
   OvmOutput content_;
   Integers hexEdges_;
-  std::vector<KnownEdge> known_;  ///< edges of one face
+  std::vector<KnownEdge> known_;  ///< edges of the current face
 };
 
-/// @param most  what there is no more of than this
+/// @param most  upper bound on the number of elements of any kind
 void write(const PiecewiseLinearMesh& mesh, const TetMapView* map, PiecewiseLinearParts parts,
            std::uint64_t most, OutputFile& output, Stage& stage) {
   requireInt32(most, "OpenVolumeMesh files number elements", "lower the scale, or write .vtu");
@@ -327,7 +327,7 @@ void write(const PiecewiseLinearMesh& mesh, const TetMapView* map, PiecewiseLine
 
 void writeArcsOvmb(const PiecewiseLinearMesh& mesh, const TetMapView* map, OutputFile& output,
                    Stage& stage) {
-  // Segments are more than the points that they add.
+  // Arcs have more segments than inner points.
   const std::uint64_t most =
       std::max(mesh.mesh.points.size() + mesh.arcs.points.size(), mesh.arcs.segmentTet.size());
   write(mesh, map, PiecewiseLinearParts::Arcs, 2 * most, output, stage);

@@ -1,5 +1,4 @@
-// `.ovm` files (see ovm_mesh.hpp): reads and writes them; and what of both formats is read and
-// written.
+// Reads and writes `.ovm` files (see ovm_mesh.hpp); entry points for both OpenVolumeMesh formats.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -127,7 +126,7 @@ class OvmTextReader {
   }
 
  private:
-  /// "OVM ASCII", which may be missing.
+  /// Reads "OVM ASCII", which is optional.
   void readHeader() {
     if (isOvmb(text_)) {
       throw Error(ErrorCode::FileUnsupported,
@@ -158,8 +157,8 @@ class OvmTextReader {
     return count;
   }
 
-  /// Reads a section of elements that have the same number of values.
-  /// @param readValue  of (scanner, number of the element)
+  /// Reads a section of elements that have n values each.
+  /// @param readValue  called with (scanner, index of the element)
   template <class Value, std::size_t n, class Read>
   void readArrays(Array<std::array<Value, n>>& arrays, const OvmElements& elements,
                   const Read& readValue) {
@@ -184,7 +183,7 @@ class OvmTextReader {
       }
       lists.offsets.push_back(lists.handles.size());
     });
-    // One length for all, if possible: with comments, they were not read as such.
+    // Use a common length if there is one: comments prevent readUniformLists().
     const std::uint64_t length = count > 0 ? lists.offsets[1] : 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (lists.offsets[i + 1] - lists.offsets[i] != length) return;
@@ -193,8 +192,8 @@ class OvmTextReader {
     lists.length = static_cast<std::size_t>(length);
   }
 
-  /// Reads lists that are all as long as the first, in parallel, which comments prevent; false, and
-  /// nothing read, if they are not, or wrong.
+  /// Reads lists of equal length in parallel, unless there are comments. @return false, with
+  /// nothing read, if lengths differ or a list is invalid
   bool readUniformLists(OvmLists& lists, std::size_t count, const OvmElements& elements,
                         std::size_t limit) {
     if (hasComments_ || count == 0 || !scanner_.skipSpace()) return false;
@@ -202,7 +201,7 @@ class OvmTextReader {
     const std::uint32_t length = readValence(scanner_, elements, 0);
     scanner_.moveTo(begin);
     const std::size_t tokensEach = length + std::size_t{1};
-    // Also keeps memory in proportion to the file.
+    // Also keeps memory proportional to the file.
     if ((index_.count() - index_.countBefore(begin)) / tokensEach < count) return false;
     lists.length = length;
     lists.handles.resize(count * length);
@@ -225,13 +224,13 @@ class OvmTextReader {
     return true;
   }
 
-  /// Reads the properties that this library knows and skips all others.
+  /// Reads the supported properties and skips all others.
   void readProperties() {
     const std::size_t begin = scanner_.position();
-    scanner_ = TextScanner(text_, scanner_.fileName());  // here, '#' may be part of a text
+    scanner_ = TextScanner(text_, scanner_.fileName());  // here, '#' may be part of a string
     scanner_.moveTo(begin);
-    // Behind values that were skipped without knowing them, everything up to the next header
-    // belongs to them. Behind others, nothing does.
+    // Values of unknown types extend to the next property line. After other values, only property
+    // lines and comments may follow.
     bool anythingGoes = false;
     while (scanner_.skipSpace()) {
       const std::string_view first = scanner_.currentToken();
@@ -251,18 +250,17 @@ class OvmTextReader {
       if (values.integers != nullptr) readIntegers(*values.integers, *header);
       anythingGoes = values.points == nullptr && values.integers == nullptr;
       if (anythingGoes && equalsIgnoringCase(header->type, "string")) {
-        // Strings may contain whatever looks like the next header, but their lengths are known.
+        // Strings may look like a property line, but their lengths are known.
         skipStrings(mesh_.topology.count(header->entity));
         anythingGoes = false;
       }
     }
   }
 
-  /// Parameters of half-faces without a cell mean nothing, so not even finite numbers are demanded
-  /// here.
+  /// Reads the map. Parameters of half-faces without a cell have no meaning, so even NaN is
+  /// accepted here.
   void readParametrization(Array<Vec3>& values) {
-    // Every number takes two bytes, so that no count can ask for more memory than the file
-    // justifies.
+    // Every number takes at least two bytes, so memory stays proportional to the file.
     const std::size_t count = mesh_.topology.count(OvmEntity::HalfFace);
     if (count > text_.size() - scanner_.position()) {
       scanner_.fail(ErrorCode::FileSyntax,
@@ -332,9 +330,9 @@ OvmMesh parseOvmText(std::string_view text, const std::string& fileName, Stage& 
 
 namespace {
 
-// Writes `.ovm` files (see ovm_mesh.hpp).
+// Writes `.ovm` files.
 
-/// A number and what separates it from the next.
+/// A number and its separator.
 constexpr std::size_t kRoomPerNumber = kNumberRoom + 1;
 
 class OvmTextWriter {
@@ -420,7 +418,7 @@ using Convert = Result (*)(OvmMesh&& mesh, const std::string& fileName, Stage& s
 template <class Result>
 Result read(const Input& input, Stage& stage, Parse parse, Convert<Result> convert) {
   const auto parsed = [&] {
-    Array<char> room;  // given back before cells are made
+    Array<char> room;  // freed before cells are built
     // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
     return parse(input.text(room, stage, "OoVv#"), input.name(), stage);
   };

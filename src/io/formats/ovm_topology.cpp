@@ -1,6 +1,5 @@
 // Finds the edges and faces of tets and of hexahedra (see ovm_cells.hpp).
-// First, as its HalfFace and CornerOrder are names of entities and properties: adjacency has types
-// of these names, which they would shadow.
+// Included first: OvmEntity::HalfFace and OvmInteger::CornerOrder would shadow types of adjacency.
 // clang-format off
 #include <base/concat.hpp>
 #include <io/formats/ovm_cells.hpp>
@@ -39,7 +38,7 @@ constexpr std::size_t kOvmTopologyGrain = 2048;
 
 void requireCounts(std::size_t vertexCount, std::size_t cellCount, std::size_t facesPerCell) {
   requireOvmCount(kMaxOvmEntities, vertexCount, "vertices");
-  // The half-faces of all cells have 32-bit numbers.
+  // Half-faces are numbered with 32 bits.
   requireOvmCount((kNone - 1) / facesPerCell, cellCount, "cells");
 }
 
@@ -54,7 +53,7 @@ void requireDifferentVertices(std::span<const Cell> cells, Stage& stage) {
       Place{PlaceKind::Cell, fault});
 }
 
-/// Throws if this is a face of more than two cells, or of two that are not beside each other.
+/// Throws if a face has more than two cells, or two on the same side.
 template <class Cell>
 void requireManifold(std::span<const Cell> cells,
                      std::span<const adjacency::CellFace<Cell>> halfFaces) {
@@ -79,7 +78,7 @@ void requireManifold(std::span<const Cell> cells,
               place);
 }
 
-/// Finds out what is wrong with a mesh whose faces could not be matched.
+/// Throws the error of a mesh whose faces could not be matched.
 template <class Cell>
 [[noreturn]] void throwFaceFault(std::size_t vertexCount, std::span<const Cell> cells,
                                  Stage& stage) {
@@ -98,8 +97,8 @@ template <class Cell>
 
 using Edge = std::array<Index, 2>;
 
-/// The edges from a vertex to larger ones, in the order in which its tets have them.
-/// @param others  reused between calls
+/// Appends the edges from a vertex to larger ones, in the order in which its tets have them.
+/// @param others  scratch, reused between calls
 void appendEdges(const adjacency::TetTopology& tets, Index vertex, adjacency::KeyTable& others,
                  std::vector<Edge>& edges) {
   others.clear();
@@ -125,7 +124,7 @@ std::vector<Edge> listEdges(const adjacency::TetTopology& tets, Stage& stage) {
       });
 }
 
-/// The faces whose smallest vertex this is, as half-faces of the first tet that has them.
+/// Appends the faces with this smallest vertex, as half-faces of the first tet that has them.
 void appendFaces(const adjacency::TetTopology& tets, Index vertex,
                  std::vector<adjacency::HalfFace>& faces) {
   const auto addIfFirst = [&](adjacency::HalfFace halfFace) {
@@ -172,8 +171,8 @@ class TetFaceLister {
 
   void listFace(Index face, adjacency::HalfFace halfFace) {
     const adjacency::HalfFace mate = tets_.mate[halfFace];
-    // The corners of a cell begin with its first slot, so a reader finds them in their order if the
-    // face begins where that does.
+    // A reader derives a cell's corners from its first slot, so the face starts where that slot
+    // does in its owner.
     const bool mateOwns = mate != kNone && slotOf(mate) < slotOf(halfFace);
     const adjacency::HalfFace owner = mateOwns ? mate : halfFace;
     handleOf(owner) = 2 * face;
@@ -242,21 +241,21 @@ OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells
 
 namespace {
 
-// Edges and faces of hexahedra belong to one of their cells each: away from seams (HexMates), a
-// cell has the three edges and the three faces at its corner 0, so that a look at the neighbours
-// tells all that it shares with them. Edges along seams are listed by themselves.
+// Each edge and face of a hexahedron is owned by one of its cells. Away from seams (HexMates), a
+// cell owns the three edges and three faces at its corner 0, so that its neighbours determine all
+// elements that it shares. Edges along seams are listed separately.
 
 constexpr std::size_t kOvmHexTopologyGrain = 2048;
 /// The row of kHexFaces in each slot of kOvmHexFaces.
 constexpr std::array<std::uint8_t, 6> kFaceOfSlot = {4, 5, 2, 3, 1, 0};
 constexpr std::array<std::uint8_t, 6> kSlotOfFace = {5, 4, 2, 3, 0, 1};
 
-/// By corner: bit k if it is across from corner 0 along axis k.
+/// By corner: bit k is set if it is opposite corner 0 along axis k.
 constexpr std::array<std::uint8_t, 8> kSteps = {0, 1, 3, 2, 4, 5, 7, 6};
 
-/// What belongs to a cell, as bits: its edges at corner 0 by axis, and its faces by slot.
+/// The elements owned by a cell, as bits: edges at corner 0 by axis, faces by slot.
 struct Own {
-  Index firstEdge;  ///< number of the first of them
+  Index firstEdge;  ///< number of the first owned edge
   Index firstFace;
   std::uint8_t edges;
   std::uint8_t faces;
@@ -264,18 +263,18 @@ struct Own {
 constexpr std::uint8_t kAllEdges = 7;
 constexpr std::uint8_t kNearSlots = 1 | 4 | 32;
 
-/// Without a processor's instruction for it, std::popcount() would be a call.
+/// A table, since std::popcount() is a function call without a native instruction.
 constexpr auto kBitCounts = [] {
   std::array<std::uint8_t, 64> counts{};
   for (unsigned i = 0; i < 64; ++i) counts[i] = static_cast<std::uint8_t>(std::popcount(i));
   return counts;
 }();
 
-/// How many bits are set below bit i.
+/// The number of bits set below bit i.
 Index rankOf(unsigned bits, std::size_t i) { return kBitCounts[bits & ((1U << i) - 1)]; }
 
-/// Whether a half-face has the face rather than its mate: a cell begins with its first slot, and so
-/// does the face's loop; and faces at corner 0 have edges that are at hand.
+/// Whether a half-face owns its face rather than its mate: preferably in the first slot of its
+/// cell, where the cell's corners and the loop start; then at corner 0, whose edges are at hand.
 bool owns(Index halfFace, Index mate) {
   if (mate == kNone) return true;
   const auto rank = [](Index each) {
@@ -287,14 +286,14 @@ bool owns(Index halfFace, Index mate) {
 
 using Edge = std::array<Index, 2>;
 
-/// By edge of kHexEdges: one face and the other face that have it.
+/// By edge of kHexEdges: its two faces.
 constexpr std::array<std::array<std::uint8_t, 12>, 2> kFacesAtEdges = {
     {{2, 1, 3, 0, 2, 1, 3, 0, 0, 1, 0, 1}, {4, 4, 4, 4, 5, 5, 5, 5, 2, 2, 3, 3}}};
 
-/// The edges between vertices on seams, which cells cannot tell by themselves to be new.
+/// Lists the edges between vertices on seams, whose ownership cells cannot determine by themselves.
 Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
                           const adjacency::HexMates& mates, Stage& stage) {
-  // Of the cells at an edge, the first one lists it, and few others.
+  // The first cell at an edge lists it; rarely another one as well.
   const auto isFirst = [&mates](std::size_t cell, std::size_t edge) {
     return std::all_of(kFacesAtEdges.begin(), kFacesAtEdges.end(), [&](const auto& faces) {
       return mates.mates[6 * cell + faces[edge]] > 6 * cell;  // kNone is larger than all
@@ -344,11 +343,11 @@ class HexTopologyBuilder {
   }
 
  private:
-  /// Until cells are listed, their half-faces' places hold the mates of these.
+  /// The mates of a cell's half-faces, stored in place of its half-faces until listCells().
   [[nodiscard]] const Index* matesOf(std::size_t cell) const {
     return topology_.cells.handles.data() + 6 * cell;
   }
-  /// The neighbour across from corner 0.
+  /// The neighbour behind corner 0 along an axis.
   [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
     return matesOf(cell)[2 * axis + 1] / 6;
   }
@@ -357,7 +356,7 @@ class HexTopologyBuilder {
     return 2 * (own.firstEdge + rankOf(own.edges, axis));
   }
 
-  /// Without numbers.
+  /// The elements owned by a cell, not numbered yet.
   [[nodiscard]] Own ownOf(std::size_t cell) const {
     const unsigned seams = seamCorners_[cell];
     if (seams == 0) return {0, 0, kAllEdges, kNearSlots};
@@ -417,8 +416,10 @@ class HexTopologyBuilder {
     return ownHalfEdge(owner, along / 2) + ((kSteps[from] & along) != 0 ? 1U : 0U);
   }
 
-  /// @return whether all cells have different vertices: asked here, where memory keeps processors
-  /// waiting anyway. With a loop of its own, conversions of large meshes take 5 % longer.
+  /// Lists the half-edges of faces.
+  /// @return whether the vertices of every cell are distinct. Checked here, while the loop waits
+  /// for
+  ///         memory; a separate loop makes conversions of large meshes 5 % slower.
   [[nodiscard]] bool listFaces() {
     const auto list = [this](std::size_t c) {
       Index* const halfEdges = topology_.faces.handles.data() + 4 * std::size_t{own_[c].firstFace};
@@ -428,10 +429,10 @@ class HexTopologyBuilder {
     return firstFault(stage_, cells_.size(), list) == cells_.size();
   }
 
-  /// The faces of a cell that is on no seam, in order.
+  /// Lists the faces owned by a cell that touches no seam.
   void listNearFaces(std::size_t cell, Index* halfEdges) const {
     const std::array<std::size_t, 3> next = {behind(cell, 0), behind(cell, 1), behind(cell, 2)};
-    // As kOvmHexFaces passes corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
+    // As kOvmHexFaces traverses corners 0, 1, 2, 3; 0, 4, 5, 1; and 0, 3, 7, 4.
     for (const std::size_t axis : {2U, 1U, 0U}) {
       const std::size_t a = (axis + 1) % 3;
       const std::size_t b = (axis + 2) % 3;
@@ -442,7 +443,7 @@ class HexTopologyBuilder {
     }
   }
 
-  /// The same of any cell.
+  /// The same for any cell.
   void listOwnFaces(std::size_t cell, Index* halfEdges) const {
     for (std::size_t slot = 0; slot < 6; ++slot) {
       if ((own_[cell].faces >> slot & 1U) == 0) continue;
@@ -460,7 +461,7 @@ class HexTopologyBuilder {
     };
     parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain, [&](std::size_t c) {
       Index* const handles = topology_.cells.handles.data() + 6 * c;
-      std::array<Index, 6> mates;  // NOLINT(*-member-init): all of it is set
+      std::array<Index, 6> mates;  // NOLINT(*-member-init): fully overwritten
       std::copy_n(handles, 6, mates.begin());
       for (std::size_t slot = 0; slot < 6; ++slot) {
         const Index mate = mates[kFaceOfSlot[slot]];

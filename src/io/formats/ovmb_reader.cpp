@@ -1,4 +1,4 @@
-// `.ovmb` files: a header, and the chunks behind it, which hold vertices, edges, faces, cells and
+// Reads `.ovmb` files: a header followed by chunks with vertices, edges, faces, cells and
 // properties.
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ struct OvmbChunk {
   std::string_view payload;  ///< without padding
 };
 
-/// A file that was cut into its pieces; refers to the bytes.
+/// A file split into chunks; refers to its bytes.
 struct OvmbFrame {
   std::string_view bytes;
   const std::string& fileName;
@@ -40,7 +40,7 @@ struct OvmbFrame {
   [[nodiscard]] ByteCursor cursor(std::string_view part) const { return {part, bytes, fileName}; }
 };
 
-/// A range of elements, as VERT, TOPO and PROP chunks begin with.
+/// The range of elements at the head of VERT, TOPO and PROP chunks.
 struct OvmbSpan {
   std::uint64_t first = 0;
   std::uint64_t count = 0;
@@ -52,8 +52,8 @@ OvmbSpan readOvmbSpan(ByteCursor& cursor) {
   return span;
 }
 
-/// Decodes points that are stored as three floats or doubles each.
-/// @return the first that is not finite, or their number
+/// Decodes points stored as three floats or doubles each.
+/// @return the first point that is not finite, or their number
 template <class Stored>
 std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& stage) {
   return firstFault(
@@ -67,19 +67,19 @@ std::size_t decodeOvmbPoints(const char* data, std::span<Vec3> points, Stage& st
       std::size_t{1} << 14);
 }
 
-// Vertices, edges, faces and cells of an `.ovmb` file.
+// Elements.
 
-// Numbers of the four kinds of elements, in file headers and TOPO chunks.
+// Codes of elements in file headers and TOPO chunks.
 constexpr std::size_t kEdges = 1;
 constexpr std::size_t kFaces = 2;
 constexpr std::size_t kCells = 3;
 
-/// "an edge"
+/// The singular with its article: "an edge".
 std::string anyOf(std::size_t entity) {
   return concat((entity == kEdges ? "an " : "a "), kOvmElements[entity].one);
 }
 
-/// Calls f with a number of the width that a file has.
+/// Calls f with an unsigned integer of the width stored in the file.
 template <class F>
 void withWidth(std::uint8_t bytes, const F& f) {
   if (bytes == 1) f(std::uint8_t{});
@@ -87,7 +87,7 @@ void withWidth(std::uint8_t bytes, const F& f) {
   if (bytes == 4) f(std::uint32_t{});
 }
 
-/// Adds the elements of one chunk after the other to a mesh.
+/// Appends the elements of successive chunks to a mesh.
 class ElementReader {
  public:
   ElementReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
@@ -144,7 +144,7 @@ class ElementReader {
   }
 
  private:
-  /// Spans of one kind of element follow each other without gaps.
+  /// Reads a span; those of one kind of element must be contiguous.
   OvmbSpan readNextSpan(ByteCursor& cursor, std::size_t entity) {
     const std::size_t position = cursor.position();
     const OvmbSpan span = readOvmbSpan(cursor);
@@ -191,7 +191,7 @@ class ElementReader {
                   "handles 1, 2 or 4.");
   }
 
-  /// @return room for the handles, of which the rest of the chunk has as many, as below
+  /// @return memory for the handles that make up the rest of the chunk; also for the next functions
   std::span<Index> readEdges(const ByteCursor& cursor, std::size_t count) {
     if (encoding_.valence != 2) {
       cursor.fail(ErrorCode::FileSyntax, "edges must have the valence 2, found ", encoding_.valence,
@@ -202,7 +202,7 @@ class ElementReader {
     }
     Array<std::array<Index, 2>>& edges = mesh_.topology.edges;
     edges.resize(edges.size() + count);
-    // Pairs of numbers are numbers one after the other.
+    // Arrays of pairs are contiguous numbers.
     return {reinterpret_cast<Index*>(edges.data() + edges.size() - count), 2 * count};
   }
 
@@ -245,7 +245,7 @@ class ElementReader {
                   " has the valence ", valences_[fault], "; at least ", least, " is needed.");
   }
 
-  /// Appends lists with so many handles in total, and returns the room for them.
+  /// Appends lists with this total number of handles, and returns memory for these.
   std::span<Index> appendLists(OvmLists& lists, std::size_t count, std::size_t handles) const {
     const bool uniform =
         encoding_.valence > 0 || std::adjacent_find(valences_.begin(), valences_.end(),
@@ -253,7 +253,7 @@ class ElementReader {
     const std::size_t length = uniform ? handles / count : 0;
     const std::size_t before = lists.size();
     if (before == 0) lists.length = length;
-    if (length == 0 || lists.length != length) {  // from now on, lists have lengths of their own
+    if (length == 0 || lists.length != length) {  // from here on, store the length of each list
       if (lists.offsets.empty()) {
         for (std::size_t i = 0; i <= before; ++i) lists.offsets.push_back(i * lists.length);
         lists.length = 0;
@@ -280,8 +280,8 @@ class ElementReader {
     parallelBlocks(stage_, handles.size(), kGrain,
                    [&, decoded = handles.data(), added = static_cast<Index>(offset)](
                        std::size_t first, std::size_t end, std::size_t /*block*/) {
-                     // Only the largest is compared, so that compilers decode several at once:
-                     // else, reading a hex mesh takes a fifth longer.
+                     // Compare only the largest handle, so that the loop is vectorized; otherwise
+                     // reading a hex mesh takes 20 % longer.
                      Stored largest = 0;
                      for (std::size_t i = first; i < end; ++i) {
                        const Stored stored = storedAt(i);
@@ -305,7 +305,7 @@ class ElementReader {
   OvmMesh& mesh_;
   Stage& stage_;
   std::array<std::uint64_t, 4> done_{};
-  // Of the chunk that is being read, the second half of its header:
+  // The second half of the current chunk's header.
   struct {
     std::uint8_t valence = 0;       ///< 0: varies
     std::uint8_t valenceBytes = 0;  ///< if it varies
@@ -315,8 +315,8 @@ class ElementReader {
   Array<std::uint32_t> valences_;  ///< if they vary
 };
 
-/// Decodes all VERT and TOPO chunks: any encoding of numbers, handles and valences, any number of
-/// spans. Handles are in range afterwards; nothing else about the topology is checked.
+/// Decodes all VERT and TOPO chunks, with any encoding of numbers, handles and valences, and any
+/// number of spans. Handles are checked to be in range; the topology is not checked otherwise.
 /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite
 void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage) {
   ElementReader reader(frame, mesh, stage);
@@ -328,11 +328,11 @@ void readOvmbElements(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage) {
   mesh.topology.vertexCount = mesh.points.size();
 }
 
-// Cuts an `.ovmb` file into its chunks, and decodes its properties.
+// Chunks and properties.
 
 constexpr std::uint8_t kMandatory = 1;
 
-/// What stands before the body of a chunk.
+/// The header of a chunk.
 struct ChunkHeader {
   std::size_t position = 0;  ///< in the file
   std::string_view type;     ///< four characters
@@ -356,7 +356,7 @@ void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
   const auto require = [&cursor](bool condition, ErrorCode code, const std::string& sentence) {
     if (!condition) cursor.failAt(cursor.position() - 1, code, sentence);
   };
-  // The version of the file is not checked: chunks have versions of their own.
+  // The version of the file is not checked: chunks have their own versions.
   static_cast<void>(readByte("the version of the file"));
   const unsigned version = readByte("the version of the header");
   require(version == 1, ErrorCode::FileUnsupported,
@@ -364,7 +364,7 @@ void readFileHeader(OvmbFrame& frame, ByteCursor& cursor) {
   const unsigned dimension = readByte("the dimension");
   require(dimension == 3, ErrorCode::FileUnsupported,
           concat("the dimension must be 3, found ", dimension, "."));
-  // Valences decide what the cells are; this is but a hint.
+  // Only a hint: valences determine the kind of cells.
   const unsigned kind = readByte("the kind of the mesh");
   require(kind <= 2, ErrorCode::FileSyntax,
           concat("the kind of the mesh must be 0, 1 or 2, found ", kind, "."));
@@ -410,7 +410,7 @@ std::string_view takePayload(const ChunkHeader& header, ByteCursor& cursor) {
   return payload;
 }
 
-/// Whether a chunk is of a kind that this library knows; if not, it has to be optional.
+/// Whether this library supports a chunk; throws if it does not but the chunk is mandatory.
 bool isKnown(const ChunkHeader& header, const ByteCursor& cursor) {
   constexpr std::array<std::string_view, 5> kTypes = {"VERT", "TOPO", "DIRP", "PROP", "EOF "};
   const bool known = std::find(kTypes.begin(), kTypes.end(), header.type) != kTypes.end() &&
@@ -454,7 +454,7 @@ OvmbFrame splitOvmb(std::string_view bytes, const std::string& fileName) {
 
 constexpr std::string_view kBits = "b";
 
-/// Calls f with a number of an integer type.
+/// Calls f with a number of the named integer type.
 /// @return whether there is such a type
 template <class F>
 bool withIntegerType(std::string_view type, const F& f) {
@@ -478,7 +478,7 @@ bool withPointType(std::string_view type, const F& f) {
   return type == "3d" || type == "3f";
 }
 
-/// One entry of the directory.
+/// An entry of the property directory.
 struct Entry {
   OvmEntity entity = OvmEntity::Vertex;
   std::string_view name;
@@ -505,7 +505,7 @@ Entry readEntry(ByteCursor& cursor) {
   return entry;
 }
 
-/// What is decoded, for messages.
+/// What is being decoded, for messages.
 struct Subject {
   const char* name;
   const char* verb;
@@ -513,7 +513,7 @@ struct Subject {
 constexpr Subject kDefault = {"the default value", "has"};
 constexpr Subject kValues = {"the values", "have"};
 
-/// All that remains behind a cursor, which must have this size.
+/// Returns the bytes after the cursor, which must be this many.
 const char* takeAll(std::uint64_t bytes, const Entry& entry, const Subject& subject,
                     ByteCursor& cursor) {
   if (cursor.remaining() != bytes) {
@@ -523,9 +523,9 @@ const char* takeAll(std::uint64_t bytes, const Entry& entry, const Subject& subj
   return cursor.take(bytes, subject.name).data();
 }
 
-/// Decodes the properties that this library knows, by entity, name and type; the map may be of
-/// doubles or floats, integers of any width, or bits. All others are skipped, after a check of
-/// their place in the file. Elements outside of all spans have the default value.
+/// Decodes the supported properties, found by entity, name and type; the map may use doubles or
+/// floats, integers of any width, or bits. Others are skipped once their position in the file is
+/// checked. Elements outside all spans get the default value.
 class PropertyReader {
  public:
   PropertyReader(const OvmbFrame& frame, OvmMesh& mesh, Stage& stage)
@@ -589,7 +589,7 @@ class PropertyReader {
               ByteCursor& cursor) {
     withPointType(entry.type, [&]<class Stored>(Stored /*coordinate*/) {
       const char* const data = takeAll(values.size() * 3 * sizeof(Stored), entry, subject, cursor);
-      // Half-faces without a cell may have any numbers.
+      // Half-faces without a cell may have any values, even NaN.
       decodeOvmbPoints<Stored>(data, values, stage_);
     });
   }
@@ -597,7 +597,7 @@ class PropertyReader {
   void decode(const Entry& entry, std::span<std::int32_t> values, const Subject& subject,
               ByteCursor& cursor) {
     const std::size_t begin = cursor.position();
-    if (entry.type == kBits) {  // eight elements per byte, from the lowest bit on
+    if (entry.type == kBits) {  // eight elements per byte, lowest bit first
       const char* const data = takeAll((values.size() + 7) / 8, entry, subject, cursor);
       for (std::size_t i = 0; i < values.size(); ++i) {
         values[i] = static_cast<unsigned char>(data[i / 8]) >> (i % 8) & 1;

@@ -12,10 +12,10 @@ namespace hexhex::io {
 
 namespace {
 
-// Elements written between two checks for cancellation: a few milliseconds' work.
+// Elements written between checks for cancellation: a few milliseconds of work.
 constexpr std::size_t kSlice = std::size_t{1} << 18;
 
-/// A type of values, as the directory has it.
+/// The type of values in the property directory.
 struct ElementType {
   std::string_view name;
   std::size_t bytes;
@@ -26,7 +26,7 @@ ElementType typeOf(const OvmProperty& property) {
   return kTypes[property.values.index()];
 }
 
-/// Arrays of numbers, one after the other.
+/// Views arrays of numbers as one range.
 template <class Number, std::size_t n>
 std::span<const Number> flat(std::span<const std::array<Number, n>> arrays) {
   return {reinterpret_cast<const Number*>(arrays.data()), n * arrays.size()};
@@ -76,7 +76,7 @@ class OvmbWriter {
     put(static_cast<std::uint32_t>(count));
   }
 
-  /// Numbers one after the other, as Stored.
+  /// Writes numbers converted to Stored.
   template <class Stored, class T>
   void putArray(std::span<const T> values) {
     constexpr bool kAsInMemory =
@@ -93,7 +93,7 @@ class OvmbWriter {
     }
   }
 
-  /// @param payload  the bytes that body() puts
+  /// @param payload  the number of bytes that body() writes
   template <class Body>
   void writeChunk(std::string_view type, std::uint64_t payload, const Body& body) {
     const std::uint64_t padding = (8 - payload % 8) % 8;
@@ -147,14 +147,14 @@ class OvmbWriter {
     progress_.advance(mesh_.points.size());
   }
 
-  /// @param offsets     of lists of different valences, at most 255; else empty
-  /// @param referenced  what the handles name
+  /// @param offsets     of lists with different valences, which are at most 255; otherwise empty
+  /// @param referenced  the kind of elements that handles refer to
   void writeTopology(OvmEntity entity, std::size_t valence, std::span<const std::uint64_t> offsets,
                      std::span<const Index> handles, OvmEntity referenced) {
     constexpr std::size_t kHeaderBytes = 24;
     const std::size_t count = topology_.count(entity);
     if (count == 0) return;
-    // As OpenVolumeMesh does: for their number, not for the largest of them.
+    // Like OpenVolumeMesh, choose the width by the number of elements, not by the largest handle.
     const std::size_t limit = topology_.count(referenced);
     const bool wide = mesh_.hasWideHandles || limit > std::numeric_limits<std::uint16_t>::max();
     const bool narrow = !wide && limit <= std::numeric_limits<std::uint8_t>::max();

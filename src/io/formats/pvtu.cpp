@@ -1,4 +1,4 @@
-// `.pvtu` files: writes one and its pieces; and glues pieces of data sets by the global numbers of
+// Writes `.pvtu` files with their pieces; and joins pieces of data sets by the global numbers of
 // their vertices and cells, or by positions.
 #include <algorithm>
 #include <bit>
@@ -22,7 +22,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// As the value of an attribute.
+/// Escapes a text for use in an attribute.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -74,7 +74,7 @@ class PvtuSink final : public PartSink {
 
   void end() override {
     Stage stage(context_, "write mesh");
-    barrier(team_);  // all pieces are written
+    barrier(team_);  // wait until all pieces are written
     if (index_) nameAll(*index_);
     barrier(team_);
   }
@@ -97,7 +97,7 @@ class PvtuSink final : public PartSink {
     }
   }
 
-  /// The part that all pieces share.
+  /// The header of the `.pvtu` file, which declares the arrays of all pieces.
   [[nodiscard]] std::string headOf(const VtkDataSet& data) const {
     const bool little = std::endian::native == std::endian::little;
     std::string head =
@@ -130,7 +130,7 @@ class PvtuSink final : public PartSink {
   std::string stem_;
   Context& context_;
   ProcessTeam* team_;
-  std::optional<OutputFile> index_;  ///< of the first process
+  std::optional<OutputFile> index_;  ///< first process only
   PartFolder folder_;
   PartsInfo info_;
   std::string head_;
@@ -145,7 +145,7 @@ std::unique_ptr<PartSink> openPvtuSink(const std::filesystem::path& file, Contex
 
 namespace {
 
-// Glues the pieces of a data set.
+// Joining pieces.
 
 std::string unescaped(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNames = {
@@ -160,8 +160,8 @@ std::string unescaped(std::string_view text) {
   return result;
 }
 
-/// Whoever wrote the file chose what is opened: no pipes and devices, which may never end, and no
-/// file twice, so that all pieces together are no larger than what is on the disk.
+/// Guards against paths chosen by the author of the file: refuses pipes and devices, which may
+/// never end, and repeated files, so that all pieces are no larger than the files on disk.
 void requireFiles(const Input& input, const std::vector<std::filesystem::path>& pieces) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& piece : pieces) {
@@ -207,15 +207,15 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
   return pieces;
 }
 
-/// A piece with the global numbers of its points and hexahedra, if it has both.
+/// A piece, with the global numbers of its points and hexahedra if it has both.
 struct Piece {
   HexMesh mesh;
   Array<std::int64_t> points;
   Array<std::int64_t> cells;
-  Array<std::int64_t> marks;  ///< of cells, as of vtkGhostType; empty: all are 0
+  Array<std::int64_t> marks;  ///< vtkGhostType of cells; empty: all 0
 };
 
-/// The numbers of an array; none if there is no such one.
+/// The numbers of an array; empty if there is no such array.
 Array<std::int64_t> readNumbers(const VtkSource& source, VtkSection section,
                                 std::string_view name) {
   Array<std::int64_t> numbers;
@@ -241,9 +241,9 @@ Piece readPiece(const VtkSource& source, Stage& stage) {
   return piece;
 }
 
-/// Makes one mesh of pieces. Where all tell the global numbers of their points and cells, these are
-/// the numbers in the mesh; elsewhere, points at the same position are one, and cells that are
-/// marked as another piece's are left out.
+/// Joins pieces into one mesh. If all pieces have global numbers of points and cells, these number
+/// the mesh; otherwise points at the same position are merged, and cells marked as duplicates are
+/// dropped.
 class Gluer {
  public:
   explicit Gluer(std::string name) : name_(std::move(name)) {}
@@ -261,8 +261,8 @@ class Gluer {
                   "up to this piece there are more points than are supported.");
     }
     firstPoints_.push_back(points_.size());
-    // Numbers are not trusted before all pieces are known: of so many points and cells, none can
-    // have a larger one.
+    // Numbers are checked only once all pieces are known: none may exceed the total number of
+    // points or cells.
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
       points_.push_back({numberAt(source, piece.points, v, "point"), mesh.points[v],
                          generators ? mesh.generatorTet[v] : kNone,
@@ -302,7 +302,7 @@ class Gluer {
   }
 
  private:
-  /// Until nameAll(), corners are by points of all pieces, one after the other.
+  /// Until nameAll(), corners index the concatenated points of all pieces.
   struct Point {
     std::uint64_t number;
     Vec3 position;
@@ -327,7 +327,7 @@ class Gluer {
                 "; numbers from 0 to 2^32 - 2 are read.");
   }
 
-  /// From points of the last piece to those of all.
+  /// Converts indices within the last piece to indices of concatenated points.
   template <class Vertices>
   void shift(Vertices& vertices) const {
     for (Index& v : vertices) v += static_cast<Index>(firstPoints_.back());
@@ -378,7 +378,7 @@ class Gluer {
     cells_.resize(kept);
   }
 
-  /// Corners become the numbers of their points.
+  /// Replaces corners by the numbers of their points.
   void nameAll() {
     const auto name = [this](Index& v) { v = static_cast<Index>(points_[v].number); };
     const auto nameIn = [&](auto& elements) {
@@ -391,7 +391,7 @@ class Gluer {
     nameIn(features_.quads);
   }
 
-  /// Sorts by number. Elements with the same number must be equal, and no number is missing.
+  /// Sorts by number. Elements with equal numbers must agree, and no number may be missing.
   template <class Element>
   void keepOnce(std::vector<Element>& elements, const char* what) const {
     std::stable_sort(elements.begin(), elements.end(),
@@ -426,7 +426,7 @@ class Gluer {
   }
 
   std::string name_;
-  std::vector<std::size_t> firstPoints_;  ///< of each piece
+  std::vector<std::size_t> firstPoints_;  ///< per piece
   std::vector<Point> points_;
   std::vector<Cell> cells_;
   std::vector<bool> isGhost_;
@@ -450,7 +450,7 @@ GluedMesh readVtkPieces(const std::string& name, std::size_t count, const OpenVt
 
 HexMesh readPvtu(const Input& input, Stage& stage) {
   const std::vector<std::filesystem::path> files = findPieces(input, stage);
-  std::optional<Input> piece;  // outlives its source
+  std::optional<Input> piece;  // must outlive its source
   const auto open = [&](std::size_t i) {
     piece.emplace(files[i]);
     return openVtuFile(*piece, stage);

@@ -1,4 +1,4 @@
-// TetGen's `.node` and `.ele` files (see formats.hpp): two texts, of points and of tets.
+// Reads TetGen's `.node`, `.ele` and `.face` files (see formats.hpp).
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,15 +19,15 @@ namespace hexhex::io {
 
 namespace {
 
-/// The first line of a file, and its rows: each has its number, and then as many tokens.
+/// The header line of a file and its rows; each row has its number and a fixed number of tokens.
 class TetgenRows {
  public:
   TetgenRows(std::string_view text, const std::string& name)
       : scanner_(text, name, TextScanner::Comments::Hash) {}
 
-  /// @param what  the rows hold
-  /// @param width       how many numbers each row has first
-  /// @param tellsWidth  whether the line says that, too
+  /// @param what        name of the rows
+  /// @param width       how many numbers each row starts with
+  /// @param tellsWidth  whether the header line gives this width
   std::size_t readHead(std::string_view what, std::size_t width, bool tellsWidth = true) {
     static_cast<void>(scanner_.peekToken());
     const std::size_t tokens = scanner_.countTokensOnLine();
@@ -35,7 +35,7 @@ class TetgenRows {
     count_ = scanner_.readCount(what, 2);
     width_ = width;
     if (tellsWidth && tokens > 1) width_ = scanner_.readCount("numbers of a row", 1);
-    // How many other numbers follow: attributes and a mark of the boundary.
+    // Numbers of attributes and boundary markers.
     for (std::size_t i = before; i < tokens; ++i) more_ += scanner_.readCount("further numbers", 1);
     return count_;
   }
@@ -43,7 +43,7 @@ class TetgenRows {
   [[nodiscard]] std::size_t width() const noexcept { return width_; }
   [[nodiscard]] TextScanner& scanner() noexcept { return scanner_; }
 
-  /// Calls read(i) for each row, behind its number.
+  /// Calls read(i) for each row, after its number.
   template <class Read>
   void readRows(Stage& stage, const Read& read) {
     LoopProgress progress(stage, count_);
@@ -64,12 +64,12 @@ class TetgenRows {
     if (!areTags_ || saysNothing) tags_.clear();
   }
 
-  /// The first of the further numbers of each row, if all are whole and tell rows apart: -1, 0 or 1
-  /// everywhere is what TetGen marks by itself.
+  /// The first of the remaining numbers of each row as tags, if all are integers; empty if all are
+  /// equal to one of -1, 0 and 1, which TetGen sets by default.
   [[nodiscard]] const Array<std::int32_t>& tags() const noexcept { return tags_; }
 
-  /// The index of a point that is named next.
-  /// @param what  is made of it
+  /// Reads the index of a point.
+  /// @param what  the element that refers to it
   Index readVertex(const TetgenRows& points, std::string_view what, std::size_t i) {
     const std::int64_t number = scanner_.integer({"a vertex of ", what, i});
     const std::int64_t index = number - points.first_;

@@ -1,5 +1,5 @@
-// `.unv` files (see formats.hpp): data sets between lines of "-1", each with a number that says
-// what its records are.
+// Reads `.unv` files (see formats.hpp): data sets between lines of "-1", each with a number that
+// determines its records.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -22,15 +22,15 @@ namespace hexhex::io {
 
 namespace {
 
-/// What the numbers of an element's type ("FE descriptor") mean.
+/// Kinds of elements by type number ("FE descriptor").
 enum class UnvKind : std::uint8_t { Other, Line, Triangle, Quad, Volume };
 
 struct UnvType {
   UnvKind kind = UnvKind::Other;
-  const VolumeCells* cells = nullptr;  ///< of volumes; null if they are not known
+  const VolumeCells* cells = nullptr;  ///< of volumes; null if the type is not supported
 };
 
-/// Rods and beams, whose elements have a record more.
+/// Whether an element is a rod or beam, which has an extra record.
 bool isBeam(std::int64_t type) { return type == 11 || (type >= 21 && type <= 24); }
 
 UnvType unvType(std::int64_t type, std::size_t nodes) {
@@ -59,7 +59,7 @@ UnvType unvType(std::int64_t type, std::size_t nodes) {
   return {};
 }
 
-/// Hexahedra with 20 nodes list those of edges between the corners.
+/// Hexahedra with 20 nodes list midpoints of edges between the corners.
 constexpr std::array<std::size_t, 20> kNodesInVtkOrder = {0, 2, 4,  6,  12, 14, 16, 18, 1,  3,
                                                           5, 7, 13, 15, 17, 19, 8,  9,  10, 11};
 
@@ -79,7 +79,7 @@ class UnvReader {
   }
 
  private:
-  /// An edge or a quad that may get a tag.
+  /// An edge or a face that may be tagged.
   template <std::size_t n>
   struct Flat {
     std::uint64_t number;
@@ -89,9 +89,9 @@ class UnvReader {
   void requireMark(const char* what) {
     if (scanner_->readToken() != "-1") scanner_->failToken(what);
   }
-  /// Whether a data set ends here, or the file.
+  /// Whether the data set or the file ends here.
   bool isEnd() { return scanner_->peekToken() == "-1" || scanner_->peekToken().empty(); }
-  /// Whether it is known that there are curved cells, if that is all that is asked for.
+  /// Whether curved cells were found and nothing else is requested.
   [[nodiscard]] bool isFound() const { return parts_ == ElementParts::Types && areCurved(lists_); }
 
   void readDataSet() {
@@ -113,7 +113,7 @@ class UnvReader {
     requireMark("\"-1\", with which a data set ends");
   }
 
-  /// Text lines may hold a "-1", too, but not alone.
+  /// Skips to a line with "-1" only; lines of text may contain "-1" as well.
   void skipDataSet() {
     while (scanner_->skipSpace()) {
       const std::size_t begin = scanner_->position();
@@ -134,7 +134,7 @@ class UnvReader {
 
   void readNode() {
     nodeNumbers_.push_back(number("the number of a node"));
-    skipNumbers(3);  // coordinate systems and a color
+    skipNumbers(3);  // coordinate systems and a colour
     Vec3& point = lists_.points.emplace_back();
     for (double& coordinate : point) coordinate = scanner_->number("a coordinate of a node");
   }
@@ -142,7 +142,7 @@ class UnvReader {
   void readElement() {
     const std::uint64_t element = number("the number of an element");
     const std::int64_t typeNumber = scanner_->integer("the type of an element");
-    skipNumbers(3);  // tables of properties and a color
+    skipNumbers(3);  // tables of properties and a colour
     const std::uint64_t count = number("the number of nodes of an element");
     if (isBeam(typeNumber)) skipNumbers(3);
     constexpr std::uint64_t kMost = 64;
@@ -151,7 +151,7 @@ class UnvReader {
                      " nodes; no element of this format has more than 64.");
     }
     const UnvType type = unvType(typeNumber, count);
-    // In which order other programs list 27 nodes is their own affair.
+    // Other programs do not agree on the order of 27 nodes.
     if (type.kind == UnvKind::Volume &&
         (type.cells == nullptr || count > kNodesInVtkOrder.size())) {
       scanner_->fail(ErrorCode::FileUnsupported, "elements of the type ", typeNumber, " with ",
@@ -169,7 +169,7 @@ class UnvReader {
     if (type.kind == UnvKind::Line && nodes.size() >= 2) {
       edges_.push_back({element, {nodes.front(), nodes.back()}});
     } else if (type.kind == UnvKind::Triangle) {
-      const std::size_t step = nodes.size() / 3;  // nodes of edges stand between the corners
+      const std::size_t step = nodes.size() / 3;  // edge midpoints are listed between the corners
       triangles_.push_back({element, {nodes[0], nodes[step], nodes[2 * step]}});
     } else if (type.kind == UnvKind::Quad) {
       const std::size_t step = nodes.size() / 4;
@@ -184,7 +184,7 @@ class UnvReader {
     }
   }
 
-  /// The index of the block of such elements.
+  /// The index of the block for such elements.
   std::size_t blockOf(const VolumeCells& cells, std::size_t nodes) {
     std::size_t b = 0;
     while (b < lists_.blocks.size() && lists_.blocks[b].type != &cells) ++b;
@@ -221,7 +221,7 @@ class UnvReader {
     lists_.nodeSets.push_back(std::move(nodes));
   }
 
-  /// Numbers become nodes; groups become tags.
+  /// Resolves node numbers, and turns groups into tags.
   void finish() {
     if (nodeNumbers_.empty()) {
       throw Error(ErrorCode::FileUnsupported,
@@ -237,7 +237,7 @@ class UnvReader {
     addFlat(edges_, nodes, lists_.lines);
     addFlat(triangles_, nodes, lists_.triangles);
     addFlat(quads_, nodes, lists_.quads);
-    std::vector<TagName> names;  // a group may have elements of several kinds
+    std::vector<TagName> names;  // a group may contain elements of several kinds
     for (const NodeSet& group : lists_.nodeSets) {
       for (const int dimension : {1, 2, 3}) names.push_back({dimension, group.number, group.name});
     }
@@ -272,8 +272,8 @@ class UnvReader {
   std::optional<TextScanner> scanner_;
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
-  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block, by their numbers
-  std::vector<std::vector<std::uint64_t>> nodeSets_;    ///< per group, by their numbers
+  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block: node numbers
+  std::vector<std::vector<std::uint64_t>> nodeSets_;    ///< per group: node numbers
   std::vector<Flat<2>> edges_;
   std::vector<Flat<3>> triangles_;
   std::vector<Flat<4>> quads_;

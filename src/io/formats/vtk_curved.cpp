@@ -1,4 +1,4 @@
-// Lagrange cells in `.vtu` files, and hexahedra with 20 and 27 nodes in files of VTK.
+// Lagrange cells in `.vtu` files, and hexahedra with 20 and 27 nodes in all VTK files.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// Lagrange hexahedra with so many nodes.
+/// Lagrange hexahedra with this number of nodes.
 CellKind lagrangeCells(std::size_t nodes) {
   return {.corners = nodes,
           .singular = "Lagrange hexahedron",
@@ -29,8 +29,8 @@ CellKind lagrangeCells(std::size_t nodes) {
           .vtkType = kVtkLagrangeHexahedron};
 }
 
-/// Cells of order 2 that have types of their own; the nodes of the second kind are in the order of
-/// Lagrange cells, and the first kind lacks the last 7.
+/// Order-2 cells with types of their own. The first lacks the last 7 nodes of the second, whose
+/// nodes are in the order of Lagrange cells.
 constexpr std::array<CellKind, 2> kQuadratic = {{{.corners = 20,
                                                   .singular = "hexahedron with 20 nodes",
                                                   .plural = "hexahedra with 20 nodes",
@@ -44,7 +44,7 @@ std::size_t countCells(const VtkSource& source, const CellKind& kind) {
   return countVtkCells(source, kind, 0, source.cells);
 }
 
-/// The kind of such cells that a file without straight hexahedra has; null if there is none.
+/// The kind of order-2 cells in a file without straight hexahedra; null if there are none.
 const CellKind* quadraticKind(const VtkSource& source) {
   if (countCells(source, kCellKind<8>) > 0) return nullptr;
   for (const CellKind& kind : kQuadratic) {
@@ -53,7 +53,7 @@ const CellKind* quadraticKind(const VtkSource& source) {
   return nullptr;
 }
 
-/// The order of cells with (p + 1)^3 nodes; 0 if no p from 1 to 9 has as many.
+/// The order of cells with (p + 1)^3 nodes; 0 if there is no such p from 1 to 9.
 int orderOf(std::uint64_t nodes) {
   for (int order = 1; order <= kMaxOrder; ++order) {
     const auto n = static_cast<std::uint64_t>(order) + 1;
@@ -62,7 +62,7 @@ int orderOf(std::uint64_t nodes) {
   return 0;
 }
 
-/// The order of the cells, which must be the same for all.
+/// The order of the cells, which must be equal for all.
 int findOrder(const VtkSource& source) {
   Array<std::int64_t> types(source.cells);
   Array<std::int64_t> ends(source.cells);
@@ -72,7 +72,7 @@ int findOrder(const VtkSource& source) {
   for (std::size_t c = 0; c < types.size(); ++c) {
     if (types[c] != kVtkLagrangeHexahedron) continue;
     const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
-    // Corners that end before they begin, or too late, are reported by the reader of cells.
+    // The reader of cells reports invalid ends.
     const auto stored = static_cast<std::int64_t>(source.connectivity.count);
     if (begin < 0 || ends[c] < begin || ends[c] > stored) break;
     const std::int64_t count = ends[c] - begin;
@@ -89,7 +89,7 @@ int findOrder(const VtkSource& source) {
   return nodes == 0 ? 1 : orderOf(static_cast<std::uint64_t>(nodes));
 }
 
-/// From VTK's order to that of LagrangeMesh.
+/// Converts nodes from VTK's order to that of LagrangeMesh.
 void reorderNodes(LagrangeMesh& mesh, VtkEdges upright, Stage& stage) {
   constexpr std::size_t kGrain = std::size_t{1} << 10;
   const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order, upright);
@@ -104,7 +104,7 @@ void reorderNodes(LagrangeMesh& mesh, VtkEdges upright, Stage& stage) {
                  });
 }
 
-/// Renumbers tags of corners; others are no part of the straight mesh.
+/// Renumbers tags of corners; drops others, which are not in the straight mesh.
 void renumberFeatures(const std::vector<bool>& isCorner, const Array<Index>& newNumber,
                       HexFeatures& features) {
   const auto isNoCorner = [&isCorner](Index node) { return !isCorner[node]; };
@@ -123,7 +123,7 @@ void renumberFeatures(const std::vector<bool>& isCorner, const Array<Index>& new
   renumber(features.quads);
 }
 
-/// Renumbers nodes so that those at corners come first, otherwise in the order of the file.
+/// Renumbers nodes: corners first, otherwise in file order.
 void putCornersFirst(LagrangeMesh& mesh) {
   std::vector<bool> isCorner(mesh.points.size(), false);
   const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);  // corners come first
@@ -150,7 +150,7 @@ void putCornersFirst(LagrangeMesh& mesh) {
   renumberFeatures(isCorner, newNumber, mesh.features);
 }
 
-/// From rows of 20 nodes to rows of 27.
+/// Extends rows of 20 nodes to rows of 27.
 void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string& fileName) {
   const std::size_t perCell = mesh.nodesPerCell();
   Array<Index> rows(mesh.nodes.size() / nodesEach * perCell);
@@ -187,7 +187,7 @@ LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileNam
   readVtkCells(source, wanted, makeRoom, &numbers, stage);
   source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
   if (wanted.corners < mesh.nodesPerCell()) {
-    completeCells(mesh, wanted.corners, fileName);  // nodes without generators
+    completeCells(mesh, wanted.corners, fileName);  // new nodes have no generators
   } else {
     readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
   }
@@ -223,8 +223,9 @@ LagrangeMesh readLagrangeVtu(const Input& input, Stage& stage) {
 void writeLagrangeVtu(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                       Stage& stage) {
   const std::size_t perCell = mesh.nodesPerCell();
-  // Files of version 1.0, which meshio takes: VTK 9 turns the edges of their Lagrange cells round.
-  // Order 2 has a type that more programs know, whose nodes stand as VTK 9 has those of others.
+  // Written as version 1.0, which meshio accepts; VTK 9 then converts the order of edges of
+  // Lagrange cells. Order 2 uses its own type, which more programs support and whose order VTK 9
+  // does not change.
   const bool hasOwnType = mesh.order == 2;
   const auto type =
       static_cast<std::uint8_t>(hasOwnType ? kQuadratic.back().vtkType : kVtkLagrangeHexahedron);

@@ -1,4 +1,4 @@
-// Data sets of VTK, to be written: of meshes, and of parts.
+// VTK data sets for writing: of meshes, and of parts.
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -12,8 +12,8 @@ namespace hexhex::io {
 
 namespace {
 
-/// A tag for each vertex, 0 without.
-/// @throws Error InvalidArgument for a vertex that does not exist
+/// The tag of each vertex, 0 if none.
+/// @throws Error InvalidArgument for a vertex index out of range
 Array<std::int32_t> vertexTags(const std::vector<FeatureVertex>& features, std::size_t vertices) {
   Array<std::int32_t> tags(vertices);
   std::fill(tags.begin(), tags.end(), 0);
@@ -28,7 +28,7 @@ Array<std::int32_t> vertexTags(const std::vector<FeatureVertex>& features, std::
   return tags;
 }
 
-/// Elements as rows of numbers: the vertices and the tag.
+/// Elements as rows of integers: vertices and tag.
 template <class Feature>
 std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
   std::vector<std::int64_t> rows;
@@ -39,7 +39,7 @@ std::vector<std::int64_t> rowsOf(const std::vector<Feature>& features) {
   return rows;
 }
 
-/// Whether lists with points lack these values, as meshes without generators do.
+/// Whether some list of points lacks these values, as meshes without generators do.
 template <class Value>
 bool lack(std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
   return std::any_of(lists.begin(), lists.end(), [values](const PointPiece& list) {
@@ -47,8 +47,8 @@ bool lack(std::span<const PointPiece> lists, std::span<const Value> PointPiece::
   });
 }
 
-/// What lists of points have in memory, if they have it.
-/// @tparam T  the number type
+/// Adds values of lists of points, unless a list lacks them.
+/// @tparam T  the number type in the file
 template <class T, class Value>
 void addLists(VtkDataSet& data, VtkSection section, std::string_view name, std::size_t components,
               std::span<const PointPiece> lists, std::span<const Value> PointPiece::*values) {
@@ -84,12 +84,12 @@ void addGeneratorKinds(VtkDataSet& data, std::span<const PointPiece> lists) {
   data.add<std::uint8_t>(VtkSection::PointData, "generator_kind", 1, data.points, kinds);
 }
 
-/// @tparam Corner  the number type in the file
+/// @tparam Corner  the integer type in the file
 template <class Corner>
 void addCorners(VtkDataSet& data, const VtkPiece& piece, std::uint64_t count) {
   data.add<Corner>(VtkSection::Cells, "connectivity", 1, count, [&piece](const VtkBytes& output) {
     const auto write = [&output](const auto& corners) {
-      // Indices that fit have the same bytes with and without a sign.
+      // Signed and unsigned integers of equal size have the same bytes here.
       if (sizeof(Corner) == sizeof(corners[0])) {
         output(corners.data(), corners.size_bytes());
       } else {
@@ -100,7 +100,7 @@ void addCorners(VtkDataSet& data, const VtkPiece& piece, std::uint64_t count) {
   });
 }
 
-/// @tparam End  the number type in the file
+/// @tparam End  the integer type in the file
 template <class End>
 void addEnds(VtkDataSet& data, const VtkPiece& piece, std::size_t corners) {
   data.add<End>(
@@ -159,7 +159,7 @@ VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_
   }
   if (!piece.vertices.generatorTet.empty()) addGeneratorTets(data, lists);
   addCoordinates(data, lists);
-  // 32-bit numbers are signed, since every reader takes those.
+  // Use signed integers of 32 bits, since all readers accept those.
   constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
   const auto addCornersAs =
       points > kLargestInt32 ? addCorners<std::int64_t> : addCorners<std::int32_t>;

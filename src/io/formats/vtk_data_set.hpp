@@ -1,5 +1,5 @@
-// A data set of VTK as those who write one describe it: arrays of points, cells, and of the whole,
-// each with its name, its type and a function that writes its bytes.
+// VTK data sets for writing: arrays of points, cells and the whole mesh, each with a name, a type
+// and a function that writes its bytes.
 #pragma once
 
 #include <algorithm>
@@ -26,15 +26,15 @@
 
 namespace hexhex::io {
 
-// VTK's types of cells.
+// VTK cell types.
 inline constexpr std::uint8_t kVtkLine = 3;
 inline constexpr std::uint8_t kVtkPolygon = 7;
 inline constexpr std::uint8_t kVtkTet = 10;
 inline constexpr std::uint8_t kVtkHexahedron = 12;
 inline constexpr std::uint8_t kVtkLagrangeHexahedron = 72;
 
-/// Where arrays belong, in the order of a file. Cells are those of an unstructured grid, Lines and
-/// Polys those of PolyData.
+/// The sections of arrays, in file order. Cells belongs to unstructured grids, Lines and Polys to
+/// PolyData.
 enum class VtkSection : std::uint8_t {
   FieldData,
   PointData,
@@ -45,7 +45,7 @@ enum class VtkSection : std::uint8_t {
   Cells
 };
 
-// Names of arrays, for readers and writers.
+// Array names, for readers and writers.
 inline constexpr std::string_view kVtkGeneratorTets = "generator_tet";
 inline constexpr std::string_view kVtkGeneratorCorners = "generator_corners";
 inline constexpr std::string_view kVtkVertexTags = "feature_vertex";
@@ -53,21 +53,21 @@ inline constexpr std::string_view kVtkEdgeTags = "feature_edges";
 inline constexpr std::string_view kVtkTriangleTags = "feature_triangles";
 inline constexpr std::string_view kVtkQuadTags = "feature_quads";
 inline constexpr std::string_view kVtkRegions = "region";
-/// Of tags that have one, and in the same order their dimensions and tags.
+/// The names of named tags, and in the same order their dimensions and tags.
 inline constexpr std::string_view kVtkTagNames = "tag_names";
 inline constexpr std::string_view kVtkNamedTags = "named_tags";
-// Those of VTK's own.
+// VTK's own arrays.
 inline constexpr std::string_view kVtkGlobalPoints = "GlobalPointIds";
 inline constexpr std::string_view kVtkGlobalCells = "GlobalCellIds";
 inline constexpr std::string_view kVtkGhosts = "vtkGhostType";
 
-/// Takes bytes of an array, front to back.
+/// Receives the bytes of an array, front to back.
 using VtkBytes = std::function<void(const void* bytes, std::size_t size)>;
 
-/// Writes valueOf(i) for every i in [0, count).
+/// Writes valueOf(i) for i in [0, count).
 template <class T, class F>
 void writeValues(const VtkBytes& output, std::size_t count, const F& valueOf) {
-  std::array<T, (1U << 14U) / sizeof(T)> values;  // enough to keep calls from showing
+  std::array<T, (1U << 14U) / sizeof(T)> values;  // enough to amortize the cost of calls
   for (std::size_t begin = 0; begin < count; begin += values.size()) {
     const std::size_t size = std::min(values.size(), count - begin);
     for (std::size_t i = 0; i < size; ++i) values[i] = static_cast<T>(valueOf(begin + i));
@@ -75,7 +75,7 @@ void writeValues(const VtkBytes& output, std::size_t count, const F& valueOf) {
   }
 }
 
-/// One array. Tuples in a row are `components` numbers of the type.
+/// An array. A row has `components` numbers of the type.
 struct VtkArray {
   VtkSection section = VtkSection::Points;
   std::string_view name;
@@ -83,24 +83,24 @@ struct VtkArray {
   std::size_t components = 1;
   std::uint64_t rows = 0;
   std::uint64_t bytes = 0;
-  /// All bytes of the array, or those of its next rows where the data set comes in pieces.
+  /// Writes all bytes of the array; for data sets in pieces, those of its next rows.
   std::function<void(const VtkBytes&)> write;
 };
 
-/// Points and cells with arrays. What arrays are made from must outlive the data set.
+/// Points and cells with arrays. The sources of arrays must outlive the data set.
 class VtkDataSet {
  public:
-  /// @param elements  the section of the cells' corners: says which kind of data set it is
+  /// @param elements  the section of the cells' corners, which determines the kind of data set
   VtkDataSet(std::uint64_t points_, std::uint64_t cells_, VtkSection elements_ = VtkSection::Cells)
       : points(points_), cells(cells_), elements(elements_) {}
 
   std::uint64_t points;
   std::uint64_t cells;
   VtkSection elements;
-  /// Arcs, patches or cells of higher order.
+  /// Whether it holds arcs, patches or cells of higher order.
   bool curved = false;
 
-  /// In the order of their sections.
+  /// All arrays, in the order of their sections.
   [[nodiscard]] const std::vector<VtkArray>& arrays() const noexcept { return arrays_; }
 
   template <class T>
@@ -112,22 +112,22 @@ class VtkDataSet {
     arrays_.insert(behind, {section, name, typeName<T>(), components, rows,
                             rows * components * sizeof(T), std::move(write)});
   }
-  /// Texts without zeros; each gets one behind it.
+  /// Adds zero-terminated strings; they must not contain zeros.
   void addTexts(std::string_view name, std::span<const TagName> names);
-  /// Numbers as they lie in memory.
+  /// Adds numbers from memory.
   template <class T>
   void add(VtkSection section, std::string_view name, std::span<const T> values,
            std::size_t components = 1) {
     add<T>(section, name, components, values.size() / components,
            [values](const VtkBytes& output) { output(values.data(), values.size_bytes()); });
   }
-  /// The same of vectors.
+  /// The same for vectors.
   template <class T, std::size_t n>
   void add(VtkSection section, std::string_view name, std::span<const std::array<T, n>> values) {
     add<T>(section, name, n, values.size(),
            [values](const VtkBytes& output) { output(values.data(), values.size_bytes()); });
   }
-  /// Numbers that the data set keeps.
+  /// Adds numbers owned by the data set.
   template <class Numbers>
   void addOwn(VtkSection section, std::string_view name, Numbers&& numbers,
               std::size_t components = 1) {
@@ -138,7 +138,7 @@ class VtkDataSet {
              output(own.data(), own.size() * sizeof(T));
            });
   }
-  /// valueOf(i) for every i in [0, count).
+  /// Adds valueOf(i) for i in [0, count).
   template <class T, class F>
   void addComputed(VtkSection section, std::string_view name, std::uint64_t count, F valueOf) {
     add<T>(section, name, 1, count, [count, valueOf = std::move(valueOf)](const VtkBytes& output) {
@@ -159,7 +159,7 @@ class VtkDataSet {
   std::vector<VtkArray> arrays_;
 };
 
-/// Vertices and cells of a mesh, all or some of them: what the arrays of meshDataSet() write next.
+/// Some or all vertices and cells of a mesh: what the arrays of meshDataSet() write next.
 struct VtkPiece {
   PointPiece vertices = {};
   std::uint64_t firstCell = 0;
@@ -174,48 +174,47 @@ struct VtkPiece {
   }
 };
 
-/// Points, cells of one type and, where pieces have them, generators.
-/// @param piece    outlives the data set
-/// @param corners  of each cell
+/// A data set of points, cells of one type and, if pieces have them, generators.
+/// @param piece    must outlive the data set
+/// @param corners  per cell
 [[nodiscard]] VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points,
                                      std::uint64_t cells, std::size_t corners, std::uint8_t type);
 
 /// Adds points and the arrays generator_tet, generator_corners and generator_kind.
-/// @param lists  of points, one behind the other; outlive the data set
+/// @param lists  of points, to be concatenated; must outlive the data set
 void addPoints(VtkDataSet& data, std::span<const PointPiece> lists);
 
 /// The cell array of WriteOptions::scaledJacobians.
 inline constexpr std::string_view kVtkQuality = "scaled_jacobian";
 
-/// Adds tags and regions: the point array feature_vertex (Int32), the field arrays feature_edges,
-/// feature_triangles and feature_quads (Int64: vertices and the tag), and the cell array region
-/// (Int32); each if there are any.
-/// @param regions  outlive the data set
-/// @throws Error InvalidArgument for a tagged vertex that does not exist
+/// Adds tags and regions, if there are any: the point array feature_vertex (Int32), the field
+/// arrays feature_edges, feature_triangles and feature_quads (Int64: vertices and tag), and the
+/// cell array region (Int32).
+/// @param regions  must outlive the data set
+/// @throws Error InvalidArgument for a tagged vertex that is out of range
 void addTags(VtkDataSet& data, const HexFeatures& features, std::span<const std::int32_t> regions);
 void addTags(VtkDataSet& data, const Features& features, std::span<const std::int32_t> regions);
 
-/// What `.vtu` and `.vtkhdf` hold of a hex mesh, as writeVtu() describes it.
-/// @param piece  outlives the data set, as the mesh and the options do
+/// The data set of a hex mesh in `.vtu` and `.vtkhdf` files, as described at writeVtu().
+/// @param piece  must outlive the data set, as must the mesh and the options
 [[nodiscard]] VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options,
                                     VtkPiece& piece);
 
-/// Writes a file of VTK's XML, array by array. One thread does it, straight from
-/// memory: that is as fast as the file system takes bytes, which lets one thread at a time write to
-/// a file. Blocks of compressed arrays come from all threads; the bytes do not depend on their
-/// number.
-/// @param compress  with zlib, which is there; the output has positions then
+/// Writes a VTK XML file, array by array. A single thread writes raw arrays straight from memory,
+/// which is as fast as the file system accepts bytes from one file. Compressed arrays are
+/// deflated in blocks by all threads; the result does not depend on their number.
+/// @param compress  with zlib, which must be available; the output must have positions
 void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage);
 
-// A part as a data set of VTK.
+// Data sets of parts.
 
-/// VTK's mark of points and cells that another part owns.
+/// VTK's ghost mark of points and cells that another part owns.
 inline constexpr std::uint8_t kVtkDuplicate = 1;
 
-/// Points, generators, tags, regions, global numbers and, if there are ghosts in the mesh, which
-/// points and cells of the part belong to others. All parts have the same arrays of points and
-/// cells. Empty arrays of tags are left out.
-/// @param part, piece  outlive the data set
+/// Points, generators, tags, regions, global numbers and, if the mesh has ghosts, marks of points
+/// and cells owned by other parts. All parts have the same arrays of points and cells. Empty arrays
+/// of tags are left out.
+/// @param part, piece  must outlive the data set
 [[nodiscard]] VtkDataSet partDataSet(const MeshPart& part, const PartsInfo& info, VtkPiece& piece);
 
 }  // namespace hexhex::io

@@ -1,5 +1,5 @@
-// Legacy `.vtk` files (see formats.hpp): reads their sections, in any order, and up to version 4
-// piece by piece; and writes them, a mesh or map in memory like a mesh of one piece.
+// Legacy `.vtk` files (see formats.hpp): reads sections in any order; streams versions up to 4; and
+// writes meshes and maps.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -34,7 +34,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// VTK writes characters of names that separate tokens as "%20".
+/// Decodes an array name, in which VTK writes separators as "%20".
 std::string decodedVtkName(std::string_view token) {
   std::string name;
   for (std::size_t i = 0; i < token.size(); ++i) {
@@ -55,8 +55,8 @@ struct NumberType {
   VtkScalar scalar;
 };
 
-// The first three are those that a file need not tell. Bits and strings are no numbers, and never
-// wanted.
+// The first three are implied where files omit the type. Bits and strings are not numbers and never
+// read.
 constexpr std::array<NumberType, 16> kTypes = {{{"int", std::int32_t{}},
                                                 {"float", float{}},
                                                 {"unsigned_char", std::uint8_t{}},
@@ -91,7 +91,7 @@ class VtkLegacyFile final : public VtkSource {
                   " types of cells.");
   }
 
-  /// Reads the regions of cells if they follow as this library writes them.
+  /// Reads the regions of cells if they follow as written by this library.
   void readRegions() {
     const std::string begin =
         concat("CELL_DATA ", cells, "\nSCALARS region int 1\nLOOKUP_TABLE default");
@@ -104,7 +104,7 @@ class VtkLegacyFile final : public VtkSource {
                       }});
   }
 
-  /// Reads the next section, array, or beginning of several arrays.
+  /// Reads the next section or array, or the head of a field.
   bool readOn() override {
     if (fieldArrays_ > 0) {
       readFieldArray();
@@ -129,7 +129,7 @@ class VtkLegacyFile final : public VtkSource {
           ErrorCode::FileSyntax,
           "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
     }
-    static_cast<void>(scanner_.takeLine());  // a title, which may be anything
+    static_cast<void>(scanner_.takeLine());  // the title, any text
     const std::string encoding = readKeyword();
     binary_ = encoding == "binary";
     if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");
@@ -164,7 +164,7 @@ class VtkLegacyFile final : public VtkSource {
     }
   }
 
-  /// Notes that a section is there, unless it was before.
+  /// Marks a section as present; throws if it was already.
   void beginSection(bool& present, std::string_view keyword) {
     scanner_.failIfRepeated(present, keyword);
     present = true;
@@ -189,7 +189,7 @@ class VtkLegacyFile final : public VtkSource {
   }
 
   void readCells() {
-    // Counted as numbers of one digit or four bytes.
+    // Each takes at least one digit and a separator, or four bytes.
     const std::size_t first = scanner_.readCount("cells", 2);
     const std::size_t second = scanner_.readCount("numbers of cells", 2);
     const std::size_t before = scanner_.position();
@@ -198,14 +198,14 @@ class VtkLegacyFile final : public VtkSource {
       cells = first;
       return readOldCells(second);
     }
-    // From version 5 on: where cells begin and the last one ends, and all corners.
+    // From version 5 on: offsets including the end of the last cell, then all corners.
     cells = std::max<std::size_t>(first, 1) - 1;
     offsets = readIntegers(first, readType(), "an offset of a cell");
     if (readKeyword() != "connectivity") scanner_.failToken("\"CONNECTIVITY\"");
     connectivity = readIntegers(second, readType(), "a corner of a cell");
   }
 
-  /// Up to version 4: each cell is its number of corners, and its corners.
+  /// Up to version 4: each cell is its number of corners followed by these.
   void readOldCells(std::size_t numbers) {
     gap = 1;
     connectivity = readIntegers(numbers, kTypes[0], "a corner of a cell");
@@ -216,7 +216,7 @@ class VtkLegacyFile final : public VtkSource {
       copy(connectivity, i, 1, &number);
       return number;
     };
-    // Usually all cells are alike.
+    // Usually all cells have the same number of corners.
     const std::size_t each = cells > 0 ? numbers / cells : 0;
     const auto hasAsMany = [&](std::size_t cell) {
       return numberAt(each * cell) == static_cast<std::int64_t>(each - 1);
@@ -241,7 +241,7 @@ class VtkLegacyFile final : public VtkSource {
     }
   }
 
-  /// Reads one array, or the beginning of several.
+  /// Reads one array, or the head of a field.
   void readAttribute(const std::string& keyword) {
     if (keyword == "metadata") return skipMetadata();
     if (keyword == "field") return beginField();
@@ -275,8 +275,8 @@ class VtkLegacyFile final : public VtkSource {
                   (ofCells ? " cells" : " points"), ", but the file has ", elements(), ".");
   }
 
-  /// "SCALARS name type components", where the last may be missing, and the name of a table of
-  /// colours.
+  /// Reads "SCALARS name type components", where the last is optional, and the name of a lookup
+  /// table.
   void readScalars(std::string_view name) {
     constexpr std::string_view kTable = "lookup_table";
     const NumberType& type = readType();
@@ -306,7 +306,7 @@ class VtkLegacyFile final : public VtkSource {
     readArray(name, components, tuples, readType());
   }
 
-  /// Skips the numbers of an array. In front of the mesh's sections, arrays belong to nothing.
+  /// Reads the numbers of an array. Arrays before the mesh's sections are skipped.
   void readArray(std::string_view name, std::size_t components, std::size_t tuples,
                  const NumberType& type) {
     if (components > 0 && tuples > text().size() / components) {
@@ -329,7 +329,7 @@ class VtkLegacyFile final : public VtkSource {
     skipNumbers(count, type);
   }
 
-  /// Reads a word that may come in any letter case, in lower case.
+  /// Reads a keyword in any letter case; returns it in lower case.
   std::string readKeyword() { return lowerCase(scanner_.readToken()); }
 
   const NumberType& readType() {
@@ -349,8 +349,8 @@ class VtkLegacyFile final : public VtkSource {
     }
   }
 
-  /// Goes on behind the bytes of so many numbers, which begin on the next line.
-  /// @return where they begin
+  /// Skips the bytes of `count` numbers, which begin on the next line.
+  /// @return their position
   std::size_t takeBytes(std::size_t count, std::size_t bytesEach) {
     scanner_.skipLineBreak();
     const std::size_t begin = scanner_.position();
@@ -364,7 +364,7 @@ class VtkLegacyFile final : public VtkSource {
     return begin;
   }
 
-  /// @param what  for messages: what(i) is what number i should be
+  /// @param what  for messages: what(i) names number i
   template <class What>
   VtkColumn readNumbers(std::size_t count, const NumberType& type, VtkNumbers numbers,
                         const What& what) {
@@ -404,18 +404,18 @@ class VtkLegacyFile final : public VtkSource {
                                          : takeBytes(count, bytesOf(type.scalar)));
   }
 
-  /// Number of points or cells, whichever arrays belong to.
+  /// The number of points or cells, whichever the current arrays belong to.
   [[nodiscard]] std::size_t elements() const { return ofCells_ ? cells : points; }
 
   Stage& stage_;
   TextScanner scanner_;
-  std::optional<TokenIndex> index_;  ///< only of text
+  std::optional<TokenIndex> index_;  ///< text files only
   bool binary_ = false;
   bool hasPoints_ = false;
   bool hasCells_ = false;
   bool hasTypes_ = false;
-  bool ofCells_ = false;         ///< whether arrays belong to cells or to points
-  std::size_t fieldArrays_ = 0;  ///< that follow in the field that was begun
+  bool ofCells_ = false;         ///< whether arrays belong to cells rather than points
+  std::size_t fieldArrays_ = 0;  ///< arrays left in the current field
 };
 
 }  // namespace
@@ -431,10 +431,10 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
 
 namespace {
 
-// Legacy `.vtk` files up to version 4 piece by piece.
+// Streaming of versions up to 4.
 
-/// Looks for the sections POINTS, CELLS and CELL_TYPES, in this order, and nothing but hexahedra.
-/// Arrays may follow.
+/// Finds the sections POINTS, CELLS and CELL_TYPES, in this order, with hexahedra only. Arrays may
+/// follow.
 class VtkPieces {
  public:
   VtkPieces(const ByteFile& file, Context& context, bool isText)
@@ -444,9 +444,9 @@ class VtkPieces {
     layout.isText = isText;
   }
 
-  /// @return whether the file is of the form
+  /// @return whether the file has this layout
   [[nodiscard]] bool look() {
-    constexpr std::uint64_t kNumbers = 1 + 8;  // of a cell: how many corners it has, and these
+    constexpr std::uint64_t kNumbers = 1 + 8;  // per cell: the number of corners, and these
     if (!lookAtHead() || !isNext("points") || !takeCount(layout.points.count)) return false;
     const std::string type = lowerCase(text_.token());
     if (type != "float" && type != "double") return false;
@@ -463,16 +463,16 @@ class VtkPieces {
       .isBigEndian = true, .firstVertex = 0, .inFrontOfCell = 1, .tellsCorners = true};
 
  private:
-  /// Reads everything up to the first section.
+  /// Reads everything before the first section.
   [[nodiscard]] bool lookAtHead() {
     const std::string magic = text_.takeLine();
     constexpr std::string_view kMagic = "# vtk DataFile Version ";
-    // From version 5 on, cells are stored in another way.
+    // From version 5 on, cells are stored differently.
     if (!magic.starts_with(kMagic) || magic.size() == kMagic.size() || magic[kMagic.size()] < '1' ||
         magic[kMagic.size()] > '4') {
       return false;
     }
-    static_cast<void>(text_.takeLine());  // a title, which may be anything
+    static_cast<void>(text_.takeLine());  // the title, any text
     return isNext(layout.isText ? "ascii" : "binary") && isNext("dataset") &&
            isNext("unstructured_grid");
   }
@@ -484,7 +484,7 @@ class VtkPieces {
     to = found.value_or(0);
     return found.has_value();
   }
-  /// Goes behind a run, of which each element has so many numbers. Bytes begin on the next line.
+  /// Records the position of a run and skips it. Binary data begins on the next line.
   [[nodiscard]] bool skip(PlainRun& run, std::uint64_t numbersEach, std::uint64_t bytesEach) {
     const std::uint64_t numbers = numbersEach * run.count;
     if (!layout.isText && !text_.skipLineBreak()) return false;
@@ -539,13 +539,13 @@ void readVtkLegacyTo(MeshSink& sink, const Input& input, Context& context) {
 
 namespace {
 
-// Legacy `.vtk` files: a mesh or map in memory is written like a mesh of one piece.
+// Writing. A mesh or map in memory is written like a mesh of one piece.
 
-/// Numbers as text: in the form of version 2.0, which every program reads.
+/// Text, in the form of version 2.0, which every program reads.
 struct VtkText {
   static constexpr std::string_view kEncoding = "ASCII";
   static constexpr std::string_view kEndOfSection = {};
-  static constexpr std::size_t kRoom = kNumberRoom + 1;  ///< for a number
+  static constexpr std::size_t kRoom = kNumberRoom + 1;  ///< per number
 
   template <class T, std::size_t n>
   static char* numbers(char* place, const std::array<T, n>& numbers) {
@@ -557,7 +557,7 @@ struct VtkText {
   }
 };
 
-/// Numbers as bytes, the largest first.
+/// Big-endian binary numbers.
 struct VtkBigBytes {
   static constexpr std::string_view kEncoding = "BINARY";
   static constexpr std::string_view kEndOfSection = "\n";
@@ -580,15 +580,15 @@ struct VtkBigBytes {
   }
 };
 
-/// Writes the sections of a file, in order: of hexahedra, which may come in pieces, or of the tets
-/// of a map.
+/// Writes the sections of a file in order, for hexahedra, possibly in pieces, or for the tets of a
+/// map.
 template <class Numbers, std::size_t corners = 8>
 class LegacyWriter {
  public:
   LegacyWriter(OutputFile& output, int threads) : output_(output), lines_(output, threads) {}
 
-  /// Everything up to the points.
-  /// @throws Error TooLarge for points that 32-bit indices cannot number
+  /// Writes everything before the points.
+  /// @throws Error TooLarge if there are more points than 32-bit indices can number
   void begin(std::uint64_t points, std::uint64_t cells) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
@@ -625,8 +625,8 @@ class LegacyWriter {
     rows(cellCount_, [](std::size_t) { return std::array{kType}; });
     output_.write(Numbers::kEndOfSection);
   }
-  /// An array of cells.
-  /// @param head  what follows their number
+  /// Writes a cell array.
+  /// @param head  the text after the number of cells
   template <class Row>
   void cellData(std::string_view head, const Row& row) {
     output_.write("CELL_DATA ").write(cellCount_).write(head);
@@ -635,7 +635,7 @@ class LegacyWriter {
   }
   void end() { types(); }
 
-  /// Everything up to the types of cells. What is written from now on advances the progress.
+  /// Writes everything up to the cell types; advances the progress from now on.
   void write(std::span<const Vec3> allPoints, std::span<const std::array<Index, corners>> allCells,
              LoopProgress& progress) {
     progress_ = &progress;
@@ -647,7 +647,7 @@ class LegacyWriter {
   }
 
  private:
-  /// n rows: row(i) is an array of numbers.
+  /// Writes n rows: row(i) is an array of numbers.
   template <class Row>
   void rows(std::size_t n, const Row& row) {
     constexpr std::size_t kColumns = std::tuple_size_v<std::remove_cvref_t<decltype(row(n))>>;
@@ -673,7 +673,7 @@ void writeMesh(const HexMesh& mesh, OutputFile& output, Stage& stage) {
   }
 }
 
-/// Names of arrays are tokens: other characters are written as "%20", as VTK does it.
+/// Encodes an array name as a token, with other characters as "%20" like VTK.
 std::string encodedName(std::string_view name) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
   if (name.empty()) {

@@ -1,5 +1,5 @@
-// Reads data sets of VTK, whatever the file: numbers of columns; points and cells, a range at a
-// time, checked; meshes and maps of them; and what writers of this library add.
+// Reads VTK data sets, independent of the file format: numbers of columns; points and cells,
+// checked, a range at a time; meshes and maps; and the arrays that writers of this library add.
 #include <algorithm>
 #include <array>
 #include <type_traits>
@@ -19,8 +19,8 @@ namespace hexhex::io {
 
 namespace {
 
-/// The number at a place of any alignment. Only numbers of 4 and 8 bytes come with the largest byte
-/// first.
+/// Reads a number from an address of any alignment. Only numbers of 4 and 8 bytes may be
+/// big-endian.
 template <class T, bool bigEndian>
 T loadNumber(const char* place) {
   if constexpr (bigEndian && sizeof(T) >= sizeof(std::uint32_t)) {
@@ -32,14 +32,14 @@ T loadNumber(const char* place) {
   }
 }
 
-/// Numbers one after the other, as they are stored, into an array of T.
+/// Converts consecutive stored numbers to an array of T.
 template <class T>
 void convert(const VtkColumn& column, const char* from, std::size_t count, T* to) {
   const auto convertFrom = [&](auto zero) {
     const auto all = [&](auto bigEndian) {
       using Stored = decltype(zero);
       for (std::size_t i = 0; i < count; ++i) {
-        // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits keep their sign, too.
+        // NOLINTNEXTLINE(bugprone-signed-char-misuse): 8-bit numbers keep their sign.
         to[i] = static_cast<T>(loadNumber<Stored, bigEndian>(from + i * sizeof(Stored)));
       }
     };
@@ -49,8 +49,8 @@ void convert(const VtkColumn& column, const char* from, std::size_t count, T* to
   std::visit(convertFrom, column.scalar);
 }
 
-/// Whether numbers in memory have the bytes of the stored ones, so that they are read to their
-/// place. With another copy, reading a map from a `.vtu` file takes a quarter longer.
+/// Whether stored numbers have the bytes of T, so that they can be read in place. Copying them
+/// would make reading a map from a `.vtu` file 25 % slower.
 template <class T>
 bool isStoredAs(const VtkColumn& column) {
   if (column.bigEndian) return false;
@@ -104,7 +104,7 @@ template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, Inde
 template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, CornerSet*) const;
 
 void VtkSource::see(std::string_view name, bool ofCells, std::size_t components) {
-  constexpr std::size_t kMostSeen = 20;  // that a sentence can name
+  constexpr std::size_t kMostSeen = 20;  // listed in an error message
   if (seen.size() == kMostSeen) {
     ++unnamed;
     return;
@@ -132,13 +132,13 @@ void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, 
 
 namespace {
 
-// Points and cells, a range at a time, checked; and meshes and maps of them.
+// Points and cells, a range at a time; meshes and maps.
 
-// Points or cells that one thread reads at once: a fraction of a millisecond's work.
+// Points or cells per task of a thread: a fraction of a millisecond of work.
 constexpr std::size_t kVtkReaderGrain = std::size_t{1} << 13;
 
-/// Calls f(begin, end, block) for all blocks of n elements, in parallel. Of several errors, the one
-/// of the first block is thrown.
+/// Calls f(begin, end, block) for all blocks of n elements, in parallel. Of several errors, that of
+/// the first block is thrown.
 template <class F>
 void forEachBlock(Stage& stage, std::size_t n, const F& f) {
   const std::size_t begin = firstUnreadable(
@@ -150,13 +150,13 @@ void forEachBlock(Stage& stage, std::size_t n, const F& f) {
     f(begin, std::min(begin + kVtkReaderGrain, n), begin / kVtkReaderGrain);  // throws again
 }
 
-/// Voxels are hexahedra that list the corners of both layers row by row instead of all around.
+/// Voxels are hexahedra that list the corners of both layers row by row instead of around.
 constexpr std::int64_t kVtkVoxel = 11;
 bool isOfKind(std::int64_t type, const CellKind& kind) {
   return type == kind.vtkType || (type == kVtkVoxel && kind.vtkType == kCellKind<8>.vtkType);
 }
 
-/// Types of consecutive cells, and where their corners are.
+/// Types of consecutive cells, and the positions of their corners.
 class CellTable {
  public:
   CellTable(const VtkSource& source, const CellKind& wanted, std::uint64_t first, std::size_t count)
@@ -172,7 +172,7 @@ class CellTable {
       source.copy(source.offsets, first, count + 1, places_.data());
       return;
     }
-    // The end of the cell before is the beginning of the first one.
+    // A cell begins where the previous one ends.
     const std::size_t before = first > 0 ? 1 : 0;
     source.copy(source.offsets, first - before, count + before, places_.data() + 1 - before);
   }
@@ -189,7 +189,7 @@ class CellTable {
     return isOrdered(i) && (!isWanted(i) || end(i) - begin(i) == wanted_.corners);
   }
 
-  /// Throws an error about a cell that is not good.
+  /// Throws an error about an invalid cell.
   [[noreturn]] void fail(std::size_t i) const {
     const std::string cell = std::to_string(first_ + i);
     const Place place{PlaceKind::Cell, first_ + i};
@@ -214,9 +214,9 @@ class CellTable {
   Array<std::int64_t> places_;
 };
 
-/// The usual case: numbers of 32 bits, which are corners as they are. Without it, reading a whole
-/// `.vtu` file takes 40 % longer.
-/// @return false if they have 64 bits, or one is no point
+/// Fast path for 32-bit numbers, which are copied as they are. Without it, reading a whole `.vtu`
+/// file takes 40 % longer.
+/// @return false if they have 64 bits, or one is out of range
 bool copyVertices(const VtkSource& source, std::size_t corners, std::uint64_t begin,
                   std::span<Index> vertices) {
   const VtkScalar scalar = source.connectivity.scalar;
@@ -240,14 +240,14 @@ bool copyVertices(const VtkSource& source, std::size_t corners, std::uint64_t be
       left -= cells;
     }
   }
-  // A negative number is a large one here.
+  // Negative numbers wrap to large ones.
   const Index* const numbers = vertices.data();
   Index largest = 0;
   for (std::size_t k = 0; k < vertices.size(); ++k) largest = std::max(largest, numbers[k]);
   return largest < source.points;
 }
 
-/// Reads wanted cells that follow each other.
+/// Reads consecutive wanted cells.
 /// @param first  the number of the first
 /// @param begin  where its corners begin
 template <class Vertex>
@@ -264,7 +264,7 @@ void readRun(const VtkSource& source, std::size_t corners, std::uint64_t first, 
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const std::int64_t* const from = numbers.data() + each * cell;
     for (std::size_t k = 0; k < corners; ++k) {
-      // A negative number is a large one here.
+      // Negative numbers wrap to large ones.
       if (static_cast<std::uint64_t>(from[k]) >= source.points) {
         source.fail(ErrorCode::IndexOutOfRange, Place{PlaceKind::Cell, first + cell}, "cell ",
                     first + cell, " names point ", from[k], ", but the ", source.points,
@@ -294,9 +294,9 @@ void readMesh(const VtkSource& source, Points& points, Cells& cells, Array<std::
 constexpr std::size_t kCellMapComponents = 12;
 constexpr std::size_t kPointMapComponents = 3;
 
-/// Finds the map among the arrays that are known, or goes on to others.
+/// Finds the map among the known arrays, or reads on for more.
 const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
-  std::size_t looked = 0;  // at so many arrays before
+  std::size_t looked = 0;  // number of arrays already searched
   do {
     if (const auto* const found = source.find(VtkSection::CellData, name, kCellMapComponents,
                                               VtkNumbers::Reals, looked)) {
@@ -311,7 +311,7 @@ const VtkSourceArray* findMap(VtkSource& source, std::string_view name) {
   return nullptr;
 }
 
-/// For messages.
+/// Lists the arrays, for messages.
 std::string arraysIn(const VtkSource& source) {
   std::string found;
   for (const std::string& array : source.seen) found += (found.empty() ? "" : ", ") + array;
@@ -329,8 +329,8 @@ std::string arraysIn(const VtkSource& source) {
               "(--polycube).");
 }
 
-/// The parameters of tets from a number per cell of the file.
-/// @param numbers  which cells of the file the tets are
+/// Reads the parameters of tets from a cell array.
+/// @param numbers  of the tets among the cells of the file
 void readCellParameters(const VtkSource& source, const VtkColumn& column,
                         std::span<const std::size_t> numbers,
                         std::vector<TetParameters>& parameters, Stage& stage) {
@@ -346,7 +346,7 @@ void readCellParameters(const VtkSource& source, const VtkColumn& column,
   });
 }
 
-/// The same from three numbers per point.
+/// Reads the parameters of tets from a point array.
 void readPointParameters(const VtkSource& source, const VtkColumn& column, TetMap& map,
                          Stage& stage) {
   Array<Vec3> values(source.points);
@@ -393,7 +393,7 @@ void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
   const CellTable table(source, cells, first, count);
   std::size_t good = 0;
   while (good < count && table.isGood(good)) ++good;
-  // Cells that follow each other have their corners one after the other, and are read at once.
+  // The corners of consecutive cells are contiguous and read at once.
   for (std::size_t i = 0; i < good;) {
     std::size_t end = i;
     while (end < good && table.isWanted(end)) ++end;
@@ -441,7 +441,7 @@ void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
   for (std::uint64_t first = 0; first < source.cells; first += kVtkReaderGrain) {
     types.resize(std::min<std::uint64_t>(kVtkReaderGrain, source.cells - first));
     source.copy(source.types, first, types.size(), types.data());
-    // Cells of one type mostly follow each other.
+    // Cells of one type are mostly consecutive.
     for (std::size_t i = 0; i < types.size();) {
       std::size_t end = i + 1;
       while (end < types.size() && types[end] == types[i]) ++end;
@@ -562,22 +562,22 @@ TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& st
 
 namespace {
 
-// What writers of this library add to a mesh: generators, tags and regions in arrays.
+// Arrays that writers of this library add to a mesh: generators, tags and regions.
 
-/// An array of this name, if it has the form in which this library writes it.
+/// The array of this name, if it has the form in which this library writes it.
 std::optional<VtkColumn> findGenerators(const VtkSource& source, std::string_view name,
                                         VtkScalar scalar) {
   const VtkSourceArray* const array =
       source.find(VtkSection::PointData, name, 1, VtkNumbers::Integers);
   if (array == nullptr || !array->appended || source.points == 0) return std::nullopt;
   VtkColumn column = array->load(VtkNumbers::Integers, std::nullopt);
-  // From HDF5, all integers come with 64 bits.
+  // HDF5 returns all integers with 64 bits.
   const bool fits = column.scalar == scalar || isOf<std::int64_t>(column.scalar);
   if (!fits || column.count != source.points) return std::nullopt;
   return column;
 }
 
-/// Calls f(i, number) for all numbers of an array, which must fit into 32 bits.
+/// Calls f(i, number) for all numbers of an array; throws unless they fit in 32 bits.
 template <class F>
 void forEachNumber(const VtkSource& source, const VtkSourceArray& array, const F& f) {
   constexpr std::size_t kNumbersAtOnce = std::size_t{1} << 16;  // half a megabyte at a time
@@ -611,7 +611,7 @@ std::vector<FeatureVertex> readVertexTags(const VtkSource& source) {
   return features;
 }
 
-/// Rows of vertices and a tag.
+/// Reads rows of vertices and a tag.
 /// @tparam Feature  FeatureEdge, FeatureFace or FeatureQuad
 template <class Feature>
 std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
@@ -645,11 +645,11 @@ std::vector<Feature> readRows(const VtkSource& source, std::string_view name) {
   return features;
 }
 
-/// Names of tags.
+/// Reads the names of tags.
 std::vector<TagName> readNames(const VtkSource& source) {
   const VtkSourceArray* texts =
       source.find(VtkSection::FieldData, kVtkTagNames, 1, VtkNumbers::Integers);
-  if (texts == nullptr) {  // VTK's texts
+  if (texts == nullptr) {  // VTK's strings
     texts = source.find(VtkSection::FieldData, kVtkTagNames, 1, VtkNumbers::Others);
   }
   const VtkSourceArray* const tags =
@@ -685,7 +685,8 @@ std::vector<TagName> readNames(const VtkSource& source) {
               "from 0 to 3 and a tag. Write the file anew, or remove both.");
 }
 
-/// The array of regions: this library's, meshio's of files of other formats, or Gmsh's.
+/// The array of regions: of this library, of meshio (for files converted from other formats), or of
+/// Gmsh.
 const VtkSourceArray* findRegions(const VtkSource& source) {
   for (const std::string_view name :
        {kVtkRegions, std::string_view("gmsh:physical"), std::string_view("medit:ref"),
@@ -697,7 +698,7 @@ const VtkSourceArray* findRegions(const VtkSource& source) {
   return nullptr;
 }
 
-/// Adds cells of a kind with their numbers in the array of regions.
+/// Adds cells of a kind, tagged by the array of regions.
 /// @tparam Feature  FeatureEdge or FeatureFace
 template <class Feature>
 void addTaggedCells(const VtkSource& source, const CellKind& kind, std::vector<Feature>& features) {
@@ -737,7 +738,7 @@ void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<Corner
   source.copy(*generators.corners, 0, corners.size(), corners.data());
   const auto isSimplex = [](CornerSet set) { return set >= 1 && set <= 15; };
   if (!std::all_of(corners.begin(), corners.end(), isSimplex)) {
-    corners.clear();  // arrays of the same names, but something else
+    corners.clear();  // arrays of the same names with other content
     return;
   }
   tets.resize(source.points);
@@ -775,9 +776,9 @@ Array<std::int32_t> readVtkRegions(const VtkSource& source, std::span<const std:
 
 namespace {
 
-// Files as a whole, or piece by piece.
+// Whole files, and streaming.
 
-// Points or cells of a piece: a few megabytes.
+// Points or cells per piece: a few megabytes.
 constexpr std::size_t kVtkPiece = std::size_t{1} << 16;
 
 /// Calls f(first, count) for consecutive ranges of n elements, and reports progress.

@@ -1,5 +1,5 @@
-// A data set of VTK as those who read one see it: points, cells and named arrays, wherever their
-// numbers are and however they are stored. Formats fill it in; vtk_reader.cpp makes meshes of it.
+// VTK data sets for reading: points, cells and named arrays, independent of where and how the file
+// stores them. Formats fill them in; vtk_reader.cpp builds meshes from them.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@
 
 namespace hexhex::io {
 
-/// The number types that are read: a zero of the type.
+/// The number types that can be read, as a zero of the type.
 using VtkScalar =
     std::variant<double, float, std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
                  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t>;
@@ -44,16 +44,16 @@ template <class T>
 }
 [[nodiscard]] std::size_t bytesOf(const VtkScalar& scalar);
 
-/// What numbers are needed as. Of others, only characters are ever needed.
+/// The kind of numbers requested. Of others, only characters are ever requested.
 enum class VtkNumbers : std::uint8_t { Integers, Reals, Others };
 
-/// Where the numbers of an array are, and how they are stored.
+/// The location and encoding of an array's numbers.
 struct VtkColumn {
   VtkScalar scalar = {};
-  bool bigEndian = false;  ///< the largest byte first; otherwise in this machine's order
+  bool bigEndian = false;  ///< big-endian; otherwise native byte order
   std::uint64_t count = 0;
   std::uint64_t position = 0;  ///< in the file, or in `decoded`
-  Array<char> decoded = {};    ///< what the file does not hold as plain bytes
+  Array<char> decoded = {};    ///< data that the file does not store as plain binary
 };
 
 /// An array of a file.
@@ -62,16 +62,16 @@ struct VtkSourceArray {
   std::string name;
   VtkNumbers numbers = VtkNumbers::Others;
   std::size_t components = 1;
-  bool appended = false;  ///< to the head of an XML file, as this library writes arrays
-  /// Finds the numbers; they must be of this kind and, if a count is given, that many.
+  bool appended = false;  ///< after the header of an XML file, as this library writes arrays
+  /// Locates the numbers, which must be of this kind and, if given, as many as `count`.
   std::function<VtkColumn(VtkNumbers, std::optional<std::uint64_t> count)> load = {};
 };
 
-/// The bytes of a file: all of them in memory, or its head only.
+/// The bytes of a file: all in memory, or only its header.
 struct VtkFileBytes {
-  std::unique_ptr<InputFile> file;  ///< where the rest is; null: nowhere else
-  Array<char> room;                 ///< for `text`, unless that was in memory before
-  std::string_view text;            ///< what is in memory
+  std::unique_ptr<InputFile> file;  ///< for the rest; null: everything is in `text`
+  Array<char> room;                 ///< storage of `text`, unless it was in memory before
+  std::string_view text;            ///< the bytes in memory
 };
 
 /// An open file.
@@ -91,41 +91,42 @@ class VtkSource {
   std::uint64_t cells = 0;
   VtkColumn coordinates;
   VtkColumn types;
-  /// Where cells end in `connectivity`; or one number more: where they begin and the last one ends.
+  /// Where cells end in `connectivity`; or, with one number more, where they begin and the last
+  /// ends.
   VtkColumn offsets;
-  /// How many numbers of `connectivity` each cell has, if all have as many and no offsets say it.
+  /// Numbers per cell in `connectivity`, if all cells have as many and there are no offsets.
   std::size_t stride = 0;
   VtkColumn connectivity;
-  std::size_t gap = 0;  ///< how many numbers stand in `connectivity` in front of a cell's corners
+  std::size_t gap = 0;  ///< numbers in `connectivity` before the corners of each cell
   VtkEdges uprightEdges = VtkEdges::Around;  ///< of Lagrange cells
 
   std::shared_ptr<CellCounts> counts;  ///< of the input
 
   std::vector<VtkSourceArray> arrays;
-  /// Arrays of points and cells, for messages: the first of them, and how many more there are.
+  /// Arrays of points and cells, for messages: the names of the first ones, and how many more.
   std::vector<std::string> seen;
   std::size_t unnamed = 0;
 
-  /// Goes on to more arrays; false if all are known.
+  /// Reads on for more arrays; false if all are known.
   virtual bool readOn() { return false; }
-  /// Throws TooLarge if points or cells are more than an Index can count.
+  /// Throws TooLarge if there are more points or cells than an Index can number.
   virtual void requireIndexable() const {}
 
   /// The first array of a section with this name and form; null if there is none.
-  /// @param begin  how many arrays are passed over
+  /// @param begin  index of the array to start from
   [[nodiscard]] const VtkSourceArray* find(VtkSection section, std::string_view name,
                                            std::size_t components, VtkNumbers numbers,
                                            std::size_t begin = 0) const;
-  /// Its numbers: a tuple for each point or cell, if it belongs to them.
+  /// The numbers of an array; one tuple per point or cell, if it belongs to these.
   [[nodiscard]] VtkColumn load(const VtkSourceArray& array) const;
 
-  /// Copies numbers [begin, begin + count) of a column. T is double, std::int64_t, or the very type
-  /// of the column. Thread-safe.
+  /// Copies numbers [begin, begin + count) of a column. T is double, std::int64_t, or the type of
+  /// the column. Thread-safe.
   template <class T>
   void copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const;
 
   /// Throws an error about the file.
-  /// @param sentence  its parts, as of concat()
+  /// @param sentence  its parts, as for concat()
   template <class... Parts>
   [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     fail(code, Place{}, sentence...);
@@ -136,7 +137,7 @@ class VtkSource {
   }
 
  protected:
-  /// Notes an array of points or cells for messages.
+  /// Records the name of a point or cell array, for messages.
   void see(std::string_view name, bool ofCells, std::size_t components);
 
   [[nodiscard]] std::string_view text() const noexcept { return content_.text; }
@@ -148,60 +149,60 @@ class VtkSource {
   ByteFile bytes_;
 };
 
-/// Opens a `.vtu` file, without the whole of it in memory if its arrays are appended as plain
-/// bytes. Every size and offset is checked against the file.
-/// @param input, stage  outlive the source
+/// Opens a `.vtu` file, loading only its header if the arrays are appended raw. Every size and
+/// offset is checked against the file.
+/// @param input, stage  must outlive the source
 /// @throws Error FileSyntax, FileUnsupported, NotFinite
 [[nodiscard]] std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage);
 
-/// Opens a legacy `.vtk` file, and reads as far as the first array behind the sections of a mesh.
-/// Of arrays, those of numbers are offered that come behind the mesh, and the regions of cells.
-/// @param withRegions  reads the regions of cells if they follow as this library writes them
+/// Opens a legacy `.vtk` file and reads up to the first array after the sections of a mesh. Offers
+/// numeric arrays that follow the mesh, and the regions of cells.
+/// @param withRegions  whether to read the regions of cells if they follow as this library writes
+///                     them
 /// @throws Error FileSyntax, FileUnsupported, NotFinite or TooLarge, with the line
 [[nodiscard]] std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions,
                                                            Stage& stage);
 
-/// A column for `count` numbers of text, to be filled in by readVtkNumber().
+/// A column for `count` numbers of a text, to be filled by readVtkNumber().
 [[nodiscard]] VtkColumn textColumn(VtkNumbers numbers, std::size_t count);
 
-/// Reads a number that is text, as number i of a column.
+/// Parses a number of a text into position i of a column.
 void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
                    const NumberName& name);
 
-// Meshes and maps from the data sets of vtk_source.hpp: which cells and arrays they are made of,
-// and what is wrong with them, whatever the format.
+// Meshes and maps from data sets, for all formats: selects cells and arrays, and reports errors.
 
-/// Reads points from number `first` on; or all, with all threads.
+/// Reads points from index `first` on; or all points, with all threads.
 /// @throws Error NotFinite
 void readVtkPoints(const VtkSource& source, std::uint64_t first, std::span<Vec3> points);
 void readVtkPoints(const VtkSource& source, std::span<Vec3> points, Stage& stage);
 
-/// Number of wanted cells among `count` cells from number `first` on.
+/// The number of wanted cells among `count` cells from index `first` on.
 [[nodiscard]] std::size_t countVtkCells(const VtkSource& source, const CellKind& cells,
                                         std::uint64_t first, std::size_t count);
 
-/// Reads the wanted cells among `count` cells from number `first` on.
+/// Reads the wanted cells among `count` cells from index `first` on.
 /// @tparam Vertex   Index or std::uint64_t
-/// @param vertices  room for the corners of as many cells as countVtkCells() says
-/// @param numbers   if not null, room for as many: which cells of the file they are
+/// @param vertices  room for the corners of countVtkCells() cells
+/// @param numbers   if not null, room for the indices of these cells in the file
 /// @throws Error FileSyntax, IndexOutOfRange
 template <class Vertex>
 void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t first,
                   std::size_t count, Vertex* vertices, std::size_t* numbers = nullptr);
 
 /// Reads all wanted cells, with all threads.
-/// @param makeRoom  called with their number; returns where their corners go
-/// @param[out] numbers  if not null: which cells of the file they are
-/// @throws Error the same; FileUnsupported if there are only others
+/// @param makeRoom  called with their number; returns the destination of their corners
+/// @param[out] numbers  if not null: their indices in the file
+/// @throws Error the same; FileUnsupported if all cells are of other kinds
 void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
                   Stage& stage);
 
-/// Notes what types of cells there are.
+/// Counts the cells of each type.
 /// @param count  of the wanted ones
 void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t count);
 
-/// Throws the error of a file with cells, but no wanted ones.
+/// Throws the error for a file with cells, but no wanted ones.
 [[noreturn]] void failWithoutVtkCells(const VtkSource& source, const CellKind& cells);
 
 /// The simplices that points were generated on, in two arrays as this library writes them.
@@ -210,45 +211,46 @@ struct VtkGenerators {
   std::optional<VtkColumn> corners;
 };
 [[nodiscard]] VtkGenerators findVtkGenerators(const VtkSource& source);
-/// Reads both, unless arrays of their names are something else.
+/// Reads both arrays; empty if arrays of their names have another form.
 void readVtkGenerators(const VtkSource& source, Array<Index>& tets, Array<CornerSet>& corners);
 
-/// Tags and regions as addTags() writes them. Arrays of other forms belong to other programs, and
-/// are ignored.
-/// @throws Error FileSyntax if an array has too few or too many numbers; FileUnsupported for a tag
-///         or region that does not fit into 32 bits; IndexOutOfRange for a vertex that is no point
+/// Reads tags and regions as addTags() writes them. Arrays of other forms belong to other programs
+/// and are ignored.
+/// @throws Error FileSyntax if an array has the wrong size; FileUnsupported for a tag or region
+/// that
+///         does not fit in 32 bits; IndexOutOfRange for a vertex that is not a point
 [[nodiscard]] HexFeatures readVtkHexFeatures(const VtkSource& source);
 [[nodiscard]] Features readVtkTetFeatures(const VtkSource& source);
 [[nodiscard]] bool hasVtkRegions(const VtkSource& source);
-/// @param cells  the numbers of the cells that are wanted, ascending
+/// @param cells  indices of the wanted cells, ascending
 [[nodiscard]] Array<std::int32_t> readVtkRegions(const VtkSource& source,
                                                  std::span<const std::size_t> cells);
 
-/// Reads points and hexahedra, and what else writers of this library add.
+/// Reads points, hexahedra, and the arrays that writers of this library add.
 [[nodiscard]] HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage);
-/// For each point the first one at its position, in all digits.
-/// @param coordinates  three of each point
-/// @param firstPoints  of each piece: its first point. Where a piece has several at one position,
-///                     nobody knows which of them another one's is, and each stays by itself
-/// @param[out] ambiguous  one of these that other pieces have, too; as it was if there is none
+/// For each point, the first one at exactly the same position.
+/// @param coordinates  three per point
+/// @param firstPoints  the first point of each piece. If a piece has several points at a position,
+///                     their counterparts in other pieces are unknown, so none there is merged
+/// @param[out] ambiguous  such a point that other pieces have, too; unchanged if there is none
 [[nodiscard]] Array<std::size_t> firstsAtSamePosition(std::span<const double> coordinates,
                                                       const std::vector<std::size_t>& firstPoints,
                                                       std::size_t* ambiguous = nullptr);
 
-/// A mesh of pieces.
+/// A mesh joined from pieces.
 struct GluedMesh {
   HexMesh mesh;
-  bool numbered = false;  ///< its points and cells have the global numbers that the pieces tell
+  bool numbered = false;  ///< whether points and cells are numbered by the pieces' global numbers
 };
 using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)>;
-/// Reads pieces, one after the other, and joins them.
+/// Reads pieces in sequence and joins them.
 /// @param name  of the whole, for messages
-/// @throws Error FileSyntax where global numbers contradict each other; where there are none, if
-///         positions do not tell which points are the same
+/// @throws Error FileSyntax if global numbers are inconsistent or, without these, if positions are
+///         ambiguous
 [[nodiscard]] GluedMesh readVtkPieces(const std::string& name, std::size_t count,
                                       const OpenVtkPiece& open, Stage& stage);
 
-/// Lagrange hexahedra, or hexahedra with 20 or 27 nodes where none are straight.
+/// Whether there are Lagrange hexahedra, or hexahedra with 20 or 27 nodes but no straight ones.
 [[nodiscard]] bool holdsVtkLagrange(const VtkSource& source);
 /// @param fileName  for messages
 [[nodiscard]] LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileName,
@@ -256,14 +258,14 @@ using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)
 
 /// Reads points and tets.
 [[nodiscard]] TetCells readVtkTets(VtkSource& source, Stage& stage);
-/// Reads tets and their map from an array of floating-point numbers. One of 12 numbers per cell
-/// holds u0 v0 w0 u1 v1 w1 u2 v2 w2 u3 v3 w3, the parameters of a tet's corners in their order; one
-/// of 3 numbers per point holds its u v w, for maps with one chart.
-/// @param mapArray  its name
+/// Reads tets and their map from a floating-point array. A cell array has 12 components,
+/// u0 v0 w0 u1 v1 w1 u2 v2 w2 u3 v3 w3, the parameters of a tet's corners in order; a point array
+/// has 3, u v w, for maps with a single chart.
+/// @param mapArray  name of the array
 /// @throws Error FileUnsupported if there is no such array; NotFinite
 [[nodiscard]] TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage);
 
-/// Reads triangles with a whole number each.
+/// Reads triangles with an integer label each.
 /// @param name  of the cell array
 [[nodiscard]] TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& stage);
 

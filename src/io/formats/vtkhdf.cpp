@@ -1,4 +1,4 @@
-// VTKHDF files (see formats.hpp): written of a whole mesh, and of parts; and read.
+// Writes VTKHDF files (see formats.hpp) of whole meshes and of parts; and reads them.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -31,7 +31,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// HDF5's type of the numbers that VTK's XML calls so, in memory.
+/// HDF5's native type for a number type of VTK's XML.
 [[nodiscard]] inline hid_t vtkHdfTypeOf(std::string_view name) {
   if (name == "Float64") return HDF5(H5T_NATIVE_DOUBLE_g);
   if (name == "Int64") return HDF5(H5T_NATIVE_INT64_g);
@@ -40,7 +40,7 @@ namespace {
   return HDF5(H5T_NATIVE_UINT8_g);
 }
 
-/// The attributes by which VTK knows the format.
+/// Writes the attributes by which VTK recognizes the format.
 void writeVtkHdfKind(const HdfFile& file, hid_t grid) {
   constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
   file.writeAttribute(grid, "Version", HDF5(H5T_NATIVE_INT64_g), file.space({2}), kVersion.data());
@@ -49,7 +49,7 @@ void writeVtkHdfKind(const HdfFile& file, hid_t grid) {
   file.writeAttribute(grid, "Type", text.id(), file.space({}), kind.data());
 }
 
-/// Writes one file.
+/// Writes a whole data set.
 class VtkHdfWriter {
  public:
   VtkHdfWriter(const OutputFile& file, const VtkDataSet& data, Stage& stage)
@@ -80,7 +80,7 @@ class VtkHdfWriter {
   void count(const char* name, std::uint64_t number) {
     writeNumbers(name, 1, [number](std::size_t) { return number; });
   }
-  /// Writes n integers of 64 bits.
+  /// Writes n 64-bit integers.
   template <class F>
   void writeNumbers(const char* name, std::uint64_t n, const F& valueOf) {
     VtkArray array;
@@ -90,7 +90,7 @@ class VtkHdfWriter {
     writeRows(grid_, name, array);
   }
 
-  /// Writes a dataset, piece by piece as the array's bytes come.
+  /// Writes a dataset in pieces, as the array produces its bytes.
   void writeRows(const HdfObject& group, const char* name, const VtkArray& array) {
     const hid_t memory = vtkHdfTypeOf(array.type);
     const hid_t stored = array.section == VtkSection::Cells && memory == HDF5(H5T_NATIVE_INT32_g)
@@ -120,7 +120,7 @@ class VtkHdfWriter {
       if (array.name == "connectivity") writeRows(grid_, "Connectivity", array);
       if (array.name == "types") writeRows(grid_, "Types", array);
       if (array.name != "offsets") continue;
-      // Where cells begin, and the last one ends.
+      // Offsets, including the end of the last cell.
       writeNumbers("Offsets", data_.cells + 1, [](std::size_t i) { return 8 * i; });
     }
   }
@@ -128,7 +128,7 @@ class VtkHdfWriter {
   void writeGroup(const char* name, VtkSection section) {
     const HdfObject group = file_.group(grid_.id(), name);
     for (const VtkArray& array : data_.arrays()) {
-      // Names stay behind: docs/user/formats.md
+      // names are not written: docs/user/formats.md
       if (array.name == kVtkTagNames || array.name == kVtkNamedTags) continue;
       if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
     }
@@ -151,21 +151,21 @@ void writeVtkHdf(const HexMesh& mesh, OutputFile& output, const WriteOptions& op
 
 namespace {
 
-// One VTKHDF file with all parts: their arrays stand one behind the other, and for each part there
-// is how long they are.
+// One VTKHDF file with all parts: their arrays are concatenated, and the lengths are stored for
+// each part.
 //
-// One process adds part by part to datasets that grow. Where each process of a team has one, all
-// lengths are known before anything is written: the first process has HDF5 lay out the file, with
-// room for all, and then each writes its own bytes to where they belong, as parallel HDF5 does for
-// such datasets. So it takes neither HDF5's library for MPI nor MPI.
+// A single process appends part by part to extensible datasets. In a team with a part per process,
+// all lengths are known before anything is written: the first process has HDF5 lay out the file
+// with space for everything, then each writes its bytes to their position, as parallel HDF5 does
+// for contiguous datasets. This requires neither parallel HDF5 nor MPI.
 
-/// What a part adds to a dataset of the file.
+/// The contribution of a part to a dataset of the file.
 struct Column {
   std::string name;  ///< of the dataset, below VTKHDF
   const VtkArray* array;
 };
 
-/// Adds the arrays that VTKHDF has beside those of the pieces of `.pvtu`.
+/// Adds the arrays that VTKHDF has in addition to those of `.pvtu` pieces.
 void addLayout(VtkDataSet& data, const MeshPart& part) {
   const auto addCount = [&data](const char* name, std::uint64_t count) {
     data.addOwn(VtkSection::Cells, name, std::vector{static_cast<std::int64_t>(count)});
@@ -177,13 +177,13 @@ void addLayout(VtkDataSet& data, const MeshPart& part) {
   addCount("NumberOfConnectivityIds", kCorners * data.cells);
   data.addComputed<std::int64_t>(VtkSection::Cells, "Offsets", cells.size() + 1,
                                  [](std::size_t i) { return kCorners * i; });
-  // Of 64 bits, whatever the number of points.
+  // In 64 bits, whatever the number of points.
   data.addComputed<std::int64_t>(
       VtkSection::Cells, "Connectivity", kCorners * cells.size(),
       [&cells](std::size_t i) { return cells[i / kCorners][i % kCorners]; });
 }
 
-/// @param data  with those of addLayout()
+/// @param data  including the arrays of addLayout()
 std::vector<Column> columnsOf(const VtkDataSet& data) {
   std::vector<Column> columns;
   for (const VtkArray& array : data.arrays()) {
@@ -197,7 +197,7 @@ std::vector<Column> columnsOf(const VtkDataSet& data) {
   return columns;
 }
 
-/// Begins the file. @return  what holds all of it
+/// Begins the file. @return  the root group of the grid
 HdfObject addGrid(const HdfFile& file) {
   HdfObject grid = file.group(file.root(), "VTKHDF");
   writeVtkHdfKind(file, grid.id());
@@ -207,7 +207,7 @@ HdfObject addGrid(const HdfFile& file) {
   return grid;
 }
 
-/// A dataset that grows.
+/// An extensible dataset.
 struct GrowingSet {
   HdfObject set;
   hsize_t rows = 0;
@@ -221,8 +221,8 @@ struct GrowingSet {
   }
 };
 
-/// Tags of edges or quads, which belong to no part: rows of global vertices and the tag, as of the
-/// mesh in one piece.
+/// Tags of edges or quads, which belong to no part: rows of global vertices and the tag, as for a
+/// whole mesh.
 template <std::size_t n>
 class TagRows {
  public:
@@ -235,7 +235,7 @@ class TagRows {
       row.back() = feature.tag;
     }
   }
-  /// Leaves those of all processes in the first one, and none in others.
+  /// Collects the rows of all processes in the first one; clears the others.
   void gather(ProcessTeam& team) {
     const std::vector<std::array<std::int64_t, n>> own = std::move(rows_);
     rows_.clear();
@@ -340,7 +340,7 @@ class VtkHdfSink final : public PartSink {
   }
 
   /// @param rows  of each dataset
-  /// @return where each begins in the file
+  /// @return the position of each dataset in the file
   std::vector<std::uint64_t> layOut(const std::vector<Column>& columns,
                                     const std::vector<std::uint64_t>& rows) {
     HdfFile file(target_.output(), HdfFile::Order::OfNames);
@@ -363,7 +363,7 @@ class VtkHdfSink final : public PartSink {
   PartsInfo info_;
   TagRows<3> edges_;
   TagRows<5> quads_;
-  // In one process alone.
+  // Only in a single process.
   std::optional<HdfFile> file_;
   std::optional<HdfObject> grid_;
   std::map<std::string, GrowingSet> sets_;
@@ -378,23 +378,23 @@ std::unique_ptr<PartSink> openVtkHdfPartSink(const std::filesystem::path& file, 
 
 namespace {
 
-// Reads files of versions 1 and 2: a partition is a part of each dataset.
+// Reading, versions 1 and 2. A partition is a range of each dataset.
 
-/// Of a dataset or group of the grid.
+/// The path of a dataset or group of the grid.
 std::string pathOf(const std::string& name) { return "VTKHDF/" + name; }
 
-/// Numbers [begin, end) as a column.
+/// A column of these numbers.
 template <class T>
 VtkColumn columnOf(std::span<const T> numbers) {
   VtkColumn column;
   column.scalar = T{};
   column.count = numbers.size();
-  column.decoded.resize(numbers.size_bytes() + 1);  // none would be one of the file
+  column.decoded.resize(numbers.size_bytes() + 1);  // if empty, data are in the file
   if (!numbers.empty()) std::memcpy(column.decoded.data(), numbers.data(), numbers.size_bytes());
   return column;
 }
 
-/// A partition, or the fields of all.
+/// One partition, or the field arrays of all.
 class VtkHdfSource final : public VtkSource {
  public:
   explicit VtkHdfSource(const Input& input) : VtkSource({}, input.name()) {
@@ -435,7 +435,7 @@ class VtkHdfReader {
 
   [[nodiscard]] std::size_t partitions() const noexcept { return points_.size() - 1; }
 
-  /// @param withFields  arrays of the whole, which name points of a file with one partition
+  /// @param withFields  whether to add field arrays, which refer to points of a single partition
   [[nodiscard]] std::unique_ptr<VtkSource> open(std::size_t part, bool withFields) const {
     auto source = std::make_unique<VtkHdfSource>(input_);
     source->points = points_[part + 1] - points_[part];
@@ -449,7 +449,7 @@ class VtkHdfReader {
     if (withFields) addFields(*source);
     return source;
   }
-  /// The one partition of a file, with everything.
+  /// The only partition of a file, with all arrays.
   [[nodiscard]] std::unique_ptr<VtkSource> openOnly() const {
     if (partitions() == 1) return open(0, true);
     fail(ErrorCode::FileUnsupported, "the file has ", partitions(),
@@ -461,7 +461,7 @@ class VtkHdfReader {
     const auto openPart = [this](std::size_t part) { return open(part, false); };
     GluedMesh glued = readVtkPieces(input_.name(), partitions(), openPart, stage);
     if (!glued.numbered) return std::move(glued.mesh);
-    // Fields name points by their global numbers.
+    // Field arrays refer to points by global number.
     VtkHdfSource fields(input_);
     fields.points = glued.mesh.points.size();
     addFields(fields);
@@ -472,7 +472,7 @@ class VtkHdfReader {
   }
 
  private:
-  using Begins = std::vector<std::uint64_t>;  ///< rows of each partition, and the end of the last
+  using Begins = std::vector<std::uint64_t>;  ///< first row per partition, and the last end
 
   template <class... Parts>
   [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
@@ -483,8 +483,8 @@ class VtkHdfReader {
     return shape.empty() ? 1 : shape[0];
   }
 
-  /// @param more  rows of each partition beyond what the dataset of counts says
-  /// @param set  that must have so many in all
+  /// @param more  rows per partition beyond those in the dataset of counts
+  /// @param set  whose total number of rows must match
   [[nodiscard]] Begins begins(const std::string& counts, std::uint64_t more,
                               const std::string& set) const {
     Begins begins = {0};
@@ -501,7 +501,7 @@ class VtkHdfReader {
          pathOf(counts), "\" says.");
   }
 
-  /// The rows of a partition. A dataset is read once.
+  /// The rows of a partition. A dataset is read only once.
   template <class T>
   [[nodiscard]] VtkColumn rows(std::map<std::string, std::vector<T>>& known,
                                std::vector<T> (HdfReader::*read)(const std::string&) const,
@@ -530,7 +530,7 @@ class VtkHdfReader {
     return rows(reals_, &HdfReader::reals, set, components, begins, part);
   }
 
-  /// Calls use(name, its path in the grid, components) for the arrays of a group.
+  /// Calls use(name, path in the grid, components) for the arrays of a group.
   template <class Use>
   void forEachArray(const std::string& group, const Use& use) const {
     const std::vector<std::string> all = file_->members("VTKHDF");

@@ -1,5 +1,5 @@
-// Reads `.vtu` files: tags, which say where the arrays are, then the arrays' lengths, which must
-// agree with them. Every size and offset is checked against the file.
+// Reads `.vtu` files: tags locate the arrays, whose own lengths must agree. Every size and offset
+// is checked against the file.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -31,11 +31,11 @@ namespace hexhex::io {
 
 namespace {
 
-/// How an array is stored.
+/// The encoding of an array.
 struct VtuEncoding {
   bool base64 = false;
-  bool compressed = false;      ///< in blocks, with zlib; only if hasZlib()
-  std::size_t lengthBytes = 4;  ///< of the numbers in front of the data
+  bool compressed = false;      ///< in zlib blocks; only if hasZlib()
+  std::size_t lengthBytes = 4;  ///< of the numbers before the data
 };
 
 constexpr std::uint8_t kNoDigit = 255;
@@ -52,13 +52,13 @@ constexpr std::array<std::uint8_t, 256> kBase64Digits = [] {
   return table;
 }();
 
-/// Bytes front to back: as they are, or out of a base64 text. There, white space is skipped, and
-/// texts that end with padding may follow each other.
+/// Reads bytes in sequence, raw or from base64 text. In base64, white space is skipped, and several
+/// texts that end with padding may be concatenated.
 class EncodedBytes {
  public:
   EncodedBytes(std::string_view text, bool base64) : rest_(text), base64_(base64) {}
 
-  /// Reads so many bytes; false if there are not as many, or the text is no base64.
+  /// Reads `size` bytes; false if there are fewer, or the text is not base64.
   [[nodiscard]] bool read(char* to, std::size_t size) {
     if (!base64_) {
       if (size > rest_.size()) return false;
@@ -74,13 +74,13 @@ class EncodedBytes {
     return true;
   }
 
-  /// The most bytes that can be left.
+  /// Upper bound on the bytes left.
   [[nodiscard]] std::size_t room() const noexcept {
     return base64_ ? rest_.size() / 4 * 3 + (pendingEnd_ - pendingBegin_) : rest_.size();
   }
 
  private:
-  /// Four characters are three bytes, or fewer with padding.
+  /// Decodes four characters to three bytes, or fewer if they are padded.
   bool decodeGroup() {
     std::array<std::uint8_t, 4> digits{};
     std::size_t count = 0;
@@ -114,14 +114,14 @@ class EncodedBytes {
   std::size_t pendingEnd_ = 0;
 };
 
-/// Where the blocks of a compressed array are.
+/// The blocks of a compressed array.
 struct Blocks {
-  std::uint64_t size = 0;             ///< of each block, not compressed
-  std::uint64_t lastSize = 0;         ///< of the last one
+  std::uint64_t size = 0;             ///< uncompressed size of each block
+  std::uint64_t lastSize = 0;         ///< of the last block
   std::vector<std::uint64_t> begins;  ///< of the compressed blocks, and the end of the last
 };
 
-/// A number in front of the data, in this machine's order of bytes, as the reader has checked.
+/// Reads a number before the data. The file has native byte order, which was checked.
 bool readLength(EncodedBytes& source, std::size_t lengthBytes, std::uint64_t& length) {
   std::array<char, sizeof(length)> bytes{};
   if (!source.read(bytes.data(), lengthBytes)) return false;
@@ -135,8 +135,8 @@ bool readLength(EncodedBytes& source, std::size_t lengthBytes, std::uint64_t& le
   return true;
 }
 
-/// In front of the blocks: their number, their size, that of a last shorter block or 0, and the
-/// sizes of the compressed ones.
+/// Reads the header of compressed data: number of blocks, their size, size of a shorter last block
+/// or 0, and the compressed sizes.
 bool readBlocks(EncodedBytes& source, std::size_t lengthBytes, Blocks& blocks) {
   std::uint64_t count = 0;
   if (!readLength(source, lengthBytes, count) || !readLength(source, lengthBytes, blocks.size) ||
@@ -159,8 +159,8 @@ constexpr const char* kIncomplete = "the data of this array are incomplete.";
 constexpr const char* kIncompleteOrNoBase64 =
     "the data of this array are incomplete, or no base64.";
 
-/// The bytes of an array.
-/// @param text  from the array's first byte on; what follows the array is ignored
+/// Decodes the bytes of an array.
+/// @param text  starting with the array; whatever follows it is ignored
 /// @param fail  throws an error about the array with this sentence
 Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, Stage& stage,
                            const std::function<void(const char* sentence)>& fail) {
@@ -181,7 +181,7 @@ Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, S
   Array<char> compressed(memorySize(blocks.begins.back()));
   if (!source.read(compressed.data(), compressed.size())) fail(kIncompleteOrNoBase64);
   Array<char> bytes(memorySize((count - 1) * blocks.size + blocks.lastSize));
-  constexpr std::size_t kGrain = 8;  // blocks of some tens of kilobytes
+  constexpr std::size_t kGrain = 8;  // blocks of a few tens of kilobytes
   const auto inflate = [&](std::size_t i) {
     const auto begin = static_cast<std::size_t>(blocks.begins[i]);
     const auto end = static_cast<std::size_t>(blocks.begins[i + 1]);
@@ -195,8 +195,7 @@ Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, S
   return bytes;
 }
 
-// `.vtu` files: tags, which say where the arrays are, then the arrays' lengths, which must agree
-// with them. Every size and offset is checked against the file.
+// Files.
 
 constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
 
@@ -220,7 +219,7 @@ constexpr std::array<std::pair<std::string_view, VtkScalar>, 11> kScalars = {
      {"Float32", float{}},
      {"Float64", double{}}}};
 
-/// What a table has under a name; null if it has nothing.
+/// Looks up a name in a table; null if it is not there.
 template <class Table>
 auto* lookUp(const Table& table, std::string_view name) {
   const auto found = std::find_if(table.begin(), table.end(),
@@ -241,7 +240,7 @@ struct VtuPiece {
   std::uint64_t cells = 0;
   std::vector<VtkSourceArray> arrays = {};
 
-  /// How many numbers an array has, if it has so many of each point or cell.
+  /// The size of an array with this many numbers per point or cell.
   [[nodiscard]] std::uint64_t numbersOf(VtkSection section, std::size_t each) const {
     const bool ofPoints = section == VtkSection::Points || section == VtkSection::PointData;
     return each * (ofPoints ? points : cells);
@@ -250,8 +249,8 @@ struct VtuPiece {
 
 /// An open `.vtu` file. Functions throw Error FileSyntax or FileUnsupported.
 ///
-/// Of several pieces, arrays are in memory one behind the other. Points of different pieces at the
-/// same position are one, as pieces repeat those that they share.
+/// If there are several pieces, their arrays are concatenated in memory, and points of different
+/// pieces at the same position are merged, since pieces repeat shared points.
 class VtuFile final : public VtkSource {
  public:
   /// @param stage  for parallel decoding
@@ -295,7 +294,7 @@ class VtuFile final : public VtkSource {
       if (tag.closing) continue;
       if (tag.name == "VTKFile") readFileTag(tag);
       if (tag.name == "Piece") readPieceTag(tag);
-      // VTK writes arrays of texts as Array.
+      // VTK writes arrays of strings with the tag Array.
       const bool isTexts =
           tag.name == "Array" && section != nullptr && *section == VtkSection::FieldData;
       if ((tag.name == "DataArray" || isTexts) && section != nullptr) readArrayTag(tag, *section);
@@ -351,8 +350,8 @@ class VtuFile final : public VtkSource {
     return count;
   }
 
-  /// Each point, cell or number takes some bytes, which zlib makes smaller at most by its ratio.
-  /// Besides, products of this count cannot overflow then.
+  /// Each point, cell or number takes at least a byte, which zlib compresses at most by its ratio.
+  /// The bound also keeps products of the count from overflowing.
   void requireRoom(std::uint64_t count, const XmlTag& tag, const std::string& what) const {
     if (count / (compressed_ ? kLargestZlibRatio : 1) <= fileSize()) return;
     tags_.fail(ErrorCode::FileSyntax, tag, what, " ", count,
@@ -363,7 +362,7 @@ class VtuFile final : public VtkSource {
     VtkSourceArray array;
     array.section = section;
     array.name = tag.attribute("Name");
-    // Of arrays without a name, only the last one of the points is looked for.
+    // Only the array of points may lack a name; the last one counts.
     if (section != VtkSection::Points && array.name.empty()) return;
     array.numbers = vtkNumbersOf(tag.attribute("type"));
     const std::string_view components = tag.attribute("NumberOfComponents");
@@ -396,9 +395,8 @@ class VtuFile final : public VtkSource {
     appended_ = mark + 1;
   }
 
-  /// The numbers of an array that no file can do without, of each piece. That of the points may
-  /// have any name.
-  /// @param each  how many numbers there are of each point or cell; 0: not known
+  /// The numbers of a mandatory array, per piece. That of the points may have any name.
+  /// @param each  numbers per point or cell; 0: not known
   std::vector<VtkColumn> columnsOf(VtkSection section, std::string_view name, const char* what,
                                    VtkNumbers numbers, std::size_t each) const {
     std::vector<VtkColumn> columns;
@@ -419,8 +417,8 @@ class VtuFile final : public VtkSource {
     return columns;
   }
 
-  /// Columns one behind the other.
-  /// @param shifts  what is added to the numbers of each, which are integers; empty: nothing
+  /// Concatenates columns.
+  /// @param shifts  offsets added to the integers of each column; empty: none
   VtkColumn joined(std::vector<VtkColumn> columns, VtkNumbers numbers,
                    std::span<const std::uint64_t> shifts = {}) const {
     if (columns.size() == 1) return std::move(columns[0]);
@@ -461,7 +459,7 @@ class VtuFile final : public VtkSource {
     connectivity = joined(std::move(corners), VtkNumbers::Integers, pointsBefore_);
   }
 
-  /// A number that is no point of its piece could be one of the next.
+  /// Checks corners against the points of their piece; after joining, they could refer to the next.
   void requireCorners(const VtkColumn& corners, std::size_t p) const {
     Array<std::int64_t> numbers(memorySize(corners.count));
     copy(corners, 0, numbers.size(), numbers.data());
@@ -472,7 +470,7 @@ class VtuFile final : public VtkSource {
     }
   }
 
-  /// Pieces without points and cells need no arrays. Of a file with nothing else, one stays.
+  /// Drops empty pieces, which need no arrays; keeps one if all are empty.
   void leaveOutEmpty() {
     const VtuPiece first = pieces_.front();
     std::erase_if(pieces_,
@@ -480,7 +478,7 @@ class VtuFile final : public VtkSource {
     if (pieces_.empty()) pieces_.push_back(first);
   }
 
-  /// Arrays that all pieces have become one each. Those of the whole file name points of no piece.
+  /// Joins the arrays that all pieces have. Field arrays are dropped, since they refer to points.
   void joinPieces() {
     arrays.clear();
     joinPoints();
@@ -515,7 +513,7 @@ class VtuFile final : public VtkSource {
     leaveOutGhosts();
   }
 
-  /// Rows of a column with numbers of 64 bits, ascending.
+  /// Keeps these rows, ascending, of a column of 64-bit numbers.
   static void keep(VtkColumn& column, const Array<std::size_t>& rows, std::size_t components) {
     const std::size_t size = components * sizeof(double);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -541,7 +539,7 @@ class VtuFile final : public VtkSource {
     points = kept_.size();
   }
 
-  /// Cells that another piece owns become VTK's empty cells.
+  /// Turns cells that another piece owns into VTK's empty cells.
   void leaveOutGhosts() {
     const VtkSourceArray* const ghosts =
         find(VtkSection::CellData, kVtkGhosts, 1, VtkNumbers::Integers);
@@ -554,11 +552,11 @@ class VtuFile final : public VtkSource {
     }
   }
 
-  /// The numbers of an array, exactly `count` of them if that is known.
+  /// The numbers of an array, exactly `count` if that is known.
   VtkColumn loadArray(const XmlTag& tag, VtkNumbers numbers,
                       std::optional<std::uint64_t> count) const {
     const std::string_view format = tag.attribute("format");
-    if (format == "ascii") {  // of texts, the numbers of characters
+    if (format == "ascii") {  // for strings, the codes of characters
       return parse(tag, numbers == VtkNumbers::Others ? VtkNumbers::Integers : numbers, count);
     }
     if (format != "appended" && format != "binary") {
@@ -588,8 +586,8 @@ class VtuFile final : public VtkSource {
     return column;
   }
 
-  /// Finds an array that is appended as plain bytes.
-  /// @return their number
+  /// Locates an array that is appended raw.
+  /// @return its size in bytes
   std::uint64_t findAppended(const XmlTag& tag, VtkColumn& column) const {
     const std::uint64_t offset = readCount(tag, "offset");
     const std::uint64_t room = appended_ ? fileSize() - *appended_ : 0;
@@ -609,7 +607,7 @@ class VtuFile final : public VtkSource {
                "the data of this array lie beyond the end of the file: it is incomplete.");
   }
 
-  /// The bytes of an array that is base64 in its tag or appended, or compressed.
+  /// The bytes of an array that is compressed, or base64, inline or appended.
   Array<char> decode(const XmlTag& tag) const {
     std::string_view encoded = contentOf(tag);
     bool base64 = true;
@@ -632,10 +630,10 @@ class VtuFile final : public VtkSource {
         [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, tag, sentence); });
   }
 
-  /// The numbers of a text. Without a count: as many as there are.
+  /// Parses the numbers of a text; without a count, all there are.
   VtkColumn parse(const XmlTag& tag, VtkNumbers numbers, std::optional<std::uint64_t> count) const {
-    // A view from the beginning of the file makes line numbers right; the scanner ends at the next
-    // tag. Two bytes are the least that a number takes with its separator.
+    // The scanner views the file from its beginning, so that line numbers are right, and ends at
+    // the next tag. A number takes at least two bytes with its separator.
     const std::string_view content = contentOf(tag);
     TextScanner scanner = tags_.scannerTo(tag.end + content.size());
     scanner.moveTo(tag.end);
@@ -662,16 +660,16 @@ class VtuFile final : public VtkSource {
   XmlTags tags_;
   bool hasFileTag_ = false;
   std::vector<VtuPiece> pieces_;
-  Array<std::size_t> kept_;  ///< of several pieces: points that are no other piece's, too
-  std::vector<std::uint64_t> pointsBefore_;  ///< of each piece, in those before it
-  std::size_t lengthBytes_ = 4;              ///< of the numbers in front of encoded arrays
+  Array<std::size_t> kept_;  ///< of several pieces: points without an earlier duplicate
+  std::vector<std::uint64_t> pointsBefore_;  ///< per piece: points before it
+  std::size_t lengthBytes_ = 4;              ///< of the numbers before encoded arrays
   bool compressed_ = false;
   bool appendedBase64_ = false;
-  std::optional<std::uint64_t> appended_;  ///< position behind the '_' of AppendedData
+  std::optional<std::uint64_t> appended_;  ///< position after the '_' of AppendedData
 };
 
-/// Whether a text, which may go on, is a head with all its tags behind which arrays follow as plain
-/// bytes; nothing while the end of the head is not in the text.
+/// Whether a text, possibly incomplete, begins with a complete header followed by raw appended
+/// arrays; empty if the end of the header is not in the text.
 std::optional<bool> isPlainHead(std::string_view text) {
   const std::size_t tag = text.find("<AppendedData");
   const std::size_t mark = tag == std::string_view::npos ? tag : text.find('_', tag);
@@ -680,11 +678,10 @@ std::optional<bool> isPlainHead(std::string_view text) {
          text.substr(tag, mark - tag).find("base64") == std::string_view::npos;
 }
 
-/// The head of a regular file whose arrays are appended to it as plain bytes; nothing of other
-/// files.
+/// The header of a regular file with raw appended arrays; empty for other files.
 Array<char> readPlainHead(const InputFile& input) {
-  // How much of a file is searched for the end of its head: first this, then more, at most that. A
-  // head takes some kilobytes; one with more holds arrays as text.
+  // How much of a file is searched for the end of its header: at first, and at most. A header takes
+  // a few kilobytes; a longer one contains arrays as text.
   constexpr std::size_t kFirst = std::size_t{1} << 16;
   constexpr std::size_t kMost = std::size_t{1} << 24;
   Array<char> bytes;

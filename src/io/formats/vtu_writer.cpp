@@ -1,5 +1,4 @@
-// VTK's XML files, with the arrays appended as raw bytes: of any data set at once, of meshes also
-// in pieces.
+// Writes VTK XML files with raw appended arrays: of any data set, and of meshes in pieces.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -29,13 +28,13 @@ namespace {
 
 constexpr std::string_view kTail = "\n  </AppendedData>\n</VTKFile>\n";
 
-/// The tag of one array. `offset` counts from the beginning of the data.
+/// The tag of an array. `offset` counts from the beginning of the data.
 std::string tagOf(const VtkArray& array, std::uint64_t offset) {
   std::string tag =
       concat("        <DataArray type=\"", array.type, "\" Name=\"", array.name, "\"");
-  // Left out where it is 1: some readers would make a matrix with one column of it.
+  // Omitted if it is 1: some readers would return a matrix with one column.
   if (array.components != 1) tag += concat(" NumberOfComponents=\"", array.components, "\"");
-  // The length of a field array stands nowhere else.
+  // The length of a field array is not given elsewhere.
   if (array.section == VtkSection::FieldData) tag += concat(" NumberOfTuples=\"", array.rows, "\"");
   return concat(tag, " format=\"appended\" offset=\"", offset, "\"/>\n");
 }
@@ -51,7 +50,7 @@ std::string globalNumbersIn(const VtkDataSet& data, VtkSection section) {
   return {};
 }
 
-/// The beginning of a file, up to its data.
+/// The header of a file, up to its data.
 /// @param offsets  of the arrays, counted from the beginning of the data
 std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offsets,
                    bool compressed) {
@@ -102,8 +101,8 @@ std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offset
   return head + (data.curved ? "_" : "    _");
 }
 
-/// The beginning of a file whose arrays are plain bytes.
-/// @param[out] positions  of the arrays in the file; in front of each stands its length
+/// The header of a file with raw arrays.
+/// @param[out] positions  of the arrays in the file; each is preceded by its length
 std::string plainHead(const VtkDataSet& data, std::vector<std::uint64_t>& positions) {
   std::uint64_t offset = 0;
   for (const VtkArray& array : data.arrays()) {
@@ -115,28 +114,26 @@ std::string plainHead(const VtkDataSet& data, std::vector<std::uint64_t>& positi
   return head;
 }
 
-/// The beginning of a file whose arrays are compressed. It has the same number of bytes whatever
-/// the offsets are.
+/// The header of a file with compressed arrays. Its size does not depend on the offsets.
 std::string compressedHead(const VtkDataSet& data, std::span<const std::uint64_t> offsets) {
   const std::vector<std::uint64_t> largest(offsets.size(), ~std::uint64_t{0});
   const std::size_t size = headOf(data, largest, true).size();
   std::string head = headOf(data, offsets, true);
-  // Space in front of the mark of the data means nothing.
+  // Spaces before the '_' are ignored.
   head.insert(head.size() - 1, size - head.size(), ' ');
   return head;
 }
 
-/// Takes an array's bytes from front to back and writes them as blocks, compressed by all threads.
+/// Receives the bytes of an array and writes them as blocks, compressed by all threads.
 class CompressedArray {
  public:
-  /// @param position  in the file of what is written next
+  /// @param position  of the file's end
   CompressedArray(OutputFile& output, std::uint64_t position, std::uint64_t bytes, int threads)
       : output_(output),
         quiet_(threads),
         stage_(quiet_, "compress"),
         begin_(position),
-        // The number of blocks, the size of one, that of a last shorter one, those of compressed
-        // ones.
+        // Number of blocks, their size, size of a shorter last one; compressed sizes follow.
         head_{blockCount(bytes, kBlockBytes), kBlockBytes, bytes % kBlockBytes},
         compressed_(kBatch) {
     const std::vector<std::uint64_t> room(head_.size() + head_[0], 0);
@@ -158,7 +155,7 @@ class CompressedArray {
   }
 
   /// Writes the remaining bytes.
-  /// @return the position in the file of what is written next
+  /// @return the position of the file's end
   [[nodiscard]] std::uint64_t finish() {
     compress();
     output_.flush();
@@ -167,9 +164,9 @@ class CompressedArray {
   }
 
  private:
-  // A millisecond's work, and as large as zlib's window needs to be good.
+  // A millisecond of work, and a few times zlib's window, for good compression.
   static constexpr std::size_t kBlockBytes = std::size_t{1} << 17;
-  // Blocks that are compressed at once.
+  // Blocks compressed in parallel.
   static constexpr std::size_t kBatch = 64;
 
   void compress() {
@@ -199,10 +196,10 @@ class CompressedArray {
   std::vector<Array<char>> compressed_;
 };
 
-// Bytes written between two checks for cancellation: a few milliseconds' work.
+// Bytes written between checks for cancellation: a few milliseconds of work.
 constexpr std::size_t kSliceBytes = std::size_t{1} << 22;
 
-/// Passes bytes on, in slices.
+/// Passes bytes on in slices.
 VtkBytes inSlices(VtkBytes output, LoopProgress& progress) {
   return [output = std::move(output), &progress](const void* bytes, std::size_t size) {
     for (std::size_t begin = 0; begin < size; begin += kSliceBytes) {
@@ -224,7 +221,7 @@ void writePlain(OutputFile& output, const VtkDataSet& data, LoopProgress& progre
   }
 }
 
-/// The head, with the offsets of the arrays, is written last, to the space reserved for it.
+/// The header, with the offsets of the arrays, is written last, to the space reserved for it.
 void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
                      LoopProgress& progress) {
   std::vector<std::uint64_t> offsets(data.arrays().size(), 0);
@@ -245,7 +242,7 @@ void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
   output.writeBytesAt(0, head.data(), head.size());
 }
 
-/// Names stand in attributes of tags as they are.
+/// Refuses names that would need escaping, since they are written to attributes as they are.
 void requirePlainName(std::string_view name) {
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
     return c >= ' ' && std::string_view("\"'<>&\x7f").find(c) == std::string_view::npos;
@@ -257,8 +254,8 @@ void requirePlainName(std::string_view name) {
                   "characters \" ' < > & or a control character.");
 }
 
-/// Writes a mesh that comes in pieces, which bring some of each array: all arrays are written side
-/// by side, each from its own position on, which follows from the counts alone.
+/// Writes a mesh that comes in pieces, each with some rows of several arrays. All arrays are
+/// written side by side, from positions that follow from the counts alone.
 class VtuStream {
  public:
   VtuStream(OutputFile& output, int /*threads*/) : output_(output) {
@@ -288,7 +285,7 @@ class VtuStream {
   }
 
  private:
-  /// The first piece determines which arrays there are, and so where they begin.
+  /// Begins the file once the first piece shows which arrays there are.
   void beginFile() {
     if (data_) return;
     data_.emplace(
@@ -303,7 +300,7 @@ class VtuStream {
       end_ = positions[i] + bytes;
     }
   }
-  /// Writes the next rows of the arrays of points, or of cells.
+  /// Writes the next rows of the point arrays, or of the cell arrays.
   void writeRows(bool ofPoints) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const VtkArray& array = data_->arrays()[i];
@@ -325,7 +322,7 @@ class VtuStream {
 };
 
 void requireCompressible(const OutputFile& output) {
-  // The head is written last.
+  // The header is written last.
   output.requirePositions("to which no compressed .vtu file can be written");
 }
 
@@ -372,13 +369,13 @@ std::unique_ptr<MeshSink> openVtuSink(const std::filesystem::path& file, Context
 
 namespace {
 
-/// The vertices of hexahedra and the inner points of arcs.
+/// The hex vertices and the inner points of arcs.
 std::vector<PointPiece> pointsOf(const PiecewiseLinearMesh& mesh) {
   return {{0, mesh.mesh.points, mesh.mesh.generatorTet, mesh.mesh.generatorCorners},
           {0, mesh.arcs.points, mesh.arcs.generatorTet, mesh.arcs.generatorCorners}};
 }
 
-/// The simplices that cells lie in.
+/// Adds the simplices that contain the cells.
 void addCarriers(VtkDataSet& data, std::span<const Index> tets,
                  std::span<const CornerSet> corners) {
   data.add(VtkSection::CellData, "tet", tets);
@@ -387,14 +384,14 @@ void addCarriers(VtkDataSet& data, std::span<const Index> tets,
                                  [corners](std::size_t i) { return generatorKind(corners[i]); });
 }
 
-/// All cells of one type; PolyData need not be told it.
+/// Adds the common type of all cells; PolyData has none.
 void addTypes(VtkDataSet& data, std::uint8_t type) {
   if (data.elements != VtkSection::Cells) return;
   data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
                                  [type](std::size_t) { return type; });
 }
 
-/// Per element of rows with the given beginnings: the row.
+/// The row of each element, given the beginnings of the rows.
 Array<std::int32_t> rowOfEach(std::span<const std::uint64_t> begins, std::uint64_t extraPerRow) {
   const std::size_t rows = begins.size() - 1;
   Array<std::int32_t> result(begins.back() + rows * extraPerRow);
@@ -407,7 +404,7 @@ Array<std::int32_t> rowOfEach(std::span<const std::uint64_t> begins, std::uint64
   return result;
 }
 
-/// Both ends of all segments.
+/// The ends of all segments.
 Array<std::int32_t> segmentEnds(const PiecewiseLinearMesh& mesh) {
   const Arcs& arcs = mesh.arcs;
   Array<std::int32_t> ends;
@@ -417,7 +414,7 @@ Array<std::int32_t> segmentEnds(const PiecewiseLinearMesh& mesh) {
     ends.push_back(static_cast<std::int32_t>(arcs.ends[e][0]));
     for (std::uint64_t i = arcs.pointBegin[e]; i < arcs.pointBegin[e + 1]; ++i) {
       const std::int32_t point = firstPoint + static_cast<std::int32_t>(i);
-      ends.push_back(point);  // of one segment, and of the next
+      ends.push_back(point);  // end of one segment, start of the next
       ends.push_back(point);
     }
     ends.push_back(static_cast<std::int32_t>(arcs.ends[e][1]));
@@ -425,7 +422,7 @@ Array<std::int32_t> segmentEnds(const PiecewiseLinearMesh& mesh) {
   return ends;
 }
 
-/// @param elements  Lines, or Cells
+/// @param elements  Lines or Cells
 void writeArcs(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile& output,
                Stage& stage) {
   const Arcs& arcs = mesh.arcs;
@@ -453,7 +450,7 @@ void writeArcs(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile&
   writeVtkXml(output, data, false, stage);
 }
 
-/// @param elements  Polys, or Cells
+/// @param elements  Polys or Cells
 void writePatches(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile& output,
                   Stage& stage) {
   const Patches& patches = mesh.patches;

@@ -1,4 +1,4 @@
-// Just enough XML to find tags and their attributes. No entities, no validation.
+// A minimal XML scanner for tags and their attributes. No entities, no validation.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace hexhex::io {
 
-/// What an XML file begins with: a tag, or the mark of UTF-8.
+/// First characters of XML files: of a tag, or of the UTF-8 byte order mark.
 inline constexpr std::string_view kXmlFirst = "<\xEF";
 
-/// One tag; refers to the text that was scanned.
+/// A tag; refers to the scanned text.
 struct XmlTag {
   std::string_view name;
   std::string_view attributes;  ///< everything between the name and the end of the tag
@@ -24,7 +24,7 @@ struct XmlTag {
   std::size_t begin = 0;        ///< position of '<'
   std::size_t end = 0;          ///< position after '>'
 
-  /// The value of an attribute; empty if there is none of that name.
+  /// The value of an attribute; empty if it is missing.
   [[nodiscard]] std::string_view attribute(std::string_view attributeName) const {
     constexpr std::string_view kSpace = " \t\r\n";
     std::string_view rest = attributes;
@@ -44,8 +44,8 @@ struct XmlTag {
   }
 };
 
-/// Walks through the tags of a text, one after the other. Comments, declarations and processing
-/// instructions are skipped.
+/// Iterates over the tags of a text. Comments, declarations and processing instructions are
+/// skipped.
 class XmlTags {
  public:
   /// @param text  must outlive the scanner and its tags
@@ -88,7 +88,7 @@ class XmlTags {
     scanner.moveTo(tag.begin);
     scanner.fail(code, sentence...);
   }
-  /// For what stands between tags: a scanner of the text up to this position.
+  /// A scanner of the text up to this position, for content between tags.
   [[nodiscard]] TextScanner scannerTo(std::size_t end) const {
     return {text_.substr(0, end), fileName_};
   }
@@ -102,7 +102,7 @@ class XmlTags {
     position_ = found + mark.size();
   }
 
-  /// The position of the '>' that ends the tag, which may contain quoted ones.
+  /// The position of the '>' that ends the tag; quoted ones do not count.
   [[nodiscard]] std::size_t findEnd(const XmlTag& tag) const {
     char quote = 0;
     for (std::size_t i = tag.begin; i < text_.size(); ++i) {

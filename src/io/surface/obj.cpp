@@ -1,4 +1,4 @@
-// Wavefront OBJ and OFF: vertices and polygons as text.
+// Reads Wavefront OBJ and OFF: vertices and polygons as text.
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@
 namespace hexhex::io {
 namespace {
 
-/// Elements that the library does not use are passed over.
+/// Reads OBJ. Unsupported elements are skipped.
 class ObjReader {
  public:
   static constexpr std::string_view kFirst = "#abcdefghijklmnopqrstuvwxyz";
@@ -48,7 +48,7 @@ class ObjReader {
     addPolygon(mesh_, corners_);
   }
 
-  /// Counted from 1, or from the last vertex before the face, which is -1.
+  /// Reads a vertex index: from 1 on, or negative, where -1 is the last vertex before the face.
   Index readCorner() {
     const std::string_view token = scanner_.readToken();
     const std::string_view number = token.substr(0, token.find('/'));
@@ -69,7 +69,7 @@ class ObjReader {
   std::vector<Index> corners_;
 };
 
-/// One vertex or face a line; what is behind it, such as colours, is passed over.
+/// Reads OFF: one vertex or face per line; what follows, such as colours, is skipped.
 class OffReader {
  public:
   static constexpr std::string_view kFirst = {};  // comments may come first
@@ -96,7 +96,7 @@ class OffReader {
   }
 
  private:
-  static constexpr std::size_t kLeastLine = 2;  ///< bytes: a digit and the end of a line
+  static constexpr std::size_t kLeastLine = 2;  ///< bytes: a digit and the line end
 
   void readHead() {
     const std::string_view word = scanner_.readToken();

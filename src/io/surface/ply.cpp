@@ -1,5 +1,5 @@
-// PLY, text and bytes of both orders: any elements and properties, of which vertices and faces
-// count.
+// Reads PLY, text and binary of both byte orders. Elements and properties other than vertices and
+// faces are skipped.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,7 +53,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-/// Each number of a file of bytes.
+/// The numbers of a binary file.
 class PlyBytes {
  public:
   PlyBytes(const TextScanner& head, bool bigEndian)
@@ -101,7 +101,7 @@ class PlyBytes {
   bool bigEndian_;
 };
 
-/// Each number of a text.
+/// The numbers of a text file.
 class PlyText {
  public:
   explicit PlyText(TextScanner& scanner) : scanner_(scanner) {}
@@ -115,7 +115,7 @@ class PlyText {
   TextScanner& scanner_;
 };
 
-/// What stands before the numbers.
+/// The header.
 class PlyHead {
  public:
   explicit PlyHead(TextScanner& scanner) : scanner_(scanner) {
@@ -194,7 +194,7 @@ class PlyBody {
 
   TriangleMesh read(const std::vector<PlyElement>& elements) {
     for (const PlyElement& element : elements) {
-      if (element.properties.empty()) continue;  // takes no place in the file
+      if (element.properties.empty()) continue;  // takes no space in the file
       for (std::uint64_t i = 0; i < element.count; ++i) readRecord(element);
     }
     return std::move(mesh_);

@@ -1,4 +1,4 @@
-// STL: three corners per triangle, as text or bytes.
+// Reads STL: three corners per triangle, text or binary.
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,7 +20,7 @@ class StlReader {
   StlReader(std::string_view text, const std::string& name, Stage& /*stage*/)
       : text_(text), name_(name) {}
 
-  /// Some programs begin binary files with "solid", too; the number of bytes tells.
+  /// Some programs begin binary files with "solid" as well; the file size decides.
   TriangleMesh read() {
     const bool isText = text_.starts_with("solid");
     const std::uint64_t count =
@@ -35,7 +35,7 @@ class StlReader {
   }
 
  private:
-  static constexpr std::size_t kHead = 84;  ///< with the number of triangles
+  static constexpr std::size_t kHead = 84;  ///< including the number of triangles
   static constexpr std::size_t kEach = 50;  ///< a normal, three corners, two bytes
   static constexpr std::size_t kNormal = 12;
 

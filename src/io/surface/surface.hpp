@@ -1,5 +1,5 @@
-// Files of surfaces. Each reader returns what the file says: polygons as triangles around their
-// first corner, and vertices as they are listed.
+// Readers of surface files. They return what the file contains: vertices as listed, and polygons
+// triangulated as fans around their first corner.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ inline void addPolygon(TriangleMesh& mesh, std::span<const Index> corners) {
   }
 }
 
-/// Vertices of one position become one, and triangles without three different corners are left out.
+/// Merges vertices at the same position, and drops triangles with repeated corners.
 [[nodiscard]] TriangleMesh welded(const TriangleMesh& mesh);
 
 }  // namespace hexhex::io

@@ -16,7 +16,7 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   }
   std::vector<Index> order(mesh.points.size());
   std::iota(order.begin(), order.end(), Index{0});
-  // The first of several that are equal gives all of them its place in the list.
+  // Equal points are represented by the first of them.
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     const Vec3& p = mesh.points[a];
     const Vec3& q = mesh.points[b];
