@@ -16,6 +16,7 @@
 #include <io/io_test_support.hpp>
 
 #include "support/collecting_sink.hpp"
+#include "support/error_of.hpp"
 
 namespace hexhex::test::stream {
 namespace {
@@ -518,6 +519,14 @@ TEST(MeshSummary, ChecksumsAreThoseOfTheFirstVersion) {
   const MeshSummary sums = summarize(gridMesh(2, 2, 2), context);
   EXPECT_EQ(sums.pointChecksum, 2268866626704337417U);
   EXPECT_EQ(sums.cellChecksum, 2959003485796918603U);
+}
+
+TEST(MeshSummary, RefusesGeneratorsOfSomeVerticesOnly) {
+  HexMesh mesh = gridMesh(2, 2, 2);
+  mesh.generatorTet.resize(mesh.points.size() - 1);
+  Context context;
+  EXPECT_EQ(errorOf([&] { static_cast<void>(summarize(mesh, context)); }).code(),
+            ErrorCode::InvalidArgument);
 }
 
 }  // namespace

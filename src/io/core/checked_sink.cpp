@@ -17,11 +17,19 @@
 namespace hexhex::io {
 namespace {
 
+/// A fraction of a millisecond of work.
+constexpr std::size_t kCheckedSinkGrain = std::size_t{1} << 14;
+
 /// Refuses an optional array that is present but has the wrong size.
 void requireSize(std::size_t size, std::size_t expected, const char* elements, const char* values) {
   if (size == 0 || size == expected) return;
   throw Error(ErrorCode::InvalidArgument,
               concat("The mesh has ", expected, " ", elements, " but ", size, " ", values, "."));
+}
+
+void requireGenerators(const HexMesh& mesh) {
+  requireSize(mesh.generatorCorners.size(), mesh.points.size(), "vertices", "generators");
+  requireSize(mesh.generatorTet.size(), mesh.points.size(), "vertices", "generators");
 }
 
 void requireFinite(std::span<const Vec3> points, Stage& stage) {
@@ -34,8 +42,6 @@ void requireFinite(std::span<const Vec3> points, Stage& stage) {
 }  // namespace
 
 std::size_t firstNotFinite(std::span<const Vec3> points, Stage& stage) {
-  constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
-                                            << 14;  // a fraction of a millisecond of work
   return firstFault(
       stage, points.size(), [&](std::size_t i) { return isFinite(points[i]); }, kCheckedSinkGrain);
 }
@@ -66,8 +72,7 @@ void requireWritable(const TetMap& map, Stage& stage) {
 
 void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& stage) {
   adjacency::requireCornersInRange(mesh, stage);
-  requireSize(mesh.generatorCorners.size(), mesh.points.size(), "vertices", "generators");
-  requireSize(mesh.generatorTet.size(), mesh.points.size(), "vertices", "generators");
+  requireGenerators(mesh);
   requireSize(mesh.regions.size(), mesh.cells.size(), "cells", "regions");
   mesh::requirePatchAngle(options.patchAngle);
   requireSize(options.scaledJacobians.size(), mesh.cells.size(), "cells", "scaled Jacobians");
@@ -75,9 +80,6 @@ void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& st
 }
 
 namespace {
-
-constexpr std::size_t kCheckedSinkGrain = std::size_t{1}
-                                          << 14;  // a fraction of a millisecond of work
 
 std::string numbers(std::uint64_t first, std::uint64_t size) {
   return concat(size, " from number ", first, " on");
@@ -219,6 +221,7 @@ std::span<const T> part(const Array<T>& values, std::size_t first, std::size_t c
 }  // namespace
 
 void sendTo(MeshSink& sink, const HexMesh& mesh) {
+  requireGenerators(mesh);
   sink.begin(mesh.points.size(), mesh.cells.size());
   for (std::size_t first = 0; first < mesh.points.size(); first += kPiece) {
     const std::size_t count = std::min(kPiece, mesh.points.size() - first);

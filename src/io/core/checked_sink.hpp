@@ -161,6 +161,7 @@ template <class Writer>
 }
 
 /// Sends a mesh to a sink, from begin() to end(), with its generators if it has any.
+/// @throws Error InvalidArgument if only some vertices have generators
 void sendTo(MeshSink& sink, const HexMesh& mesh);
 
 }  // namespace hexhex::io

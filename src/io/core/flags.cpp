@@ -62,13 +62,6 @@ class TetBoundary {
     const auto found = faces_.find(sortedCorners(triangle));
     return found == faces_.end() ? nullptr : &found->second;
   }
-  [[nodiscard]] bool isOn(Index tet, std::size_t face, const TetMesh& tets) const {
-    SurfaceTriangle corners{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = tets.tets[tet][static_cast<std::size_t>(lattice::kFaceCorners[face][k])];
-    }
-    return !find(corners)->isInner;
-  }
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(std::count_if(faces_.begin(), faces_.end(),
                                                   [](const auto& f) { return !f.second.isInner; }));

@@ -65,9 +65,6 @@ struct QuadGroups : ElementGroups<4> {
 [[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
                                     const std::function<bool(std::uint64_t)>& isInside = nullptr);
 
-/// The default name of a group of quads; tag 0: untagged boundary quads.
-[[nodiscard]] std::string quadGroupName(std::int32_t tag);
-
 /// The cells by region, for formats that list them group by group.
 struct CellGroups {
   std::vector<ElementGroup> groups;  ///< at least one
