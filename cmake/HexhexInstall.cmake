@@ -29,13 +29,8 @@ install(FILES bindings/c/include/hexhex.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR
 configure_package_config_file(cmake/hexhexConfig.cmake.in ${PROJECT_BINARY_DIR}/hexhexConfig.cmake
   INSTALL_DESTINATION ${package_dir}
   PATH_VARS CMAKE_INSTALL_LIBDIR)
-if(PROJECT_VERSION_MAJOR EQUAL 0)
-  set(compatibility SameMinorVersion)
-else()
-  set(compatibility SameMajorVersion)
-endif()
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/hexhexConfigVersion.cmake
-  COMPATIBILITY ${compatibility})
+  COMPATIBILITY SameMajorVersion)
 install(FILES
   ${PROJECT_BINARY_DIR}/hexhexConfig.cmake
   ${PROJECT_BINARY_DIR}/hexhexConfigVersion.cmake

@@ -1,13 +1,13 @@
 /* The version stands here alone; CMake and pip read it from this file. Read by C and C++.
 
-   Semantic Versioning. Until 1.0, a change of the minor version may change the source and the
-   binary interface, and the shared library's name (SONAME) changes with it; a change of the patch
-   version changes neither. From 1.0 on, the same holds for the major version. */
+   Semantic Versioning: a change of the major version may change the source and the binary
+   interface, and the shared library's name (SONAME) changes with it; minor versions add to both,
+   patch versions change neither. */
 #ifndef HEXHEX_VERSION_H
 #define HEXHEX_VERSION_H
 
-#define HEXHEX_VERSION_MAJOR 0
-#define HEXHEX_VERSION_MINOR 1
+#define HEXHEX_VERSION_MAJOR 1
+#define HEXHEX_VERSION_MINOR 0
 #define HEXHEX_VERSION_PATCH 0
 
 #define HEXHEX_TEXT_OF_VALUE(value) #value

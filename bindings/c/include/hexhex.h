@@ -56,7 +56,7 @@ extern "C" {
 
 /* ---- Version and errors -------------------------------------------------------------------- */
 
-/** Version of the library at run time, e.g. "0.1.0"; HEXHEX_VERSION is that of the headers. */
+/** Version of the library at run time, e.g. "1.0.0"; HEXHEX_VERSION is that of the headers. */
 HEXHEX_API const char* hexhex_version(void);
 
 /** Status codes. Values never change their meaning; new ones may be added. */
