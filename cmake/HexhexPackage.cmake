@@ -63,9 +63,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "libeigen3-dev, mpi-default-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "${PROJECT_DESCRIPTION} (C++ and C headers, static library)")
 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME hexhex)
-if(NOT HEXHEX_HAS_VIEWER)  # with it, the command holds the static library
-  set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "${exact}")
-endif()
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS xdg-utils)  # for `hexhex view --open`
 # What is loaded only when a file or a quantization needs it.
 if(loaded_packages)
   list(JOIN loaded_packages ", " loaded_packages)

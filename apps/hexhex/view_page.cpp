@@ -1,6 +1,7 @@
 #include "view_page.hpp"
 
 #include <array>
+#include <fcntl.h>
 #include <filesystem>
 #include <optional>
 #include <spawn.h>
@@ -25,8 +26,8 @@
 #include "output.hpp"
 #include "shared_options.hpp"
 
-#ifdef __APPLE__
-extern "C" char** environ;  // not declared in macOS headers
+#ifndef __linux__
+extern "C" char** environ;  // elsewhere, headers may not declare it
 #endif
 
 namespace hexhex::command {
@@ -140,8 +141,19 @@ void openInBrowser(const std::filesystem::path& page) {
   std::string program = kOpener;
   std::string file = std::filesystem::absolute(page).string();  // absolute: not taken for an option
   const std::array<char*, 3> words = {program.data(), file.data(), nullptr};
-  pid_t process = 0;
-  const int problem = ::posix_spawnp(&process, kOpener, nullptr, nullptr, words.data(), environ);
+  posix_spawn_file_actions_t streams;  // not ours: whoever reads these waits for their end
+  int problem = ::posix_spawn_file_actions_init(&streams);
+  if (problem == 0) {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+      if (problem != 0) break;
+      problem = ::posix_spawn_file_actions_addopen(&streams, stream, "/dev/null", O_RDWR, 0);
+    }
+    pid_t process = 0;
+    if (problem == 0) {
+      problem = ::posix_spawnp(&process, kOpener, &streams, nullptr, words.data(), environ);
+    }
+    ::posix_spawn_file_actions_destroy(&streams);
+  }
   if (problem == 0) return;
   printWarning(fmt::format("The page is written, but {} cannot be started to open it: {}.", kOpener,
                            std::generic_category().message(problem)));

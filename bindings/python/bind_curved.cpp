@@ -72,7 +72,15 @@ void takeLists(auto& lists, const nb::dict& arrays) {
   visitLists(lists, [&](const char* name, auto& list) {
     using Element = typename std::decay_t<decltype(list)>::value_type;
     using Given = nb::ndarray<const typename Row<Element>::Scalar, nb::c_contig, nb::device::cpu>;
-    assign(list, elements<Element>(nb::cast<Given>(arrays[name])));
+    const auto given = nb::cast<Given>(arrays[name]);
+    constexpr auto& kRow = Row<Element>::kShape;
+    bool fits = given.ndim() == 1 + kRow.size();
+    for (std::size_t i = 0; fits && i < kRow.size(); ++i) fits = given.shape(i + 1) == kRow[i];
+    if (!fits) {
+      throw Error(ErrorCode::InvalidArgument,
+                  std::string("The array ") + name + " has a wrong shape.");
+    }
+    assign(list, elements<Element>(given));
   });
 }
 
@@ -84,9 +92,10 @@ void bindCurved(nb::module_& module) {
           "__init__",
           [](PiecewiseLinearMesh* self, const HexMesh& mesh, const nb::dict& arcs,
              const nb::dict& patches) {
-            new (self) PiecewiseLinearMesh{mesh, {}, {}};
-            takeLists(self->arcs, arcs);
-            takeLists(self->patches, patches);
+            PiecewiseLinearMesh taken{mesh, {}, {}};
+            takeLists(taken.arcs, arcs);
+            takeLists(taken.patches, patches);
+            new (self) PiecewiseLinearMesh(std::move(taken));
           },
           "mesh"_a, "arcs"_a, "patches"_a)
       .def_prop_ro(

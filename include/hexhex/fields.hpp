@@ -1,4 +1,5 @@
-// The fields of reports by name, as the command's JSON and Python have them (docs/user/report.md).
+// The fields of reports by name, as Python has them, and the command's JSON but for some of
+// extractions (docs/user/report.md).
 #pragma once
 
 #include <hexhex/check.hpp>
@@ -132,7 +133,8 @@ void visitFields(const FillReport& report, const Visit& visit) {
   visit("filled_volume", report.filledVolume);
 }
 
-/// Without the numbers of vertices and the worst cell, which JSON nests.
+/// Without certificates, distances to the surface, numbers of vertices and the worst cell, which
+/// JSON nests.
 template <class Visit>
 void visitFields(const ImproveReport& report, const Visit& visit) {
   visit("diagonal", report.diagonal);

@@ -49,7 +49,7 @@ struct RepairedMap {
   /// The map from which the mesh was extracted, and to whose tets `generatorTet` refers; null if
   /// the caller's map was valid.
   std::shared_ptr<const TetMap> map;
-  RepairReport report;  ///< filled even if an error is thrown
+  RepairReport report;  ///< filled even if the repair fails
 };
 
 /// Whether this build supports repair (requires Eigen).

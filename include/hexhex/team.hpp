@@ -91,8 +91,9 @@ class ProcessTeam {
 [[nodiscard]] TetMap shareMap(ProcessTeam& team, const TetMapView& map);
 
 /// Extracts one of as many parts as there are processes: the one with the number of this process's
-/// rank. All processes have the same map and options. Each process holds the map, some tens of
-/// bytes per tet, and its part. Checks that all parts form one mesh, as PartSummarySink does.
+/// rank. All processes have the same map and options, but each a RepairedMap of its own if maps are
+/// to be repaired. Each process holds the map, some tens of bytes per tet, and its part. Checks
+/// that all parts form one mesh, as PartSummarySink does.
 /// @param parts  with a number of parts of 1 or that of processes
 /// @throws Error  the same in all processes, as extractParts(); InvalidArgument for another number
 ///         of parts, and if maps or options differ; VerificationFailed

@@ -34,12 +34,13 @@ bool isToBeRepaired(const igm::DefectCollector& defects, const ExtractOptions& o
 /// Prepares the map, or what a repair makes of it.
 ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOptions& options,
                          Context& context) {
-  if (options.repair != nullptr) *options.repair = {};
+  std::shared_ptr<const TetMap> before;  // of an earlier call: it may own the map of this one
+  if (options.repair != nullptr) before = std::exchange(*options.repair, {}).map;
   {
     igm::DefectCollector defects;
     igm::PreparedMap prepared = igm::prepareMap(map, options.tolerance, maxScale, context, defects,
                                                 igm::ChartChoice::Unfolded, options.switches);
-    if (defects.empty()) return {std::move(prepared), nullptr};
+    if (defects.empty()) return {std::move(prepared), map, std::move(before)};
     if (!isToBeRepaired(defects, options)) defects.throwIfAny();
   }
   const RepairOptions repair{options.tolerance, maxScale, options.round, true};
@@ -51,7 +52,7 @@ ValidMap prepareOrRepair(const TetMapView& map, int maxScale, const EngineOption
                       igm::ChartChoice::Unfolded, options.switches);
   defects.throwIfAny();
   options.repair->map = repaired;
-  return {std::move(prepared), std::move(repaired)};
+  return {std::move(prepared), *repaired, repaired};
 }
 
 }  // namespace
@@ -108,8 +109,7 @@ ScaledMap prepareScaled(const TetMapView& map, const EngineOptions& options,
   }
   ValidMap valid =
       prepareValid(map, options.scale * limits.furtherScale, options, context, statistics);
-  const TetMapView source = valid.repaired ? TetMapView(*valid.repaired) : map;
-  ScaledMap scaled{std::move(valid.prepared), source, std::move(valid.repaired)};
+  ScaledMap scaled{std::move(valid.prepared), valid.source, std::move(valid.owner)};
   Stage stage(context, "scaling");
   igm::ExactMap& exact = scaled.map.exact;
   scaled.expectedCells =

@@ -19,7 +19,7 @@ namespace hexhex {
 class Extractor::Prepared {
  public:
   Prepared(const TetMapView& map, const ExtractorOptions& options, Context& context)
-      : given_(map), maxScale_(options.maxScale) {
+      : source_(map), maxScale_(options.maxScale) {
     extraction::runExtraction({"Extractor"}, {}, context, &known_, [&](ExtractStatistics& filled) {
       ExtractOptions prepare;
       prepare.tolerance = options.tolerance;
@@ -27,8 +27,8 @@ class Extractor::Prepared {
       prepare.round = options.round;
       auto valid = extraction::prepareValid(map, options.maxScale, prepare, context, filled);
       map_ = std::move(valid.prepared);
-      repaired_ = std::move(valid.repaired);
-      if (repaired_) given_ = *repaired_;
+      source_ = valid.source;
+      owner_ = std::move(valid.owner);
       volume_ = igm::parametricVolume(map_.exact);
     });
   }
@@ -58,7 +58,7 @@ class Extractor::Prepared {
                              ExtractStatistics& statistics,
                              sweep::SweepObserver* observer = nullptr) {
     HexMesh result = extraction::runEngine(map_, cells, options, context, statistics, observer);
-    extraction::carryTags(given_, map_, result, context);
+    extraction::carryTags(source_, map_, result, context);
     return result;
   }
 
@@ -99,8 +99,8 @@ class Extractor::Prepared {
     scale_ = scale;
   }
 
-  std::shared_ptr<const TetMap> repaired_;  ///< null if the caller's map was valid
-  TetMapView given_;                        ///< or what a repair made of it
+  TetMapView source_;                    ///< the caller's map, or what a repair made of it
+  std::shared_ptr<const TetMap> owner_;  ///< of the source, unless it is the caller's alone
   int maxScale_;
   ExtractStatistics known_;
   std::uint64_t volume_ = 0;

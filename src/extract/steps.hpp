@@ -38,7 +38,8 @@ struct EngineOptions : ExtractOptions {
 /// A map that has passed all checks.
 struct ValidMap {
   igm::PreparedMap prepared;
-  std::shared_ptr<const TetMap> repaired;  ///< what it was prepared from if not the caller's map
+  TetMapView source;  ///< what it was prepared from: the caller's map or a repaired one
+  std::shared_ptr<const TetMap> owner;  ///< of the source, unless it is the caller's alone
 };
 
 /// Checks tags, prepares the map or its repair, and throws the first defect, if any.
@@ -59,8 +60,8 @@ struct ValidMap {
 /// A map that is ready for either engine.
 struct ScaledMap {
   igm::PreparedMap map;
-  TetMapView source;                       ///< what it was prepared from: with its tags
-  std::shared_ptr<const TetMap> repaired;  ///< owns the source if it is not the caller's map
+  TetMapView source;                    ///< as in ValidMap, with its tags
+  std::shared_ptr<const TetMap> owner;  ///< as in ValidMap
   std::uint64_t expectedCells = 0;
 };
 

@@ -1447,7 +1447,7 @@ class Parts(CommandTest):
         self.assertEqual((parts["count"], parts["partition"], parts["ghost_layers"]), (5, "curve", 1))
         self.assertTrue(parts["verified"])
         summaries = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
-                   for file in ["whole.vtu", "parts.pvtu"]]
+                     for file in ["whole.vtu", "parts.pvtu"]]
         self.assertEqual(summaries[0], summaries[1])
         for file in ["whole", "parts"]:
             self.run_command("convert", f"{file}.{'vtu' if file == 'whole' else 'pvtu'}", f"{file}.mesh", "--quiet")
@@ -1486,7 +1486,7 @@ class Stream(CommandTest):
                     self.assertNotIn("Jacobian", text)
                     self.run_command("verify", map_file, pieces, "--scale", "2", "--quiet")
                     summaries = [self.run_command("info", "--pieces", file).stdout.splitlines()[1:]
-                               for file in [whole, pieces]]
+                                 for file in [whole, pieces]]
                     self.assertEqual(summaries[0], summaries[1])
 
     def test_report(self):
@@ -1898,10 +1898,14 @@ class View(CommandTest):
         program = self.folder / ("open" if sys.platform == "darwin" else "xdg-open")
         program.write_text('#!/bin/sh\n/bin/echo "$1" >opened\n')
         program.chmod(0o755)
+        told = self.folder / "opened"
         for name in ["b.html", "-b.html"]:
+            told.unlink(missing_ok=True)
             self.run_command("view", "a.mesh", f"--output={name}", "--open", "--quiet", env={"PATH": str(self.folder)})
-            # Whoever has our pipes has ended now, the opener too.
-            opened = pathlib.Path((self.folder / "opened").read_text().rstrip("\n"))
+            end = time.monotonic() + 60  # nobody waits for the opener
+            while time.monotonic() < end and not (told.exists() and told.read_text().endswith("\n")):
+                time.sleep(0.05)
+            opened = pathlib.Path(told.read_text().rstrip("\n"))
             self.assertTrue(opened.is_absolute())
             self.assertTrue(opened.samefile(self.folder / name))
         program.unlink()

@@ -236,8 +236,10 @@ TEST_F(Repairs, AreDoneByTheExtraction) {
   EXPECT_TRUE(repaired.report.changed);
   ASSERT_NE(repaired.map, nullptr);
   EXPECT_TRUE(verify(*repaired.map, mesh).passed());
-  const Extractor extractor(map, {.repair = &repaired}, context);
+  static_cast<void>(Extractor(map, {.repair = &repaired}, context));
   ASSERT_NE(repaired.map, nullptr);
+  // The only owner of the map that it is to be made of.
+  EXPECT_TRUE(sameConnectivity(extract(*repaired.map, {.repair = &repaired}, context), mesh));
   EXPECT_EQ(extractor.cellsAtScaleOne(), mesh.cells.size());
   const TetMap sound = generateSample(SampleKind::Box).map;
   static_cast<void>(extract(sound, {.repair = &repaired}, context));

@@ -16,8 +16,8 @@
  *   is ever printed.
  * - Threads: functions may run concurrently as long as no two of them use the same handle, unless
  *   both only read it (parameters that are pointers to const). hexhex_context_cancel() and
- *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details for
- * each function.
+ *   hexhex_context_cancelled() may be called at any time. docs/user/api-c.md has the details
+ *   for each function.
  * - Handles that are NULL, destroyed, of the wrong kind, or in use elsewhere yield
  *   HEXHEX_INVALID_ARGUMENT; functions without a status return 0 or NULL, or do nothing.
  *   docs/developer/reliability.md lists what cannot be detected.
@@ -824,7 +824,7 @@ typedef struct hexhex_extractor hexhex_extractor;
 HEXHEX_API hexhex_status hexhex_extractor_create(const hexhex_map* map, double tolerance,
                                                  int max_scale, hexhex_context* context,
                                                  hexhex_extractor** extractor, hexhex_error* error);
-/** Like hexhex_extract(); ignores options->tolerance. */
+/** Like hexhex_extract(); ignores options->tolerance, repair and round. */
 HEXHEX_API hexhex_status hexhex_extractor_extract(hexhex_extractor* extractor,
                                                   const hexhex_extract_options* options,
                                                   hexhex_context* context, hexhex_mesh** mesh,

@@ -89,7 +89,8 @@ __version__: str = _hexhex.version()
 
 __all__ = [
     "Arcs", "ArgumentError", "BaseComplex", "BoundaryPatch", "CancelledError", "CheckReport",
-    "Defect", "Extraction", "Extractor", "Features", "FileError", "FileFormat", "HexhexError",
+    "Defect", "Extraction", "Extractor", "Features", "FileError", "FileFormat", "FillReport",
+    "HexhexError",
     "Hole", "ImproveReport", "InternalError", "IrregularVertices", "LagrangeMesh", "Map",
     "MapError", "MapStructure", "MemoryExhaustedError", "Mesh", "MeshPart", "MeshSink",
     "MeshSummary", "MeshWriter", "MeshedPart", "PartNeighbour", "PartialMesh", "Patches",
@@ -164,7 +165,8 @@ def extract(points: Map | npt.ArrayLike, tets: npt.ArrayLike | None = None,
             order: int = 1, curved_nodes: str = "blended", arcs: bool = False,
             patches: bool = False, repair: bool = False, round: bool = False,
             engine: str = "atlas", tolerance: float = 1e-2, quantize: bool = False,
-            cells: float | None = None, edge_length: float | None = None, progress: Progress | None = None) -> Mesh:
+            cells: float | None = None, edge_length: float | None = None,
+            progress: Progress | None = None) -> Mesh:
     """Extracts the hexahedral mesh that an integer-grid map implies.
 
     Args:
@@ -287,7 +289,7 @@ def extract_to(sink: MeshSink, map: Map, *, scale: int = 1, threads: int | None 
     """
     options = _options(scale, "atlas", tolerance, repair, round)
     return _extraction(_hexhex.extract_to(sink, map._arrays(), options, _threads(threads),
-                                           progress))
+                                          progress))
 
 
 def _extraction(notes: tuple[dict[str, Any], Any, Any]) -> Extraction:
@@ -1268,7 +1270,7 @@ def same_mesh(a: Mesh, b: Mesh) -> bool:
 
 
 def summarize(mesh: Mesh | Path, *, format: str | None = None, threads: int | None = None,
-           progress: Progress | None = None) -> MeshSummary:
+              progress: Progress | None = None) -> MeshSummary:
     """Summarizes a mesh in memory or in a file of any size, for comparing meshes.
 
     Args:
