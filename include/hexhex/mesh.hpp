@@ -52,7 +52,8 @@ struct MeshedPart {
 /// edges keep cells from becoming positive, improves the mesh again and treats these edges as
 /// untagged. Transfers the tags of the tets to the mesh: to boundary quads from the triangles
 /// nearest to their centres; to cells from the tet that contains their centre; for curves, to the
-/// edges that run along them or are nearest to them.
+/// edges that run along them or are nearest to them. Where the map of a polycube has no mesh, tries
+/// that of another seed, once.
 ///
 /// With ShapeMethod::Auto, tries both methods, concurrently if there are enough threads, and keeps
 /// the certified mesh with the better combination of minimum scaled Jacobian (up to 0.3), distance

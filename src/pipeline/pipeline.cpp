@@ -108,7 +108,9 @@ MeshedPart meshBy(const ShapeOptions& shape, const TetMesh& tets, const MeshOpti
       part.shape = seamless.report;
       meshOf(part, seamless.map, options, context);
     } catch (const Error& error) {
-      if (isOfTheWay(error.code(), hasMap)) throw Refusal(error, hasMap);
+      if (isOfTheWay(error.code(), hasMap)) {
+        throw Refusal(error, hasMap && error.code() != ErrorCode::TooLarge);
+      }
       throw;
     }
     return part;
@@ -134,7 +136,9 @@ MeshedPart meshFromTets(const TetMesh& tets, const MeshOptions& options, Context
   // Check before spending minutes on maps; quantize() refuses what is not a positive number.
   if (options.quantize.cells > 0) quantization::requireNumberable(options.quantize.cells);
   if (options.shape.method != ShapeMethod::Auto) {
-    return pipeline::meshBy(options.shape.method, tets, options, context);
+    constexpr WorkStep kOnly{"meshFromTets", 1};  // of several maps, perhaps, one after the other
+    return inSteps(context, "meshFromTets", {&kOnly, 1},
+                   [&] { return pipeline::meshBy(options.shape.method, tets, options, context); });
   }
   const pipeline::Way way = [&](ShapeMethod method, Context& own) {
     return pipeline::meshBy(method, tets, options, own);

@@ -129,6 +129,12 @@ TEST(ImproveCurved, IsTheSameBitsForAllWidthsOfRegisters) {
       EXPECT_EQ(sameShares, shares);
       EXPECT_EQ(std::memcmp(sameTerms.data(), terms.data(), terms.size() * sizeof(TermLanes)), 0);
     }
+    // A cell has the same share in any lane.
+    const curved::LagrangeCells turned(mesh.points.data(), 3,
+                                       [&](std::size_t i) { return nodesOf(2 - i); });
+    curved::LagrangeScratch scratch;
+    const auto ofTurned = lagrangeKernels().front().leastShares(grid, turned, scratch);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(ofTurned[i], shares[2 - i]);
   }
 }
 

@@ -2,7 +2,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
@@ -74,11 +78,27 @@ std::unique_ptr<HdfReader> HdfReader::open(const Input& input) {
 std::string firstBytes(const Input& input) {
   constexpr std::size_t kCount = 8;
   if (input.bytes()) return std::string(input.bytes()->substr(0, kCount));
+  std::error_code unknown;
+  if (std::filesystem::exists(input.path(), unknown) &&
+      !std::filesystem::is_regular_file(input.path(), unknown)) {
+    return {};  // a pipe can be opened only once
+  }
   const InputFile file(input.path());
-  if (!file.isRegular()) return {};
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kCount)), '\0');
   file.readAt(0, head.data(), head.size());
   return head;
+}
+
+std::unique_ptr<HdfReader> HdfReader::openAny(const Input& input, Stage& stage) {
+  const std::string head = firstBytes(input);
+  if (head == kHdfMark) return open(input);
+  if (head.empty()) {  // a pipe
+    Array<char> room;
+    const std::string_view bytes = input.text(room, stage, "");
+    if (bytes.starts_with(kHdfMark)) return open({bytes, input.name()});
+  }
+  throw Error(ErrorCode::FileSyntax,
+              input.name() + ": the file does not begin as HDF5 files do. Is its extension right?");
 }
 
 }  // namespace hexhex::io

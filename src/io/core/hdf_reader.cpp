@@ -206,16 +206,4 @@ std::unique_ptr<HdfReader> HdfReader::open(const Input& input) {
   return std::make_unique<OpenHdf>(input);
 }
 
-std::unique_ptr<HdfReader> HdfReader::openAny(const Input& input, Stage& stage) {
-  const std::string head = firstBytes(input);
-  if (head == kHdfMark) return open(input);
-  if (head.empty()) {  // a pipe
-    Array<char> room;
-    const std::string_view bytes = input.text(room, stage, "");
-    if (bytes.starts_with(kHdfMark)) return open({bytes, input.name()});
-  }
-  throw Error(ErrorCode::FileSyntax,
-              input.name() + ": the file does not begin as HDF5 files do. Is its extension right?");
-}
-
 }  // namespace hexhex::io

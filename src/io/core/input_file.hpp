@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -142,9 +143,9 @@ template <class Reader, class... More>
   };
   if constexpr (std::is_constructible_v<Reader, const InputFile&, const std::string&, Stage&,
                                         const More&...>) {
-    if (!input.bytes()) {
-      const InputFile file(input.path());
-      if (file.isRegular()) return read(file);
+    std::error_code unknown;  // a pipe can be opened only once
+    if (!input.bytes() && std::filesystem::is_regular_file(input.path(), unknown)) {
+      return read(InputFile(input.path()));
     }
   }
   Array<char> room;
