@@ -443,7 +443,7 @@ class Patches:
 class _Hexes(_interchange.Wrappable):
     """What meshes of straight and of curved cells have in common."""
 
-    _handle: Any
+    _handle: _hexhex.Mesh | _hexhex.LagrangeMesh
 
     @property
     def generator_tet(self) -> Indices:
@@ -487,6 +487,8 @@ class LagrangeMesh(_Hexes):
     >>> hexhex.LagrangeMesh(2, curved.points, curved.nodes, curved.vertex_count)
     <hexhex.LagrangeMesh: 8 cells of order 2>
     """
+
+    _handle: _hexhex.LagrangeMesh
 
     def __init__(self, order: int, points: npt.ArrayLike, nodes: npt.ArrayLike, vertex_count: int,
                  *, generator_tet: npt.ArrayLike | None = None,
@@ -670,6 +672,8 @@ class Mesh(_Hexes):
     Raises:
         ArgumentError: for invalid shapes or types.
     """
+
+    _handle: _hexhex.Mesh
 
     def __init__(self, points: npt.ArrayLike, cells: npt.ArrayLike, *,
                  generator_tet: npt.ArrayLike | None = None,
