@@ -236,11 +236,10 @@ TEST_F(Repairs, AreDoneByTheExtraction) {
   EXPECT_TRUE(repaired.report.changed);
   ASSERT_NE(repaired.map, nullptr);
   EXPECT_TRUE(verify(*repaired.map, mesh).passed());
-  static_cast<void>(Extractor(map, {.repair = &repaired}, context));
+  EXPECT_EQ(Extractor(map, {.repair = &repaired}, context).cellsAtScaleOne(), mesh.cells.size());
   ASSERT_NE(repaired.map, nullptr);
   // The only owner of the map that it is to be made of.
   EXPECT_TRUE(sameConnectivity(extract(*repaired.map, {.repair = &repaired}, context), mesh));
-  EXPECT_EQ(extractor.cellsAtScaleOne(), mesh.cells.size());
   const TetMap sound = generateSample(SampleKind::Box).map;
   static_cast<void>(extract(sound, {.repair = &repaired}, context));
   EXPECT_EQ(repaired.map, nullptr) << "left from the call before";
