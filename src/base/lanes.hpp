@@ -3,12 +3,14 @@
 // for them, which optimizers see through to varying degrees.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <type_traits>
 
 #if defined(__SSE2__)
@@ -19,7 +21,31 @@
 #define HEXHEX_PLAIN_VECTORS 1
 #endif
 
+// Code for lanes is compiled for several register widths: all of it is inlined into one entry point
+// for each width.
+#if defined(__GNUC__)
+#define HEXHEX_INLINE [[gnu::always_inline]] inline
+#else
+#define HEXHEX_INLINE inline
+#endif
+// For entry points; undefined where there is one width. Windows aligns stacks too little for wide
+// registers.
+#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
+#define HEXHEX_WIDE [[gnu::target("avx2"), gnu::flatten]]
+#endif
+
 namespace hexhex {
+
+/// Of entry points for all widths, the plain one first: those that run on this machine.
+template <class Entry, std::size_t n>
+[[nodiscard]] std::span<const Entry> runnable(const std::array<Entry, n>& all) noexcept {
+#if defined(HEXHEX_WIDE)
+  return std::span(all).first(__builtin_cpu_supports("avx2") ? n : 1);
+#else
+  static_assert(n == 1);
+  return all;
+#endif
+}
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push

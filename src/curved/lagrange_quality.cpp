@@ -71,22 +71,23 @@ using Smallest = std::array<double, kCellLanes>;
              });
 }
 
-// Windows aligns stacks too little for wide registers.
-#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
-#define HEXHEX_WIDE_QUALITY 1
-[[gnu::target("avx2"), gnu::flatten]] void lowerWide(const LagrangeColumns& grid,
-                                                     const LagrangeCells& cells,
-                                                     LagrangeScratch& scratch, Smallest& smallest) {
+#if defined(HEXHEX_WIDE)
+HEXHEX_WIDE void lowerWide(const LagrangeColumns& grid, const LagrangeCells& cells,
+                           LagrangeScratch& scratch, Smallest& smallest) {
   lower(grid, cells, scratch, smallest);
 }
 #endif
-void lowerBy(const LagrangeColumns& grid, const LagrangeCells& cells, LagrangeScratch& scratch,
-             Smallest& smallest) {
-#if defined(HEXHEX_WIDE_QUALITY)
-  static const bool isWide = __builtin_cpu_supports("avx2") != 0;
-  if (isWide) return lowerWide(grid, cells, scratch, smallest);
+
+using Lower = void (*)(const LagrangeColumns&, const LagrangeCells&, LagrangeScratch&, Smallest&);
+
+/// lower() for the widest registers.
+Lower widestLower() noexcept {
+#if defined(HEXHEX_WIDE)
+  static constexpr std::array<Lower, 2> kAll = {lower, lowerWide};
+#else
+  static constexpr std::array<Lower, 1> kAll = {lower};
 #endif
-  lower(grid, cells, scratch, smallest);
+  return runnable(kAll).back();
 }
 
 /// Calls use(cell, its scaled Jacobian, block) for all cells.
@@ -148,6 +149,7 @@ std::array<double, kCellLanes> LagrangeQuality::smallest(const LagrangeCells& ce
                                                          LagrangeScratch& scratch) const {
   Smallest smallest;
   smallest.fill(1);
+  static const Lower lowerBy = widestLower();
   lowerBy(atNodes_, cells, scratch, smallest);
   lowerBy(atGauss_, cells, scratch, smallest);
   for (double& scaled : smallest) scaled = std::max(scaled, -1.0);
@@ -182,10 +184,10 @@ Certificate certify(const LagrangeMesh& mesh, Context& context) {
     const mesh::CellValidity cells(mesh.order);
     withThreads(context.threads(), [&] {
       std::vector<mesh::BlockFindings> blocks(blockCount(n, curved::kLagrangeQualityGrain));
+      std::vector<std::vector<Vec3>> nodesOfBlock(blocks.size());
       curved::forCells(mesh, stage, [&](std::size_t cell, double scaled, std::size_t block) {
-        std::vector<Vec3> nodes;
-        curved::nodesOf(mesh, cell, nodes);
-        const CellCertificate known = cells.examine(nodes);
+        curved::nodesOf(mesh, cell, nodesOfBlock[block]);
+        const CellCertificate known = cells.examine(nodesOfBlock[block]);
         certificate.scaledJacobians[cell] = scaled;
         certificate.validity[cell] = known.validity;
         blocks[block].add(cell, scaled, known);

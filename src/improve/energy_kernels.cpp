@@ -8,9 +8,6 @@
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
-#define HEXHEX_INLINE [[gnu::always_inline]] inline
-#else
-#define HEXHEX_INLINE inline
 #endif
 
 namespace hexhex::improvement {
@@ -360,25 +357,19 @@ HEXHEX_INLINE void bezierTermsOf(std::span<const MovingCell> list, TermLanes* te
 
 constexpr EnergyKernels kPlain = {cornerTermsOf, bezierTermsOf, energyOf, slopeOfAll};
 
-// Windows does not align the stack enough for wide registers.
-#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
-#define HEXHEX_WIDE_KERNELS 1
-[[gnu::target("avx2"), gnu::flatten]] void wideCornerTerms(std::span<const MovingCell> cells,
-                                                           TermLanes* terms) noexcept {
+#if defined(HEXHEX_WIDE)
+HEXHEX_WIDE void wideCornerTerms(std::span<const MovingCell> cells, TermLanes* terms) noexcept {
   cornerTermsOf(cells, terms);
 }
-[[gnu::target("avx2"), gnu::flatten]] void wideBezierTerms(std::span<const MovingCell> cells,
-                                                           TermLanes* terms) noexcept {
+HEXHEX_WIDE void wideBezierTerms(std::span<const MovingCell> cells, TermLanes* terms) noexcept {
   bezierTermsOf(cells, terms);
 }
-[[gnu::target("avx2"), gnu::flatten]] double wideEnergy(std::span<const TermLanes> terms,
-                                                        const EnergyKind& kind,
-                                                        const Vec3& step) noexcept {
+HEXHEX_WIDE double wideEnergy(std::span<const TermLanes> terms, const EnergyKind& kind,
+                              const Vec3& step) noexcept {
   return energyOf(terms, kind, step);
 }
-[[gnu::target("avx2"), gnu::flatten]] void wideSlope(std::span<const TermLanes> terms,
-                                                     const EnergyKind& kind,
-                                                     EnergySlope& slope) noexcept {
+HEXHEX_WIDE void wideSlope(std::span<const TermLanes> terms, const EnergyKind& kind,
+                           EnergySlope& slope) noexcept {
   slopeOfAll(terms, kind, slope);
 }
 constexpr EnergyKernels kWide = {wideCornerTerms, wideBezierTerms, wideEnergy, wideSlope};
@@ -387,13 +378,12 @@ constexpr EnergyKernels kWide = {wideCornerTerms, wideBezierTerms, wideEnergy, w
 }  // namespace
 
 std::span<const EnergyKernels> energyKernels() noexcept {
-#if defined(HEXHEX_WIDE_KERNELS)
+#if defined(HEXHEX_WIDE)
   static constexpr std::array<EnergyKernels, 2> kAll = {kPlain, kWide};
-  return std::span(kAll).first(__builtin_cpu_supports("avx2") ? 2 : 1);
 #else
   static constexpr std::array<EnergyKernels, 1> kAll = {kPlain};
-  return kAll;
 #endif
+  return runnable(kAll);
 }
 
 }  // namespace hexhex::improvement

@@ -5,9 +5,6 @@
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
-#define HEXHEX_INLINE [[gnu::always_inline]] inline
-#else
-#define HEXHEX_INLINE inline
 #endif
 
 namespace hexhex::improvement {
@@ -125,16 +122,14 @@ HEXHEX_INLINE std::array<double, kCellLanes> leastSharesOf(const LagrangeGrid& g
 
 constexpr LagrangeKernels kPlainLagrange = {termsOf, leastSharesOf};
 
-// Windows does not align the stack enough for wide registers.
-#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
-#define HEXHEX_WIDE_KERNELS 1
-[[gnu::target("avx2"), gnu::flatten]] void wideTerms(const LagrangeGrid& grid,
-                                                     const MovingNode& moving,
-                                                     LagrangeScratch& scratch, TermLanes* terms) {
+#if defined(HEXHEX_WIDE)
+HEXHEX_WIDE void wideTerms(const LagrangeGrid& grid, const MovingNode& moving,
+                           LagrangeScratch& scratch, TermLanes* terms) {
   termsOf(grid, moving, scratch, terms);
 }
-[[gnu::target("avx2"), gnu::flatten]] std::array<double, kCellLanes> wideLeastShares(
-    const LagrangeGrid& grid, const LagrangeCells& cells, LagrangeScratch& scratch) {
+HEXHEX_WIDE std::array<double, kCellLanes> wideLeastShares(const LagrangeGrid& grid,
+                                                           const LagrangeCells& cells,
+                                                           LagrangeScratch& scratch) {
   return leastSharesOf(grid, cells, scratch);
 }
 constexpr LagrangeKernels kWideLagrange = {wideTerms, wideLeastShares};
@@ -143,13 +138,12 @@ constexpr LagrangeKernels kWideLagrange = {wideTerms, wideLeastShares};
 }  // namespace
 
 std::span<const LagrangeKernels> lagrangeKernels() noexcept {
-#if defined(HEXHEX_WIDE_KERNELS)
+#if defined(HEXHEX_WIDE)
   static constexpr std::array<LagrangeKernels, 2> kAll = {kPlainLagrange, kWideLagrange};
-  return std::span(kAll).first(__builtin_cpu_supports("avx2") ? 2 : 1);
 #else
   static constexpr std::array<LagrangeKernels, 1> kAll = {kPlainLagrange};
-  return kAll;
 #endif
+  return runnable(kAll);
 }
 
 }  // namespace hexhex::improvement

@@ -123,19 +123,6 @@ TriangleTree treeOf(const ReferenceSurface& surface, std::size_t begin, std::siz
   return TriangleTree(triangles);
 }
 
-/// The vertices of quads, each once.
-std::vector<Index> verticesOf(std::span<const Quad> quads, std::size_t points) {
-  std::vector<Index> vertices;
-  std::vector<bool> isListed(points, false);
-  for (const Quad& quad : quads) {
-    for (const Index v : quad) {
-      if (!isListed[v]) vertices.push_back(v);
-      isListed[v] = true;
-    }
-  }
-  return vertices;
-}
-
 /// Positions of samples along edges and across quads. More than the middle, since ridges between
 /// triangles as long as quads are farthest from these anywhere between vertices.
 constexpr std::array<double, 3> kQuarters = {0.25, 0.5, 0.75};
@@ -144,8 +131,8 @@ Vec3 between(const Vec3& a, const Vec3& b, double share) {
   return plus(times(1 - share, a), times(share, b));
 }
 
-/// The largest distance of samples on edges and inside. An edge of two quads is only sampled for
-/// one.
+/// The largest distance of corners and of samples on edges and inside. An edge of two quads is only
+/// sampled for one.
 double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
   const std::array<Vec3, 4> corners = cornersOf(points, quad);
   double largest = 0;
@@ -153,6 +140,7 @@ double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTre
     largest = std::max(largest, tree.nearest(point).distance);
   };
   for (std::size_t i = 0; i < 4; ++i) {
+    ask(corners[i]);
     const std::size_t next = (i + 1) % 4;
     if (quad[i] > quad[next]) continue;
     for (const double share : kQuarters) ask(between(corners[i], corners[next], share));
@@ -185,20 +173,12 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
   return samples;
 }
 
-/// Per quad: the largest distance of its samples and vertices, in diagonals.
+/// Per quad: the largest distance, in diagonals.
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
-  const std::vector<Index> vertices = verticesOf(quads, points.size());
-  std::vector<double> ofVertices(points.size());
-  parallelFor(stage, vertices.size(), kSurfaceDistanceGrain, [&](std::size_t i) {
-    ofVertices[vertices[i]] = tree.nearest(points[vertices[i]]).distance;
-  });
   std::vector<double> distances(quads.size());
-  parallelFor(stage, quads.size(), kSurfaceDistanceGrain, [&](std::size_t q) {
-    double largest = distanceOf(points, quads[q], tree);
-    for (const Index v : quads[q]) largest = std::max(largest, ofVertices[v]);
-    distances[q] = largest / diagonal;
-  });
+  parallelFor(stage, quads.size(), kSurfaceDistanceGrain,
+              [&](std::size_t q) { distances[q] = distanceOf(points, quads[q], tree) / diagonal; });
   return distances;
 }
 

@@ -81,15 +81,16 @@ class LooseVertices {
 template <class LeastOf, class Use>
 bool forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
                CurvedCells::Scratch& scratch, const LeastOf& leastOf, const Use& use) {
-  for (std::size_t begin = 0; curved != nullptr && begin < list.size();
-       begin += curved::kCellLanes) {
-    const auto some = list.subspan(begin, std::min(curved::kCellLanes, list.size() - begin));
-    const auto states = curved->statesOf(mesh.points, some, leastOf, scratch);
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      if (!use(some[i], states[i])) return false;
+  if (curved != nullptr) {
+    for (std::size_t begin = 0; begin < list.size(); begin += curved::kCellLanes) {
+      const auto some = list.subspan(begin, std::min(curved::kCellLanes, list.size() - begin));
+      const auto states = curved->statesOf(mesh.points, some, leastOf, scratch);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        if (!use(some[i], states[i])) return false;
+      }
     }
+    return true;
   }
-  if (curved != nullptr) return true;
   static const mesh::MeasureCells measure = mesh::measuresOfCells().back();
   mesh::CellMeasures measures;
   std::array<Hex, mesh::CellMeasures::kMost> cells;

@@ -128,12 +128,9 @@ void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& me
   }
 }
 
-// Windows does not align stacks enough for wide registers.
-#if defined(__x86_64__) && !defined(_WIN32) && !defined(HEXHEX_PLAIN_VECTORS)
-#define HEXHEX_FOUR_LANES 1
-[[gnu::target("avx2"), gnu::flatten]] void measureFour(const Vec3* points,
-                                                       std::span<const Hex> cells,
-                                                       CellMeasures& measures) noexcept {
+#if defined(HEXHEX_WIDE)
+HEXHEX_WIDE void measureFour(const Vec3* points, std::span<const Hex> cells,
+                             CellMeasures& measures) noexcept {
   measureAll<Four>(points, cells, measures);
 }
 #endif
@@ -141,13 +138,12 @@ void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& me
 }  // namespace
 
 std::span<const MeasureCells> measuresOfCells() noexcept {
-#if defined(HEXHEX_FOUR_LANES)
-  static const std::array<MeasureCells, 2> all = {measureAll<Two>, measureFour};
-  return std::span(all).first(__builtin_cpu_supports("avx2") ? 2 : 1);
+#if defined(HEXHEX_WIDE)
+  static constexpr std::array<MeasureCells, 2> kAll = {measureAll<Two>, measureFour};
 #else
-  static const std::array<MeasureCells, 1> all = {measureAll<Two>};
-  return all;
+  static constexpr std::array<MeasureCells, 1> kAll = {measureAll<Two>};
 #endif
+  return runnable(kAll);
 }
 
 }  // namespace hexhex::mesh
