@@ -27,7 +27,7 @@
 #include <hexhex/verify.hpp>
 
 #include "guard.hpp"
-#include "handle_table.hpp"
+#include "live_handle.hpp"
 
 namespace hexhex::c {
 
@@ -53,13 +53,13 @@ class Names {
 
 }  // namespace hexhex::c
 
-struct hexhex_context : hexhex::c::RestingMemory {
+struct hexhex_context : hexhex::c::HandleMemory {
   hexhex_context(int threads, hexhex_progress progress, void* user);
   hexhex::Context context;
   hexhex::RepairedMap repaired = {};  ///< of the last extraction in pieces
 };
 
-struct hexhex_map : hexhex::c::RestingMemory {
+struct hexhex_map : hexhex::c::HandleMemory {
   std::shared_ptr<const hexhex::TetMap> owned;  ///< null if the arrays are the caller's
   hexhex::TetMapView view;
   std::shared_ptr<const hexhex::SampleAnswer> answer;  ///< null if it was not generated
@@ -67,13 +67,13 @@ struct hexhex_map : hexhex::c::RestingMemory {
   hexhex::c::Names names;
 };
 
-struct hexhex_map_structure : hexhex::c::RestingMemory {
+struct hexhex_map_structure : hexhex::c::HandleMemory {
   std::vector<hexhex_chart_jump> chartJumps;
   std::vector<hexhex_singular_tet_edge> singularEdges;
   std::size_t defects = 0;
 };
 
-struct hexhex_mesh : hexhex::c::RestingMemory {
+struct hexhex_mesh : hexhex::c::HandleMemory {
   hexhex::HexMesh own;
   /// This one instead, which belongs to another handle, and so does this handle.
   std::shared_ptr<const hexhex::HexMesh> lent = nullptr;
@@ -82,7 +82,7 @@ struct hexhex_mesh : hexhex::c::RestingMemory {
   hexhex::c::Names names;
 };
 
-struct hexhex_buffer : hexhex::c::RestingMemory {
+struct hexhex_buffer : hexhex::c::HandleMemory {
   std::variant<hexhex::Array<hexhex::Vec3>, hexhex::Array<hexhex::Hex>,
                hexhex::Array<hexhex::Index>, hexhex::Array<hexhex::CornerSet>,
                hexhex::Array<std::int32_t>, std::vector<hexhex::FeatureVertex>,
@@ -91,7 +91,7 @@ struct hexhex_buffer : hexhex::c::RestingMemory {
       array;
 };
 
-struct hexhex_extractor : hexhex::c::RestingMemory {
+struct hexhex_extractor : hexhex::c::HandleMemory {
   hexhex_extractor(const hexhex_map* given, const hexhex::ExtractorOptions& options,
                    hexhex::Context& used)
       : map(given, "map"), extractor(map->view, options, used) {}
@@ -99,26 +99,26 @@ struct hexhex_extractor : hexhex::c::RestingMemory {
   hexhex::Extractor extractor;
 };
 
-struct hexhex_check_report : hexhex::c::RestingMemory {
+struct hexhex_check_report : hexhex::c::HandleMemory {
   hexhex::CheckReport report;
 };
 
-struct hexhex_verify_report : hexhex::c::RestingMemory {
+struct hexhex_verify_report : hexhex::c::HandleMemory {
   hexhex::VerifyReport report;
 };
 
-struct hexhex_repair_report : hexhex::c::RestingMemory {
+struct hexhex_repair_report : hexhex::c::HandleMemory {
   hexhex::RepairReport report;
 };
 
-struct hexhex_holes : hexhex::c::RestingMemory {
+struct hexhex_holes : hexhex::c::HandleMemory {
   std::vector<hexhex::Hole> holes;
   std::uint64_t invalidTets = 0;
   double missingCells = 0;
   std::uint64_t faceConflicts = 0;
 };
 
-struct hexhex_piecewise_mesh : hexhex::c::RestingMemory {
+struct hexhex_piecewise_mesh : hexhex::c::HandleMemory {
   hexhex_piecewise_mesh() = default;
   ~hexhex_piecewise_mesh() { hexhex::c::destroy(straight); }
   hexhex_piecewise_mesh(const hexhex_piecewise_mesh&) = delete;
@@ -129,12 +129,12 @@ struct hexhex_piecewise_mesh : hexhex::c::RestingMemory {
   hexhex_mesh* straight = nullptr;
 };
 
-struct hexhex_lagrange_mesh : hexhex::c::RestingMemory {
+struct hexhex_lagrange_mesh : hexhex::c::HandleMemory {
   hexhex::LagrangeMesh mesh;
   hexhex::RepairedMap repaired = {};
 };
 
-struct hexhex_mesh_writer : hexhex::c::RestingMemory {
+struct hexhex_mesh_writer : hexhex::c::HandleMemory {
   /// @param context  or null; it is there as long as this
   explicit hexhex_mesh_writer(hexhex_context* context) {
     if (context != nullptr) given.emplace(context, "context", hexhex::c::Use::Look);

@@ -1,6 +1,6 @@
-// Which handles are alive, of what kind they are, and who uses them: so that a handle that is
-// freed, of another kind, or in use elsewhere is an error and no crash.
-// docs/developer/reliability.md says what remains.
+// Handles that are destroyed, of another kind, or in use elsewhere are errors and no crashes: each
+// has a header in front of it, with a magic number, its kind, and its users.
+// docs/developer/reliability.md says what remains undefined.
 #pragma once
 
 #include <cstddef>
@@ -21,28 +21,24 @@ void deleteHandle(const void* handle) {
 /// for those who look at what never changes.
 enum class Use { Look, Read, Change };
 
-struct HandleEntry;
-
-/// @throws std::bad_alloc
-void enterHandle(const void* handle, Destroyer kind);
+/// From now on the handle can be used.
+void giveOut(const void* handle, Destroyer kind) noexcept;
 
 /// Begins to use a handle. Takes no lock, so signal handlers may call it.
-/// @return nullptr if that cannot be
-[[nodiscard]] HandleEntry* tryUse(const void* handle, Destroyer kind, Use use) noexcept;
+/// @return whether that is possible
+[[nodiscard]] bool tryUse(const void* handle, Destroyer kind, Use use) noexcept;
 /// The same.
 /// @throws Error InvalidArgument that names the argument
-[[nodiscard]] HandleEntry& beginUse(const void* handle, Destroyer kind, Use use,
-                                    const char* argument);
-void endUse(HandleEntry& entry, Use use) noexcept;
+void beginUse(const void* handle, Destroyer kind, Use use, const char* argument);
+void endUse(const void* handle, Use use) noexcept;
 
 /// Deletes a handle of this kind once the last one who uses it has done so. What is no such handle
 /// is left alone.
 void destroyHandle(const void* handle, Destroyer kind) noexcept;
 
-/// Makes a new handle known.
 template <class T>
-[[nodiscard]] T* enter(std::unique_ptr<T> handle) {
-  enterHandle(handle.get(), &deleteHandle<T>);
+[[nodiscard]] T* enter(std::unique_ptr<T> handle) noexcept {
+  giveOut(handle.get(), &deleteHandle<T>);
   return handle.release();
 }
 template <class T>
@@ -57,18 +53,19 @@ class Used {
   static constexpr Use kUsual = std::is_const_v<T> ? Use::Read : Use::Change;
 
   /// @throws Error InvalidArgument
-  Used(T* handle, const char* argument, Use use = kUsual)
-      : handle_(handle), use_(use), entry_(&beginUse(handle, kKind, use, argument)) {}
+  Used(T* handle, const char* argument, Use use = kUsual) : handle_(handle), use_(use) {
+    beginUse(handle, kKind, use, argument);
+  }
   /// For functions that have no way to fail: converts to false if the handle cannot be used.
   Used(T* handle, std::nothrow_t /*tag*/, Use use = kUsual) noexcept
-      : handle_(handle), use_(use), entry_(tryUse(handle, kKind, use)) {}
+      : handle_(tryUse(handle, kKind, use) ? handle : nullptr), use_(use) {}
   ~Used() {
-    if (entry_ != nullptr) endUse(*entry_, use_);
+    if (handle_ != nullptr) endUse(handle_, use_);
   }
   Used(const Used&) = delete;
   Used& operator=(const Used&) = delete;
 
-  explicit operator bool() const noexcept { return entry_ != nullptr; }
+  explicit operator bool() const noexcept { return handle_ != nullptr; }
   T* operator->() const noexcept { return handle_; }
   T& operator*() const noexcept { return *handle_; }
 
@@ -76,14 +73,13 @@ class Used {
   static constexpr Destroyer kKind = &deleteHandle<std::remove_const_t<T>>;
   T* handle_;
   Use use_;
-  HandleEntry* entry_;
 };
 
-/// What all handles are made from: their memory rests for a while before it becomes something else,
-/// so that a freed handle is known as such until some thousand others have been freed.
-struct RestingMemory {
+/// The memory of a handle, with its header. It rests for a while before it becomes something else,
+/// so that a destroyed handle is known as such until 1,024 others have been destroyed.
+struct HandleMemory {
   static void* operator new(std::size_t size);
-  static void operator delete(void* memory) noexcept;
+  static void operator delete(void* handle) noexcept;
 };
 
 }  // namespace hexhex::c
