@@ -15,6 +15,7 @@
 
 #include "curved/curved_maps.hpp"
 #include "mesh/grid_meshes.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test::lagrange {
@@ -118,6 +119,7 @@ TEST(Lagrange, OrderOneIsTheOrdinaryMesh) {
 }
 
 TEST(Lagrange, SameForAnyNumberOfThreadsAndEngine) {
+  HEXHEX_LARGE_TEST();
   SampleOptions options;
   options.cells = 6;
   options.jitter = 0.5;

@@ -8,6 +8,7 @@
 #include <hexhex/improve.hpp>
 
 #include "mesh/grid_meshes.hpp"
+#include "support/effort.hpp"
 
 namespace hexhex::test {
 
@@ -42,6 +43,7 @@ TEST(FollowedCurves, NotTheRidgeThatCellsLieAcross) {
 }
 
 TEST(FollowedCurves, ASmoothBodyHasNone) {
+  HEXHEX_LARGE_TEST();
   TetMap map = hexhex::testing::identityMap(8);
   for (Vec3& point : map.points) {
     double largest = 0;

@@ -348,6 +348,7 @@ HexMesh shearedLayers(std::size_t n, std::size_t layers, double height, double g
 
 /// What could not reach the target pulled cells that had below it, too: 16, 52 and 24 of these.
 TEST(Improve, LeavesGoodCellsGoodWhereOthersCannotBe) {
+  HEXHEX_LARGE_TEST();
   for (HexMesh mesh :
        {shearedLayers(12, 3, 0.6, 3), shearedLayers(12, 6, 1, 4), shearedLayers(16, 8, 2, 5)}) {
     for (const int passes : {0, 2}) {
@@ -531,6 +532,7 @@ TEST(Improve, BringsAScrambledGridBack) {
 
 /// One by one, vertices left it as it was.
 TEST(Improve, BringsAScrambledBallBack) {
+  HEXHEX_LARGE_TEST();
   if (!improvement::canMoveAtOnce()) GTEST_SKIP() << "without the solver";
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 4}).map;
   const HexMesh ball = extracted(map, 3);
@@ -550,6 +552,7 @@ TEST(Improve, BringsAScrambledBallBack) {
 
 /// So many folds that some of their edges form chains.
 TEST(Improve, LetsCreasesGoAsALastResort) {
+  HEXHEX_LARGE_TEST();
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 3}).map;
   HexMesh mesh = crumpledBall(extracted(map, 3), 20, 2.2, 3);
   const ImproveReport report = improved(mesh);

@@ -58,6 +58,7 @@ std::uint64_t bad(const ImproveReport& report) { return report.notPositive.size(
 }  // namespace pillows
 
 TEST(ImprovePillow, VerticesSlideAcrossBordersOfLabelsOnASmoothSurface) {
+  HEXHEX_LARGE_TEST();
   const TetMap map = pillows::ellipsoid(8, {1, 1, 1});
   HexMesh mesh = extracted(map, 1);
   const ImproveReport ball = pillows::improvedWith(mesh, map, PillowMode::Never);
@@ -105,6 +106,7 @@ TEST(ImprovePillow, RaisesTheMinimumOfSmoothBodies) {
 }
 
 TEST(ImprovePillow, CanBeImprovedAgainWithItsMap) {
+  HEXHEX_LARGE_TEST();
   const TetMap map = pillows::ellipsoid(6, {1, 1.3, 0.8});
   HexMesh mesh = extracted(map, 1);
   const ImproveReport first = pillows::improvedWith(mesh, map, PillowMode::Always);
@@ -118,6 +120,7 @@ TEST(ImprovePillow, CanBeImprovedAgainWithItsMap) {
 }
 
 TEST(ImprovePillow, GivesTheSameBytesWithAnyNumberOfThreads) {
+  HEXHEX_LARGE_TEST();
   const TetMap map = pillows::ellipsoid(6, {1, 1.3, 0.8});
   HexMesh one = extracted(map, 1);
   HexMesh four = one;

@@ -16,6 +16,7 @@
 
 #include "improve/improved.hpp"
 #include "mesh/grid_meshes.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test {
@@ -92,6 +93,7 @@ TEST(SnappedCurves, LieOnTheRidgeThatCellsLayAcross) {
 }
 
 TEST(SnappedCurves, AreTheSameWithAnyNumberOfThreads) {
+  HEXHEX_LARGE_TEST();
   HexMesh one;
   HexMesh four;
   snapped::improvedRoof(one, true, 1);

@@ -12,6 +12,7 @@
 #include <hexhex/samples.hpp>
 
 #include "mesh/grid_meshes.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test {
@@ -200,6 +201,7 @@ TEST(SoundInput, MapsInOtherUnitsOrElsewhereAreRefused) {
 }
 
 TEST(SoundInput, MeshesThatWereImprovedBeforeAreNotElsewhere) {
+  HEXHEX_LARGE_TEST();
   for (const SampleKindName& kind : sampleKinds()) {
     const TetMap map = mapOf(kind.kind, 0.9, 3);
     HexMesh mesh = meshOf(map, 2);

@@ -11,6 +11,7 @@
 #include <hexhex/error.hpp>
 
 #include "lattice/random.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace hexhex::test {
@@ -128,6 +129,7 @@ TEST(IntegerProgram, SolversEndWhenCancelled) {
 }
 
 TEST(IntegerProgram, HardOnesEnd) {
+  HEXHEX_LARGE_TEST();
   for (const IntegerSolver& solver : solvers()) {
     SCOPED_TRACE(solver.name);
     const IntegerProgram program = hardProgram();

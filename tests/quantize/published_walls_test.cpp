@@ -15,6 +15,7 @@
 #include <io/io_test_support.hpp>
 
 #include "quantize/real_maps.hpp"
+#include "support/effort.hpp"
 #include "support/published_map.hpp"
 #include "support/sampled_distance.hpp"
 
@@ -107,6 +108,7 @@ std::size_t blockCount(const HexMesh& mesh) {
 }  // namespace
 
 TEST(Walls, AreNoFeaturesOfAMesh) {
+  HEXHEX_LARGE_TEST();
   for (const SampleKind kind : kBlockKinds) {
     SCOPED_TRACE(static_cast<int>(kind));
     const Sample sample = seamlessSample(kind);
@@ -131,6 +133,7 @@ TEST(Walls, AreNoFeaturesOfAMesh) {
 }
 
 TEST(Walls, AreFacesBetweenBlocksIfTheyAreKept) {
+  HEXHEX_LARGE_TEST();
   for (const SampleKind kind : kBlockKinds) {
     SCOPED_TRACE(static_cast<int>(kind));
     const Sample sample = seamlessSample(kind);

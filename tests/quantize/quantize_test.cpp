@@ -395,6 +395,7 @@ TEST(QuantizeRealMaps, ThatHaveFaultsAreRefusedForThese) {
 }
 
 TEST(QuantizeRealMaps, WithWallsNearVertices) {
+  HEXHEX_LARGE_TEST();
   const std::filesystem::path file = dataFolder() / "seamless-faults" / "hand.hexex";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real maps";
   for (const double number : {1000, 5000}) expectRightMesh(readMap(file), cells(number));

@@ -12,6 +12,7 @@
 
 #include "extract/support.hpp"
 #include "lattice/random.hpp"
+#include "support/effort.hpp"
 
 namespace hexhex::test::walls {
 
@@ -67,6 +68,7 @@ NearlyIntegerBox nearlyInteger(const TetMap& map, double distance, std::uint64_t
 }
 
 TEST(Walls, MayPassNearVertices) {
+  HEXHEX_LARGE_TEST();
   const TetMap whole =
       generateSample(SampleKind::Box,
                      {.cells = kCubes, .refine = kCubes, .charts = ChartStyle::Aligned})

@@ -409,6 +409,7 @@ std::array<std::size_t, 2> interfaceOf(const HexMesh& mesh, std::int32_t tag) {
 }
 
 TEST(PartTags, OfInterfacesArriveWhereTheyAreNoPlanes) {
+  HEXHEX_LARGE_TEST();
   // Two halves of a box, along a plane of the map and across; a ball in a ball.
   const std::array<TagAt, 2> halves = {[](const Vec3& p) { return p[0] < 1 ? 1 : 2; },
                                        [](const Vec3& p) { return p[0] + p[1] < 2 ? 1 : 2; }};
