@@ -136,7 +136,9 @@ class VtkLegacyFile final : public VtkSource {
     if (readKeyword() != "dataset") scanner_.failToken("\"DATASET\"");
     if (readKeyword() != "unstructured_grid") {
       scanner_.fail(ErrorCode::FileUnsupported, "the data set must be an UNSTRUCTURED_GRID, found ",
-                    quoted(scanner_.currentToken()), ".");
+                    quoted(scanner_.currentToken()),
+                    ". Save grids as one (in PyVista: grid.cast_to_unstructured_grid()), and "
+                    "surfaces as .ply or .stl.");
     }
     if (!binary_) index_.emplace(text(), stage_);
   }

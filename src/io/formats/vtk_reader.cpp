@@ -325,8 +325,8 @@ std::string arraysIn(const VtkSource& source) {
               "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
               "this name with 3, for a map with one chart. Arrays in the file: ",
               arraysIn(source),
-              ". Name the map's array (--map-array), or give the map as a second mesh "
-              "(--polycube).");
+              ". Name the map's array (--map-array), give the map as a second mesh (--polycube), "
+              "or let `hexhex mesh` make one.");
 }
 
 /// Reads the parameters of tets from a cell array.
