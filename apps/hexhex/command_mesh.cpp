@@ -41,12 +41,26 @@ struct MeshArguments {
   RunOptions run;
 };
 
-void requireCertified(const MeshArguments& arguments, const Certificate& certificate) {
+void writeMeshPage(const MeshArguments& arguments, const MeshedPart& part, LongRun& longRun) {
+  if (arguments.page.empty()) return;
+  ViewOptions options;
+  options.verification = &part.verification;
+  options.mapName = std::filesystem::path(arguments.part).filename().string();
+  options.scaledJacobians = part.improvement.after.scaledJacobians;
+  longRun.part("page", [&] {
+    writePage(part.mesh, arguments.page, arguments.output, options, longRun.context());
+  });
+}
+
+/// The page shows the cells that are in the way.
+void requireCertified(const MeshArguments& arguments, const MeshedPart& part, LongRun& longRun) {
+  const Certificate& certificate = part.improvement.after;
   if (certificate.allPositive() || arguments.allowBad) return;
+  writeMeshPage(arguments, part, longRun);
   throw Error(ErrorCode::NotMeshable,
               refutationAsText(certificate) +
-                  " Nothing was written. Try another number of cells, or a larger --slack; "
-                  "--allow-bad writes the mesh as it is.",
+                  " The mesh was not written. Try another number of cells, or a larger --slack; "
+                  "--view shows these cells, and --allow-bad writes the mesh as it is.",
               {PlaceKind::Cell, certificate.worst.front().cell});
 }
 
@@ -58,13 +72,18 @@ void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& l
   WriteOptions writing = arguments.choice.options();
   writing.scaledJacobians = part.improvement.after.scaledJacobians;
   longRun.part("writing", [&] { writeHexMesh(part.mesh, arguments.output, writing, context); });
-  if (arguments.page.empty()) return;
-  ViewOptions options;
-  options.verification = &part.verification;
-  options.mapName = std::filesystem::path(arguments.part).filename().string();
-  options.scaledJacobians = part.improvement.after.scaledJacobians;
-  longRun.part("page",
-               [&] { writePage(part.mesh, arguments.page, arguments.output, options, context); });
+  writeMeshPage(arguments, part, longRun);
+}
+
+/// Where there is no mesh, the page shows where the part is in the way.
+MeshedPart meshOrShowWhy(const MeshArguments& arguments, const TetMesh& tets,
+                         const MeshOptions& options, LongRun& longRun) {
+  try {
+    return longRun.part("meshing", [&] { return meshFromTets(tets, options, longRun.context()); });
+  } catch (const Error& error) {
+    writePartPage(tets, arguments.page, arguments.part, error, longRun);
+    throw;
+  }
 }
 
 Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, const FilledPart& filled,
@@ -124,9 +143,8 @@ int run(const MeshArguments& arguments) {
   fill.cells = options.quantize.cells;
   const FilledPart filled =
       longRun.part("reading", [&] { return readPart(arguments.part, fill, context); });
-  const MeshedPart part =
-      longRun.part("meshing", [&] { return meshFromTets(filled.tets, options, context); });
-  requireCertified(arguments, part.improvement.after);
+  const MeshedPart part = meshOrShowWhy(arguments, filled.tets, options, longRun);
+  requireCertified(arguments, part, longRun);
   writeAll(arguments, part, longRun);
   longRun.finish();
   if (reportFile.isWanted()) {
@@ -144,7 +162,9 @@ void addOutputs(CLI::App& parser, MeshArguments& arguments) {
            "Write the integer-grid map, too, for `extract` and `verify`");
   addReport(parser, arguments.report,
             "Write in JSON: labels, map, quality, distances, and how\nlong each step took");
-  addPage(parser, arguments.page, "Write a page that shows the mesh in any browser");
+  addPage(parser, arguments.page,
+          "Write a page that shows the mesh in any browser; if there is\n"
+          "none, where the part or its cells are in the way");
   parser.add_flag("--allow-bad", arguments.allowBad,
                   "Write the mesh even if cells are not positive");
 }

@@ -31,4 +31,7 @@ void writePage(const LagrangeMesh& /*mesh*/, const std::string& /*page*/,
   refuseWithoutViewer();
 }
 
+void writePartPage(const TetMesh& /*tets*/, const std::string& /*page*/,
+                   const std::string& /*part*/, const Error& /*error*/, LongRun& /*longRun*/) {}
+
 }  // namespace hexhex::command

@@ -207,4 +207,16 @@ void writePage(const LagrangeMesh& mesh, const std::string& page, const std::str
   writeViewPage(mesh, page, options, context);
 }
 
+void writePartPage(const TetMesh& tets, const std::string& page, const std::string& part,
+                   const Error& error, LongRun& longRun) {
+  if (page.empty() || error.code() != ErrorCode::NotMeshable) return;
+  if (error.place().kind == PlaceKind::None) return;
+  ViewOptions options;
+  options.title = nameOf(part) + ", " + toString(error.place());
+  longRun.part("page",
+               [&] { writeViewPage(tets, error.place(), page, options, longRun.context()); });
+  longRun.finish();
+  printWarning(page + " shows where the part cannot be meshed: region 1.");
+}
+
 }  // namespace hexhex::command

@@ -43,4 +43,9 @@ void writePage(const HexMesh& mesh, const std::string& page, const std::string& 
 void writePage(const LagrangeMesh& mesh, const std::string& page, const std::string& output,
                ViewOptions options, Context& context);
 
+/// Writes the page of a part that could not be meshed, if the error has a place in it, and says so.
+/// @param page  empty: none is wanted
+void writePartPage(const TetMesh& tets, const std::string& page, const std::string& part,
+                   const Error& error, LongRun& longRun);
+
 }  // namespace hexhex::command

@@ -8,6 +8,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
+#include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
 
@@ -47,6 +48,14 @@ void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
 /// @throws Error  the same; TooLarge also for more than 2^24 - 1 vertices and face nodes combined;
 ///         InvalidArgument for nodes that do not match the order
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
+                   const ViewOptions& options, Context& context);
+
+/// Shows where a part cannot be meshed: its tets, each cut into four hexahedra; the tets at the
+/// place of the error are region 1, and its edges are tagged. Errors of meshFromTets() and
+/// mapFromTets() have a place.
+/// @param place  a vertex, whose edges are tagged; an edge; a face; or a tet
+/// @throws Error  EmptyMesh; IndexOutOfRange; NotFinite; TooLarge beyond 4 million tets; FileWrite
+void writeViewPage(const TetMesh& part, const Place& place, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
 
 }  // namespace hexhex

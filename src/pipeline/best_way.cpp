@@ -83,10 +83,15 @@ std::string whyKept(const WayReport& kept, const WayReport& other, bool otherIsN
   const Error& first = *outcomes[0].refusal;
   const Error& second = *outcomes[1].refusal;
   if (std::string_view(first.what()) == second.what()) throw Error(first);
+  // The place of another code is one in the map.
+  const bool isInPart =
+      first.code() == ErrorCode::NotMeshable && first.place().kind != PlaceKind::None;
   throw Error(ErrorCode::NotMeshable,
               "Neither way leads to a mesh. By a polycube: " + std::string(first.what()) +
                   " Along frames: " + second.what(),
-              first.place().kind == PlaceKind::None ? second.place() : first.place());
+              isInPart                                  ? first.place()
+              : second.code() == ErrorCode::NotMeshable ? second.place()
+                                                        : Place{});
 }
 
 /// Runs both ways, each in a context of its own that shares the caller's progress and cancellation.

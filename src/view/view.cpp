@@ -19,8 +19,10 @@
 #include <hexhex/view.hpp>
 
 #include <base/parallel.hpp>
+#include <base/vector3.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
+#include <view/cut_tets.hpp>
 #include <view/mesh_tables.hpp>
 #include <view/page_template.hpp>
 
@@ -45,6 +47,11 @@ struct Subject {
   const HexMesh& mesh;
   const SurfaceNodes& nodes;
   StateBefore before = {};
+  bool isCutPart = false;  ///< cut tets, whose singular edges say nothing
+};
+
+struct CutPart {
+  HexMesh mesh;
 };
 
 void requireSize(const Subject& subject) {
@@ -199,7 +206,8 @@ PageContent makeContent(const Subject& subject, const Certificate& certificate,
   if (quality.empty()) quality = certificate.scaledJacobians;
   const HexMesh& mesh = subject.mesh;
   const Quantization quantization = quantizationOf(mesh, subject.nodes, subject.before);
-  const MeshStructure structure = findStructure(mesh, context);
+  MeshStructure structure = findStructure(mesh, context);
+  if (subject.isCutPart) structure.singularEdges.clear();
 
   PageContent content;
   NamedSkin skin;
@@ -254,6 +262,29 @@ PageContent makeContent(const HexMesh& mesh, const ViewOptions& options, Context
   }
   const Subject subject{mesh, straight, stateBefore(options.pointsBefore, {}, before)};
   return makeContent(subject, certify(mesh, context), before, options, context);
+}
+
+/// Direction from the middle of a part to its region at the place; any if there is none.
+Vec3 sideOf(const HexMesh& mesh) {
+  Vec3 sum{};
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (mesh.regions[c] != kAtPlace) continue;
+    sum = plus(sum, mesh.points[mesh.cells[c][0]]);
+    ++count;
+  }
+  if (count == 0) return {1, -1.6, 0.9};
+  const Vec3 side = minus(times(1 / static_cast<double>(count), sum), centreOf(mesh.points));
+  return dot(side, side) > 0 ? side : Vec3{1, -1.6, 0.9};
+}
+
+PageContent makeContent(const CutPart& part, const ViewOptions& options, Context& context) {
+  const SurfaceNodes straight;
+  const Subject subject{part.mesh, straight, {}, true};
+  requireShowable(subject, options);
+  PageContent content = makeContent(subject, certify(part.mesh, context), {}, options, context);
+  content.info["start"] = {{"colour", "region"}, {"from", sideOf(part.mesh)}};
+  return content;
 }
 
 PageContent makeContent(const LagrangeMesh& mesh, const ViewOptions& options, Context& context) {
@@ -346,6 +377,17 @@ void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context) {
   view::writePage(mesh, file, options, context);
+}
+
+void writeViewPage(const TetMesh& part, const Place& place, const std::filesystem::path& file,
+                   const ViewOptions& options, Context& context) {
+  if (part.tets.size() > view::kMostElements / 4) {
+    throw Error(ErrorCode::TooLarge,
+                "The part has " + std::to_string(part.tets.size()) +
+                    " tets, of four hexahedra each, but browsers do not hold more than 16 million "
+                    "of these. Open it in ParaView.");
+  }
+  view::writePage(view::CutPart{view::cutTets(part, place)}, file, options, context);
 }
 
 }  // namespace hexhex

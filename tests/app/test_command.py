@@ -994,6 +994,20 @@ class Repair(CommandTest):
                               expect=INVALID_MAP, code="FlippedTet")
         self.assertEqual(list(self.folder.glob("bad*")), [])
 
+    def test_page_of_a_part_without_a_mesh(self):
+        """A single tet has too few triangles for the faces of a polycube."""
+        (self.folder / "tet.node").write_text("4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n")
+        (self.folder / "tet.ele").write_text("1 4 0\n0 0 1 2 3\n")
+        arguments = ["mesh", "tet.ele", "-o", "tet.vtu", "--cells", "100", "--method", "polycube"]
+        run = self.run_command(*arguments, "--view", "tet.html", expect=None)
+        if "cannot make maps" in run.stderr or "without the viewer page" in run.stderr:
+            self.skipTest("built without quantization or viewer")
+        self.assertEqual(run.returncode, INVALID_MAP)
+        self.assertIn("tet.html shows where", run.stderr)
+        self.assertIn("[NotMeshable, edge", run.stderr)
+        self.assertIn('"start":{"colour":"region"', (self.folder / "tet.html").read_text())
+        self.assertFalse((self.folder / "tet.vtu").exists())
+
     def test_maps_along_frames_are_seamless(self):
         """Not so where all tets are positive, but go around an edge twice."""
         part = pathlib.Path(__file__).parents[2] / "examples" / "bracket.mesh"

@@ -21,6 +21,7 @@
 
 #include <base/parallel.hpp>
 #include <mesh/grid_meshes.hpp>
+#include <view/cut_tets.hpp>
 #include <view/mesh_tables.hpp>
 
 namespace hexhex::view {
@@ -185,6 +186,8 @@ class Page : public ::testing::Test {
     std::filesystem::remove(folder_ / "page.html");
     return text.str();
   }
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
   void expectRefused(const auto& mesh, ErrorCode code, const ViewOptions& options = {}) {
     try {
@@ -373,6 +376,53 @@ LagrangeMesh quadraticGrid(std::size_t side) {
     }
   }
   return mesh;
+}
+
+std::size_t taggedBy(const TetMesh& tets, const Place& place) {
+  return cutTets(tets, place).features.edges.size();
+}
+
+TEST(CutTets, AreFourPositiveHexahedraEach) {
+  const TetMap map = testing::identityMap(2);
+  TetMesh tets{map.points, map.tets};
+  std::swap(tets.tets[5][1], tets.tets[5][2]);
+  Context context;
+  const HexMesh mesh = cutTets(tets, {});
+  EXPECT_EQ(mesh.cells.size(), 4 * tets.tets.size());
+  EXPECT_TRUE(certify(mesh, context).allPositive());
+  const MeshStructure structure = findStructure(mesh, context);
+  EXPECT_EQ(structure.boundaryQuads,
+            6U * 4 * 2 * 3);  // faces of the box, squares, triangles, quads
+  EXPECT_EQ(structure.eulerCharacteristic, 1);
+  EXPECT_EQ(structure.components, 1U);
+}
+
+TEST(CutTets, TagEdgesAtThePlace) {
+  const TetMesh tets{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}},
+                     {{0, 1, 2, 3}, {1, 2, 3, 4}}};
+  EXPECT_EQ(taggedBy(tets, {}), 0U);
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Vertex, 0}), 2 * 3U);
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Vertex, 3}), 2 * 4U);
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Edge, 4, 2}), 2 * 1U);
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Edge, 0, 4}), 0U);  // no edge
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Face, 1, 3}), 2 * 3U);
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Tet, 1}), 2 * 6U);
+  EXPECT_EQ(taggedBy(tets, {PlaceKind::Tet, 7}), 0U);
+  const HexMesh mesh = cutTets(tets, {PlaceKind::Vertex, 4});
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{2, 2, 2, 2, 1, 1, 1, 1}));
+}
+
+TEST_F(Page, ShowsWhereAPartIsInTheWay) {
+  const TetMesh tets{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+  Context context;
+  const auto page = folder() / "part.html";
+  writeViewPage(tets, {PlaceKind::Edge, 0, 1}, page, {}, context);
+  std::ostringstream text;
+  text << std::ifstream(page).rdbuf();
+  EXPECT_TRUE(contains(text.str(), "\"cells\":4,"));
+  EXPECT_TRUE(contains(text.str(), "\"name\":\"feature_edges\",\"rows\":2,"));
+  EXPECT_THROW(writeViewPage(TetMesh{}, {}, page, {}, context), Error);
+  EXPECT_THROW(writeViewPage(TetMesh{tets.points, {{0, 1, 2, 4}}}, {}, page, {}, context), Error);
 }
 
 TEST(SurfaceNodes, AreThoseOnFaces) {

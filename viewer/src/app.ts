@@ -65,6 +65,8 @@ export class App {
     private readonly worker: MeshWorker,
   ) {
     this.state = fromFragment(location.hash);
+    const { start } = info;
+    if (location.hash.length < 2 && start) this.state.colour = start.colour;
     this.dropUnknown();
 
     const { half } = sceneOf(info);
@@ -88,6 +90,7 @@ export class App {
     worker.onVisible = (visible, curved, milliseconds) => this.showVisible(visible, curved, milliseconds);
     this.fillControls();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
+    else if (start) this.viewport.look(start.from);
     this.applyTheme();
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.applyTheme());
     window.addEventListener("hashchange", () => this.restore(location.hash));

@@ -1,5 +1,6 @@
 // What the page holds, as src/view/ writes it: a JSON text with counts and statistics, and tables of
 // whole numbers in compressed chunks.
+import type { ColourMode } from "./scene/surface";
 
 /** A table of `rows` times `columns` 32-bit numbers, in chunks of consecutive rows. */
 export interface TableInfo {
@@ -65,6 +66,8 @@ export interface MeshInfo {
   /** Groups of boundary quads, as files name them, and how many quads they have. */
   patches: { name: string; quads: number }[];
   hasGenerators: boolean;
+  /** How the page of a part begins: coloured by region, seen from the side of the place. */
+  start?: { colour: ColourMode; from: [number, number, number] };
   verification: { map: string; passed: boolean; items: CheckItem[] } | null;
   tables: TableInfo[];
 }

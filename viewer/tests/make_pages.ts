@@ -77,4 +77,14 @@ export default function makePages(): void {
     "tagged.ovmb", "--quiet");
   hexhex("extract", "tagged.ovmb", "-o", "features.ovmb", "--quiet");
   hexhex("view", "features.ovmb", "--quiet");
+
+  // A part that has no mesh: one tet.
+  writeFileSync(join(kPages, "tet.node"), "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
+  writeFileSync(join(kPages, "tet.ele"), "1 4 0\n0 0 1 2 3\n");
+  const part = ["tet.ele", "-o", "tet.vtu", "--cells", "100", "--method", "polycube", "--view", "tet.html"];
+  try {
+    hexhex("mesh", ...part, "--quiet");
+  } catch {
+    // The page says where.
+  }
 }

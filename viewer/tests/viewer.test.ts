@@ -325,6 +325,16 @@ test("shows what is tagged", async ({ page }) => {
   await page.screenshot(shot("features"));
 });
 
+test("shows where a part cannot be meshed", async ({ page }) => {
+  await open(page, "tet.html");
+  await expect(page.locator("#colour")).toHaveValue("region");
+  await expect(page.locator("#legend")).toContainText("region of the cell");
+  await expect(page.locator("#legend")).not.toContainText("valence");
+  await expect(page.locator("#show-features")).toBeVisible();
+  await page.locator("#colour").selectOption("quality");
+  await expect(page.locator("#legend")).toContainText("scaled Jacobian");
+});
+
 test("draws cells of higher order curved or straight", async ({ page }) => {
   await open(page, "curved.html");
   const [cells, side] = [7 * 2 ** 3, 2];
