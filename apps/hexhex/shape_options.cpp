@@ -65,6 +65,10 @@ void printFill(const FilledPart& part) {
   std::string text = fmt::format("{} by {}", counted(report.tets, "tet"), report.mesher);
   if (report.bodies > 1) text += fmt::format(", in {} bodies", report.bodies);
   if (report.voids > 0) text += fmt::format(", around {}", counted(report.voids, "void"));
+  if (report.flatTriangles > 0) {
+    text +=
+        fmt::format(", without {} that have no area", counted(report.flatTriangles, "triangle"));
+  }
   printLine("filled with", text);
 }
 

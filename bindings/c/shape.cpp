@@ -75,7 +75,8 @@ void writeReport(const std::optional<hexhex::FillReport>& given, hexhex_fill_rep
                                .bodies = r.bodies,
                                .voids = r.voids,
                                .volume = r.volume,
-                               .filled_volume = r.filledVolume};
+                               .filled_volume = r.filledVolume,
+                               .flat_triangles = r.flatTriangles};
   r.mesher.copy(result.mesher, sizeof result.mesher - 1);
   writeStruct(result, *out, "report");
 }

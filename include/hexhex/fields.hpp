@@ -131,6 +131,7 @@ void visitFields(const FillReport& report, const Visit& visit) {
   visit("voids", report.voids);
   visit("volume", report.volume);
   visit("filled_volume", report.filledVolume);
+  visit("flat_triangles", report.flatTriangles);
 }
 
 /// Without certificates, distances to the surface, numbers of vertices and the worst cell, which

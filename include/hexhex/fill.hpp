@@ -62,10 +62,11 @@ struct FillReport {
   std::uint64_t tets = 0;
   // For surfaces:
   std::uint64_t triangles = 0;
-  std::uint64_t bodies = 0;  ///< each filled separately
-  std::uint64_t voids = 0;   ///< inside the bodies
-  double volume = 0;         ///< enclosed by the surface
-  double filledVolume = 0;   ///< of the tets
+  std::uint64_t bodies = 0;         ///< each filled separately
+  std::uint64_t voids = 0;          ///< inside the bodies
+  double volume = 0;                ///< enclosed by the surface
+  double filledVolume = 0;          ///< of the tets
+  std::uint64_t flatTriangles = 0;  ///< removed first, as they have no area
 };
 
 struct FilledPart {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fill/closed_surface.hpp>
+#include <fill/flat_triangles.hpp>
 #include <fill/intersections.hpp>
 
 #include <hexhex/error.hpp>
@@ -46,19 +47,13 @@ std::string nameOf(const TriangleMesh& surface, Index t) {
   return asText(corners[0]) + ", " + asText(corners[1]) + ", " + asText(corners[2]);
 }
 
-/// A side of a triangle. Side i of triangle t, from its corner i to the next, has the number 3 t +
-/// i.
-struct Side {
-  std::array<Index, 2> ends;  ///< ascending
-  Index side;
-  auto operator<=>(const Side&) const = default;
-};
-
 /// A surface that is checked to be closed and manifold, and oriented consistently.
 class Checked {
  public:
   Checked(TriangleMesh surface, Stage& stage) : surface_(std::move(surface)) {
     requireTriangles();
+    flatTriangles_ = removeFlatTriangles(surface_);
+    requireArea();
     requireThickness();
     joinSides();
     orient();
@@ -72,6 +67,8 @@ class Checked {
               "where it was made.");
     }
   }
+
+  [[nodiscard]] std::size_t flatTriangles() const noexcept { return flatTriangles_; }
 
   /// The closed surfaces that it consists of, oriented to enclose a positive volume.
   [[nodiscard]] std::vector<TriangleMesh> shells() const {
@@ -111,10 +108,19 @@ class Checked {
             concat("Triangle ", t, " of the surface names vertex ", v, ", which does not exist."),
             {PlaceKind::Vertex, v});
       }
+    }
+  }
+
+  void requireArea() const {
+    if (surface_.triangles.empty()) {
+      throw Error(ErrorCode::EmptyMesh, "No triangle of the surface has an area.");
+    }
+    for (Index t = 0; t < surface_.triangles.size(); ++t) {
       if (!isFlat(cornersOf(surface_, t))) continue;
       throw Error(ErrorCode::NotMeshable,
-                  "A triangle of the surface has no area: its corners " + nameOf(surface_, t) +
-                      " are on a line. Remove it, and split the triangle beside its longest edge.");
+                  "A triangle of the surface has no area, and no neighbour to be united with: its "
+                  "corners " +
+                      nameOf(surface_, t) + " are on a line. Remove it where it was made.");
     }
   }
 
@@ -142,22 +148,8 @@ class Checked {
            asText(surface_.points[ends[1]]);
   }
 
-  [[nodiscard]] std::vector<Side> sortedSides() const {
-    std::vector<Side> sides;
-    sides.reserve(3 * surface_.triangles.size());
-    for (Index t = 0; t < surface_.triangles.size(); ++t) {
-      for (Index i = 0; i < 3; ++i) {
-        const Index a = surface_.triangles[t][i];
-        const Index b = surface_.triangles[t][(i + 1) % 3];
-        sides.push_back({{std::min(a, b), std::max(a, b)}, 3 * t + i});
-      }
-    }
-    std::sort(sides.begin(), sides.end());
-    return sides;
-  }
-
   void joinSides() {
-    const std::vector<Side> sides = sortedSides();
+    const std::vector<Side> sides = sortedSides(surface_);
     twins_.resize(sides.size());
     std::uint64_t open = 0;
     std::array<Index, 2> firstOpen{};
@@ -265,6 +257,7 @@ class Checked {
   }
 
   TriangleMesh surface_;
+  std::size_t flatTriangles_ = 0;
   std::vector<Index> twins_;  ///< per side
   std::vector<Index> shell_;  ///< per triangle
   Index shellCount_ = 0;
@@ -343,9 +336,12 @@ int windings(const TriangleMesh& surface, const Vec3& point) {
   return static_cast<int>(std::lround(sum / (4 * std::numbers::pi)));
 }
 
-std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage) {
-  const std::vector<Shell> shells = nested(Checked(std::move(surface), stage).shells());
-  std::vector<Body> bodies;
+Bodies bodiesOf(TriangleMesh surface, Stage& stage) {
+  const Checked checked(std::move(surface), stage);
+  const std::vector<Shell> shells = nested(checked.shells());
+  Bodies all;
+  all.flatTriangles = checked.flatTriangles();
+  std::vector<Body>& bodies = all.bodies;
   std::vector<std::size_t> bodyOf(shells.size());
   for (std::size_t i = 0; i < shells.size(); ++i) {
     if (shells[i].around.size() % 2 != 0) continue;
@@ -366,7 +362,7 @@ std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage) {
     ++body.voidCount;
     body.volume -= shell.volume;
   }
-  return bodies;
+  return all;
 }
 
 }  // namespace hexhex::fill

@@ -18,10 +18,15 @@ struct Body {
   double volume = 0;
 };
 
+struct Bodies {
+  std::vector<Body> bodies;
+  std::uint64_t flatTriangles = 0;  ///< removed, as they have no area
+};
+
 /// The bodies bounded by a surface, whatever the orientation of its triangles. A closed surface
 /// inside another bounds a cavity, and one inside that bounds another body.
 /// @throws Error  as fillSurface(), if it bounds no bodies
-[[nodiscard]] std::vector<Body> bodiesOf(TriangleMesh surface, Stage& stage);
+[[nodiscard]] Bodies bodiesOf(TriangleMesh surface, Stage& stage);
 
 /// Winding number of a closed surface around a point: 0 outside. The point must not be on the
 /// surface.

@@ -97,11 +97,13 @@ void appendTets(TetMesh& all, const TetMesh& more) {
   }
 }
 
-FilledPart fillBodies(const std::vector<Body>& bodies, const std::string& name,
-                      const FillOptions& options, Stage& stage) {
+FilledPart fillBodies(const Bodies& found, const std::string& name, const FillOptions& options,
+                      Stage& stage) {
+  const std::vector<Body>& bodies = found.bodies;
   FilledPart part;
   FillReport& report = part.report.emplace();
   report.bodies = bodies.size();
+  report.flatTriangles = found.flatTriangles;
   for (const Body& body : bodies) report.volume += body.volume;
   report.tetSize = sizeFor(report.volume, options);
   for (const Body& body : bodies) {
@@ -127,7 +129,7 @@ FilledPart fillNamed(const TriangleMesh& surface, const std::string& name,
   return inSteps(context, "fillSurface", kFill, [&] {
     FilledPart part;
     withThreads(context.threads(), [&] {
-      std::vector<Body> bodies;
+      Bodies bodies;
       {
         Stage stage(context, "check surface");
         bodies = bodiesOf(surface, stage);

@@ -104,7 +104,7 @@ HexMesh cutTets(const TetMesh& tets, const Place& place) {
   Simplices<2> edges(tets);
   Simplices<3> faces(tets);
   const std::vector<Index> at = verticesAt(tets, place);
-  const auto isAt = [&at](Index vertex) { return std::ranges::count(at, vertex) > 0; };
+  const auto isAt = [&at](Index vertex) { return std::find(at.begin(), at.end(), vertex) != at.end(); };
   HexMesh mesh;
   mesh.points.assign(tets.points.begin(), tets.points.end());
   edges.appendCentres(tets, mesh);
@@ -116,7 +116,7 @@ HexMesh cutTets(const TetMesh& tets, const Place& place) {
     std::array<Vec3, 4> corners;
     for (std::size_t i = 0; i < 4; ++i) corners[i] = tets.points[tet[i]];
     mesh.points.push_back(centreOf(corners));
-    const std::int32_t region = std::ranges::any_of(tet, isAt) ? kAtPlace : kElsewhere;
+    const std::int32_t region = std::any_of(tet.begin(), tet.end(), isAt) ? kAtPlace : kElsewhere;
     mesh.regions.insert(mesh.regions.end(), 4, region);
     for (const auto& seen : kSeenFrom) {
       const auto [v, a, b, c] = std::array{tet[seen[0]], tet[seen[1]], tet[seen[2]], tet[seen[3]]};
@@ -125,9 +125,9 @@ HexMesh cutTets(const TetMesh& tets, const Place& place) {
                             centre, faces.pointOf({v, b, c})});
     }
   }
+  const int leastAt = at.size() == 1 ? 1 : 2;
   for (const auto& edge : edges.all()) {
-    if (at.size() == 1 ? !std::ranges::any_of(edge, isAt) : !std::ranges::all_of(edge, isAt))
-      continue;
+    if (std::count_if(edge.begin(), edge.end(), isAt) < leastAt) continue;
     for (const Index end : edge) mesh.features.edges.push_back({{end, edges.pointOf(edge)}, 1});
   }
   return mesh;

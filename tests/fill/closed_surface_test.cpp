@@ -21,11 +21,12 @@
 namespace hexhex::test {
 namespace {
 
-std::vector<fill::Body> bodies(const TriangleMesh& surface) {
+fill::Bodies allOf(const TriangleMesh& surface) {
   Context context(1);
   Stage stage(context, "bodies");
   return fill::bodiesOf(surface, stage);
 }
+std::vector<fill::Body> bodies(const TriangleMesh& surface) { return allOf(surface).bodies; }
 
 Error refusal(const TriangleMesh& surface) {
   return errorOf([&] { return bodies(surface); });
@@ -122,8 +123,35 @@ TEST(ClosedSurface, RefusesSheetsAndFlatTriangles) {
   box.triangles.push_back({0, 8, 1});
   const Error error = refusal(box);
   EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
-  says(error, "no area: its corners (0, 0, 0), (0.5, 0, 0), (1, 0, 0)");
+  says(error, "no area, and no neighbour");
+  says(error, "its corners (0, 0, 0), (0.5, 0, 0), (1, 0, 0)");
   EXPECT_EQ(refusal({}).code(), ErrorCode::EmptyMesh);
+}
+
+/// A box, one of whose edges has further vertices on one of its sides, and flat triangles between.
+TriangleMesh boxWithFlatTriangles() {
+  TriangleMesh box = boxSurface();
+  box.points.insert(box.points.end(), {{0.5, 0, 0}, {0.25, 0, 0}});
+  // The edge from 0 to 1 has the triangles 0 2 3, 0 3 1 below it and 0 1 5, 0 5 4 in front of it.
+  const auto beside = std::ranges::find(box.triangles, Triangle{0, 3, 1});
+  *beside = {0, 3, 9};
+  box.triangles.insert(box.triangles.end(),
+                       {{9, 3, 8}, {8, 3, 1}, {0, 9, 8}, {8, 1, 0}, {4, 4, 5}});
+  return box;
+}
+
+TEST(ClosedSurface, UnitesFlatTrianglesWithTheirNeighbours) {
+  const fill::Bodies all = allOf(boxWithFlatTriangles());
+  EXPECT_EQ(all.flatTriangles, 3U);  // the second only after the first; one has a corner twice
+  ASSERT_EQ(all.bodies.size(), 1U);
+  EXPECT_DOUBLE_EQ(all.bodies[0].volume, 1);
+  EXPECT_EQ(all.bodies[0].surface.triangles.size(), 12U + 4U);
+  EXPECT_EQ(allOf(boxSurface()).flatTriangles, 0U);
+  TriangleMesh line = boxSurface();
+  for (Vec3& point : line.points) point = {point[0], 0, 0};
+  EXPECT_EQ(refusal(line).code(), ErrorCode::NotMeshable);
+  line.triangles = {{3, 3, 1}};
+  EXPECT_EQ(refusal(line).code(), ErrorCode::EmptyMesh);
 }
 
 TEST(ClosedSurface, RefusesIntersections) {

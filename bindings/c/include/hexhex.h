@@ -1356,9 +1356,10 @@ typedef struct hexhex_fill_report {
   uint64_t voids;
   double volume;
   double filled_volume;
+  uint64_t flat_triangles; /**< removed first, as they have no area */
 } hexhex_fill_report;
 #define HEXHEX_FILL_REPORT_INIT \
-  { sizeof(hexhex_fill_report), {0}, 0, 0, 0, 0, 0, 0, 0 }
+  { sizeof(hexhex_fill_report), {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /** Reads the tets of a part from a file in a format of hexhex_map_read_tets(), or uses an installed
  * mesher to fill a closed surface, .stl, .obj, .ply or .off, or a STEP file. The result has no

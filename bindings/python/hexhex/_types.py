@@ -1102,6 +1102,7 @@ class FillReport:
     voids: int  #: inside the bodies
     volume: float  #: enclosed by the surface
     filled_volume: float  #: of the tets
+    flat_triangles: int  #: removed first, as they have no area
 
 
 @dataclasses.dataclass(frozen=True)
