@@ -56,12 +56,21 @@ void writeMeshPage(const MeshArguments& arguments, const MeshedPart& part, LongR
 void requireCertified(const MeshArguments& arguments, const MeshedPart& part, LongRun& longRun) {
   const Certificate& certificate = part.improvement.after;
   if (certificate.allPositive() || arguments.allowBad) return;
-  writeMeshPage(arguments, part, longRun);
+  try {
+    writeMeshPage(arguments, part, longRun);
+  } catch (const Error& problem) {  // that there is no mesh is what matters
+    longRun.finish();
+    printWarning(std::string("There is no page: ") + problem.what());
+  }
+  const bool isRefuted = certificate.refuted > 0;
   throw Error(ErrorCode::NotMeshable,
-              refutationAsText(certificate) +
-                  " The mesh was not written. Try another number of cells, or a larger --slack; "
-                  "--view shows these cells, and --allow-bad writes the mesh as it is.",
-              {PlaceKind::Cell, certificate.worst.front().cell});
+              (isRefuted ? refutationAsText(certificate)
+                         : counted(certificate.undecided, "cell") +
+                               " could not be certified as positive.") +
+                  " The mesh was not written. Try another number of cells, or a larger --slack; " +
+                  (arguments.page.empty() ? "--view" : arguments.page) +
+                  " shows these cells, and --allow-bad writes the mesh as it is.",
+              isRefuted ? Place{PlaceKind::Cell, certificate.worst.front().cell} : Place{});
 }
 
 void writeAll(const MeshArguments& arguments, const MeshedPart& part, LongRun& longRun) {
@@ -163,8 +172,8 @@ void addOutputs(CLI::App& parser, MeshArguments& arguments) {
   addReport(parser, arguments.report,
             "Write in JSON: labels, map, quality, distances, and how\nlong each step took");
   addPage(parser, arguments.page,
-          "Write a page that shows the mesh in any browser; if there is\n"
-          "none, where the part or its cells are in the way");
+          "Write a page that shows the mesh in any browser or, if\n"
+          "there is none, where the part cannot be meshed");
   parser.add_flag("--allow-bad", arguments.allowBad,
                   "Write the mesh even if cells are not positive");
 }

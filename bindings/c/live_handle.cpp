@@ -21,6 +21,7 @@ struct alignas(std::max_align_t) HandleHeader {
   std::atomic<Destroyer> kind{nullptr};  ///< null: not given out yet
   std::atomic<std::uint64_t> users{0};
 };
+static_assert(alignof(HandleHeader) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__);
 static_assert(std::atomic<Destroyer>::is_always_lock_free &&
               std::atomic<std::uint64_t>::is_always_lock_free);
 

@@ -10,7 +10,7 @@
 
 namespace hexhex::c {
 
-/// Deletes a handle; and it tells of which kind that is.
+/// Deletes a handle. Its address identifies the kind.
 using Destroyer = void (*)(const void* handle);
 template <class T>
 void deleteHandle(const void* handle) {

@@ -50,11 +50,12 @@ void writeViewPage(const HexMesh& mesh, const std::filesystem::path& file,
 void writeViewPage(const LagrangeMesh& mesh, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
 
-/// Shows where a part cannot be meshed: its tets, each cut into four hexahedra; the tets at the
-/// place of the error are region 1, and its edges are tagged. Errors of meshFromTets() and
-/// mapFromTets() have a place.
-/// @param place  a vertex, whose edges are tagged; an edge; a face; or a tet
-/// @throws Error  EmptyMesh; IndexOutOfRange; NotFinite; TooLarge beyond 4 million tets; FileWrite
+/// Shows where a part cannot be meshed: its tets, each cut into four hexahedra; the tets that touch
+/// the place of the error are region 1, and its edges are tagged.
+/// @param place  a vertex, whose edges are tagged; an edge; a face; or a tet: that of an error with
+///        the code NotMeshable. Places of others may be in a map of the part, which has more tets
+/// @throws Error  EmptyMesh; IndexOutOfRange; NotFinite; TooLarge beyond 3.8 million tets or so;
+///         FileWrite
 void writeViewPage(const TetMesh& part, const Place& place, const std::filesystem::path& file,
                    const ViewOptions& options, Context& context);
 

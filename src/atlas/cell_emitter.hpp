@@ -21,7 +21,7 @@
 #include <atlas/brick_grid.hpp>
 #include <atlas/cut_marks.hpp>
 #include <atlas/vertex_grid.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/cell_tracer.hpp>
 
 namespace hexhex::atlas {

@@ -13,7 +13,7 @@
 #include <atlas/charts.hpp>
 #include <atlas/grid_region.hpp>
 #include <igm/igm.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/tet_positions.hpp>
 #include <sweep/vertex_numbers.hpp>
 

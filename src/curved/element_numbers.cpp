@@ -3,7 +3,7 @@
 #include <string>
 
 #include <curved/element_numbers.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 
 namespace hexhex::curved {
 

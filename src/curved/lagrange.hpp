@@ -7,7 +7,7 @@
 
 #include <igm/igm.hpp>
 #include <lattice/tet_geometry.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 
 namespace hexhex::curved {
 

@@ -8,7 +8,7 @@
 
 #include <base/sorted.hpp>
 #include <extract/mesh_tags.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/cell_tracer.hpp>
 
 namespace hexhex::extraction {

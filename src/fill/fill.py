@@ -84,7 +84,11 @@ def netgen(source, size, tets, threads):
 def gmsh(source, size, tets, threads):
     import gmsh as program
 
-    program.initialize(["gmsh", "-nopopup"], interruptible=False)
+    words = ["gmsh", "-nopopup"]
+    try:
+        program.initialize(words, interruptible=False)
+    except TypeError:  # before Gmsh 4.11
+        program.initialize(words)
     program.option.setNumber("Geometry.OCCImportLabels", 1)
     program.open("part.geo")
     model = program.model
@@ -98,10 +102,17 @@ def gmsh(source, size, tets, threads):
             elif dimension == 2 and name:
                 groups.setdefault(name, []).append(tag)
         for name, tags in groups.items():
-            model.addPhysicalGroup(dimension, tags, name=name)
+            model.setPhysicalName(dimension, model.addPhysicalGroup(dimension, tags), name)
     program.option.setNumber("Mesh.SaveAll", 1)
     model.mesh.generate(3)
     program.write("part.msh")
+
+
+def version_of(package):
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:  # Debian's Gmsh
+        return ""
 
 
 def end_with_parent():
@@ -116,7 +127,7 @@ def main():
     for name in names.split(","):
         if importlib.util.find_spec(MODULES[name]) is None:
             continue
-        print(PACKAGES[name], importlib.metadata.version(PACKAGES[name]), flush=True)
+        print(PACKAGES[name], version_of(PACKAGES[name]), flush=True)
         return globals()[name](source, float(size), float(tets), int(threads))
     return NOT_THERE
 

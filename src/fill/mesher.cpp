@@ -9,6 +9,7 @@
 #include <locale>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fill/mesher.hpp>
@@ -245,7 +246,12 @@ Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
   if (task.surface != nullptr) {
     writeStl(*task.surface, folder / "part.stl");
   } else {
-    std::filesystem::copy_file(task.step, folder / "part.step");
+    std::error_code problem;
+    std::filesystem::copy_file(task.step, folder / "part.step", problem);
+    if (problem) {
+      throw Error(ErrorCode::FileNotFound,
+                  task.name + ": the file cannot be read: " + problem.message() + ".");
+    }
   }
   writeGeo(task, folder / "part.geo");
   std::string said;

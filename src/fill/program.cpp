@@ -130,7 +130,13 @@ ProgramEnd runProgram(const std::vector<std::string>& words, const std::filesyst
 }
 
 TemporaryFolder::TemporaryFolder() {
-  std::string name = std::filesystem::temp_directory_path() / "hexhex-XXXXXX";
+  std::error_code problem;
+  const std::filesystem::path place = std::filesystem::temp_directory_path(problem);
+  if (problem) {
+    throw Error(ErrorCode::FileWrite, "There is no folder for temporary files: " +
+                                          problem.message() + ". The variable TMPDIR names one.");
+  }
+  std::string name = place / "hexhex-XXXXXX";
   if (mkdtemp(name.data()) == nullptr) {
     throw Error(ErrorCode::FileWrite, name + ": no folder can be made: " + std::strerror(errno) +
                                           ". The variable TMPDIR names another place.");

@@ -7,7 +7,7 @@
 #include <hexhex/team.hpp>
 
 #include <lattice/wide_int.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/tet_positions.hpp>
 
 namespace hexhex::parts {

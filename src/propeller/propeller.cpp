@@ -7,7 +7,7 @@
 #include <propeller/hex_vertices.hpp>
 #include <propeller/local_connectivity.hpp>
 #include <propeller/propeller.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/cell_tracer.hpp>
 
 namespace hexhex::propeller {

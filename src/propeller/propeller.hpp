@@ -48,7 +48,7 @@ struct GlobalConnectivity {
 /// Number of cells that the hex corners of all vertices form.
 [[nodiscard]] std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& local);
 
-/// All cells in canonical order (cell_centers.hpp). Each is entered from its centre at its first
+/// All cells in canonical order (sweep/cell_order.hpp). Each is entered from its centre at its first
 /// corner; from there the walk goes from propeller to opposite.
 [[nodiscard]] Array<Hex> collectCells(const igm::PreparedMap& map,
                                       const Array<lattice::NormalSigns>& signs,

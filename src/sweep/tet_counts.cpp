@@ -4,7 +4,7 @@
 #include <hexhex/team.hpp>
 
 #include <base/workspaces.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/tet_counts.hpp>
 
 namespace hexhex::sweep {

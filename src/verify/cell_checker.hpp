@@ -18,7 +18,7 @@
 #include <verify/lattice_places.hpp>
 
 #include <lattice/cell_corners.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 
 namespace hexhex::verification {
 

@@ -22,7 +22,7 @@
 #include <hexhex/check.hpp>
 #include <hexhex/parts.hpp>
 
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 #include <sweep/tet_counts.hpp>
 
 namespace hexhex::verification {

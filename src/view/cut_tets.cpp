@@ -104,7 +104,9 @@ HexMesh cutTets(const TetMesh& tets, const Place& place) {
   Simplices<2> edges(tets);
   Simplices<3> faces(tets);
   const std::vector<Index> at = verticesAt(tets, place);
-  const auto isAt = [&at](Index vertex) { return std::find(at.begin(), at.end(), vertex) != at.end(); };
+  const auto isAt = [&at](Index vertex) {
+    return std::find(at.begin(), at.end(), vertex) != at.end();
+  };
   HexMesh mesh;
   mesh.points.assign(tets.points.begin(), tets.points.end());
   edges.appendCentres(tets, mesh);

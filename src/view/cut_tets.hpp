@@ -16,7 +16,7 @@ inline constexpr std::int32_t kElsewhere = 2;
 /// of triangles and of the tet.
 /// @param place  a vertex, edge, face or tet: its edges (of a vertex, those that end there) become
 ///        tagged edges, and tets that touch it are in a region of their own
-/// @throws Error EmptyMesh, IndexOutOfRange, TooLarge
+/// @throws Error EmptyMesh, IndexOutOfRange
 [[nodiscard]] HexMesh cutTets(const TetMesh& tets, const Place& place);
 
 }  // namespace hexhex::view

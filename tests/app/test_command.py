@@ -1007,6 +1007,10 @@ class Repair(CommandTest):
         self.assertIn("[NotMeshable, edge", run.stderr)
         self.assertIn('"start":{"colour":"region"', (self.folder / "tet.html").read_text())
         self.assertFalse((self.folder / "tet.vtu").exists())
+        # The page is less important than the reason.
+        run = self.run_command(*arguments, "--view", "/dev/full", expect=INVALID_MAP)
+        self.assertIn("There is no page: ", run.stderr)
+        self.assertIn("[NotMeshable, edge", run.stderr)
 
     def test_maps_along_frames_are_seamless(self):
         """Not so where all tets are positive, but go around an edge twice."""

@@ -160,6 +160,8 @@ TEST(Fill, RefusesOptionsThatMeanNothing) {
   EXPECT_EQ(
       codeOf([&] { return readPart(folder / "a.step", {.mesher = Mesher::TetWild}, context); }),
       ErrorCode::InvalidArgument);
+  EXPECT_EQ(codeOf([&] { return readPart(folder / "missing.step", {}, context); }),
+            ErrorCode::FileNotFound);
   EXPECT_EQ(codeOf([] { return fill(boxSurface(), {.tetSize = -1}); }), ErrorCode::InvalidArgument);
 }
 

@@ -163,21 +163,29 @@ TEST(BestWay, TriesOtherMapsWhereOneHasNoMesh) {
   EXPECT_THROW(static_cast<void>(mapWithMesh(1, 3, false)), Refusal);
 }
 
-TEST(BestWay, SaysBothReasonsIfThereIsNone) {
+/// @param ofFrames  the code of their refusal
+Error refusalOfBoth(ErrorCode ofFrames) {
   Context context;
-  const Error error = errorOf([&] {
+  return errorOf([&] {
     static_cast<void>(bestOfBothWays(
-        [](ShapeMethod method, Context& /*own*/) -> MeshedPart {
-          const bool isFrames = method == ShapeMethod::Frames;
-          throw Refusal({ErrorCode::FlippedTet, isFrames ? "A curve ends." : "A corner is bad.",
-                         isFrames ? Place{PlaceKind::Vertex, 3} : Place{}});
+        [&](ShapeMethod method, Context& /*own*/) -> MeshedPart {
+          if (method == ShapeMethod::Frames) {
+            throw Refusal({ofFrames, "A curve ends.", {PlaceKind::Vertex, 3}});
+          }
+          throw Refusal({ErrorCode::FlippedTet, "A corner is bad.", {PlaceKind::Tet, 7}});
         },
         true, context));
   });
+}
+
+TEST(BestWay, SaysBothReasonsIfThereIsNone) {
+  const Error error = refusalOfBoth(ErrorCode::NotMeshable);
   EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
   EXPECT_NE(std::string(error.what()).find("A curve ends."), std::string::npos);
   EXPECT_NE(std::string(error.what()).find("A corner is bad."), std::string::npos);
+  // Places of other codes are in maps, not in the part.
   EXPECT_EQ(toString(error.place()), "vertex 3");
+  EXPECT_EQ(refusalOfBoth(ErrorCode::TransitionResidual).place().kind, PlaceKind::None);
 }
 
 TEST(BestWay, EndsWithWhatIsNoRefusal) {

@@ -24,6 +24,8 @@
 #include <view/cut_tets.hpp>
 #include <view/mesh_tables.hpp>
 
+#include "support/error_of.hpp"
+
 namespace hexhex::view {
 namespace {
 
@@ -421,8 +423,11 @@ TEST_F(Page, ShowsWhereAPartIsInTheWay) {
   text << std::ifstream(page).rdbuf();
   EXPECT_TRUE(contains(text.str(), "\"cells\":4,"));
   EXPECT_TRUE(contains(text.str(), "\"name\":\"feature_edges\",\"rows\":2,"));
-  EXPECT_THROW(writeViewPage(TetMesh{}, {}, page, {}, context), Error);
-  EXPECT_THROW(writeViewPage(TetMesh{tets.points, {{0, 1, 2, 4}}}, {}, page, {}, context), Error);
+  const auto refusalOf = [&](const TetMesh& bad) {
+    return test::errorOf([&] { writeViewPage(bad, {}, page, {}, context); }).code();
+  };
+  EXPECT_EQ(refusalOf({}), ErrorCode::EmptyMesh);
+  EXPECT_EQ(refusalOf({tets.points, {{0, 1, 2, 4}}}), ErrorCode::IndexOutOfRange);
 }
 
 TEST(SurfaceNodes, AreThoseOnFaces) {

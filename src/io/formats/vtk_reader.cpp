@@ -320,13 +320,14 @@ std::string arraysIn(const VtkSource& source) {
 }
 
 [[noreturn]] void failWithoutMap(const VtkSource& source, std::size_t tets, std::string_view name) {
-  source.fail(ErrorCode::FileUnsupported, "the file holds ", tets,
-              " tets, but no map: no cell array \"", name,
-              "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
-              "this name with 3, for a map with one chart. Arrays in the file: ",
-              arraysIn(source),
-              ". Name the map's array (--map-array), give the map as a second mesh (--polycube), "
-              "or let `hexhex mesh` make one.");
+  source.fail(
+      ErrorCode::FileUnsupported, "the file holds ", tets, " tets, but no map: no cell array \"",
+      name,
+      "\" of 12 floating-point numbers (u v w of each corner), and no point array of "
+      "this name with 3, for a map with one chart. Arrays in the file: ",
+      arraysIn(source),
+      ". Name the map's array (--map-array), give it as a second mesh (--tets, --polycube), "
+      "or make hexahedra without a map: `hexhex mesh`.");
 }
 
 /// Reads the parameters of tets from a cell array.

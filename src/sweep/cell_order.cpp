@@ -1,6 +1,6 @@
 // Sweeps the centres of cells, and numbers cells by owner.
 #include <base/workspaces.hpp>
-#include <sweep/cell_numbers.hpp>
+#include <sweep/cell_order.hpp>
 
 namespace hexhex::sweep {
 
