@@ -60,18 +60,20 @@ curved::LagrangeCells CurvedCells::lanesOf(const Array<Vec3>& points,
 }
 
 void CurvedCells::measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
-                          std::span<CellState> states) const {
+                          std::span<double> qualities) const {
   constexpr double kSafe = 1e-9;  // far beyond the rounding errors of sums of some hundred terms
   const curved::LagrangeCells lanes = lanesOf(points, cells);
   const auto scaled = quality_.smallest(lanes, scratch.columns);
   const auto shares = widestKernels().leastShares(bezierGrid_, lanes, scratch.columns);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     // Not a proof, which takes longer: that follows in the final certificate.
-    states[i] = {scaled[i], scaled[i] > 0 && shares[i] > kSafe};
-    if (scaled[i] <= 0 || states[i].certified) continue;
-    scratch.nodes.clear();
-    for (const Index node : nodesOf(cells[i])) scratch.nodes.push_back(points[node]);
-    states[i].certified = validity_.examine(scratch.nodes).validity == Validity::Positive;
+    bool certified = shares[i] > kSafe;
+    if (scaled[i] > 0 && !certified) {
+      scratch.nodes.clear();
+      for (const Index node : nodesOf(cells[i])) scratch.nodes.push_back(points[node]);
+      certified = validity_.examine(scratch.nodes).validity == Validity::Positive;
+    }
+    qualities[i] = scaled[i] > 0 && certified ? scaled[i] : kNotCertified;
   }
 }
 

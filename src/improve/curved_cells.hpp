@@ -38,7 +38,7 @@ class CurvedCells final : public ImprovedCells {
   [[nodiscard]] curved::LagrangeCells lanesOf(const Array<Vec3>& points,
                                               std::span<const Index> cells) const;
   void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
-               std::span<CellState> states) const override;
+               std::span<double> qualities) const override;
 
   const LagrangeMesh& mesh_;
   adjacency::VertexCells around_;

@@ -30,17 +30,8 @@ struct CellPoints {
   }
 };
 
-/// The quality of a cell.
-struct CellState {
-  double scaled = 1;  ///< scaled Jacobian
-  bool certified = true;
-};
-
-/// The quality of a cell: its scaled Jacobian, or a smaller number than any if it is not certified.
-[[nodiscard]] inline double certifiedQuality(const CellState& state) noexcept {
-  constexpr double kNotCertified = -2;
-  return state.certified ? state.scaled : kNotCertified;
-}
+/// The quality of a cell is its scaled Jacobian or, if it is not certified, this.
+inline constexpr double kNotCertified = -2;
 [[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
 
 class ImprovedCells {
@@ -67,17 +58,17 @@ class ImprovedCells {
                         const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
                         EnergyTerms& terms) const = 0;
 
-  /// Calls use(cell, certifiedQuality()) for the listed cells until it returns false.
+  /// Calls use(cell, quality) for the listed cells until it returns false.
   /// @return whether use() never returned false
   template <class Use>
   bool forQualities(const Array<Vec3>& points, std::span<const Index> list, Scratch& scratch,
                     const Use& use) const {
-    std::array<CellState, kMostAtOnce> states;
+    std::array<double, kMostAtOnce> qualities;
     for (std::size_t begin = 0; begin < list.size(); begin += atOnce_) {
       const auto some = list.subspan(begin, std::min(atOnce_, list.size() - begin));
-      measure(points, some, scratch, states);
+      measure(points, some, scratch, qualities);
       for (std::size_t i = 0; i < some.size(); ++i) {
-        if (!use(some[i], certifiedQuality(states[i]))) return false;
+        if (!use(some[i], qualities[i])) return false;
       }
     }
     return true;
@@ -87,7 +78,7 @@ class ImprovedCells {
   static constexpr std::size_t kMostAtOnce = 32;
   /// Measures up to `atOnce` cells.
   virtual void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
-                       std::span<CellState> states) const = 0;
+                       std::span<double> qualities) const = 0;
 
  private:
   std::size_t atOnce_;

@@ -44,7 +44,7 @@ class StraightCells final : public ImprovedCells {
 
  private:
   void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& /*scratch*/,
-               std::span<CellState> states) const override {
+               std::span<double> qualities) const override {
     static_assert(mesh::CellMeasures::kMost <= kMostAtOnce);
     static const mesh::MeasureCells widest = mesh::measuresOfCells().back();
     mesh::CellMeasures measures;
@@ -53,7 +53,7 @@ class StraightCells final : public ImprovedCells {
     widest(points.data(), std::span(corners).first(cells.size()), measures);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const bool certified = measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
-      states[i] = {measures.scaled[i], certified};
+      qualities[i] = certified ? measures.scaled[i] : kNotCertified;
     }
   }
 

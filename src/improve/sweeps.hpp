@@ -82,7 +82,7 @@ class Sweeps {
     auto operator<=>(const Standing&) const = default;
   };
   [[nodiscard]] Standing standing(double target) const;
-  /// Per cell: certifiedQuality().
+  /// Per cell: its quality.
   [[nodiscard]] const Array<double>& qualities() const noexcept { return qualities_; }
   /// Cells that met the target at given earlier qualities, but no longer do.
   [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
@@ -176,7 +176,7 @@ class Sweeps {
   adjacency::VertexCells meshAround_;
   std::unique_ptr<const ImprovedCells> cells_;
   Array<IdealBox> boxes_;           ///< per cell
-  Array<double> qualities_;         ///< per cell: certifiedQuality() at the current points
+  Array<double> qualities_;         ///< per cell: quality at the current points
   Array<std::uint8_t> boundary_;    ///< per cell of the mesh: HexFaces::boundary
   double chord_;                    ///< ChordError::chord
   std::optional<Colours> colours_;  ///< computed on first use

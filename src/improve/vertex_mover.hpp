@@ -133,7 +133,7 @@ struct MovingMesh {
   const Array<IdealBox>& boxes;  ///< per cell
   VertexPlaces& places;
   const ChordError& chordError;
-  Array<double>& qualities;  ///< per cell: certifiedQuality(); untangle() does not update it
+  Array<double>& qualities;  ///< per cell: its quality; untangle() does not update it
 };
 
 /// How cells may lose quality so that others around the same vertex gain.
