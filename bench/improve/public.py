@@ -9,7 +9,7 @@ with --docs, the table
 replaces the one of FOLDER/improve.md. --only takes the files whose name contains a word. Needs numpy, scipy and matplotlib.
 
 Distances are those of bench/improve/boundaries.py, from the mesh to the surface and back: of a map its boundary, of
-another mesh its own boundary as it was."""
+another mesh its own boundary as it was, and of NAME_out, what others made of NAME_in, the boundary of that."""
 import argparse
 import json
 import subprocess
@@ -50,8 +50,8 @@ class Runs:
 
     def of_mesh(self, file):
         self.run("improve", file, "-o", "after.vtu", "--report", "report.json", "--hexes-only")
-        before = self.medit(file, "before.mesh")
-        return self.improvement(), before, before
+        original = file.with_name(file.name.replace("_out.", "_in."))
+        return self.improvement(), self.medit(original, "original.mesh"), self.medit(file, "before.mesh")
 
     def of_map(self, file, surface):
         self.run("extract", file, "-o", "before.vtu")

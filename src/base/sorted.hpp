@@ -1,9 +1,10 @@
-// The vertices of an edge, a face or a cell in an order that does not depend on who lists them.
+// Sorted lists: those of vertices do not depend on who lists them.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -14,6 +15,13 @@ template <std::size_t n>
 [[nodiscard]] std::array<Index, n> sorted(std::array<Index, n> vertices) {
   std::sort(vertices.begin(), vertices.end());
   return vertices;
+}
+
+/// Sorts a list and removes duplicates.
+template <class T>
+void sortUnique(std::vector<T>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace hexhex

@@ -23,8 +23,15 @@ LagrangeGrid gridOf(int order, int places) {
 
 }  // namespace
 
-CurvedCells::CurvedCells(const LagrangeMesh& mesh)
-    : mesh_(mesh),
+CurvedCells::CurvedCells(const LagrangeMesh& mesh, Stage& stage)
+    : ImprovedCells(curved::kCellLanes),
+      mesh_(mesh),
+      around_(mesh.points.size(), stage,
+              [&](const auto& add) {
+                parallelFor(stage, mesh.cellCount(), kCurvedCellsGrain, [&](std::size_t c) {
+                  for (const Index node : nodesOf(c)) add(node, static_cast<Index>(c));
+                });
+              }),
       grid_(gridOf(mesh.order, 2 * mesh.order)),
       bezierGrid_(gridOf(mesh.order, 3 * mesh.order)),  // one more than the degree
       quality_(mesh.order),
@@ -36,16 +43,8 @@ std::span<const Index> CurvedCells::nodesOf(std::size_t cell) const {
   return std::span(mesh_.nodes).subspan(cell * mesh_.nodesPerCell(), mesh_.nodesPerCell());
 }
 
-CellPoints CurvedCells::points(const adjacency::VertexCells& around) const {
-  return {mesh_.nodes, mesh_.nodesPerCell(), around, mesh_.points.size()};
-}
-
-adjacency::VertexCells CurvedCells::cellsAroundNodes(Stage& stage) const {
-  return adjacency::VertexCells(mesh_.points.size(), stage, [&](const auto& add) {
-    parallelFor(stage, mesh_.cellCount(), kCurvedCellsGrain, [&](std::size_t c) {
-      for (const Index node : nodesOf(c)) add(node, static_cast<Index>(c));
-    });
-  });
+CellPoints CurvedCells::points() const {
+  return {mesh_.nodes, mesh_.nodesPerCell(), around_, mesh_.points.size()};
 }
 
 Hex CurvedCells::cornersOf(std::size_t cell) const {
@@ -60,27 +59,21 @@ curved::LagrangeCells CurvedCells::lanesOf(const Array<Vec3>& points,
   return {points.data(), cells.size(), [&](std::size_t i) { return nodesOf(cells[i]).data(); }};
 }
 
-CurvedCells::States CurvedCells::qualitiesOf(const Array<Vec3>& points,
-                                             std::span<const Index> cells, Scratch& scratch) const {
-  const auto scaled = quality_.smallest(lanesOf(points, cells), scratch.columns);
-  States states;
-  for (std::size_t i = 0; i < states.size(); ++i) states[i] = {scaled[i], false};
-  return states;
-}
-
-void CurvedCells::certify(const Array<Vec3>& points, std::span<const Index> cells, States& states,
-                          Scratch& scratch) const {
+void CurvedCells::measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
+                          std::span<double> qualities) const {
   constexpr double kSafe = 1e-9;  // far beyond the rounding errors of sums of some hundred terms
-  const auto shares =
-      widestKernels().leastShares(bezierGrid_, lanesOf(points, cells), scratch.columns);
+  const curved::LagrangeCells lanes = lanesOf(points, cells);
+  const auto scaled = quality_.smallest(lanes, scratch.columns);
+  const auto shares = widestKernels().leastShares(bezierGrid_, lanes, scratch.columns);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (states[i].scaled <= 0) continue;
     // Not a proof, which takes longer: that follows in the final certificate.
-    states[i].certified = shares[i] > kSafe;
-    if (states[i].certified) continue;
-    scratch.nodes.clear();
-    for (const Index node : nodesOf(cells[i])) scratch.nodes.push_back(points[node]);
-    states[i].certified = validity_.examine(scratch.nodes).validity == Validity::Positive;
+    bool certified = shares[i] > kSafe;
+    if (scaled[i] > 0 && !certified) {
+      scratch.nodes.clear();
+      for (const Index node : nodesOf(cells[i])) scratch.nodes.push_back(points[node]);
+      certified = validity_.examine(scratch.nodes).validity == Validity::Positive;
+    }
+    qualities[i] = scaled[i] > 0 && certified ? scaled[i] : kNotCertified;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <adjacency/cell_faces.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <improve/followed_curves.hpp>
 #include <improve/surface_distance.hpp>
@@ -36,8 +37,7 @@ std::vector<std::array<Index, 2>> edgesOnCurves(const HexMesh& mesh, const Verte
       edges.push_back(ascending(cell[a], cell[b]));
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sortUnique(edges);
   return edges;
 }
 

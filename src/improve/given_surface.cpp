@@ -12,6 +12,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/improve.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/given_surface.hpp>
@@ -37,9 +38,8 @@ ReferenceSurface surfaceOf(const TriangleMesh& given, double angle, Stage& stage
     for (const Index v : vertices) {
       if (v < given.points.size()) continue;
       throw Error(ErrorCode::InvalidArgument,
-                  "Triangle " + std::to_string(parts.triangles.size()) +
-                      " of the surface names vertex " + std::to_string(v) +
-                      ", which does not exist. Correct the surface.",
+                  concat("Triangle ", parts.triangles.size(), " of the surface names vertex ", v,
+                         ", which does not exist. Correct the surface."),
                   Place{PlaceKind::Vertex, v, 0});
     }
     parts.triangles.push_back({vertices, 0});
@@ -88,11 +88,10 @@ void requireNear(std::span<const double> distances, std::span<const double> leng
   if (10 * far <= outer) return;
   throw Error(
       ErrorCode::InvalidArgument,
-      "The mesh is not where the surface is: " + std::to_string(far) + " of " +
-          std::to_string(outer) +
-          " vertices of its boundary are farther from it than their edges are long, vertex " +
-          std::to_string(worst) + " by " + std::to_string(distances[worst]) +
-          ". Give the surface of the same object, in the same units, or none.",
+      concat("The mesh is not where the surface is: ", far, " of ", outer,
+             " vertices of its boundary are farther from it than their edges are long, vertex ",
+             worst, " by ", distances[worst],
+             ". Give the surface of the same object, in the same units, or none."),
       Place{PlaceKind::Vertex, worst, 0});
 }
 

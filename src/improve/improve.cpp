@@ -14,6 +14,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/improve.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
 #include <improve/curved_cells.hpp>
@@ -34,9 +35,8 @@ namespace {
 
 void requireRange(double value, double most, const char* what) {
   if (value >= 0 && value <= most) return;
-  throw Error(ErrorCode::InvalidArgument, std::string(what) + " is " + std::to_string(value) +
-                                              ". Choose a number from 0 to " +
-                                              std::to_string(most) + ".");
+  throw Error(ErrorCode::InvalidArgument,
+              concat(what, " is ", value, ". Choose a number from 0 to ", most, "."));
 }
 
 void requireOptions(const ImproveOptions& options) {
@@ -65,7 +65,7 @@ void requirePositions(std::span<const Vec3> points, const std::string& whose, St
                        [](double x) { return std::abs(x) <= kFarthest; });
   });
   if (bad == points.size()) return;
-  const std::string where = "A coordinate of vertex " + std::to_string(bad) + " of " + whose;
+  const std::string where = concat("A coordinate of vertex ", bad, " of ", whose);
   if (isFinite(points[bad])) refuseSize(where + " is beyond 1e30");
   throw Error(ErrorCode::NotFinite, where + " is not a finite number. Correct the mesh first.",
               Place{PlaceKind::Vertex, bad, 0});
@@ -313,10 +313,9 @@ void requireImprovable(const LagrangeMesh& mesh, const ImproveOptions& options) 
                 "mesh, and edges of straight ones are laid onto curves. Leave out both.");
   }
   if (mesh.order <= CurvedCells::kMaxOrder) return;
-  throw Error(ErrorCode::InvalidArgument, "Cells of order " + std::to_string(mesh.order) +
-                                              " are not improved, only those of orders 1 to " +
-                                              std::to_string(CurvedCells::kMaxOrder) +
-                                              ". Choose a lower order.");
+  throw Error(ErrorCode::InvalidArgument,
+              concat("Cells of order ", mesh.order, " are not improved, only those of orders 1 to ",
+                     CurvedCells::kMaxOrder, ". Choose a lower order."));
 }
 
 template <class PlacesOf>

@@ -1,12 +1,10 @@
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include <adjacency/hex_topology.hpp>
 
 #include <improve/all_at_once.hpp>
-#include <improve/curved_cells.hpp>
 #include <improve/moving.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
@@ -125,11 +123,10 @@ class Moving {
         before_(before),
         report_(report),
         stage_(stage),
+        curved_(subject.curved),
         simplices_(places.simplex),
         limit_(farthestAllowed(report.distanceBefore)),
-        slack_(options.slack * report.diagonal) {
-    if (subject.curved != nullptr) curved_.emplace(*subject.curved);
-  }
+        slack_(options.slack * report.diagonal) {}
 
   [[nodiscard]] BoundaryDistance distance() const {
     return boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_);
@@ -176,7 +173,7 @@ class Moving {
 
  private:
   [[nodiscard]] Sweeps newSweeps() {
-    return {subject_.mesh, curved_ ? &*curved_ : nullptr, places_, report_.diagonal, stage_};
+    return {subject_.mesh, curved_, places_, report_.diagonal, stage_};
   }
 
   [[nodiscard]] Array<Quad> quadsBeyond(const std::vector<double>& distances) const {
@@ -295,7 +292,7 @@ class Moving {
   const Array<Vec3>& before_;
   ImproveReport& report_;
   Stage& stage_;
-  std::optional<CurvedCells> curved_;
+  const LagrangeMesh* curved_;
   Array<Index> simplices_;  ///< those of the initial points
   double limit_;            ///< of distances, in diagonals
   double slack_;

@@ -4,6 +4,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <improve/pillowed.hpp>
 #include <mesh/pillow.hpp>
 
@@ -89,12 +90,12 @@ std::optional<Improved> improvedWithPillow(const HexMesh& mesh, const Boundary& 
   if (!pillow.obstacle) {
     const Index held = extend(result.places, pillow);
     if (held != kNone) {
-      pillow.obstacle =
-          Error(ErrorCode::InvalidArgument,
-                "A layer of cells under the boundary cannot pass a face or curve inside that ends "
-                "at vertex " +
-                    std::to_string(held) + ", which cannot move. Improve without a pillow.",
-                Place{PlaceKind::Vertex, held, 0});
+      pillow.obstacle = Error(
+          ErrorCode::InvalidArgument,
+          concat("A layer of cells under the boundary cannot pass a face or curve inside that ends "
+                 "at vertex ",
+                 held, ", which cannot move. Improve without a pillow."),
+          Place{PlaceKind::Vertex, held, 0});
     }
   }
   if (pillow.obstacle) {

@@ -5,6 +5,7 @@
 
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <improve/reference_surface.hpp>
 
@@ -128,8 +129,7 @@ void ReferenceSurface::findCurves(const SurfaceParts& parts, Stage& stage) {
   for (const std::array<Index, 2>& curve : parts.curves) {
     segments_.push_back(ascending(curve[0], curve[1]));
   }
-  std::sort(segments_.begin(), segments_.end());
-  segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
+  sortUnique(segments_);
   const std::vector<std::array<Index, 2>> given = segments_;
   const double limit = leastCosine(parts.angle * std::numbers::pi / 180);
   DisjointSets sets(triangles_.size());
@@ -182,8 +182,7 @@ void ReferenceSurface::findCorners(const SurfaceParts& parts) {
     }
     if (isCorner) corners_.push_back(static_cast<Index>(v));
   }
-  std::sort(corners_.begin(), corners_.end());
-  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  sortUnique(corners_);
 }
 
 ReferenceSurface ReferenceSurface::withCurves(std::vector<std::array<Index, 2>> sharp, double angle,

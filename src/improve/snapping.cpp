@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,9 +27,6 @@ constexpr int kRoomRings = 3;
 constexpr int kRoomRounds = 10;
 /// A corner between two edges on paths is flat if it is wider than 120 degrees.
 constexpr double kFlatCorner = -0.5;
-
-/// How far layers reach: along the paths that need them, or over entire regions between paths.
-enum class LayerWidth : std::uint8_t { Strips, Regions };
 
 /// Divides the boundary of a mesh into regions between paths.
 class Regions {
@@ -92,12 +90,12 @@ class CurveSnapper {
   }
 
   /// @return nothing if no pillow is possible
-  std::optional<Improved> layered(LayerWidth width, const ImproveReport& report) {
+  std::optional<Improved> layered(const ImproveReport& report) {
     mesh::Pillow pillow = mesh::addPillow(mesh_, {}, stage_);
     if (pillow.obstacle) return std::nullopt;
     const std::size_t cells = mesh_.cells.size();
     std::vector<Index> setOf(pillow.mesh.cells.size(), kNone);
-    const std::vector<std::uint8_t> isIn = flatCorners(width);
+    const std::vector<std::uint8_t> isIn = layerQuads();
     for (Index q = 0; q < isIn.size(); ++q) {
       if (isIn[q] != 0) setOf[cells + q] = regions_.of(q);
     }
@@ -233,61 +231,44 @@ class CurveSnapper {
     }
   }
 
-  /// Per quad: 1 if a layer is needed around its cell. The chosen quads of a region are connected
-  /// around each vertex.
-  std::vector<std::uint8_t> flatCorners(LayerWidth width) {
+  /// Per quad: 1 if its cell gets a layer around it. These are the quads of regions with flat
+  /// corners, except for those at ends of paths, whose corners would be halved: the fewer corners a
+  /// layer has, the better are its cells. Those of a region are connected around each vertex.
+  std::vector<std::uint8_t> layerQuads() {
     const Array<Quad>& quads = boundary_.quads;
+    std::set<Index> wanted;  // regions
+    for (Index q = 0; q < quads.size(); ++q) {
+      if (hasFlatCorner(quads[q])) wanted.insert(regions_.of(q));
+    }
     std::vector<std::uint8_t> isIn(quads.size(), 0);
     for (Index q = 0; q < quads.size(); ++q) {
-      for (std::size_t i = 0; i < 4; ++i) {
-        const auto [last, v, next] =
-            std::array<Index, 3>{quads[q][(i + 3) % 4], quads[q][i], quads[q][(i + 1) % 4]};
-        if (!regions_.isPath(ascending(last, v)) || !regions_.isPath(ascending(v, next))) continue;
-        const Vec3& point = mesh_.points[v];
-        if (cosineBetween(minus(mesh_.points[last], point), minus(mesh_.points[next], point)) <
-            kFlatCorner) {
-          isIn[q] = 1;
-        }
-      }
+      const bool isAtEnd =
+          std::any_of(quads[q].begin(), quads[q].end(), [&](Index v) { return isEnd(v); });
+      if (wanted.contains(regions_.of(q)) && (!isAtEnd || hasFlatCorner(quads[q]))) isIn[q] = 1;
     }
     const adjacency::VertexLists<Index> quadsAt(mesh_.points.size(), stage_, [&](const auto& add) {
       for (Index q = 0; q < quads.size(); ++q) {
         for (const Index v : quads[q]) add(v, q);
       }
     });
-    widen(quadsAt, width, isIn);
     while (connect(quadsAt, isIn)) {
     }
     return isIn;
   }
 
-  /// Adds all quads of a region along a path with a flat corner there, or the entire region, except
-  /// for quads at ends of paths, whose corners would be halved: the fewer corners a layer has, the
-  /// better are its cells.
-  void widen(const adjacency::VertexLists<Index>& quadsAt, LayerWidth width,
-             std::vector<std::uint8_t>& isIn) {
-    std::vector<Index> wanted;  // regions
-    const auto take = [&](Index q) {
-      if (std::find(wanted.begin(), wanted.end(), regions_.of(q)) == wanted.end()) return;
-      const Quad& quad = boundary_.quads[q];
-      if (std::none_of(quad.begin(), quad.end(), [&](Index v) { return isEnd(v); })) isIn[q] = 1;
-    };
-    const std::vector<std::uint8_t> isFlat = isIn;
-    for (const CurvePath& path : paths_.paths) {
-      const auto inside = std::span(path.vertices).subspan(1, path.vertices.size() - 2);
-      if (width == LayerWidth::Strips) wanted.clear();
-      for (const Index v : inside) {
-        for (const Index q : quadsAt(v)) {
-          if (isFlat[q] != 0) wanted.push_back(regions_.of(q));
-        }
-      }
-      if (width != LayerWidth::Strips || wanted.empty()) continue;
-      for (const Index v : inside) {
-        for (const Index q : quadsAt(v)) take(q);
+  /// Whether a quad has two edges on paths that hardly turn between them.
+  [[nodiscard]] bool hasFlatCorner(const Quad& quad) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto [last, v, next] =
+          std::array<Index, 3>{quad[(i + 3) % 4], quad[i], quad[(i + 1) % 4]};
+      if (!regions_.isPath(ascending(last, v)) || !regions_.isPath(ascending(v, next))) continue;
+      const Vec3& point = mesh_.points[v];
+      if (cosineBetween(minus(mesh_.points[last], point), minus(mesh_.points[next], point)) <
+          kFlatCorner) {
+        return true;
       }
     }
-    if (width == LayerWidth::Strips) return;
-    for (Index q = 0; q < isIn.size(); ++q) take(q);
+    return false;
   }
 
   [[nodiscard]] bool isEnd(Index v) const {
@@ -380,24 +361,16 @@ std::optional<Improved> improvedWithCurves(const HexMesh& mesh, const Boundary& 
   const std::size_t snapped = paths.paths.size();
   CurveSnapper snapper(mesh, boundary, places, std::move(paths), options.featureAngle, stage);
   snapper.snap();
-  std::optional<Improved> best;
-  for (const LayerWidth width : {LayerWidth::Strips, LayerWidth::Regions}) {
-    std::optional<Improved> result = snapper.layered(width, report);
-    if (!result) break;
-    result->report.snappedCurves = snapped;
-    // Layers start from the snapped mesh, so they may be as far from the surface as that one.
-    result->report.distanceBefore =
-        result->boundary.distanceTo(result->places, result->mesh.points, report.diagonal, stage)
-            .largest;
-    moveEnlarged(*result, mesh, options, context, stage);
-    result->report.distanceBefore = report.distanceBefore;
-    const Certificate& after = result->report.after;
-    if (!best || after.quality.minimum > best->report.after.quality.minimum) {
-      best = std::move(result);
-    }
-    if (best->report.after.quality.minimum >= options.target) break;
-  }
-  return best;
+  std::optional<Improved> result = snapper.layered(report);
+  if (!result) return std::nullopt;
+  result->report.snappedCurves = snapped;
+  // Layers start from the snapped mesh, so they may be as far from the surface as that one.
+  result->report.distanceBefore =
+      result->boundary.distanceTo(result->places, result->mesh.points, report.diagonal, stage)
+          .largest;
+  moveEnlarged(*result, mesh, options, context, stage);
+  result->report.distanceBefore = report.distanceBefore;
+  return result;
 }
 
 }  // namespace hexhex::improvement

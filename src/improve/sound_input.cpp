@@ -10,6 +10,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/structure.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <base/vector3.hpp>
@@ -22,7 +23,7 @@ namespace {
 constexpr std::size_t kCellGrain = 4096;
 
 std::string cellsAsText(std::uint64_t count) {
-  return count == 1 ? "1 cell" : std::to_string(count) + " cells";
+  return concat(count, count == 1 ? " cell" : " cells");
 }
 
 void requireNoRepeats(const HexMesh& mesh, const CellFaults& faults, std::size_t parts) {
@@ -31,19 +32,20 @@ void requireNoRepeats(const HexMesh& mesh, const CellFaults& faults, std::size_t
   Hex corners = mesh.cells[bad];
   std::sort(corners.begin(), corners.end());
   const Index twice = *std::adjacent_find(corners.begin(), corners.end());
-  throw Error(ErrorCode::RepeatedVertex,
-              "Cell " + std::to_string(bad / parts) + " names vertex " + std::to_string(twice) +
-                  " twice, like a prism that is written as a hexahedron (" +
-                  cellsAsText(faults.repeated.size()) +
-                  " in all). Such a cell is not positive wherever its vertices are: make the mesh "
-                  "of hexahedra only.",
-              Place{PlaceKind::Cell, bad / parts});
+  throw Error(
+      ErrorCode::RepeatedVertex,
+      concat("Cell ", bad / parts, " names vertex ", twice,
+             " twice, like a prism that is written as a hexahedron (",
+             cellsAsText(faults.repeated.size()),
+             " in all). Such a cell is not positive wherever its vertices are: make the mesh "
+             "of hexahedra only."),
+      Place{PlaceKind::Cell, bad / parts});
 }
 
 /// "face (3, 4, 12, 11)"
 std::string faceAsText(const FaceConflict& face) {
   std::string text = "face (";
-  for (const Index v : face.vertices) text += std::to_string(v) + ", ";
+  for (const Index v : face.vertices) text += concat(v, ", ");
   text.resize(text.size() - 2);
   return text + ")";
 }
@@ -52,10 +54,9 @@ void requireTwoCellsAtFaces(const CellFaults& faults, std::size_t parts) {
   if (faults.overfullFaces == 0) return;
   const FaceConflict& face = faults.firstOverfull;
   throw Error(ErrorCode::NonManifoldFace,
-              "The " + faceAsText(face) + " belongs to " + std::to_string(face.cells) +
-                  " cells, cells " + std::to_string(face.cell / parts) + " and " +
-                  std::to_string(face.other / parts) +
-                  " among them; more than two overlap. Remove cells that are there twice.",
+              concat("The ", faceAsText(face), " belongs to ", face.cells, " cells, cells ",
+                     face.cell / parts, " and ", face.other / parts,
+                     " among them; more than two overlap. Remove cells that are there twice."),
               Place{PlaceKind::Cell, face.cell / parts});
 }
 
@@ -68,9 +69,9 @@ void requireOppositeDirections(const HexMesh& mesh, const CellFaults& faults, st
     return std::binary_search(faults.mirrored.begin(), faults.mirrored.end(), cell);
   };
   const std::uint64_t bad = isMirrored(face.other) ? face.other : face.cell;
-  std::string sentence = "Cells " + std::to_string(face.cell / parts) + " and " +
-                         std::to_string(face.other / parts) + " pass their common " +
-                         faceAsText(face) + " in the same direction: ";
+  std::string sentence =
+      concat("Cells ", face.cell / parts, " and ", face.other / parts, " pass their common ",
+             faceAsText(face), " in the same direction: ");
   Hex here = mesh.cells[face.cell];
   Hex there = mesh.cells[face.other];
   std::sort(here.begin(), here.end());
@@ -82,9 +83,9 @@ void requireOppositeDirections(const HexMesh& mesh, const CellFaults& faults, st
         "cells around there cannot be listed so that all neighbours agree, as along a Moebius "
         "band. No positions make them positive.";
   } else {
-    sentence += "cell " + std::to_string(bad / parts) + " lists its corners the other way round (" +
-                std::to_string(faults.mirrored.size() / parts) + " of " +
-                cellsAsText(mesh.cells.size() / parts) + " in all). " + kHowToTurn;
+    sentence += concat("cell ", bad / parts, " lists its corners the other way round (",
+                       faults.mirrored.size() / parts, " of ",
+                       cellsAsText(mesh.cells.size() / parts), " in all). ", kHowToTurn);
   }
   throw Error(ErrorCode::Orientation, sentence, Place{PlaceKind::Cell, bad / parts});
 }
@@ -97,13 +98,14 @@ void requireUnmirrored(const HexMesh& mesh, const CellFaults& faults, std::size_
                 "inside out. `hexhex convert --reorient` turns it round.");
   }
   const std::uint64_t first = faults.mirrored.front() / parts;
-  throw Error(ErrorCode::Orientation,
-              "Cell " + std::to_string(first) +
-                  " is in a part of the mesh that is mirrored: it lists its corners the other way "
-                  "round (" +
-                  std::to_string(faults.mirrored.size() / parts) + " of " +
-                  cellsAsText(mesh.cells.size() / parts) + " in all). " + kHowToTurn,
-              Place{PlaceKind::Cell, first});
+  throw Error(
+      ErrorCode::Orientation,
+      concat("Cell ", first,
+             " is in a part of the mesh that is mirrored: it lists its corners the other way "
+             "round (",
+             faults.mirrored.size() / parts, " of ", cellsAsText(mesh.cells.size() / parts),
+             " in all). ", kHowToTurn),
+      Place{PlaceKind::Cell, first});
 }
 
 /// Whether two cells share faces that meet at an edge.
@@ -234,12 +236,12 @@ void requireSameObject(const HexMesh& mesh, const TetMapView& map, Stage& stage)
     if (offsetOf(mesh, map, v) > offsetOf(mesh, map, worst)) worst = v;
   }
   throw Error(ErrorCode::InvalidArgument,
-              "The mesh is not where the map is: " + std::to_string(elsewhere) + " of " +
-                  cellsAsText(mesh.cells.size()) +
-                  " are farther from where they come from than they are long. Vertex " +
-                  std::to_string(worst) + " is at " + pointAsText(mesh.points[worst]) +
-                  ", but comes from " + pointAsText(generatorOf(mesh, map, worst).centre) +
-                  ". Give the map that the mesh was extracted from, or none.",
+              concat("The mesh is not where the map is: ", elsewhere, " of ",
+                     cellsAsText(mesh.cells.size()),
+                     " are farther from where they come from than they are long. Vertex ", worst,
+                     " is at ", pointAsText(mesh.points[worst]), ", but comes from ",
+                     pointAsText(generatorOf(mesh, map, worst).centre),
+                     ". Give the map that the mesh was extracted from, or none."),
               Place{PlaceKind::Vertex, worst});
 }
 

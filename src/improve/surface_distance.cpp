@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <improve/reference_surface.hpp>
 #include <improve/surface_distance.hpp>
@@ -165,8 +166,7 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
       edges.push_back(ascending(v[i], v[(i + 1) % 3]));
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sortUnique(edges);
   for (const auto& [a, b] : edges) {
     samples.push_back(between(surface.points()[a], surface.points()[b], 0.5));
   }

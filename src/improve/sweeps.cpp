@@ -4,9 +4,11 @@
 #include <utility>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
 #include <improve/all_at_once.hpp>
+#include <improve/curved_cells.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
 
@@ -89,16 +91,16 @@ std::vector<Index> LooseVertices::holdUnmoved(const Array<Vec3>& points) {
 namespace {
 
 constexpr std::size_t kSweepsGrain = 1024;
-/// Vertices per block, which takes a few tenths of a millisecond.
-constexpr std::size_t kVertexGrain = 64;
-constexpr std::size_t kCurvedGrain = 8;
+/// Cells to measure, and vertices to move, per block: both take some milliseconds if cells are
+/// curved, and tens of microseconds if they are straight.
+constexpr std::size_t kMeasureGrain = 128;
+constexpr std::size_t kVertexGrain = 16;
 
 /// Powers of the energy for the worst cells: low ones make fast progress while many cells are bad,
-/// the high one improves the last. For each power, maximum number of rounds, and of visits per
-/// vertex of the mesh.
+/// the high one improves the last. Rounds per power at most: with ten, vertices come to rest at low
+/// powers; that takes twice as long with curved cells, and minima are lower in the end.
 constexpr std::array<int, 3> kWorstPowers = {1, 2, 8};
-constexpr int kWorstRounds = 10;
-constexpr std::size_t kMostVisits = 4;
+constexpr int kWorstRounds = 4;
 
 /// With powers above 1, cells above the target may lose at most this many times what those below
 /// gain. Without a limit, cells that can hardly get better degrade all cells around them: the mean
@@ -153,14 +155,14 @@ constexpr auto kIsBad = [](double quality) { return !isCertified(quality); };
 
 }  // namespace
 
-Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, double diagonal,
+Sweeps::Sweeps(HexMesh& mesh, const LagrangeMesh* curved, VertexPlaces& places, double diagonal,
                Stage& stage)
     : mesh_(mesh),
-      curved_(curved),
       places_(places),
       stage_(stage),
       meshAround_(adjacency::cellsAroundVertices(mesh, stage)),
-      nodeAround_(curved != nullptr ? curved->cellsAroundNodes(stage) : adjacency::VertexCells()),
+      cells_(curved != nullptr ? std::make_unique<CurvedCells>(*curved, stage)
+                               : straightCells(mesh, meshAround_)),
       boundary_(adjacency::findFaces(mesh, meshAround_, stage).boundary),
       chord_(kChord * diagonal) {
   boxes_.resize(cellPoints().cellCount());
@@ -170,34 +172,22 @@ Sweeps::Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, d
 }
 
 void Sweeps::takeBoxes() {
-  parallelFor(stage_, boxes_.size(), kSweepsGrain, [&](std::size_t c) {
-    boxes_[c] = boxOf(mesh_.points, curved_ != nullptr ? curved_->cornersOf(c) : mesh_.cells[c]);
-  });
-}
-
-CellPoints Sweeps::cellPoints() const {
-  if (curved_ != nullptr) return curved_->points(nodeAround_);
-  static_assert(sizeof(Hex) == 8 * sizeof(Index));
-  return {{reinterpret_cast<const Index*>(mesh_.cells.data()), 8 * mesh_.cells.size()},
-          8,
-          meshAround_,
-          mesh_.points.size()};
+  parallelFor(stage_, boxes_.size(), kSweepsGrain,
+              [&](std::size_t c) { boxes_[c] = boxOf(mesh_.points, cells_->cornersOf(c)); });
 }
 
 template <class CellAt>
 void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
-  parallelBlocks(stage_, n, curved_ != nullptr ? kCurvedGrain : kSweepsGrain,
-                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-                   CurvedCells::Scratch scratch;
-                   std::vector<Index> list;
-                   for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
-                   forStates(
-                       mesh_, curved_, list, scratch, [](Index /*cell*/) { return -1.0; },
-                       [&](Index cell, const CellState& state) {
-                         qualities_[cell] = certifiedQuality(state);
-                         return true;
-                       });
-                 });
+  parallelBlocks(
+      stage_, n, kMeasureGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+        ImprovedCells::Scratch scratch;
+        std::vector<Index> list;
+        for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
+        cells_->forQualities(mesh_.points, list, scratch, [&](Index cell, double quality) {
+          qualities_[cell] = quality;
+          return true;
+        });
+      });
 }
 
 void Sweeps::measureAll() {
@@ -233,14 +223,13 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
   if (!colours_) colours_.emplace(cells);
   const Colours::Groups groups = colours_->groupsOf(vertices);
   const ChordError chordError{mesh_, places_, meshAround_, boundary_, std::max(chord_, slack)};
-  const MovingMesh all{mesh_, curved_, cells, boxes_, places_, chordError, qualities_};
+  const MovingMesh all{mesh_, *cells_, boxes_, places_, chordError, qualities_};
   std::size_t begin = 0;
   for (const std::size_t end : groups.ends) {
     const auto group = std::span(groups.vertices).subspan(begin, end - begin);
     begin = end;
     parallelForWith(
-        stage_, group.size(), curved_ != nullptr ? kCurvedGrain : kVertexGrain,
-        [&] { return VertexMover(all, slack); },
+        stage_, group.size(), kVertexGrain, [&] { return VertexMover(all, slack); },
         [&](std::size_t i, VertexMover& mover) { move(mover, group[i]); });
   }
 }
@@ -365,7 +354,7 @@ void Sweeps::raiseWorst(double target, double slack) {
   const Standing now = standing(target);
   const std::size_t low = now.bad + now.below;
   if (low == 0) return;
-  if (low > kMostFalling || curved_ != nullptr) {
+  if (low > kMostFalling || cellPoints().perCell > 8) {
     raise({target, false, kPrice}, slack);
     return;
   }
@@ -391,8 +380,7 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
   std::vector<std::uint8_t> lastMove(mesh_.points.size(), 0);
   std::uint8_t round = 0;
   for (const int power : kWorstPowers) {
-    std::size_t visits = 0;
-    for (int i = 0; i < kWorstRounds && visits < kMostVisits * mesh_.points.size(); ++i) {
+    for (int i = 0; i < kWorstRounds; ++i) {
       std::vector<Index> cells = low;
       std::vector<Index> vertices = near.pointsOf(1, cells);
       std::erase_if(vertices, [&](Index v) {
@@ -404,7 +392,6 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
         return !isAwake;
       });
       if (vertices.empty()) break;
-      visits += vertices.size();
       ++round;
       const Exchange now = power > 1 ? exchange : Exchange{target, exchange.belowFloor};
       sweep(vertices, slack, [&](VertexMover& mover, Index v) {
@@ -435,8 +422,7 @@ void Sweeps::moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
       if (mesh_.points[v] != before[v]) vertices.push_back(v);
     }
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sortUnique(vertices);
   sweep(vertices, 0, [&](VertexMover& mover, Index v) {
     mover.moveTo(v, {before[v], simplicesBefore[v]}, false, floor);
   });

@@ -2,25 +2,24 @@
 // a cell, so the result does not depend on the number of threads.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
-#include <improve/curved_cells.hpp>
+#include <improve/improved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
-#include <mesh/cell_measures.hpp>
 
 namespace hexhex::improvement {
 
@@ -71,48 +70,6 @@ class LooseVertices {
   std::vector<Held> held_;
 };
 
-// Scaled Jacobians and certificates of some cells, straight or curved.
-
-/// Calls use(cell, CellState) for the listed cells until it returns false.
-/// @param curved   measured instead of the cells of the mesh, or null
-/// @param leastOf  called with a cell; curved cells with a smaller scaled Jacobian may be reported
-///         as not certified
-/// @return whether use() never returned false
-template <class LeastOf, class Use>
-bool forStates(const HexMesh& mesh, const CurvedCells* curved, std::span<const Index> list,
-               CurvedCells::Scratch& scratch, const LeastOf& leastOf, const Use& use) {
-  if (curved != nullptr) {
-    for (std::size_t begin = 0; begin < list.size(); begin += curved::kCellLanes) {
-      const auto some = list.subspan(begin, std::min(curved::kCellLanes, list.size() - begin));
-      const auto states = curved->statesOf(mesh.points, some, leastOf, scratch);
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        if (!use(some[i], states[i])) return false;
-      }
-    }
-    return true;
-  }
-  static const mesh::MeasureCells measure = mesh::measuresOfCells().back();
-  mesh::CellMeasures measures;
-  std::array<Hex, mesh::CellMeasures::kMost> cells;
-  for (std::size_t begin = 0; begin < list.size(); begin += mesh::CellMeasures::kMost) {
-    const std::size_t n = std::min(mesh::CellMeasures::kMost, list.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) cells[i] = mesh.cells[list[begin + i]];
-    measure(mesh.points.data(), std::span(cells).first(n), measures);
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool certified = measures.inRange[i] != 0 && measures.least[i] > measures.errorOf(i);
-      if (!use(list[begin + i], CellState{measures.scaled[i], certified})) return false;
-    }
-  }
-  return true;
-}
-
-/// The quality of a cell: its scaled Jacobian, or a smaller number than any if it is not certified.
-[[nodiscard]] inline double certifiedQuality(const CellState& state) noexcept {
-  constexpr double kNotCertified = -2;
-  return state.certified ? state.scaled : kNotCertified;
-}
-[[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
-
 // Makes cells positive, then improves the worst ones, then all of them.
 
 class Sweeps {
@@ -125,7 +82,7 @@ class Sweeps {
     auto operator<=>(const Standing&) const = default;
   };
   [[nodiscard]] Standing standing(double target) const;
-  /// Per cell: certifiedQuality().
+  /// Per cell: its quality.
   [[nodiscard]] const Array<double>& qualities() const noexcept { return qualities_; }
   /// Cells that met the target at given earlier qualities, but no longer do.
   [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
@@ -133,7 +90,7 @@ class Sweeps {
   /// @param mesh      its points move; the refined mesh if there are curved cells
   /// @param curved    cells with the same points, improved instead of those of the mesh, or null
   /// @param diagonal  of the bounding box of the surface
-  Sweeps(HexMesh& mesh, const CurvedCells* curved, VertexPlaces& places, double diagonal,
+  Sweeps(HexMesh& mesh, const LagrangeMesh* curved, VertexPlaces& places, double diagonal,
          Stage& stage);
 
   /// Moves vertices around cells that are not certified until all are or nothing helps any more.
@@ -189,7 +146,7 @@ class Sweeps {
               double floor);
 
   /// The point lists of the cells that are improved.
-  [[nodiscard]] CellPoints cellPoints() const;
+  [[nodiscard]] CellPoints cellPoints() const { return cells_->points(); }
 
  private:
   /// Updates the qualities of the n cells that `cellAt` lists.
@@ -214,16 +171,15 @@ class Sweeps {
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
 
   HexMesh& mesh_;
-  const CurvedCells* curved_;
   VertexPlaces& places_;
   Stage& stage_;
   adjacency::VertexCells meshAround_;
-  adjacency::VertexCells nodeAround_;  ///< of curved cells
-  Array<IdealBox> boxes_;              ///< per cell
-  Array<double> qualities_;            ///< per cell: certifiedQuality() at the current points
-  Array<std::uint8_t> boundary_;       ///< per cell of the mesh: HexFaces::boundary
-  double chord_;                       ///< ChordError::chord
-  std::optional<Colours> colours_;     ///< computed on first use
+  std::unique_ptr<const ImprovedCells> cells_;
+  Array<IdealBox> boxes_;           ///< per cell
+  Array<double> qualities_;         ///< per cell: quality at the current points
+  Array<std::uint8_t> boundary_;    ///< per cell of the mesh: HexFaces::boundary
+  double chord_;                    ///< ChordError::chord
+  std::optional<Colours> colours_;  ///< computed on first use
 };
 
 }  // namespace hexhex::improvement

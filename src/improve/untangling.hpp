@@ -7,7 +7,7 @@
 
 #include <hexhex/types.hpp>
 
-#include <improve/curved_cells.hpp>
+#include <improve/improved_cells.hpp>
 #include <improve/vertex_places.hpp>
 
 namespace hexhex::improvement {

@@ -4,10 +4,8 @@
 #include <limits>
 
 #include <base/vector3.hpp>
-#include <improve/sweeps.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
-#include <mesh/cell_measures.hpp>
 
 namespace hexhex::improvement {
 
@@ -97,34 +95,13 @@ void PointMover::take(Index point, const SurfacePlace& place) {
 
 void VertexMover::collect(Index vertex, bool bezier) {
   terms_.clear();
-  const std::span<const Index> around = all_.cells.around(vertex);
-  if (all_.curved != nullptr) {
-    all_.curved->addTerms(all_.mesh.points, around, vertex, all_.boxes, bezier, scratch_, terms_);
-    return;
-  }
-  straight_.clear();
-  for (const Index cell : around) straight_.push_back(straightCell(vertex, cell));
-  if (bezier) {
-    terms_.addBezier(straight_);
-  } else {
-    terms_.addCorners(straight_);
-  }
-}
-
-MovingCell VertexMover::straightCell(Index vertex, Index cell) const {
-  std::array<const Vec3*, 8> corners;
-  std::size_t moving = 0;
-  for (std::size_t place = 0; place < 8; ++place) {
-    const Index corner = all_.mesh.cells[cell][mesh::kVtkCorner[place]];
-    corners[place] = &all_.mesh.points[corner];
-    if (corner == vertex) moving = place;
-  }
-  return movingCell(corners, moving, all_.boxes[cell]);
+  all_.cells.addTerms(all_.mesh.points, points_.around(vertex), vertex, all_.boxes, bezier,
+                      scratch_, terms_);
 }
 
 double VertexMover::sizeAt(Index vertex) const {
   double size = std::numeric_limits<double>::infinity();
-  for (const Index cell : all_.cells.around(vertex)) {
+  for (const Index cell : points_.around(vertex)) {
     for (const float edge : all_.boxes[cell]) size = std::min<double>(size, edge);
   }
   return size;
@@ -137,11 +114,11 @@ bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& excha
   const auto leastOf = [&](Index cell) {
     return all_.qualities[cell] < floor || exchange.belowFloor ? lowest : floor;
   };
-  const bool areGood = forStates(all_.mesh, all_.curved, all_.cells.around(vertex), scratch_,
-                                 leastOf, [&](Index cell, const CellState& state) {
-                                   measured_.emplace_back(cell, certifiedQuality(state));
-                                   return measured_.back().second >= leastOf(cell);
-                                 });
+  const bool areGood = all_.cells.forQualities(all_.mesh.points, points_.around(vertex), scratch_,
+                                               [&](Index cell, double quality) {
+                                                 measured_.emplace_back(cell, quality);
+                                                 return quality >= leastOf(cell);
+                                               });
   if (!areGood) return false;
   double gained = 0;
   double lost = 0;
@@ -162,7 +139,7 @@ double VertexMover::untangle(Index vertex) {
 
 double VertexMover::leastQualityAt(Index vertex) const {
   double least = 1;
-  for (const Index cell : all_.cells.around(vertex)) {
+  for (const Index cell : points_.around(vertex)) {
     least = std::min(least, all_.qualities[cell]);
   }
   return least;

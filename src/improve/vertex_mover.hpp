@@ -16,7 +16,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/vector3.hpp>
-#include <improve/curved_cells.hpp>
+#include <improve/improved_cells.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_places.hpp>
 
@@ -129,12 +129,11 @@ class PointMover {
 /// The data that movers share; must outlive them.
 struct MovingMesh {
   HexMesh& mesh;                 ///< its points move
-  const CurvedCells* curved;     ///< improved instead of its cells, or null
-  const CellPoints& cells;       ///< the point lists of one or the other
+  const ImprovedCells& cells;    ///< with the same points
   const Array<IdealBox>& boxes;  ///< per cell
   VertexPlaces& places;
   const ChordError& chordError;
-  Array<double>& qualities;  ///< per cell: certifiedQuality(); untangle() does not update it
+  Array<double>& qualities;  ///< per cell: its quality; untangle() does not update it
 };
 
 /// How cells may lose quality so that others around the same vertex gain.
@@ -151,9 +150,9 @@ class VertexMover {
   /// Vertices of one cell must not move at the same time.
   /// @param slack  maximum distance by which vertices may leave untagged patches and curves
   VertexMover(const MovingMesh& all, double slack)
-      : all_(all), mover_(all.mesh.points, all.places, slack) {
-    assert(all.boxes.size() == all.cells.cellCount());
-    assert(all.qualities.size() == all.cells.cellCount());
+      : all_(all), points_(all.cells.points()), mover_(all.mesh.points, all.places, slack) {
+    assert(all.boxes.size() == points_.cellCount());
+    assert(all.qualities.size() == points_.cellCount());
   }
 
   /// Takes a step towards positive Bezier coefficients of all cells around a vertex.
@@ -179,7 +178,6 @@ class VertexMover {
 
  private:
   void collect(Index vertex, bool bezier);
-  [[nodiscard]] MovingCell straightCell(Index vertex, Index cell) const;
   [[nodiscard]] double leastQualityAt(Index vertex) const;
   void keepMeasured();
   /// Measures the cells around a vertex that has moved.
@@ -189,11 +187,11 @@ class VertexMover {
   [[nodiscard]] double sizeAt(Index vertex) const;
 
   MovingMesh all_;
+  CellPoints points_;
   PointMover mover_;
   EnergyTerms terms_;
-  std::vector<MovingCell> straight_;
   std::vector<std::pair<Index, double>> measured_;  ///< by isGoodAround(): cells, qualities
-  CurvedCells::Scratch scratch_;
+  ImprovedCells::Scratch scratch_;
 };
 
 }  // namespace hexhex::improvement

@@ -10,6 +10,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <base/vector3.hpp>
@@ -80,10 +81,11 @@ void requireGenerators(const HexMesh& mesh, const TetMapView& map, Stage& stage)
   });
   if (complete && bad == n) return;
   throw Error(ErrorCode::InvalidArgument,
-              complete ? "The generator of vertex " + std::to_string(bad) +
-                             " is not in the map. Give the map that the mesh was extracted from."
-                       : "The mesh does not tell which simplex of the map each vertex lies in. "
-                         "Write it as .vtu, .ovm or .ovmb, or leave out the map.",
+              complete
+                  ? concat("The generator of vertex ", bad,
+                           " is not in the map. Give the map that the mesh was extracted from.")
+                  : "The mesh does not tell which simplex of the map each vertex lies in. "
+                    "Write it as .vtu, .ovm or .ovmb, or leave out the map.",
               Place{PlaceKind::Vertex, bad, 0});
 }
 
@@ -188,8 +190,8 @@ void requireFeatures(const HexFeatures& features, std::size_t points) {
   }
   if (inRange) return;
   throw Error(ErrorCode::InvalidArgument,
-              "A feature names a vertex that does not exist (there are " + std::to_string(points) +
-                  "). Correct the features, or leave them out.");
+              concat("A feature names a vertex that does not exist (there are ", points,
+                     "). Correct the features, or leave them out."));
 }
 
 /// @param features     of the map or the mesh, whose vertices generators refer to

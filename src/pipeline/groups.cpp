@@ -170,7 +170,7 @@ class BoundaryTagger {
     if (map_.features.vertices.empty()) return;
     std::vector<Index> outer;
     for (const Quad& quad : quads_) outer.insert(outer.end(), quad.begin(), quad.end());
-    tetmap::sortUnique(outer);
+    sortUnique(outer);
     std::vector<std::array<Vec3, 3>> places;
     places.reserve(outer.size());
     for (const Index v : outer)
@@ -238,7 +238,7 @@ class BoundaryTagger {
         edges.push_back(tetmap::pairOf(vertices[i], vertices[(i + 1) % 3]));
       }
     }
-    tetmap::sortUnique(edges);
+    sortUnique(edges);
     return edges;
   }
 

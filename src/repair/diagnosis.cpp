@@ -174,7 +174,7 @@ void diagnose(const igm::PreparedMap& map, const igm::LocalParameters& parameter
   Examiner examiner(map, parameters, bad, tolerance, limit);
   examiner.examineVertices(stage, diagnosis);
   examiner.examineFaces(stage, diagnosis);
-  tetmap::sortUnique(diagnosis.roundable);
+  sortUnique(diagnosis.roundable);
 }
 
 void refuseInvertedParts(const adjacency::TetTopology& topology,

@@ -14,7 +14,7 @@ std::vector<Index> verticesOf(const adjacency::TetTopology& topology, std::span<
   for (const Index t : tets) {
     vertices.insert(vertices.end(), topology.tets[t].begin(), topology.tets[t].end());
   }
-  tetmap::sortUnique(vertices);
+  sortUnique(vertices);
   return vertices;
 }
 
@@ -36,7 +36,7 @@ Patch growPatch(const adjacency::TetTopology& topology, std::span<const Index> s
       for (const igm::VertexStar::Member& member : star.members())
         patch.tets.push_back(member.tet());
     }
-    tetmap::sortUnique(patch.tets);
+    sortUnique(patch.tets);
   }
   return patch;
 }

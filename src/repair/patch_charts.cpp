@@ -62,7 +62,7 @@ void PatchCharts::collectFaces(const Patch& patch) {
       }
     }
   }
-  tetmap::sortUnique(halfFaces);
+  sortUnique(halfFaces);
   faces_.reserve(halfFaces.size());
   for (const adjacency::HalfFace halfFace : halfFaces) {
     faces_.push_back({halfFace, topology_.isBoundary(halfFace), {}, {}, 0, {}});
@@ -251,7 +251,7 @@ bool PatchCharts::improve(std::span<const std::uint32_t> faces) {
   for (const std::uint32_t f : faces) {
     around.insert(around.end(), faces_[f].edges.begin(), faces_[f].edges.end());
   }
-  tetmap::sortUnique(around);
+  sortUnique(around);
   const auto localCost = [&] {
     double sum = 0;
     for (const std::uint32_t e : around) sum += edgeCost(e);

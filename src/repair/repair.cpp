@@ -191,7 +191,7 @@ class Repairer {
     candidates_.clear();
     std::vector<Index> startTets = bad;
     startTets.insert(startTets.end(), toRound.begin(), toRound.end());
-    tetmap::sortUnique(startTets);
+    sortUnique(startTets);
     const igm::LocalParameters u = parameters();
     for (const std::vector<Index>& region :
          separateRegions(now_->prepared.topology, startTets, rings)) {

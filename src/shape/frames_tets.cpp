@@ -114,7 +114,7 @@ tetmap::BoundaryCurves FrameTets::boundaryCurves() const {
   std::vector<VertexPair> edges;
   forEachBoundaryEdge(topology_,
                       [&](const VertexPair& edge, HalfFace /*h*/) { edges.push_back(edge); });
-  tetmap::sortUnique(edges);
+  sortUnique(edges);
   return {mesh_.points.size(), std::move(edges), features_};
 }
 

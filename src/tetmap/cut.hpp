@@ -9,6 +9,8 @@
 
 #include <hexhex/types.hpp>
 
+#include <base/sorted.hpp>
+
 namespace hexhex::tetmap {
 
 /// The vertices of an edge, in ascending order.
@@ -107,13 +109,6 @@ void forEachEdgeOf(const Tet& tet, const Visit& visit) {
       visit(pairOf(tet[i], tet[j]), static_cast<lattice::CornerMask>((1U << i) | (1U << j)));
     }
   }
-}
-
-/// Sorts a list and removes duplicates.
-template <class T>
-void sortUnique(std::vector<T>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace hexhex::tetmap

@@ -67,10 +67,12 @@ void distortInside(LagrangeMesh& mesh, double n, double amount, std::uint64_t se
 /// A step of any node changes determinants and squares as the terms say.
 TEST(ImproveCurved, TermsTellHowDeterminantsChange) {
   const TetMap map = generateSample(SampleKind::Sphere, {.cells = 1, .jitter = 0.3}).map;
+  Context context(1);
+  Stage stage(context, "test");
   for (const int order : {1, 2, 3}) {
     const LagrangeMesh mesh = extractedCurved(map, order, 1);
-    const CurvedCells cells(mesh);
-    CurvedCells::Scratch scratch;
+    const CurvedCells cells(mesh, stage);
+    ImprovedCells::Scratch scratch;
     const std::array<Index, 1> around = {0};
     const Array<IdealBox> boxes(mesh.cellCount(), {1, 2, 3});
     Random random(5);

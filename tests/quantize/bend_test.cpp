@@ -197,7 +197,7 @@ std::vector<tetmap::EdgeInTet> someEdges(const TetMap& map) {
   for (Index t = 0; t < map.tets.size(); t += 7) {
     edges.push_back({tetmap::pairOf(map.tets[t][t % 4], map.tets[t][(t + 1) % 4]), t});
   }
-  tetmap::sortUnique(edges);
+  sortUnique(edges);
   return edges;
 }
 

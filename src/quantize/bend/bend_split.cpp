@@ -56,7 +56,7 @@ std::vector<tetmap::EdgeInTet> freeingEdges(const BendProblem& problem,
                               edges.push_back({edge, t});
                           });
   }
-  tetmap::sortUnique(edges);
+  sortUnique(edges);
   return edges;
 }
 
@@ -86,7 +86,7 @@ std::vector<Index> withNeighbours(const adjacency::TetTopology& topology,
         around.push_back(adjacency::tetOf(corner));
     }
   }
-  tetmap::sortUnique(around);
+  sortUnique(around);
   return around;
 }
 
@@ -104,7 +104,7 @@ std::vector<tetmap::EdgeInTet> edgesToSplit(const BendProblem& problem,
                             if (!problem.keptEdges.contains(edge)) edges.push_back({edge, t});
                           });
   }
-  tetmap::sortUnique(edges);
+  sortUnique(edges);
   return edges;
 }
 

@@ -155,7 +155,7 @@ std::vector<PolycubeBorders::Gap> PolycubeBorders::gaps(const PlaneAt& planeAt) 
   }
   std::vector<Gap> list;
   for (auto& [planes, gap] : gaps) {
-    tetmap::sortUnique(gap.corners);
+    sortUnique(gap.corners);
     list.push_back(std::move(gap));
   }
   std::stable_sort(list.begin(), list.end(),

@@ -98,7 +98,7 @@ std::vector<Index> verticesAt(const BentTets& bent) {
     const std::vector<Index> more = bent.problem.verticesOf(element);
     vertices.insert(vertices.end(), more.begin(), more.end());
   }
-  tetmap::sortUnique(vertices);
+  sortUnique(vertices);
   return vertices;
 }
 

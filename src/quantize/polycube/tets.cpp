@@ -40,7 +40,7 @@ tetmap::BoundaryCurves boundaryOf(const PolycubeTets& tets) {
                             });
     }
   }
-  tetmap::sortUnique(sides);  // leaves one entry for each edge and label
+  sortUnique(sides);  // leaves one entry for each edge and label
   std::vector<tetmap::VertexPair> edges;
   std::vector<tetmap::VertexPair> borders;
   for (const auto& [edge, label] : sides) {

@@ -1,0 +1,91 @@
+// The cells that are improved, straight or curved: their points, their qualities, and their energy.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <adjacency/hex_topology.hpp>
+
+#include <hexhex/types.hpp>
+
+#include <curved/lagrange_columns.hpp>
+#include <improve/vertex_energy.hpp>
+
+namespace hexhex::improvement {
+
+/// Cells as lists of points: corners of straight cells, all nodes of curved ones.
+struct CellPoints {
+  std::span<const Index> all;  ///< those of cell 0, of cell 1, and so on
+  std::size_t perCell = 8;
+  const adjacency::VertexCells& around;  ///< the cells at each point
+  std::size_t pointCount = 0;
+
+  [[nodiscard]] std::size_t cellCount() const noexcept { return all.size() / perCell; }
+  [[nodiscard]] std::span<const Index> of(std::size_t cell) const noexcept {
+    return all.subspan(perCell * cell, perCell);
+  }
+};
+
+/// The quality of a cell is its scaled Jacobian or, if it is not certified, this.
+inline constexpr double kNotCertified = -2;
+[[nodiscard]] inline bool isCertified(double quality) noexcept { return quality >= -1; }
+
+class ImprovedCells {
+ public:
+  /// One per thread.
+  struct Scratch {
+    curved::LagrangeScratch columns;
+    std::vector<Vec3> nodes;
+    std::vector<MovingCell> straight;
+  };
+
+  explicit ImprovedCells(std::size_t atOnce) : atOnce_(atOnce) {}
+  virtual ~ImprovedCells() = default;
+  ImprovedCells(const ImprovedCells&) = delete;
+  ImprovedCells& operator=(const ImprovedCells&) = delete;
+
+  [[nodiscard]] virtual CellPoints points() const = 0;
+  [[nodiscard]] virtual Hex cornersOf(std::size_t cell) const = 0;
+
+  /// Adds the terms of cells as functions of one of their points.
+  /// @param bezier  whether they are those of Bezier coefficients of the determinant instead of its
+  ///         values
+  virtual void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
+                        const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                        EnergyTerms& terms) const = 0;
+
+  /// Calls use(cell, quality) for the listed cells until it returns false.
+  /// @return whether use() never returned false
+  template <class Use>
+  bool forQualities(const Array<Vec3>& points, std::span<const Index> list, Scratch& scratch,
+                    const Use& use) const {
+    std::array<double, kMostAtOnce> qualities;
+    for (std::size_t begin = 0; begin < list.size(); begin += atOnce_) {
+      const auto some = list.subspan(begin, std::min(atOnce_, list.size() - begin));
+      measure(points, some, scratch, qualities);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        if (!use(some[i], qualities[i])) return false;
+      }
+    }
+    return true;
+  }
+
+ protected:
+  static constexpr std::size_t kMostAtOnce = 32;
+  /// Measures up to `atOnce` cells.
+  virtual void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
+                       std::span<double> qualities) const = 0;
+
+ private:
+  std::size_t atOnce_;
+};
+
+/// @param mesh, around  and the cells around its vertices; both must outlive the result
+[[nodiscard]] std::unique_ptr<ImprovedCells> straightCells(const HexMesh& mesh,
+                                                           const adjacency::VertexCells& around);
+
+}  // namespace hexhex::improvement
