@@ -113,11 +113,13 @@ constexpr std::array<VolumeCells, 38> kVolumeCells = {
      {"Bezier pyramids", 81},
      {"polyhedra", 42}}};
 
+/// The volume cell type with this number in a format; null if there is none.
+[[nodiscard]] const VolumeCells* volumeCells(std::int64_t VolumeCells::*number, std::int64_t value);
+
 class CellCounts {
  public:
-  // Add cells by a format's type number. Points, lines and polygons are not counted.
+  /// Adds cells by VTK's type. Points, lines and polygons are not counted.
   void addVtk(std::int64_t type, std::uint64_t count);
-  void addGmsh(std::int64_t type, std::uint64_t count);
   void add(const VolumeCells& type, std::uint64_t count) { counts_[type.plural] += count; }
   void add(const CellKind& kind, std::uint64_t count) { addVtk(kind.vtkType, count); }
 
