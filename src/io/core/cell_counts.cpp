@@ -92,7 +92,7 @@ std::string CellCounts::adviceOnCurved() const {
            "others a file of their own.";
   }
   return " Cells of order 2 are curved: `hexhex view` and `hexhex improve` read them, and `hexhex "
-         "convert` writes them as .vtu, .msh, .inp, .exo, .cgns or MFEM .mesh.";
+         "convert` writes them as .vtu, .msh, .meshb, .inp, .exo, .cgns or MFEM .mesh.";
 }
 
 void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,

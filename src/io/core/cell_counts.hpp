@@ -56,6 +56,16 @@ template <>
 inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
                                           5, 12,           PlaceKind::Cell};
 
+template <>
+inline constexpr CellKind kCellKind<27> = {.corners = 27,
+                                           .singular = "hexahedron with 27 nodes",
+                                           .plural = "hexahedra with 27 nodes",
+                                           .meditKeyword = "HexahedraQ2",
+                                           .meshbKeyword = 33,
+                                           .gmshType = 12,
+                                           .vtkType = 29,
+                                           .place = PlaceKind::Cell};
+
 /// Triangles that carry labels.
 inline constexpr CellKind kTriangleKind = {
     .corners = 3, .singular = "triangle", .plural = "triangles", .vtkType = 5};

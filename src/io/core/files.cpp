@@ -462,9 +462,8 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
   const io::Format* const format = io::curvedFormat(file);
   if (format == nullptr) {
     io::refuse(file,
-               "cells of higher order are read from .vtu, .vtk, .msh, .inp, .unv, .cgns, .vtkhdf, "
-               ".exo and .e "
-               "files only.");
+               "cells of higher order are read from .vtu, .vtk, .msh, .mesh, .meshb, .inp, .unv, "
+               ".cgns, .vtkhdf, .exo and .e files only.");
   }
   return inSteps(context, "readLagrangeMesh", io::kReadMesh, [&] {
     const io::Input input = io::openInput(file, context);

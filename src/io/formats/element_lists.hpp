@@ -178,6 +178,8 @@ void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std:
 /// Converts a mesh whose cells list their nodes in VTK order to that of LagrangeMesh, with vertices
 /// before other nodes.
 void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright = VtkEdges::Around);
+/// Renumbers nodes: corners first, otherwise in file order. Drops tags of other nodes.
+void putCornersFirst(LagrangeMesh& mesh);
 
 /// Whether there are hexahedra with 20 or, of an order p > 1, (p + 1)^3 nodes.
 [[nodiscard]] bool areCurved(const ElementLists& lists);

@@ -102,6 +102,11 @@ WriteMesh writeMeshb;
 /// require a higher version are too large for them.
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                        Stage& stage);
+/// Order 2 only: HexahedraQ2, in the order of HexahedraQ2Ordering, else in that of libMeshb, with
+/// QuadrilateralsQ2 and, in `.meshb`, EdgesP2; if they come before straight hexahedra.
+HoldsCurved holdsQuadraticMedit, holdsQuadraticMeshb;
+ReadCurved readQuadraticMedit, readQuadraticMeshb;
+WriteCurved writeQuadraticMedit, writeQuadraticMeshb;
 /// Streams files with one section Vertices followed by one section Hexahedra, without comments;
 /// loads others as a whole.
 ReadPieces readMeditTo, readMeshbTo;
