@@ -82,11 +82,7 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
     refuse(file,
            concat("the format \"", format.label.name, "\" knows no compression; only .vtu does."));
   }
-  if (options.compress && !hasZlib()) {
-    refuse(file,
-           "this program was built without zlib and cannot compress files. Write the file without "
-           "compression.");
-  }
+  if (options.compress) requireZlib(file, "compress files", "write the file without compression");
   if (format.overHdf5) requireHdf5(file);
   return format;
 }
