@@ -38,7 +38,7 @@ int curvedOrder(const ElementBlock& block) {
 
 /// "; it holds 2 prisms", or what a file without volumes is.
 std::string contentOf(const ElementLists& lists, const Input& input) {
-  const std::string volumes = input.counts()->instead();
+  std::string volumes = input.counts()->instead();
   if (!volumes.empty() || lists.blocks.empty()) return volumes;
   return ", but points, lines, triangles or quads only: a surface, not a volume";
 }
