@@ -125,8 +125,9 @@ std::vector<std::uint64_t> layOut(const OutputFile& output, const std::vector<Co
 }
 
 std::vector<std::uint64_t> rowsOf(const std::vector<Column>& columns) {
-  std::vector<std::uint64_t> rows;
-  for (const Column& column : columns) rows.push_back(column.array->rows);
+  std::vector<std::uint64_t> rows(columns.size());
+  std::transform(columns.begin(), columns.end(), rows.begin(),
+                 [](const Column& column) { return column.array->rows; });
   return rows;
 }
 
