@@ -128,7 +128,7 @@ void addCurved(CLI::App& parser, ExtractArguments& arguments) {
   CLI::Option* const order =
       addValue(parser, "--order", arguments.order, "P [1]",
                "Write cells of this order, which follow the curved surface,\n"
-               "as .vtu, .msh, .mesh (MFEM); order 2 also .inp, .exo, .cgns")
+               "as .vtu, .msh, .mesh (MFEM); order 2 also .meshb, .inp, .exo, .cgns")
           ->check(CLI::Range(1, kMaxOrder));
   addCurvedNodes(parser, arguments.options.curvedNodes, order);
   addValue(parser, "--arcs", arguments.arcs, "FILE",

@@ -209,8 +209,8 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 
 /// Whether a file contains cells for readLagrangeMesh(): VTK_LAGRANGE_HEXAHEDRON in `.vtu` and
 /// `.vtkhdf`, and hexahedra with 20 or 27 nodes in these, `.vtk`, `.inp`, `.unv`, `.cgns`, `.exo`
-/// and `.e`; in VTK formats, only if there are no straight hexahedra. In `.msh`, which may also
-/// have order 3 to 9, the first hexahedra decide.
+/// and `.e`; in VTK formats, only if there are no straight hexahedra. In `.mesh` and `.meshb`, with
+/// 27 nodes, and `.msh`, which may also have order 3 to 9, the first hexahedra decide.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported
 [[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
 

@@ -17,6 +17,8 @@
 #include <quantize/quantized_map.hpp>
 #include <quantize/seamless/integer_factor.hpp>
 #include <quantize/sorted_tets.hpp>
+#else
+#include <base/missing_library.hpp>
 #endif
 
 #if defined(HEXHEX_HAS_QUANTIZE)
@@ -152,9 +154,7 @@ SeamlessReport examineSeamless(const TetMapView& /*map*/, Context& /*context*/) 
 
 QuantizedMap quantize(const TetMapView& /*map*/, const QuantizeOptions& /*options*/,
                       Context& /*context*/) {
-  throw Error(ErrorCode::InvalidArgument,
-              "This build of hexhex cannot quantize maps. Install Eigen (libeigen3-dev) and build "
-              "it anew.");
+  failWithoutLibrary("quantize maps", "Eigen (libeigen3-dev)");
 }
 #endif
 

@@ -21,6 +21,8 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#else
+#include <base/missing_library.hpp>
 #endif
 
 namespace hexhex {
@@ -150,9 +152,7 @@ ShapedMap mapFromTets(const TetMesh& tets, const ShapeOptions& options, Context&
 #else
 ShapedMap mapFromTets(const TetMesh& /*tets*/, const ShapeOptions& /*options*/,
                       Context& /*context*/) {
-  throw Error(ErrorCode::InvalidArgument,
-              "This build of hexhex cannot make maps of tets. Install Eigen (libeigen3-dev) and "
-              "build it anew.");
+  failWithoutLibrary("make maps of tets", "Eigen (libeigen3-dev)");
 }
 #endif
 

@@ -122,7 +122,7 @@ auto parse(std::string_view text, const std::string& fileName, Context& context)
 /// What a compressed file holds, read as the format of most text.
 HexMesh parseGzip(std::string_view text, const std::string& fileName, Context& context) {
   const Array<char> bytes = inflateGzip(text, fileName);
-  return parse<readGmsh>(asText(bytes), fileName, context);
+  return parse<GmshFormat::readMesh>(asText(bytes), fileName, context);
 }
 
 /// All files in one: '=' is between points, faces and tets.
@@ -160,9 +160,9 @@ constexpr std::array kReaders = {
     Reader{"mesh-tets", read<parse<readMeditTets>>},
     Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
     Reader{"meshb-tets", read<parse<readMeshbTets>>, fuzz::changeMeshb},
-    Reader{"msh", read<parse<readGmsh>>},
-    Reader{"msh-tets", read<parse<readGmshTets>>},
-    Reader{"msh-curved", read<parse<readCurvedGmsh>>},
+    Reader{"msh", read<parse<GmshFormat::readMesh>>},
+    Reader{"msh-tets", read<parse<GmshFormat::readTets>>},
+    Reader{"msh-curved", read<parse<GmshFormat::readCurved>>},
     Reader{"vtk", read<parse<readVtkLegacy>>},
     Reader{"vtu", read<parse<readVtu>>, fuzz::changeAppended},
     Reader{"vtk-map", read<parse<readVtkLegacyMap>>},

@@ -16,8 +16,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/patches.hpp>
 
+#include <io/core/mesh_groups.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
@@ -27,7 +27,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return readBytes<readGmsh>(text, "m.msh", context);
+  return readBytes<GmshFormat::readMesh>(text, "m.msh", context);
 }
 
 Failure failure(const std::string& text) {
@@ -107,7 +107,7 @@ TEST(Gmsh, TagsOfNodesAreFree) {
       parse(kHead22 + nodes + replaced(kCube22, " 1 2 3 4 5", " 900000000 2 3 4 5"));
   EXPECT_EQ(mesh.cells[0], kCubeCell);
   EXPECT_NE(failure(kHead22 + replaced(nodes, "\n2 1 0", "\n900000000 1 0") + kCube22)
-                .sentence.find("two nodes have the tag 900000000"),
+                .sentence.find("two nodes have the number 900000000"),
             std::string::npos);
 }
 
@@ -243,7 +243,7 @@ TEST(Gmsh, CellsOfOrder2) {
     for (const std::string& text : {cube.version22(), cube.version41(), cube.bytes22()}) {
       SCOPED_TRACE(text.substr(0, 21) + std::to_string(nodes));
       // From memory and from a file, where it is looked at without the whole of it.
-      EXPECT_TRUE(readBytes<holdsCurvedGmsh>(text, "m.msh", context));
+      EXPECT_TRUE(readBytes<GmshFormat::holdsCurved>(text, "m.msh", context));
       writeText(folder / "a.msh", text);
       ASSERT_TRUE(holdsLagrangeCells(folder / "a.msh", context));
       const LagrangeMesh mesh = readLagrangeMesh(folder / "a.msh", context);
@@ -266,8 +266,8 @@ TEST(Gmsh, CellsOfOrder2) {
           << straight.sentence;
       for (std::size_t size = 0; size + 13 < text.size(); size += 7) {
         const std::string part = text.substr(0, size);
-        EXPECT_NO_THROW(static_cast<void>(readBytes<holdsCurvedGmsh>(part, "m.msh", context)));
-        EXPECT_THROW(static_cast<void>(readBytes<readCurvedGmsh>(part, "m.msh", context)), Error)
+        EXPECT_THROW(static_cast<void>(readBytes<GmshFormat::readCurved>(part, "m.msh", context)),
+                     Error)
             << size;
       }
     }
@@ -278,24 +278,26 @@ TEST(Gmsh, CellsOfOrder2AloneAndOfOneType) {
   const TemporaryFolder folder;
   Context context;
   const auto sentence = [&](const std::string& text) {
-    return failureOf([&] { static_cast<void>(readBytes<readCurvedGmsh>(text, "m.msh", context)); })
+    return failureOf([&] {
+             static_cast<void>(readBytes<GmshFormat::readCurved>(text, "m.msh", context));
+           })
         .sentence;
   };
   const std::string good = CubeOfOrder2(27).version22();
   const std::string mixed = replaced(replaced(good, "$Elements\n4\n", "$Elements\n5\n"),
                                      "$EndElements", "5 5 2 3 1 1 2 3 4 5 6 7 8\n$EndElements");
-  EXPECT_NE(sentence(mixed).find("holds 1 hexahedron and 1 hexahedron with 27 nodes, but all"),
-            std::string::npos)
+  EXPECT_NE(
+      sentence(mixed).find("of one order; it holds 1 hexahedron and 1 hexahedron with 27 nodes"),
+      std::string::npos)
       << sentence(mixed);
   EXPECT_NE(sentence(replaced(good, " 26 27 \n", " 26 28 \n")).find("names node 28"),
             std::string::npos);
   const std::string straight = kHead22 + kNodes22 + kCube22;
-  EXPECT_NE(sentence(straight).find("no hexahedra of higher order, but other elements only"),
-            std::string::npos)
+  EXPECT_NE(sentence(straight).find("of one order; it holds 1 hexahedron."), std::string::npos)
       << sentence(straight);
   writeText(folder / "a.msh", straight);
   EXPECT_FALSE(holdsLagrangeCells(folder / "a.msh", context));
-  EXPECT_FALSE(readBytes<holdsCurvedGmsh>(straight, "m.msh", context));
+  EXPECT_FALSE(readBytes<GmshFormat::holdsCurved>(straight, "m.msh", context));
 }
 
 /// The groups of a file: "dimension name" by number, which no two have.
@@ -462,8 +464,8 @@ TEST(Gmsh, FirstErrorInBytesWithAnyNumberOfThreads) {
   binary[place + 72 * 9] = binary[place + 72 * 9 + 1] = '\xff';
   for (const int threads : {1, 4}) {
     Context context(threads);
-    const Failure wrong =
-        failureOf([&] { static_cast<void>(readBytes<readGmsh>(binary, "m.msh", context)); });
+    const Failure wrong = failureOf(
+        [&] { static_cast<void>(readBytes<GmshFormat::readMesh>(binary, "m.msh", context)); });
     EXPECT_EQ(wrong.code, ErrorCode::IndexOutOfRange);
     EXPECT_EQ(toString(wrong.place), "cell 7950");
     EXPECT_NE(wrong.sentence.find("byte " + std::to_string(place + 8)), std::string::npos)

@@ -2,12 +2,16 @@
 // and only if they are installed.
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/random.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/extract.hpp>
@@ -211,6 +215,69 @@ TEST(HdfFiles, VtkHdfComesBackWholeAndFromParts) {
     const std::unique_ptr<PartSink> sink = openPartSink(file, {}, context);
     extractParts(*sink, map, {}, {5, ghosts}, context);
     expectSame(readHexMesh(file), whole);
+  }
+}
+
+/// The bytes of all corners, as a file has them.
+/// @param first  number of the first vertex
+template <class Number>
+std::string cornersOf(const HexMesh& mesh, Number first) {
+  std::string bytes;
+  for (const Hex& cell : mesh.cells) {
+    for (const Index corner : cell) {
+      const Number number = static_cast<Number>(corner) + first;
+      bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+    }
+  }
+  return bytes;
+}
+
+/// Corners of cells and, in VTKHDF, offsets of cells are replaced by wrong numbers.
+TEST(HdfFiles, WrongNumbersNameNoVertexBeyondTheMesh) {
+  const TemporaryFolder folder;
+  try {
+    requireHdf5(folder / "a.cgns");
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  const HexMesh mesh = gridMesh(3, 2, 2);
+  const std::array<std::int64_t, 8> odd = {-1,      0,          1,          37,
+                                           1 << 16, 2147483647, 4294967296, 1LL << 62};
+  Random random(7);
+  for (const std::string name : {"a.vtkhdf", "a.cgns"}) {
+    SCOPED_TRACE(name);
+    writeHexMesh(mesh, folder / name);
+    const std::string good = contentOf(folder / name);
+    const bool wide = name == "a.vtkhdf";
+    const std::size_t each = wide ? 8 : 4;
+    const std::string corners =
+        wide ? cornersOf<std::int64_t>(mesh, 0) : cornersOf<std::int32_t>(mesh, 1);
+    std::vector<std::pair<std::size_t, std::size_t>> places = {
+        {good.find(corners), corners.size() / each}};
+    if (wide) {
+      const std::array<std::int64_t, 4> offsets = {0, 8, 16, 24};
+      places.emplace_back(good.find({reinterpret_cast<const char*>(offsets.data()), 32}),
+                          mesh.cells.size() + 1);
+    }
+    std::size_t refused = 0;
+    for (int i = 0; i < 100; ++i) {
+      const auto& [begin, count] = places[random.below(places.size())];
+      ASSERT_NE(begin, std::string::npos);
+      std::string bytes = good;
+      const std::int64_t number = odd[random.below(odd.size())];
+      std::memcpy(bytes.data() + begin + each * random.below(count), &number, each);
+      writeText(folder / name, bytes);
+      try {
+        const HexMesh read = readHexMesh(folder / name);
+        for (const Hex& cell : read.cells) {
+          for (const Index corner : cell) EXPECT_LT(corner, read.points.size()) << i;
+        }
+      } catch (const Error& error) {
+        EXPECT_NE(error.code(), ErrorCode::Internal) << error.what();
+        ++refused;
+      }
+    }
+    EXPECT_GE(refused, 40U);
   }
 }
 

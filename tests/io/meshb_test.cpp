@@ -1,10 +1,15 @@
 // `.meshb` files: versions, exact bytes, errors.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 
 #include <io/formats/formats.hpp>
@@ -128,6 +133,108 @@ TEST(Meshb, WrongElements) {
   const Failure index = failureAfter(cells + 36 * 1500 + 4, bytes(0U));
   EXPECT_EQ(index.code, ErrorCode::IndexOutOfRange);
   EXPECT_EQ(toString(index.place), "cell 1500");
+}
+
+/// Where libMeshb has the nodes of a hexahedron of order 2, in halves.
+using Places = std::array<std::array<int, 3>, 27>;
+constexpr Places kNodesOfOrder2 = {
+    {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+     {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
+     {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {1, 1, 0},
+     {1, 1, 2}, {1, 0, 1}, {2, 1, 1}, {1, 2, 1}, {0, 1, 1}, {1, 1, 1}}};
+
+std::string listed(const Places& places, const char* end) {
+  std::string text;
+  for (const auto& [x, y, z] : places) {
+    text += std::to_string(x) + ' ' + std::to_string(y) + ' ' + std::to_string(z) + end;
+  }
+  return text;
+}
+
+/// A cell of order 2 with a tagged face.
+/// @param ordering  the section HexahedraQ2Ordering, or nothing
+std::string cubeOfOrder2(const Places& places, const std::string& ordering) {
+  std::string cell;
+  for (int i = 1; i <= 27; ++i) cell += std::to_string(i) + ' ';
+  return "MeshVersionFormatted 2\nDimension 3\nVertices\n27\n" + listed(places, " 0\n") + ordering +
+         "QuadrilateralsQ2\n1\n1 4 3 2 12 11 10 9 21 5\nHexahedraQ2\n1\n" + cell + "7\nEnd\n";
+}
+
+void expectCubeOfOrder2(const LagrangeMesh& mesh) {
+  ASSERT_EQ(mesh.order, 2);
+  ASSERT_EQ(mesh.nodes.size(), 27U);
+  EXPECT_EQ(mesh.vertexCount, 8U);
+  for (std::size_t i = 0; i < 27; ++i) {
+    const Vec3 expected = {static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
+                           static_cast<double>(i / 9)};
+    EXPECT_EQ(mesh.points[mesh.nodes[i]], expected) << i;
+  }
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{7}));
+}
+
+TEST(Medit, CellsOfOrder2) {
+  const TemporaryFolder folder;
+  Context context;
+  const std::filesystem::path file = folder / "a.mesh";
+  writeText(file, cubeOfOrder2(kNodesOfOrder2, ""));
+  ASSERT_TRUE(holdsLagrangeCells(file, context));
+  const LagrangeMesh cube = readLagrangeMesh(file, context);
+  expectCubeOfOrder2(cube);
+  EXPECT_EQ(cube.features.quads, (std::vector<FeatureQuad>{{{0, 3, 2, 1}, 5}}));
+  const Failure straight = failureOf([&] { static_cast<void>(readHexMesh(file)); });
+  EXPECT_NE(straight.sentence.find("it holds 1 hexahedron with 27 nodes. Cells of order 2"),
+            std::string::npos)
+      << straight.sentence;
+  // Programs order nodes as they like, and say how.
+  Places turned = kNodesOfOrder2;
+  std::reverse(turned.begin(), turned.end());
+  const std::string ordering = "HexahedraQ2Ordering\n27\n" + listed(turned, "\n");
+  expectCubeOfOrder2(
+      readBytes<readQuadraticMedit>(cubeOfOrder2(turned, ordering), "a.mesh", context));
+  for (const auto& [from, to] : {std::pair("2 2 2\n", "2 2 3\n"), std::pair("2 2 2\n", "0 0 0\n"),
+                                 std::pair("g\n27\n", "g\n26\n")}) {
+    const std::string wrong = cubeOfOrder2(turned, replaced(ordering, from, to));
+    const Failure failure = failureOf(
+        [&] { static_cast<void>(readBytes<readQuadraticMedit>(wrong, "a.mesh", context)); });
+    EXPECT_EQ(failure.code, ErrorCode::FileSyntax) << failure.sentence;
+  }
+}
+
+TEST(Medit, CellsOfOrder2ComeBack) {
+  const TemporaryFolder folder;
+  Context context;
+  LagrangeMesh mesh =
+      readBytes<readQuadraticMedit>(cubeOfOrder2(kNodesOfOrder2, ""), "a.mesh", context);
+  mesh.features.edges = {{{0, 1}, 4}};
+  mesh.features.vertices = {{5, 3}};
+  for (const char* const name : {"mesh", "meshb"}) {
+    SCOPED_TRACE(name);
+    const std::filesystem::path file = folder / (std::string("b.") + name);
+    writeLagrangeMesh(mesh, file, {.format = name}, context);
+    ASSERT_TRUE(holdsLagrangeCells(file, context));
+    const LagrangeMesh read = readLagrangeMesh(file, context);
+    expectCubeOfOrder2(read);
+    expectSameBits(read.points, mesh.points);
+    EXPECT_EQ(read.features.vertices, mesh.features.vertices);
+    ASSERT_EQ(read.features.quads.size(), 1U);
+    EXPECT_EQ(read.features.quads[0].tag, 5);
+    if (std::string(name) == "meshb") {
+      EXPECT_EQ(read.features.edges, mesh.features.edges);
+    }
+    // As cut off by a full disk.
+    const std::string bytes = contentOf(file);
+    for (std::size_t size = 0; size + 40 < bytes.size(); size += 31) {
+      const std::string part = bytes.substr(0, size);
+      const auto readPart = [&, text = std::string(name) == "mesh"] {
+        return text ? readBytes<readQuadraticMedit>(part, "b", context)
+                    : readBytes<readQuadraticMeshb>(part, "b", context);
+      };
+      EXPECT_THROW(static_cast<void>(readPart()), Error) << size;
+    }
+  }
+  // .mesh files of higher order are MFEM's, unless MEDIT's are asked for.
+  writeLagrangeMesh(mesh, folder / "c.mesh", {}, context);
+  EXPECT_TRUE(contentOf(folder / "c.mesh").starts_with("MFEM"));
 }
 
 }  // namespace

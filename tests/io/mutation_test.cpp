@@ -145,7 +145,7 @@ TEST(DamagedFiles, Gmsh) {
     WriteOptions options;
     options.format = format;
     writeHexMesh(mesh, folder / "a.msh", options, context);
-    damage(contentOf(folder / "a.msh"), parse<readGmsh>);
+    damage(contentOf(folder / "a.msh"), parse<GmshFormat::readMesh>);
   }
 }
 

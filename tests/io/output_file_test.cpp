@@ -12,6 +12,8 @@
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {
+
+using namespace hexhex::io;
 namespace {
 
 TEST(OutputFile, AppearsOnCommitOnly) {

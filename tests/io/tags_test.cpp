@@ -8,7 +8,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
-#include <io/formats/gmsh_elements.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

@@ -9,14 +9,6 @@
 namespace hexhex::io {
 namespace {
 
-/// The volume cell type with this number in a format; null if there is none.
-const VolumeCells* find(std::int64_t VolumeCells::*number, std::int64_t value) {
-  const auto* const found =
-      std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
-                   [&](const VolumeCells& type) { return value > 0 && type.*number == value; });
-  return found == kVolumeCells.end() ? nullptr : found;
-}
-
 /// Whether a VTK type is empty, a point, a line or a polygon, straight or curved.
 bool isFlat(std::int64_t type) {
   constexpr std::array<std::int64_t, 31> kFlat = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21,
@@ -38,15 +30,18 @@ std::string singular(std::string_view plural) {
 
 }  // namespace
 
-void CellCounts::addVtk(std::int64_t type, std::uint64_t count) {
-  if (count == 0 || isFlat(type)) return;
-  if (const VolumeCells* const found = find(&VolumeCells::vtkType, type)) return add(*found, count);
-  unknown_[type] += count;
+const VolumeCells* volumeCells(std::int64_t VolumeCells::*number, std::int64_t value) {
+  const auto* const found =
+      std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
+                   [&](const VolumeCells& type) { return value > 0 && type.*number == value; });
+  return found == kVolumeCells.end() ? nullptr : found;
 }
 
-void CellCounts::addGmsh(std::int64_t type, std::uint64_t count) {
-  if (count == 0) return;
-  if (const VolumeCells* const found = find(&VolumeCells::gmshType, type)) add(*found, count);
+void CellCounts::addVtk(std::int64_t type, std::uint64_t count) {
+  if (count == 0 || isFlat(type)) return;
+  if (const VolumeCells* const found = volumeCells(&VolumeCells::vtkType, type))
+    return add(*found, count);
+  unknown_[type] += count;
 }
 
 std::uint64_t CellCounts::of(const CellKind& kind) const {
@@ -97,7 +92,7 @@ std::string CellCounts::adviceOnCurved() const {
            "others a file of their own.";
   }
   return " Cells of order 2 are curved: `hexhex view` and `hexhex improve` read them, and `hexhex "
-         "convert` writes them as .vtu, .msh, .inp, .exo, .cgns or MFEM .mesh.";
+         "convert` writes them as .vtu, .msh, .meshb, .inp, .exo, .cgns or MFEM .mesh.";
 }
 
 void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,

@@ -56,6 +56,16 @@ template <>
 inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
                                           5, 12,           PlaceKind::Cell};
 
+template <>
+inline constexpr CellKind kCellKind<27> = {.corners = 27,
+                                           .singular = "hexahedron with 27 nodes",
+                                           .plural = "hexahedra with 27 nodes",
+                                           .meditKeyword = "HexahedraQ2",
+                                           .meshbKeyword = 33,
+                                           .gmshType = 12,
+                                           .vtkType = 29,
+                                           .place = PlaceKind::Cell};
+
 /// Triangles that carry labels.
 inline constexpr CellKind kTriangleKind = {
     .corners = 3, .singular = "triangle", .plural = "triangles", .vtkType = 5};
@@ -113,11 +123,13 @@ constexpr std::array<VolumeCells, 38> kVolumeCells = {
      {"Bezier pyramids", 81},
      {"polyhedra", 42}}};
 
+/// The volume cell type with this number in a format; null if there is none.
+[[nodiscard]] const VolumeCells* volumeCells(std::int64_t VolumeCells::*number, std::int64_t value);
+
 class CellCounts {
  public:
-  // Add cells by a format's type number. Points, lines and polygons are not counted.
+  /// Adds cells by VTK's type. Points, lines and polygons are not counted.
   void addVtk(std::int64_t type, std::uint64_t count);
-  void addGmsh(std::int64_t type, std::uint64_t count);
   void add(const VolumeCells& type, std::uint64_t count) { counts_[type.plural] += count; }
   void add(const CellKind& kind, std::uint64_t count) { addVtk(kind.vtkType, count); }
 

@@ -82,11 +82,7 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
     refuse(file,
            concat("the format \"", format.label.name, "\" knows no compression; only .vtu does."));
   }
-  if (options.compress && !hasZlib()) {
-    refuse(file,
-           "this program was built without zlib and cannot compress files. Write the file without "
-           "compression.");
-  }
+  if (options.compress) requireZlib(file, "compress files", "write the file without compression");
   if (format.overHdf5) requireHdf5(file);
   return format;
 }
@@ -462,9 +458,8 @@ LagrangeMesh readLagrangeMesh(const std::filesystem::path& file, Context& contex
   const io::Format* const format = io::curvedFormat(file);
   if (format == nullptr) {
     io::refuse(file,
-               "cells of higher order are read from .vtu, .vtk, .msh, .inp, .unv, .cgns, .vtkhdf, "
-               ".exo and .e "
-               "files only.");
+               "cells of higher order are read from .vtu, .vtk, .msh, .mesh, .meshb, .inp, .unv, "
+               ".cgns, .vtkhdf, .exo and .e files only.");
   }
   return inSteps(context, "readLagrangeMesh", io::kReadMesh, [&] {
     const io::Input input = io::openInput(file, context);

@@ -12,6 +12,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/concat.hpp>
+#include <base/missing_library.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/hdf_reader.hpp>
 #if defined(HEXHEX_HAS_HDF5)
@@ -64,10 +65,8 @@ void* hdf5Symbol(const char* name) { return dlsym(library({}), name); }
 void requireHdf5(const std::filesystem::path& /*file*/) {}
 #else
 void requireHdf5(const std::filesystem::path& file) {
-  throw Error(ErrorCode::FileUnsupported,
-              file.string() +
-                  ": this build of hexhex cannot read or write such files. Install HDF5 "
-                  "(libhdf5-dev) and build it anew.");
+  failWithoutLibrary("read or write such files", "HDF5 (libhdf5-dev)", "choose another format",
+                     file);
 }
 std::unique_ptr<HdfReader> HdfReader::open(const Input& input) {
   requireHdf5(input.name());
@@ -97,8 +96,8 @@ std::unique_ptr<HdfReader> HdfReader::openAny(const Input& input, Stage& stage) 
     const std::string_view bytes = input.text(room, stage, "");
     if (bytes.starts_with(kHdfMark)) return open({bytes, input.name()});
   }
-  throw Error(ErrorCode::FileSyntax,
-              input.name() + ": the file does not begin as HDF5 files do. Is its extension right?");
+  input.fail(ErrorCode::FileSyntax,
+             "the file does not begin as HDF5 files do. Is its extension right?");
 }
 
 }  // namespace hexhex::io

@@ -12,8 +12,10 @@
 #include <utility>
 
 #include <hexhex/context.hpp>
+#include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
@@ -97,6 +99,12 @@ class Input {
   /// Empty for bytes in memory.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] const std::optional<std::string_view>& bytes() const noexcept { return bytes_; }
+  /// Throws an error: "<name>: <sentence>".
+  /// @param sentence  its parts, as for concat()
+  template <class... Parts>
+  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
+    throw Error(code, concat(name_, ": ", sentence...));
+  }
   /// The cells that readers of this input have counted.
   [[nodiscard]] const std::shared_ptr<CellCounts>& counts() const noexcept { return counts_; }
   /// All bytes except a byte order mark. A file is read into `room`; for `first` see

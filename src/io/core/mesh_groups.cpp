@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -352,6 +354,44 @@ MeshGroups groupPart(const MeshPart& part, const PartsInfo& info, Stage& stage) 
   addMissingGroups(edges.groups, info.edgeTags, false, "curve", "");
   addMissingGroups(quads.groups, info.quadTags, true, "surface", "boundary");
   return {std::move(vertices), std::move(edges), std::move(quads), groupOwnCells(part, info)};
+}
+
+std::optional<std::int32_t> tagInGroupName(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kTagged = {"point_", "curve_", "surface_", "region_"};
+  if (name == "boundary" || name == "hexahedra" || name.starts_with("patch_")) return 0;
+  for (const std::string_view prefix : kTagged) {
+    if (!name.starts_with(prefix)) continue;
+    std::string_view digits = name.substr(prefix.size());
+    const bool negative = digits.starts_with('m');
+    if (negative) digits.remove_prefix(1);
+    if (negative && digits.starts_with('-')) return {};  // only one sign is allowed
+    std::int64_t tag = 0;
+    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), tag);
+    if (result.ec != std::errc{} || result.ptr != digits.data() + digits.size()) return {};
+    tag = negative ? -tag : tag;
+    if (!std::in_range<std::int32_t>(tag)) return {};
+    return static_cast<std::int32_t>(tag);
+  }
+  return {};
+}
+
+void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds) {
+  std::set<std::uint32_t> taken;
+  std::vector<ElementGroup*> others;
+  for (std::vector<ElementGroup>* const groups : kinds) {
+    for (ElementGroup& group : *groups) {
+      // Given names do not encode the tag.
+      const auto tag = tagInGroupName(group.name).value_or(group.tag);
+      const bool isTag = tag == static_cast<std::int64_t>(group.number);
+      if (!isTag || !taken.insert(group.number).second) others.push_back(&group);
+    }
+  }
+  std::uint32_t next = 1;
+  for (ElementGroup* const group : others) {
+    if (taken.insert(group->number).second) continue;
+    while (!taken.insert(next).second) ++next;
+    group->number = next;
+  }
 }
 
 }  // namespace hexhex::io

@@ -7,7 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -130,6 +133,14 @@ template <class Groups>
 /// @throws Error TooLarge
 void requireInt32(std::size_t count, const std::string& numbers,
                   const std::string& instead = "choose another format");
+
+/// The tag in a default name of a group, 0 for "boundary", "hexahedra" and "patch_7"; empty for
+/// other names.
+[[nodiscard]] std::optional<std::int32_t> tagInGroupName(std::string_view name);
+
+/// Gives groups unique numbers across dimensions, since programs such as meshio and GetFEM merge
+/// groups with equal numbers. Numbers that are tags are kept where possible, earlier kinds first.
+void numberApart(std::initializer_list<std::vector<ElementGroup>*> kinds);
 
 /// How untagged elements are numbered beside tagged ones: as their group, or 0.
 enum class Untagged : std::uint8_t { Numbered, Zero };

@@ -37,16 +37,11 @@ template <auto& function>
 constexpr std::remove_reference_t<decltype(function)>* kOverHdf5 = nullptr;
 #endif
 
-void writeExodusFile(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                     Stage& stage) {
-  writeExodus(mesh, output, options, stage);
-}
-
 constexpr Format exodusFormat(std::string_view name, std::string_view extension,
                               std::string_view parts) {
   return {.label = {name, extension, "Exodus II"},
           .readTets = ExodusFormat::readTets,
-          .meshes = {ExodusFormat::readMesh, writeExodusFile},
+          .meshes = {ExodusFormat::readMesh, writeExodus},
           .curved = {.isIn = ExodusFormat::holdsCurved,
                      .read = ExodusFormat::readCurved,
                      .write = writeQuadraticExodus,
@@ -58,13 +53,26 @@ constexpr std::array kFormatTable = {
     Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
            .maps = {readHexex, writeHexex},
            .readTets = readHexexTets},
+    // Before "mesh": .mesh files of higher order are MFEM's.
+    Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
+           .meshes = {.write = writeMfem},
+           .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
+           .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
     Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
            .readTets = readMeditTets,
            .meshes = {readMedit, writeMedit},
+           .curved = {.isIn = holdsQuadraticMedit,
+                      .read = readQuadraticMedit,
+                      .write = writeQuadraticMedit,
+                      .onlyOrder = 2},
            .pieces = {openMeditSink, readMeditTo}},
     Format{.label = {"meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"},
            .readTets = readMeshbTets,
            .meshes = {readMeshb, writeMeshb},
+           .curved = {.isIn = holdsQuadraticMeshb,
+                      .read = readQuadraticMeshb,
+                      .write = writeQuadraticMeshb,
+                      .onlyOrder = 2},
            .pieces = {openMeshbSink, readMeshbTo}},
     Format{.label = {"vtu", ".vtu", "VTK XML unstructured grid, binary"},
            .maps = {readVtuMap, writeVtuMap},
@@ -108,19 +116,19 @@ constexpr std::array kFormatTable = {
            .writePatches = writePatchesOvmb,
            .groups = false},
     Format{.label = {"msh", ".msh", "Gmsh 4.1, binary"},
-           .readTets = readGmshTets,
-           .meshes = {readGmsh, writeGmsh41Binary},
-           .curved = {holdsCurvedGmsh, readCurvedGmsh, writeLagrangeGmsh},
+           .readTets = GmshFormat::readTets,
+           .meshes = {GmshFormat::readMesh, writeGmsh41Binary},
+           .curved = {GmshFormat::holdsCurved, GmshFormat::readCurved, writeLagrangeGmsh},
            .pieces = {openGmsh41BinarySink, readGmshTo},
            .parts = {openGmshPartSink, "Gmsh 4.1, binary: one file with partitioned entities"}},
     Format{.label = {"msh-split", ""},
            .parts = {openSplitGmshPartSink, "Gmsh 4.1, binary: NAME_K.msh, K from 1 on"}},
     Format{.label = {"msh41-ascii", ".msh", "Gmsh 4.1, text"},
-           .readTets = readGmshTets,
-           .meshes = {readGmsh, writeGmsh41Text}},
+           .readTets = GmshFormat::readTets,
+           .meshes = {GmshFormat::readMesh, writeGmsh41Text}},
     Format{.label = {"msh22-ascii", ".msh", "Gmsh 2.2, text"},
-           .readTets = readGmshTets,
-           .meshes = {readGmsh, writeGmsh22Text}},
+           .readTets = GmshFormat::readTets,
+           .meshes = {GmshFormat::readMesh, writeGmsh22Text}},
     Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"},
            .readTets = AbaqusFormat::readTets,
            .meshes = {AbaqusFormat::readMesh, writeAbaqus},
@@ -134,10 +142,6 @@ constexpr std::array kFormatTable = {
            .curved = {UnvFormat::holdsCurved, UnvFormat::readCurved}},
     Format{.label = {"tetgen", ".ele", "TetGen: tets, and points in NAME.node"},
            .readTets = readTetgen},
-    Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
-           .meshes = {.write = writeMfem},
-           .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
-           .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
     Format{
         .label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
         .meshes = {.writeFolder = writeOpenFoam},
@@ -374,6 +378,34 @@ std::span<const PartFormat> partFormats() noexcept {
     return list;
   }();
   return kList;
+}
+
+std::span<const SolverFormat> solverFormats() noexcept {
+  // MSH 2.2 text for readers that support neither newer versions nor binary files.
+  static constexpr std::array kSolvers = {
+      SolverFormat{"abaqus", "Abaqus", "inp", ".inp", "inp"},
+      SolverFormat{"calculix", "CalculiX", "inp", ".inp", "inp"},
+      SolverFormat{"code-aster", "Code_Aster", "msh22-ascii", ".msh"},
+      SolverFormat{"dealii", "deal.II", "msh22-ascii", ".msh"},
+      SolverFormat{"dolfinx", "DOLFINx", "msh", ".msh", "msh"},
+      SolverFormat{"dune", "DUNE", "msh22-ascii", ".msh"},
+      SolverFormat{"elmer", "ElmerGrid", "msh22-ascii", ".msh", "msh"},
+      SolverFormat{"febio", "FEBio Studio", "inp", ".inp", "inp"},
+      SolverFormat{"getfem", "GetFEM", "msh22-ascii", ".msh"},
+      SolverFormat{"mfem", "MFEM", "mfem", ".mesh", "mfem"},
+      SolverFormat{"moose", "MOOSE", "exodus-e", ".e", "exodus-e"},
+      SolverFormat{"ngsolve", "NGSolve", "msh22-ascii", ".msh"},
+      SolverFormat{"openfoam", "OpenFOAM", "openfoam", ".foam"},
+      SolverFormat{"scikit-fem", "scikit-fem", "msh", ".msh", "msh"},
+  };
+  return kSolvers;
+}
+
+const SolverFormat* findSolver(std::string_view name) noexcept {
+  const auto solvers = solverFormats();
+  const auto found = std::find_if(solvers.begin(), solvers.end(),
+                                  [name](const SolverFormat& each) { return each.name == name; });
+  return found == solvers.end() ? nullptr : &*found;
 }
 
 }  // namespace hexhex

@@ -13,6 +13,8 @@
 namespace hexhex::io {
 
 bool hasZlib() noexcept { return true; }
+void requireZlib(const std::filesystem::path& /*file*/, std::string_view /*work*/,
+                 std::string_view /*instead*/) {}
 
 bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept {
   // uLong has 32 bits on some platforms; blocks are far smaller.
@@ -98,20 +100,23 @@ void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
 }  // namespace hexhex::io
 
 #else
+#include <base/missing_library.hpp>
 
 namespace hexhex::io {
 
 bool hasZlib() noexcept { return false; }
+void requireZlib(const std::filesystem::path& file, std::string_view work,
+                 std::string_view instead) {
+  failWithoutLibrary(work, "zlib (zlib1g-dev)", instead, file);
+}
 
 bool inflateBlock(std::string_view /*compressed*/, std::span<char> /*bytes*/) noexcept {
   return false;
 }
 
 Array<char> inflateGzip(std::string_view /*compressed*/, const std::string& name) {
-  throw Error(ErrorCode::FileUnsupported,
-              name +
-                  ": this program was built without zlib and cannot read compressed files. "
-                  "Unpack the file first (gunzip).");
+  requireZlib(name, "read compressed files", "unpack the file first (gunzip)");
+  return {};
 }
 
 void deflateBlock(std::span<const char> /*bytes*/, Array<char>& /*compressed*/) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,10 @@ namespace hexhex::io {
 
 /// Whether this build has zlib, without which the functions below fail.
 [[nodiscard]] bool hasZlib() noexcept;
+/// @param work, instead  as for failWithoutLibrary()
+/// @throws Error FileUnsupported in a build without zlib
+void requireZlib(const std::filesystem::path& file, std::string_view work,
+                 std::string_view instead);
 
 /// Maximum compression ratio of zlib: a file that claims more is invalid.
 inline constexpr std::size_t kLargestZlibRatio = 1032;

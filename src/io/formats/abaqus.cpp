@@ -26,7 +26,6 @@
 #include <io/core/text_scanner.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
 #include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
@@ -83,6 +82,7 @@ AbaqusType abaqusType(std::string_view name) {
   if (place == std::string_view::npos) return {};
   AbaqusType type;
   std::from_chars(name.data() + place + 3, name.data() + name.size(), type.nodes);
+  if (type.nodes > 27) return {};  // in an order that is not known
   for (const std::string_view noun : {"hexahedra", "tetrahedra", "prisms", "pyramids"}) {
     if (type.cells == nullptr) type.cells = volumeCells(noun, type.nodes);
   }
@@ -400,7 +400,7 @@ class AbaqusReader {
   /// Resolves node numbers, and turns names of groups into tags.
   void finish() {
     if (nodeNumbers_.empty()) {
-      throw Error(ErrorCode::FileUnsupported, input_.name() + ": the file has no *NODE section.");
+      input_.fail(ErrorCode::FileUnsupported, "the file has no *NODE section.");
     }
     const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
     for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {

@@ -17,10 +17,10 @@
 #include <base/stage.hpp>
 #include <io/core/hdf_reader.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
 
 namespace hexhex::io {
 
@@ -68,7 +68,7 @@ class CgnsReader {
     for (const std::string& base : nodes("", "CGNSBase_t")) {
       for (const std::string& path : nodes(base, "Zone_t")) zones_.push_back({path});
     }
-    if (zones_.empty()) fail(ErrorCode::FileUnsupported, "the file has no zones.");
+    if (zones_.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no zones.");
     for (Zone& zone : zones_) readZone(zone);
     if (parts_ == ElementParts::All) {
       connect();
@@ -97,11 +97,6 @@ class CgnsReader {
     std::array<Index, 4> nodes;
   };
 
-  template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
-    throw Error(code, concat(input_.name(), ": ", sentence...));
-  }
-
   // The tree: a node is a group with a label that gives its kind.
 
   /// The paths of the children with this label.
@@ -113,8 +108,8 @@ class CgnsReader {
       std::string path = parent.empty() ? "" : parent + '/';
       path += member;
       if (file_->attribute(path, "type") == "LK") {
-        fail(ErrorCode::FileUnsupported, "\"", path,
-             "\" is a link into another file. Save the mesh as one file.");
+        input_.fail(ErrorCode::FileUnsupported, "\"", path,
+                    "\" is a link into another file. Save the mesh as one file.");
       }
       if (file_->attribute(path, "label") == label) found.push_back(path);
     }
@@ -144,9 +139,9 @@ class CgnsReader {
 
   void readZone(Zone& zone) {
     if (const std::string type = textIn(zone.path, "ZoneType_t"); type != "Unstructured") {
-      fail(ErrorCode::FileUnsupported, "the zone \"", zone.path,
-           "\" is not unstructured. Convert it to lists of "
-           "elements first.");
+      input_.fail(ErrorCode::FileUnsupported, "the zone \"", zone.path,
+                  "\" is not unstructured. Convert it to lists of "
+                  "elements first.");
     }
     zone.before = lastNumber_;
     zone.firstPoint = lists_.points.size();
@@ -163,8 +158,8 @@ class CgnsReader {
       const std::vector<std::string> found =
           grids.empty() ? std::vector<std::string>() : nodes(grids[0], "DataArray_t", name);
       if (found.empty()) {
-        fail(ErrorCode::FileUnsupported, "the zone \"", zone.path, "\" has no array \"", name,
-             "\".");
+        input_.fail(ErrorCode::FileUnsupported, "the zone \"", zone.path, "\" has no array \"",
+                    name, "\".");
       }
       setCoordinates(lists_, zone.firstPoint, axis, file_->reals(found[0] + "/ data"), input_);
     }
@@ -176,7 +171,7 @@ class CgnsReader {
     const std::vector<std::int64_t> range = integersIn(section, "IndexRange_t", "ElementRange");
     if (kind.empty() || range.size() != 2 || range[0] < 1 || range[1] < range[0] ||
         range[1] > kMostElements) {
-      fail(ErrorCode::FileSyntax, "the section \"", section, "\" has no range of elements.");
+      input_.fail(ErrorCode::FileSyntax, "the section \"", section, "\" has no range of elements.");
     }
     const auto first = static_cast<std::uint64_t>(range[0]);
     const auto last = static_cast<std::uint64_t>(range[1]);
@@ -193,9 +188,9 @@ class CgnsReader {
       const bool tellsType = kind[0] == kCgnsMixed && place < values.size();
       const CgnsType* const type = typeOf(tellsType ? values[place++] : kind[0], section);
       if (type == nullptr || type->nodes > values.size() - place) {
-        fail(ErrorCode::FileSyntax, "the section \"", section,
-             "\" lists too few nodes, or "
-             "elements of a type that a mixed one cannot have.");
+        input_.fail(ErrorCode::FileSyntax, "the section \"", section,
+                    "\" lists too few nodes, or "
+                    "elements of a type that a mixed one cannot have.");
       }
       addElement(zone, section, *type, number, values.data() + place, blocks);
       place += type->nodes;
@@ -216,8 +211,9 @@ class CgnsReader {
         std::find_if(kCgnsTypes.begin(), kCgnsTypes.end(),
                      [number](const CgnsType& type) { return type.number == number; });
     if (found != kCgnsTypes.end()) return found;
-    fail(ErrorCode::FileUnsupported, "the section \"", section, "\" has elements of the type ",
-         number, ", which are not supported: none of more than 27 nodes are.");
+    input_.fail(ErrorCode::FileUnsupported, "the section \"", section,
+                "\" has elements of the type ", number,
+                ", which are not supported: none of more than 27 nodes are.");
   }
 
   /// @param blocks  of the section
@@ -228,8 +224,8 @@ class CgnsReader {
       if (values[k] >= 1 && static_cast<std::uint64_t>(values[k]) <= zone.points) {
         return static_cast<Index>(zone.firstPoint + static_cast<std::size_t>(values[k]) - 1);
       }
-      fail(ErrorCode::IndexOutOfRange, "the section \"", section, "\" names vertex ", values[k],
-           ", but its zone has ", zone.points, ", numbered from 1.");
+      input_.fail(ErrorCode::IndexOutOfRange, "the section \"", section, "\" names vertex ",
+                  values[k], ", but its zone has ", zone.points, ", numbered from 1.");
     };
     const bool needsNodes = parts_ == ElementParts::All;
     if (type.noun.empty()) {
@@ -281,9 +277,9 @@ class CgnsReader {
     const auto add = [&](std::int64_t first, std::int64_t last) {
       const auto end = static_cast<std::uint64_t>(last);
       if (first < 1 || last < first || end > most) {
-        fail(ErrorCode::IndexOutOfRange, "the condition \"", condition,
-             "\" names elements or vertices that its zone does "
-             "not have.");
+        input_.fail(ErrorCode::IndexOutOfRange, "the condition \"", condition,
+                    "\" names elements or vertices that its zone does "
+                    "not have.");
       }
       group.ranges.emplace_back(static_cast<std::uint64_t>(first), end);
       members_ += end - static_cast<std::uint64_t>(first) + 1;
@@ -294,7 +290,8 @@ class CgnsReader {
     // A range takes few bytes, however many elements it has.
     constexpr std::uint64_t kMostTimes = 8;
     if (members_ > kMostTimes * (lastNumber_ + lists_.points.size())) {
-      fail(ErrorCode::TooLarge, "conditions have far more members than the file has elements.");
+      input_.fail(ErrorCode::TooLarge,
+                  "conditions have far more members than the file has elements.");
     }
   }
 
@@ -325,9 +322,9 @@ class CgnsReader {
         }
       }
       if (found > 0) continue;
-      fail(ErrorCode::FileUnsupported,
-           "the file has several zones, and nothing says which vertices \"", zone.path,
-           "\" shares with others (Abutting1to1). Merge them into one zone.");
+      input_.fail(ErrorCode::FileUnsupported,
+                  "the file has several zones, and nothing says which vertices \"", zone.path,
+                  "\" shares with others (Abutting1to1). Merge them into one zone.");
     }
     const NumberedSets numbered = numberSets(same, lists_.points.size());
     Array<Vec3> kept(numbered.count);
@@ -365,8 +362,8 @@ class CgnsReader {
     };
     if (other == zones_.end() || here.size() != there.size() || !isIn(here, zone) ||
         !isIn(there, *other)) {
-      fail(ErrorCode::FileSyntax, "the connection \"", path,
-           "\" does not name vertices of two zones in pairs.");
+      input_.fail(ErrorCode::FileSyntax, "the connection \"", path,
+                  "\" does not name vertices of two zones in pairs.");
     }
     std::vector<std::pair<Index, Index>> pairs;
     for (std::size_t i = 0; i < here.size(); ++i) {
@@ -436,10 +433,9 @@ class CgnsReader {
 
 ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage) {
   if (firstBytes(input).starts_with("@(#)")) {
-    throw Error(ErrorCode::FileUnsupported,
-                input.name() +
-                    ": the file is in ADF, an older form of CGNS. Convert it to HDF5: "
-                    "adf2hdf FILE");
+    input.fail(ErrorCode::FileUnsupported,
+               "the file is in ADF, an older form of CGNS. Convert it to HDF5: "
+               "adf2hdf FILE");
   }
   return CgnsReader(input, parts, stage).read();
 }

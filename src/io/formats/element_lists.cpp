@@ -13,9 +13,9 @@
 #include <hexhex/error.hpp>
 
 #include <base/concat.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
 
 namespace hexhex::io {
 
@@ -29,16 +29,30 @@ void count(const ElementLists& lists, const Input& input) {
   }
 }
 
-bool isCurvedHexahedron(const ElementBlock& block) {
-  return block.type != nullptr && (block.nodesEach == 20 || block.nodesEach == 27) &&
-         block.type->plural.starts_with("hexahedra");
+/// The order of hexahedra of higher order; 0 for other elements.
+int curvedOrder(const ElementBlock& block) {
+  if (block.type == nullptr || !block.type->plural.starts_with("hexahedra")) return 0;
+  const int order = block.nodesEach == 20 ? 2 : orderOfNodes(block.nodesEach);
+  return order > 1 ? order : 0;
 }
 
-[[noreturn]] void failWithout(const CellKind& kind, const Input& input) {
+/// "; it holds 2 prisms", or what a file without volumes is.
+std::string contentOf(const ElementLists& lists, const Input& input) {
+  std::string volumes = input.counts()->instead();
+  if (!volumes.empty() || lists.blocks.empty()) return volumes;
+  return ", but points, lines, triangles or quads only: a surface, not a volume";
+}
+
+[[noreturn]] void failWithout(const CellKind& kind, const ElementLists& lists, const Input& input) {
   std::string sentence = concat(input.name(), ": the file holds no ", kind.plural, " with ",
-                                kind.corners, " nodes", input.counts()->instead(), ".");
+                                kind.corners, " nodes", contentOf(lists, input), ".");
   if (kind.corners == 8) sentence += input.counts()->adviceOnCurved();
   throw Error(ErrorCode::FileUnsupported, sentence);
+}
+
+void clearZeros(Array<std::int32_t>& regions) {
+  const auto isZero = [](std::int32_t region) { return region == 0; };
+  if (std::all_of(regions.begin(), regions.end(), isZero)) regions.clear();
 }
 
 /// Takes the cells of one kind and their regions; returns their numbers in the file.
@@ -58,9 +72,8 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
     mesh.regions.insert(mesh.regions.end(), block.regions.begin(), block.regions.end());
     block.nodes = {};  // frees its memory
   }
-  if (mesh.cells.empty()) failWithout(kKind, input);
-  const auto isZero = [](std::int32_t region) { return region == 0; };
-  if (std::all_of(mesh.regions.begin(), mesh.regions.end(), isZero)) mesh.regions.clear();
+  if (mesh.cells.empty() && !lists.mayBeEmpty) failWithout(kKind, lists, input);
+  clearZeros(mesh.regions);
   mesh.points = std::move(lists.points);
   return numbers;
 }
@@ -273,8 +286,7 @@ void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
   requireIndexable(first + numbers.size(), input.name());
   if (axis == 0) lists.points.resize(first + numbers.size());
   if (first + numbers.size() != lists.points.size()) {
-    throw Error(ErrorCode::FileSyntax,
-                input.name() + ": the axes have different numbers of coordinates.");
+    input.fail(ErrorCode::FileSyntax, "the axes have different numbers of coordinates.");
   }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     lists.points[first + i][axis] = numbers[i];
@@ -307,9 +319,8 @@ NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) 
   requireIndexable(numbers.size(), input.name());
   NodeTags nodes(numbers);
   if (const Index repeated = nodes.repeated(); repeated != kNone) {
-    throw Error(ErrorCode::FileSyntax,
-                concat(input.name(), ": two nodes have the number ", numbers[repeated],
-                       ". If the file has several parts, export it as one mesh, without parts."));
+    input.fail(ErrorCode::FileSyntax, "two nodes have the number ", numbers[repeated],
+               ". If the file has several parts, export it as one mesh, without parts.");
   }
   return nodes;
 }
@@ -320,9 +331,8 @@ void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     block.nodes[i] = nodes.find(numbers[i]);
     if (block.nodes[i] != kNone) continue;
-    throw Error(ErrorCode::IndexOutOfRange,
-                concat(input.name(), ": element ", block.numbers[i / block.nodesEach],
-                       " names node ", numbers[i], ", which is in no ", place, "."));
+    input.fail(ErrorCode::IndexOutOfRange, "element ", block.numbers[i / block.nodesEach],
+               " names node ", numbers[i], ", which is in no ", place, ".");
   }
 }
 
@@ -359,36 +369,45 @@ TetCells tetsOf(ElementLists&& lists, const Input& input) {
 
 bool areCurved(const ElementLists& lists) {
   return std::any_of(lists.blocks.begin(), lists.blocks.end(), [](const ElementBlock& block) {
-    return isCurvedHexahedron(block) && block.count() > 0;
+    return curvedOrder(block) > 0 && block.count() > 0;
   });
 }
 
 LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage) {
   count(lists, input);
   LagrangeMesh mesh;
-  mesh.order = 2;
-  mesh.points = std::move(lists.points);
+  mesh.order = 0;
   Array<std::uint64_t> numbers;
   std::vector<std::size_t> lacking;  // cells with 20 nodes
   for (const ElementBlock& block : lists.blocks) {
-    if (block.type != nullptr && !isCurvedHexahedron(block) && block.count() > 0) {
-      throw Error(ErrorCode::FileUnsupported,
-                  input.name() + ": cells of order 2 must be hexahedra with 20 or 27 nodes" +
-                      input.counts()->instead() + ". Give the others a file of their own.");
+    if (block.type == nullptr || block.count() == 0) continue;
+    const int order = curvedOrder(block);
+    if (mesh.order == 0) mesh.order = order;
+    if (order == 0 || order != mesh.order) {
+      input.fail(ErrorCode::FileUnsupported,
+                 "cells of higher order must be hexahedra of one order" +
+                     input.counts()->instead() + ". Give the others a file of their own.");
     }
-    if (block.type == nullptr) continue;
+    const std::size_t perCell = mesh.nodesPerCell();
+    mesh.nodes.resize(perCell * (numbers.size() + block.count()));
     for (std::size_t i = 0; i < block.count(); ++i) {
-      if (block.nodesEach == 20) lacking.push_back(numbers.size());
+      if (block.nodesEach < perCell) lacking.push_back(numbers.size());
+      std::copy_n(block.nodes.begin() + static_cast<std::ptrdiff_t>(block.nodesEach * i),
+                  block.nodesEach,
+                  mesh.nodes.begin() + static_cast<std::ptrdiff_t>(perCell * numbers.size()));
       numbers.push_back(block.numbers[i]);
       mesh.regions.push_back(block.regions[i]);
-      mesh.nodes.resize(kNodesOfQuadratic * numbers.size());
-      std::copy_n(block.nodes.begin() + static_cast<std::ptrdiff_t>(block.nodesEach * i),
-                  block.nodesEach, mesh.nodes.end() - kNodesOfQuadratic);
     }
   }
+  if (numbers.empty()) {
+    input.fail(ErrorCode::FileUnsupported,
+               "the file holds no hexahedra of higher order" + contentOf(lists, input) + ".");
+  }
+  clearZeros(mesh.regions);
+  mesh.points = std::move(lists.points);
   addMiddles(mesh.points, mesh.nodes, lacking, input.name());
   const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
-    return mesh.nodes[kNodesOfQuadratic * cell + k];
+    return mesh.nodes[mesh.nodesPerCell() * cell + k];
   };
   mesh.features = hexFeaturesOf(lists, numbers, cellAt);
   fromVtkOrder(mesh, stage);

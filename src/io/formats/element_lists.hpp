@@ -101,6 +101,7 @@ struct ElementLists {
   std::vector<FeatureEdge> lines;
   std::vector<NodeSet> nodeSets;
   std::vector<TagName> names;
+  bool mayBeEmpty = false;  ///< whether the file is a mesh without elements
 
   /// Stores the name of a group given by another program.
   void addName(int dimension, std::int32_t tag, std::string_view name);
@@ -177,11 +178,13 @@ void addMiddles(Array<Vec3>& points, Array<Index>& nodes, const std::vector<std:
 /// Converts a mesh whose cells list their nodes in VTK order to that of LagrangeMesh, with vertices
 /// before other nodes.
 void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright = VtkEdges::Around);
+/// Renumbers nodes: corners first, otherwise in file order. Drops tags of other nodes.
+void putCornersFirst(LagrangeMesh& mesh);
 
-/// Whether there are hexahedra with 20 or 27 nodes.
+/// Whether there are hexahedra with 20 or, of an order p > 1, (p + 1)^3 nodes.
 [[nodiscard]] bool areCurved(const ElementLists& lists);
-/// Builds order-2 cells from hexahedra with 20 or 27 nodes; missing nodes are placed by the 20.
-/// @throws Error FileUnsupported if there are other volume cells
+/// Builds cells of higher order from them; missing nodes of those with 20 are placed by these.
+/// @throws Error FileUnsupported if there are other volume cells, or cells of several orders
 [[nodiscard]] LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage);
 
 /// What to read of a file: everything, or only types and numbers of elements.

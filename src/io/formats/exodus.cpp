@@ -292,24 +292,19 @@ class ExodusReader {
   }
 
  private:
-  template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
-    throw Error(code, concat(input_.name(), ": ", sentence...));
-  }
-
   void readPoints() {
     const NetcdfValues* const together = file_.find("coord");  // all axes, in older files
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::string name = concat("coord", "xyz"[axis]);
       const NetcdfValues* const values = together != nullptr ? together : file_.find(name);
       if (values == nullptr) {
-        fail(ErrorCode::FileUnsupported, "the file lacks the variable \"", name,
-             "\": it has no nodes in space.");
+        input_.fail(ErrorCode::FileUnsupported, "the file lacks the variable \"", name,
+                    "\": it has no nodes in space.");
       }
       std::vector<double> numbers = file_.reals(*values);
       if (together != nullptr) {
         if (values->lengths.size() != 2 || values->lengths[0] != 3) {
-          fail(ErrorCode::FileUnsupported, "the file has no nodes in space.");
+          input_.fail(ErrorCode::FileUnsupported, "the file has no nodes in space.");
         }
         const auto each = static_cast<std::ptrdiff_t>(numbers.size() / 3);
         const auto begin = numbers.begin() + each * static_cast<std::ptrdiff_t>(axis);
@@ -360,14 +355,14 @@ class ExodusReader {
       readBlock(*values, groups.tagOf(b), next);
       lists_.addName(3, groups.tagOf(b), groups.nameOf(b));
     }
-    if (lists_.blocks.empty()) fail(ErrorCode::FileUnsupported, "the file has no elements.");
+    if (lists_.blocks.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no elements.");
   }
 
   void readBlock(const NetcdfValues& values, std::int32_t region, std::uint64_t& next) {
     const std::string type = lowerCase(values.elementType);
     if (type == "nsided" || type == "nfaced" || values.lengths.size() != 2) {
-      fail(ErrorCode::FileUnsupported, "elements of the type \"", values.elementType,
-           "\" are not supported. Leave their block out.");
+      input_.fail(ErrorCode::FileUnsupported, "elements of the type \"", values.elementType,
+                  "\" are not supported. Leave their block out.");
     }
     ElementBlock& block = lists_.blocks.emplace_back();
     const auto each = static_cast<std::size_t>(values.lengths[1]);
@@ -376,7 +371,8 @@ class ExodusReader {
     next += count;
     if (block.type == nullptr) return;
     const bool isRead =
-        block.type->plural.starts_with("hexahedra") || block.type->plural.starts_with("tetrahedra");
+        each <= kExodusPlaces.size() && (block.type->plural.starts_with("hexahedra") ||
+                                         block.type->plural.starts_with("tetrahedra"));
     block.nodesEach = isRead ? each : 0;
     block.numbers.resize(count);
     for (std::size_t i = 0; i < count; ++i) block.numbers[i] = next - count + i;
@@ -399,24 +395,24 @@ class ExodusReader {
       if (!name.starts_with(word)) continue;
       const VolumeCells* const type = volumeCells(noun, nodes);
       if (type != nullptr) return type;
-      fail(ErrorCode::FileUnsupported, noun, " with ", nodes,
-           " nodes are not known. Leave their block out.");
+      input_.fail(ErrorCode::FileUnsupported, noun, " with ", nodes,
+                  " nodes are not known. Leave their block out.");
     }
     if (name.starts_with("bex_hex")) return volumeCells("Bezier hexahedra");
     constexpr std::array<std::string_view, 9> kFlat = {"shell", "quad", "tri",    "bar",   "beam",
                                                        "truss", "edge", "sphere", "circle"};
     const auto begins = [&name](std::string_view word) { return name.starts_with(word); };
     if (std::any_of(kFlat.begin(), kFlat.end(), begins)) return nullptr;
-    fail(ErrorCode::FileUnsupported, "elements of the type ", quoted(std::string_view(name)),
-         " are not supported. Leave their block out.");
+    input_.fail(ErrorCode::FileUnsupported, "elements of the type ", quoted(std::string_view(name)),
+                " are not supported. Leave their block out.");
   }
 
   [[nodiscard]] Index nodeOf(std::int64_t number, const std::string& variable) const {
     if (number >= 1 && static_cast<std::uint64_t>(number) <= lists_.points.size()) {
       return static_cast<Index>(number - 1);
     }
-    fail(ErrorCode::IndexOutOfRange, "the variable \"", variable, "\" names node ", number,
-         ", but the ", lists_.points.size(), " nodes are numbered from 1.");
+    input_.fail(ErrorCode::IndexOutOfRange, "the variable \"", variable, "\" names node ", number,
+                ", but the ", lists_.points.size(), " nodes are numbered from 1.");
   }
 
   void readSides() {
@@ -428,7 +424,8 @@ class ExodusReader {
       const std::vector<std::int64_t> elements = file_.integers(*found);
       const std::vector<std::int64_t> sides = file_.integers(file_.get("side" + end));
       if (elements.size() != sides.size()) {
-        fail(ErrorCode::FileSyntax, "side set ", s + 1, " has not as many sides as elements.");
+        input_.fail(ErrorCode::FileSyntax, "side set ", s + 1,
+                    " has not as many sides as elements.");
       }
       const std::int32_t tag = groups.tagOf(s);
       lists_.addName(2, tag, groups.nameOf(s));
@@ -758,6 +755,11 @@ void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& op
   requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
   const MeshGroups groups(mesh, options.patchAngle, stage);
   ExodusFile(mesh, groups, stage).write(output, stage.context().threads(), mostBytes);
+}
+
+void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                 Stage& stage) {
+  writeExodus(mesh, output, options, stage, kMostExodusBytes);
 }
 
 void writeQuadraticExodus(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,

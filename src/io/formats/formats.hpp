@@ -102,6 +102,11 @@ WriteMesh writeMeshb;
 /// require a higher version are too large for them.
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                        Stage& stage);
+/// Order 2 only: HexahedraQ2, in the order of HexahedraQ2Ordering, else in that of libMeshb, with
+/// QuadrilateralsQ2 and, in `.meshb`, EdgesP2; if they come before straight hexahedra.
+HoldsCurved holdsQuadraticMedit, holdsQuadraticMeshb;
+ReadCurved readQuadraticMedit, readQuadraticMeshb;
+WriteCurved writeQuadraticMedit, writeQuadraticMeshb;
 /// Streams files with one section Vertices followed by one section Hexahedra, without comments;
 /// loads others as a whole.
 ReadPieces readMeditTo, readMeshbTo;
@@ -232,8 +237,8 @@ WritePiecewise writePatchesOvmb;
 // cells (type 5), numbered from 1 in this order. Each group is an entity (for vertices: one entity
 // per vertex) and a physical group, both with the group's number, which is unique across
 // dimensions; cells without regions form the physical group "hexahedra".
-ReadMesh readGmsh;
-ReadTets readGmshTets;
+[[nodiscard]] ElementLists readGmsh(const Input& input, ElementParts parts, Stage& stage);
+using GmshFormat = ElementFormat<readGmsh>;
 WriteMesh writeGmsh41Binary, writeGmsh41Text, writeGmsh22Text;
 /// Streams binary files of version 4.1 with one block of nodes, numbered from 1, and one of
 /// hexahedra; loads others as a whole.
@@ -243,10 +248,6 @@ OpenSink openGmsh41BinarySink;
 /// MSH 4.1 text with the groups of straight meshes; edges, quads and hexahedra have the order of
 /// the cells.
 WriteCurved writeLagrangeGmsh;
-/// Hexahedra of order 1 to 9 with all their nodes, or with 20, all of the type of the first one;
-/// and their tags, by the corners of tagged elements.
-HoldsCurved holdsCurvedGmsh;
-ReadCurved readCurvedGmsh;
 /// Gmsh 4.1, binary: one file whose entities are partitioned, with ghost cells; or one
 /// self-contained file per part, `NAME_K.msh`, K from 1 on. Nodes and cells have their global
 /// numbers, from 1 on. Tags of edges and vertices are not written.
@@ -304,9 +305,10 @@ struct TetgenText {
 using ExodusFormat = ElementFormat<readExodus>;
 /// Maximum size of an array in the layout that all readers support: 4 GB.
 inline constexpr std::uint64_t kMostExodusBytes = 0xffff'fff0;
+WriteMesh writeExodus;
 /// @param mostBytes  maximum size of an array before 64-bit sizes are used; smaller in tests
 void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage,
-                 std::uint64_t mostBytes = kMostExodusBytes);
+                 std::uint64_t mostBytes);
 /// Order 2 only: blocks of HEX27. Node sets of edges include their midpoints.
 WriteCurved writeQuadraticExodus;
 /// `NAME.e.N.K` for NAME.e, with Nemesis maps of interior and shared nodes and cells. No ghosts.

@@ -26,7 +26,7 @@
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 

@@ -5,12 +5,12 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,16 +19,125 @@
 #include <base/stage.hpp>
 #include <io/core/cell_counts.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/plain_mesh.hpp>
 #include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
 #include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
 namespace {
+
+/// The order of a type in a table; 0 if it is not there.
+constexpr int orderIn(const GmshTypes& types, std::int64_t type) noexcept {
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (std::int64_t{types[i]} == type) return static_cast<int>(i) + 1;
+  }
+  return 0;
+}
+constexpr bool isGmshHexahedron(std::int64_t type) noexcept {
+  return type == kGmshHexahedron20 || orderIn(kGmshHexahedra, type) > 0;
+}
+
+/// The number of nodes; 0 if unknown.
+constexpr std::size_t nodesOfGmshType(std::int64_t type) noexcept {
+  // By type; 0 for types of variable size. From Gmsh's documentation.
+  constexpr std::array<std::uint8_t, 32> kNodes = {0,  2,  3,  4,  4, 8, 6,  5,  3,  6, 9,
+                                                   10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10,
+                                                   12, 15, 15, 21, 4, 5, 6,  20, 35, 56};
+  if (type > 0 && type < static_cast<std::int64_t>(kNodes.size())) {
+    return kNodes[static_cast<std::size_t>(type)];
+  }
+  std::size_t nodes = 1;
+  for (const GmshTypes* const types : {&kGmshLines, &kGmshQuads, &kGmshHexahedra}) {
+    const auto order = static_cast<std::size_t>(orderIn(*types, type));
+    const auto dimension = types == &kGmshLines ? 1 : (types == &kGmshQuads ? 2 : 3);
+    for (int axis = 0; order > 0 && axis < dimension; ++axis) nodes *= order + 1;
+  }
+  return nodes > 1 ? nodes : 0;
+}
+
+/// The number of corners of points, lines, triangles and quads, which can be features; 0 for
+/// others.
+constexpr std::size_t featureCorners(std::int64_t type) noexcept {
+  if (type == kGmshPoint) return 1;
+  if (orderIn(kGmshLines, type) > 0) return 2;
+  if (type == kGmshTriangle) return 3;
+  return type == kGmshQuad8 || orderIn(kGmshQuads, type) > 0 ? 4 : 0;
+}
+
+/// The dimension of element types that may be cells or features.
+constexpr std::int64_t dimensionOfGmshType(std::int64_t type) noexcept {
+  constexpr std::array<std::int64_t, 5> kDimensions = {3, 0, 1, 2, 2};
+  return kDimensions[featureCorners(type)];
+}
+
+/// Dimension of elements, and number of a physical group.
+using GmshGroup = std::pair<std::int64_t, std::int64_t>;
+
+/// The number of a group without the sign, which gives the orientation of an entity.
+constexpr std::int64_t withoutSign(std::int64_t number) noexcept {
+  if (number == std::numeric_limits<std::int64_t>::min()) return 0;
+  return number < 0 ? -number : number;
+}
+
+/// Versions that differ: 1 is text only; 4.0 uses 4-byte tags of nodes and elements, 4.1 uses 8.
+enum class GmshVersion : std::uint8_t { V1, V2, V40, V41 };
+
+constexpr bool hasEntities(GmshVersion version) noexcept { return version >= GmshVersion::V40; }
+
+/// The tag of a node or element. Negative tags wrap to large numbers.
+template <class Record>
+[[nodiscard]] std::uint64_t readGmshTag(Record& record, GmshVersion version, const char* what) {
+  if (version == GmshVersion::V41) return record.size(what);
+  return static_cast<std::uint64_t>(record.integer(what));
+}
+
+/// Dimension and tag of an entity, from the head of a block.
+template <class Source>
+[[nodiscard]] GmshGroup readGmshEntity(Source& source, GmshVersion version) {
+  const auto tag = [&source] { return source.integer("the tag of an entity"); };
+  GmshGroup entity;
+  if (version == GmshVersion::V40) entity.second = tag();
+  entity.first = source.integer("the dimension of an entity");
+  if (version != GmshVersion::V40) entity.second = tag();
+  return entity;
+}
+
+/// Maps groups and entities to tags of elements.
+class GmshTags {
+ public:
+  /// Adds the name of a physical group.
+  void addName(GmshGroup group, std::string_view name) {
+    if (const std::optional<std::int32_t> tag = tagInGroupName(name)) {
+      named_.emplace(group, *tag);
+    } else if (group.first >= 0 && group.first <= 3 && ofPhysical(group) != 0) {
+      names.push_back({static_cast<int>(group.first), ofPhysical(group), std::string(name)});
+    }
+  }
+  std::vector<TagName> names;  ///< given by other programs
+  /// Sets the first physical group of an MSH 4.1 entity; 0 if it has none.
+  void addEntity(GmshGroup entity, std::int64_t physical) { physicals_.emplace(entity, physical); }
+
+  /// The tag of a physical group; 0 if there is none.
+  [[nodiscard]] std::int32_t ofPhysical(GmshGroup group) const {
+    const auto found = named_.find(group);
+    if (found != named_.end()) return found->second;
+    return std::in_range<std::int32_t>(group.second) ? static_cast<std::int32_t>(group.second) : 0;
+  }
+  [[nodiscard]] std::int32_t ofEntity(GmshGroup entity) const {
+    const auto found = physicals_.find(entity);
+    return found == physicals_.end() ? 0 : ofPhysical({entity.first, found->second});
+  }
+
+ private:
+  // As many as the file has groups and entities, which are few.
+  std::map<GmshGroup, std::int32_t> named_;
+  std::map<GmshGroup, std::int64_t> physicals_;
+};
 
 std::optional<GmshVersion> gmshVersionOf(std::string_view version) {
   using Named = std::pair<std::string_view, GmshVersion>;
@@ -242,54 +351,52 @@ void readEntities(Source& source, GmshVersion version, GmshTags& tags) {
   }
 }
 
-/// Points with their tags.
+/// Reads the nodes of a file.
+/// @param lists  gets their points
 class GmshNodes {
  public:
+  GmshNodes(GmshVersion version, ElementLists& lists) : version_(version), points_(lists.points) {}
+
+  /// Reads the section of version 4.
   template <class Source>
-  void read4(Source& source, GmshVersion version) {
+  void readBlocks(Source& source) {
     const std::uint64_t blocks = source.size("the number of blocks of nodes");
     const std::uint64_t total = source.size("the number of nodes");
-    if (version == GmshVersion::V41) {
+    if (version_ == GmshVersion::V41) {
       static_cast<void>(source.size("the smallest tag of a node"));
       static_cast<void>(source.size("the largest tag of a node"));
     }
-    requireRoom(source, total, nodeShape(version, 3), "nodes");
+    requireRoom(source, total, shape(3), "nodes");
     requireIndexable(source, total, "nodes");
-    points_.resize(total);
-    tags_.resize(total);
+    resize(total);
     std::size_t done = 0;
-    for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, version, done);
+    for (std::uint64_t block = 0; block < blocks; ++block) done += readBlock(source, done);
     if (done == total) return;
     source.fail(ErrorCode::FileSyntax, "the blocks have ", done, " of the ", total,
                 " nodes of the section.");
   }
 
+  /// Reads the section of versions 1 and 2, after the number of nodes.
   template <class Source>
-  void read22(Source& source, std::size_t count) {
-    const RecordShape shape{.integers = 1, .reals = 3};
-    requireRoom(source, count, shape, "nodes");
-    points_.resize(count);
-    tags_.resize(count);
-    source.records(count, shape, [&](auto& record, std::size_t i) {
-      tags_[i] = static_cast<std::uint64_t>(record.integer("the number of a node"));
+  void readAll(Source& source, std::size_t count) {
+    requireRoom(source, count, shape(3), "nodes");
+    resize(count);
+    source.records(count, shape(3), [&](auto& record, std::size_t i) {
+      tags[i] = readGmshTag(record, version_, "the number of a node");
       readPoint(record, i);
     });
   }
 
-  [[nodiscard]] Array<Vec3>& points() noexcept { return points_; }
-
-  /// @throws Error FileSyntax if two nodes have the same tag
-  [[nodiscard]] NodeTags index(const TextScanner& scanner) const {
-    NodeTags index(tags_);
-    const Index repeated = index.repeated();
-    if (repeated == kNone) return index;
-    scanner.fail(ErrorCode::FileSyntax, "two nodes have the tag ", tags_[repeated], ".");
-  }
+  Array<std::uint64_t> tags;
 
  private:
+  void resize(std::uint64_t count) {
+    points_.resize(count);
+    tags.resize(count);
+  }
   /// The record of a node with its tag.
-  [[nodiscard]] static RecordShape nodeShape(GmshVersion version, std::size_t reals) {
-    if (version == GmshVersion::V41) return {.sizes = 1, .reals = reals};
+  [[nodiscard]] RecordShape shape(std::size_t reals) const {
+    if (version_ == GmshVersion::V41) return {.sizes = 1, .reals = reals};
     return {.integers = 1, .reals = reals};
   }
 
@@ -297,8 +404,8 @@ class GmshNodes {
   /// @param done  number of nodes read before
   /// @return number of nodes in the block
   template <class Source>
-  std::size_t readBlock(Source& source, GmshVersion version, std::size_t done) {
-    const std::int64_t dimension = readGmshEntity(source, version).first;
+  std::size_t readBlock(Source& source, std::size_t done) {
+    const std::int64_t dimension = readGmshEntity(source, version_).first;
     const bool parametric = source.integer("whether nodes have parameters") != 0;
     const std::uint64_t count = source.size("the number of nodes of a block");
     if (dimension < 0 || dimension > 3) {
@@ -308,22 +415,22 @@ class GmshNodes {
       source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the ", points_.size(),
                   " of the section.");
     }
-    const bool tagsFirst = version == GmshVersion::V41;
+    const bool tagsFirst = version_ == GmshVersion::V41;
     const auto readTag = [&](auto& record, std::size_t i) {
-      tags_[done + i] = readGmshTag(record, version, "the tag of a node");
+      tags[done + i] = readGmshTag(record, version_, "the tag of a node");
     };
     if (tagsFirst) {
       requireRoom(source, count, {.sizes = 1}, "nodes");
       source.records(count, {.sizes = 1}, readTag);
     }
     const std::size_t reals = 3 + (parametric ? static_cast<std::size_t>(dimension) : 0);
-    const RecordShape shape = tagsFirst ? RecordShape{.reals = reals} : nodeShape(version, reals);
-    requireRoom(source, count, shape, "nodes");
-    source.records(count, shape, [&](auto& record, std::size_t i) {
-      if (!tagsFirst) readTag(record, i);
-      readPoint(record, done + i);
+    const RecordShape record = tagsFirst ? RecordShape{.reals = reals} : shape(reals);
+    requireRoom(source, count, record, "nodes");
+    source.records(count, record, [&](auto& numbers, std::size_t i) {
+      if (!tagsFirst) readTag(numbers, i);
+      readPoint(numbers, done + i);
       for (std::size_t k = 3; k < reals; ++k) {
-        static_cast<void>(record.real("a parameter of a node"));
+        static_cast<void>(numbers.real("a parameter of a node"));
       }
     });
     return count;
@@ -334,46 +441,157 @@ class GmshNodes {
     for (double& coordinate : points_[node]) coordinate = record.real("a coordinate of a node");
   }
 
-  Array<Vec3> points_;
-  Array<std::uint64_t> tags_;
+  GmshVersion version_;
+  Array<Vec3>& points_;
 };
 
-/// The kind of the requested cells, for messages; for curved cells, the type is not known yet.
-template <std::size_t corners>
-constexpr CellKind kGmshKind = kCellKind<corners>;
-template <>
-constexpr CellKind kGmshKind<kCurved> = {
-    .singular = "hexahedron", .plural = "hexahedra of higher order", .place = PlaceKind::Cell};
+// The section of elements consists of blocks of one type in version 4, and in binary files of
+// version 2; in text files of versions 1 and 2, each element gives its type.
 
-/// Reads the sections of a file in order.
-/// @tparam corners  per cell; kCurved: hexahedra of the type that comes first in the file
-template <std::size_t corners>
+/// Consecutive elements of one type.
+struct GmshBlock {
+  GmshVersion version = GmshVersion::V2;
+  std::int64_t type = 0;
+  std::size_t nodes = 0;  ///< per element
+  std::size_t count = 0;
+  std::size_t tags = 0;      ///< version 2: per element, before its nodes
+  std::int32_t tag = 0;      ///< version 4: of all elements
+  std::size_t position = 0;  ///< version 4: in the file
+
+  [[nodiscard]] RecordShape shape() const {
+    if (version == GmshVersion::V41) return {.sizes = 1 + nodes};
+    return {.integers = 1 + tags + nodes};
+  }
+};
+
+template <class Source>
+[[nodiscard]] std::size_t readGmshNodeCount(const Source& source, std::int64_t type) {
+  const std::size_t nodes = nodesOfGmshType(type);
+  if (nodes > 0) return nodes;
+  source.fail(ErrorCode::FileUnsupported, "elements of type ", type,
+              " have a number of nodes that is not known here, so that they cannot be skipped.");
+}
+
+/// The numbers of blocks and elements in the section, in version 4.
+template <class Source>
+[[nodiscard]] std::array<std::uint64_t, 2> readGmshCounts4(Source& source, GmshVersion version) {
+  const std::uint64_t blocks = source.size("the number of blocks of elements");
+  const std::uint64_t total = source.size("the number of elements");
+  if (version == GmshVersion::V41) {
+    static_cast<void>(source.size("the smallest tag of an element"));
+    static_cast<void>(source.size("the largest tag of an element"));
+  }
+  return {blocks, total};
+}
+
+/// @param tags  of all entities; null: not needed
+template <class Source>
+[[nodiscard]] GmshBlock readGmshHead4(Source& source, GmshVersion version, const GmshTags* tags) {
+  GmshBlock block{.version = version};
+  const GmshGroup entity = readGmshEntity(source, version);
+  block.type = source.integer("the type of elements");
+  const std::uint64_t count = source.size("the number of elements of a block");
+  if (tags != nullptr) block.tag = tags->ofEntity(entity);
+  block.nodes = readGmshNodeCount(source, block.type);
+  requireRoom(source, count, block.shape(), "elements");
+  block.count = static_cast<std::size_t>(count);
+  block.position = source.position();
+  return block;
+}
+
+/// @param left  elements not read yet
+GmshBlock readGmshHead22(BinarySource& source, std::size_t left) {
+  GmshBlock block{.type = source.integer("the type of elements")};
+  const std::int64_t follow = source.integer("the number of elements that follow");
+  const std::int64_t tags = source.integer("the number of tags");
+  if (follow <= 0 || static_cast<std::uint64_t>(follow) > left || tags < 0) {
+    source.fail(ErrorCode::FileSyntax, "a block of ", follow, " elements with ", tags,
+                " tags each cannot be: ", left, " elements are left.");
+  }
+  block.count = static_cast<std::size_t>(follow);
+  block.tags = static_cast<std::size_t>(tags);
+  block.nodes = readGmshNodeCount(source, block.type);
+  requireRoom(source, block.count, block.shape(), "elements");
+  return block;
+}
+
+/// An element of version 1 or 2 as text, up to its nodes.
+/// @param[out] physical  its physical group, the first of its tags in version 2, or 0
+template <class Source>
+[[nodiscard]] GmshBlock readGmshElement(Source& source, GmshVersion version,
+                                        std::int64_t& physical) {
+  static_cast<void>(source.integer("the number of an element"));
+  GmshBlock element{
+      .version = version, .type = source.integer("the type of an element"), .count = 1};
+  element.nodes = readGmshNodeCount(source, element.type);
+  physical = 0;
+  if (version == GmshVersion::V2) {
+    const std::uint64_t tags = source.size("the number of tags");
+    for (std::uint64_t tag = 0; tag < tags; ++tag) {
+      const std::int64_t number = source.integer("a tag");
+      if (tag == 0) physical = number;
+    }
+    return element;
+  }
+  physical = source.integer("the physical region of an element");
+  static_cast<void>(source.integer("the elementary region of an element"));
+  const std::uint64_t nodes = source.size("the number of nodes of an element");
+  if (nodes == element.nodes) return element;
+  source.fail(ErrorCode::FileSyntax, "an element of type ", element.type, " has ", element.nodes,
+              " nodes, found ", nodes, ".");
+}
+
+/// Entry k: the place in VTK's order of Gmsh's node k.
+std::vector<std::uint32_t> gmshPlaces(std::int64_t type, std::size_t nodes) {
+  std::vector<std::uint32_t> places(nodes);
+  std::iota(places.begin(), places.end(), 0U);
+  const int order = type == kGmshHexahedron20 ? 2 : orderIn(kGmshHexahedra, type);
+  if (order < 2) return places;
+  const std::vector<std::uint32_t> inVtk = vtkNodeOrder(order);
+  const std::vector<std::uint32_t> inGmsh = gmshNodeOrder(order);
+  std::vector<std::uint32_t> placeInVtk(inVtk.size());
+  for (std::uint32_t k = 0; k < inVtk.size(); ++k) placeInVtk[inVtk[k]] = k;
+  for (std::size_t k = 0; k < nodes; ++k) places[k] = placeInVtk[inGmsh[k]];
+  return places;
+}
+
+/// Reads the sections of a file in order. If only types are asked for, the first hexahedra decide.
 class GmshReader {
  public:
-  static constexpr std::string_view kFirst = "$#/";
+  GmshReader(std::string_view text, const Input& input, ElementParts parts, Stage& stage)
+      : file_(text, input.name(), stage), input_(input), parts_(parts) {}
 
-  GmshReader(std::string_view text, const std::string& fileName, Stage& stage,
-             const std::shared_ptr<CellCounts>& counts)
-      : file_(text, fileName, stage), fileName_(fileName), counts_(*counts) {}
-
-  GmshMesh<corners> read() {
-    while (const std::optional<std::string_view> name = file_.nextSection()) readSection(*name);
-    requireCells();
-    mesh_.features.names = std::move(tags_.names);
-    if constexpr (corners == kCurved) finishCurved();
-    return std::move(mesh_);
+  ElementLists read() {
+    while (const std::optional<std::string_view> name = file_.nextSection()) {
+      readSection(*name);
+      if (isDone()) return std::move(lists_);
+    }
+    if (!hasElements_ && parts_ == ElementParts::All) {
+      input_.fail(ErrorCode::FileUnsupported,
+                  "the file holds no cells: it has no section $Elements.");
+    }
+    lists_.names = std::move(tags_.names);
+    lists_.mayBeEmpty = lists_.blocks.empty();
+    return std::move(lists_);
   }
 
  private:
+  [[nodiscard]] bool isDone() const {
+    return parts_ == ElementParts::Types && !lists_.blocks.empty();
+  }
+
   void readSection(std::string_view name) {
-    if (name == "PhysicalNames") return readNames(file_.skipSection(name), tags_);
     const bool version1 = file_.version() == GmshVersion::V1;
-    if (name == "Entities" && hasEntities(file_.version())) {
-      file_.withSource([this](auto& source) { readEntities(source, file_.version(), tags_); });
-    } else if (name == (version1 ? "NOD" : "Nodes")) {
-      readNodes(name);
-    } else if (name == (version1 ? "ELM" : "Elements")) {
+    const bool all = parts_ == ElementParts::All;
+    if (name == (version1 ? "ELM" : "Elements")) {
       readElements(name);
+      if (isDone()) return;
+    } else if (all && name == "PhysicalNames") {
+      return readNames(file_.skipSection(name), tags_);
+    } else if (all && name == "Entities" && hasEntities(file_.version())) {
+      file_.withSource([this](auto& source) { readEntities(source, file_.version(), tags_); });
+    } else if (all && name == (version1 ? "NOD" : "Nodes")) {
+      readNodes(name);
     } else {
       file_.skipSection(name);
       return;
@@ -384,226 +602,203 @@ class GmshReader {
   void readNodes(std::string_view name) {
     file_.scanner().failIfRepeated(hasNodes_, concat("$", name));
     hasNodes_ = true;
-    GmshNodes nodes;
+    GmshNodes nodes(file_.version(), lists_);
     if (hasEntities(file_.version())) {
-      file_.withSource([&](auto& source) { nodes.read4(source, file_.version()); });
+      file_.withSource([&](auto& source) { nodes.readBlocks(source); });
     } else {
       const std::size_t count = file_.scanner().readCount("nodes", 8);
-      file_.withSource([&](auto& source) { nodes.read22(source, count); });
+      file_.withSource([&](auto& source) { nodes.readAll(source, count); });
     }
-    nodes_ = nodes.index(file_.scanner());
-    mesh_.points = std::move(nodes.points());
+    nodes_ = nodesByNumber(nodes.tags, input_);
   }
 
   void readElements(std::string_view name) {
     file_.scanner().failIfRepeated(hasElements_, concat("$", name));
     hasElements_ = true;
-    if (!hasNodes_) {
+    if (!hasNodes_ && parts_ == ElementParts::All) {
       file_.scanner().fail(ErrorCode::FileUnsupported, "the section $", name,
                            " stands before the nodes; exchange them.");
     }
-    const bool counted = !hasEntities(file_.version());
-    const std::size_t count = counted ? file_.scanner().readCount("elements", 8) : 0;
-    file_.withSource([&](auto& source) {
-      if constexpr (corners == kCurved) {
-        const std::size_t begin = source.position();
-        beginCurved(firstGmshHexahedra(source, file_.version(), count));
-        source.moveTo(begin);
+    if (hasEntities(file_.version())) {
+      return file_.withSource([this](auto& source) { readBlocks(source); });
+    }
+    const std::size_t count = file_.scanner().readCount("elements", 8);
+    file_.withSource([&](auto& source) { readCounted(source, count); });
+  }
+
+  /// Version 4.
+  template <class Source>
+  void readBlocks(Source& source) {
+    const auto [blocks, total] = readGmshCounts4(source, file_.version());
+    std::uint64_t done = 0;
+    for (std::uint64_t i = 0; i < blocks; ++i) {
+      const GmshBlock block = readGmshHead4(source, file_.version(), &tags_);
+      done += block.count;
+      readBlock(source, block);
+      if (isDone()) return;
+    }
+    if (done == total) return;
+    source.fail(ErrorCode::FileSyntax, "the blocks have ", done, " elements instead of the ", total,
+                " of the section.");
+  }
+
+  /// Version 2, binary.
+  void readCounted(BinarySource& source, std::size_t count) {
+    for (std::size_t done = 0; done < count && !isDone();) {
+      const GmshBlock block = readGmshHead22(source, count - done);
+      done += block.count;
+      readBlock(source, block);
+    }
+  }
+
+  /// Versions 1 and 2 as text.
+  void readCounted(TextSource& source, std::size_t count) {
+    LoopProgress progress(file_.stage(), count);
+    const std::size_t room = source.room({.integers = 1});
+    for (std::size_t i = 0; i < count && !isDone(); ++i) {
+      if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, count - i));
+      std::int64_t physical = 0;
+      GmshBlock element = readGmshElement(source, file_.version(), physical);
+      element.tag = tagOf(element, physical);
+      // The last one may be incomplete.
+      const std::size_t most = std::min(count - i, room / (1 + element.nodes) + 1);
+      if (ElementBlock* const cells = cellsFor(element, most)) {
+        if (!isDone()) readCell(source, *cells, cells->count() - 1);
+      } else {
+        readFeature(source, element, element.tag);
       }
-      GmshElements<corners> elements(kind_, places_, tags_, nodes_, mesh_, counts_, file_.stage());
-      elements.read(source, file_.version(), count);
-      hasOtherElements_ = elements.hasOthers();
-    });
-  }
-
-  // Cells of higher order. Rows of nodes are in VTK order.
-
-  /// @param type  requested if it is of higher order
-  void beginCurved(std::int64_t type) {
-    const bool isCurved = isGmshHexahedron(type) && type != kGmshHexahedron;
-    kind_.gmshType = isCurved ? type : kGmshHexahedron20;
-    kind_.corners = nodesOfGmshType(kind_.gmshType);
-    const auto* const known =
-        std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
-                     [&](const VolumeCells& cells) { return cells.gmshType == kind_.gmshType; });
-    if (isCurved) kind_.plural = known->plural;
-    mesh_.order = std::max(2, orderIn(kGmshHexahedra, kind_.gmshType));
-    std::vector<std::uint32_t> placeInVtk(mesh_.nodesPerCell());
-    const std::vector<std::uint32_t> inVtk = vtkNodeOrder(mesh_.order);
-    for (std::uint32_t k = 0; k < inVtk.size(); ++k) placeInVtk[inVtk[k]] = k;
-    places_ = gmshNodeOrder(mesh_.order);
-    places_.resize(kind_.corners);
-    for (std::uint32_t& place : places_) place = placeInVtk[place];
-  }
-
-  void finishCurved() {
-    counts_.requireOnly(kind_, fileName_, "Give the others a file of their own.");
-    if (kind_.gmshType == kGmshHexahedron20) {
-      std::vector<std::size_t> all(mesh_.cellCount());
-      std::iota(all.begin(), all.end(), std::size_t{0});
-      addMiddles(mesh_.points, mesh_.nodes, all, fileName_);
-    }
-    fromVtkOrder(mesh_, file_.stage());
-  }
-
-  [[nodiscard]] bool hasCells() const {
-    if constexpr (corners == kCurved) {
-      return !mesh_.nodes.empty();
-    } else {
-      return !mesh_.cells.empty();
     }
   }
 
-  void requireCells() const {
-    const std::string holdsNone = concat(fileName_, ": the file holds no ", kind_.plural);
-    if (!hasElements_) {
-      throw Error(ErrorCode::FileUnsupported, holdsNone + ": it has no section $Elements.");
-    }
-    if (hasCells() || (!hasOtherElements_ && corners != kCurved)) return;
-    const std::string kind = corners == kCurved
-                                 ? std::string()
-                                 : concat(" with ", corners, " nodes (type ", kind_.gmshType, ")");
-    throw Error(ErrorCode::FileUnsupported, holdsNone + kind + ", but " + otherElements() + "." +
-                                                (corners == 8 ? counts_.adviceOnCurved() : ""));
+  [[nodiscard]] std::int32_t tagOf(const GmshBlock& block, std::int64_t physical) const {
+    if (hasEntities(block.version)) return block.tag;
+    return tags_.ofPhysical({dimensionOfGmshType(block.type), withoutSign(physical)});
   }
 
-  [[nodiscard]] std::string otherElements() const {
-    const std::string volume = counts_.instead();
-    return volume.empty() ? "points, lines, triangles or quads only: a surface, not a volume"
-                          : "other elements only" + volume;
+  /// Reads the part of an element in a block before its nodes. @return its tag
+  template <class Record>
+  [[nodiscard]] std::int32_t readTag(Record& record, const GmshBlock& block) const {
+    static_cast<void>(readGmshTag(record, block.version, "the tag of an element"));
+    if (block.tags == 0) return block.tag;
+    const std::int64_t physical = record.integer("a tag");
+    record.skip(block.tags - 1, {.integers = 1});
+    return tagOf(block, physical);
+  }
+
+  template <class Source>
+  void readBlock(Source& source, const GmshBlock& block) {
+    if (block.count == 0) return;
+    if (ElementBlock* const cells = cellsFor(block, block.count)) {
+      if (isDone()) return;
+      const std::size_t first = cells->count() - block.count;
+      source.records(block.count, block.shape(), [&](auto& record, std::size_t i) {
+        cells->regions[first + i] = readTag(record, block);
+        readCell(record, *cells, first + i);
+      });
+      return;
+    }
+    const bool untagged = hasEntities(block.version) && block.tag == 0;
+    if (untagged || featureCorners(block.type) == 0 || parts_ == ElementParts::Types) {
+      return source.skip(block.count, block.shape());
+    }
+    for (std::size_t i = 0; i < block.count; ++i) {
+      readFeature(source, block, readTag(source, block));
+    }
+  }
+
+  /// Adds elements to those of their type.
+  /// @param expected  how many there will be at most, with these
+  /// @return their block, if their nodes are to be stored
+  ElementBlock* cellsFor(const GmshBlock& added, std::size_t expected) {
+    const VolumeCells* const type = volumeCells(&VolumeCells::gmshType, added.type);
+    const bool isHexahedron = isGmshHexahedron(added.type);
+    if (parts_ == ElementParts::Types && !isHexahedron) return nullptr;
+    if (last_ >= lists_.blocks.size() || lists_.blocks[last_].type != type) {
+      const auto found =
+          std::find_if(lists_.blocks.begin(), lists_.blocks.end(),
+                       [type](const ElementBlock& block) { return block.type == type; });
+      last_ = static_cast<std::size_t>(found - lists_.blocks.begin());
+    }
+    const bool isStored = isHexahedron || added.type == kCellKind<4>.gmshType;
+    if (last_ == lists_.blocks.size()) {
+      ElementBlock& block = lists_.blocks.emplace_back();
+      block.type = type;
+      block.nodesEach = added.nodes;
+      places_.push_back(gmshPlaces(added.type, added.nodes));
+      if (isStored) {
+        block.nodes.reserve(expected * added.nodes);
+        block.regions.reserve(expected);
+        block.numbers.reserve(expected);
+      }
+    }
+    ElementBlock& block = lists_.blocks[last_];
+    if (type != nullptr) block.numbers.resize(block.count() + added.count);
+    if (!isStored) return nullptr;
+    block.nodes.resize(block.count() * added.nodes);
+    block.regions.resize(block.count(), added.tag);
+    return &block;
+  }
+
+  template <class Record>
+  void readCell(Record& record, ElementBlock& block, std::size_t i) const {
+    const std::vector<std::uint32_t>& places = places_[last_];
+    Index* const row = block.nodes.data() + i * places.size();
+    for (const std::uint32_t place : places) {
+      const std::uint64_t tag = readGmshTag(record, file_.version(), "a node of a cell");
+      row[place] = nodes_.find(tag);
+      if (row[place] == kNone) failNode(record, block, i, tag);
+    }
+    block.numbers[i] = i;
+  }
+
+  // A separate function that takes the record by value, so that the loop keeps it in registers.
+  template <class Record>
+  [[noreturn]] void failNode(Record record, const ElementBlock& block, std::size_t i,
+                             std::uint64_t tag) const {
+    const CellKind& kind = block.nodesEach == 4 ? kCellKind<4> : kCellKind<8>;
+    record.fail(ErrorCode::IndexOutOfRange, Place{kind.place, i}, kind.singular, " ", i,
+                " (counted from 0) names node ", static_cast<std::int64_t>(tag),
+                ", which is not in the section $Nodes.");
+  }
+
+  /// Reads the nodes of an element that is no cell; if it has a tag, it becomes a feature.
+  template <class Source>
+  void readFeature(Source& source, const GmshBlock& element, std::int32_t tag) {
+    std::array<Index, 4> v{};
+    const std::size_t corners = featureCorners(element.type);
+    const bool isFeature = tag != 0 && parts_ == ElementParts::All;
+    for (std::size_t k = 0; k < element.nodes; ++k) {
+      const std::uint64_t node = readGmshTag(source, element.version, "a node of an element");
+      if (!isFeature || k >= corners) continue;
+      v[k] = nodes_.find(node);
+      if (v[k] != kNone) continue;
+      source.fail(ErrorCode::IndexOutOfRange, "an element names node ",
+                  static_cast<std::int64_t>(node), ", which is not in the section $Nodes.");
+    }
+    if (!isFeature) return;
+    if (corners == 1) lists_.vertices.push_back({v[0], tag});
+    if (corners == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
+    if (corners == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
+    if (corners == 4) lists_.quads.push_back({v, tag});
   }
 
   GmshFile file_;
-  const std::string& fileName_;
-  CellCounts& counts_;
+  const Input& input_;
+  ElementParts parts_;
   GmshTags tags_;
   NodeTags nodes_;
   bool hasNodes_ = false;
   bool hasElements_ = false;
-  bool hasOtherElements_ = false;
-  CellKind kind_ = kGmshKind<corners>;
-  std::vector<std::uint32_t> places_;  ///< position of each node of a curved cell in its row
-  GmshMesh<corners> mesh_;
+  ElementLists lists_;
+  std::vector<std::vector<std::uint32_t>> places_;  ///< per block: gmshPlaces()
+  std::size_t last_ = 0;                            ///< the block that got the last elements
 };
 
 }  // namespace
 
-HexMesh readGmsh(const Input& input, Stage& stage) {
-  return readWith<GmshReader<8>>(input, stage, input.counts());
-}
-
-TetCells readGmshTets(const Input& input, Stage& stage) {
-  return readWith<GmshReader<4>>(input, stage, input.counts());
-}
-
-LagrangeMesh readCurvedGmsh(const Input& input, Stage& stage) {
-  return readWith<GmshReader<kCurved>>(input, stage, input.counts());
-}
-
-namespace {
-
-// Detects cells of higher order without loading the whole file.
-
-/// A source of numbers over a text window.
-class WindowSource {
- public:
-  explicit WindowSource(TextWindow& words) : words_(words) {}
-
-  [[nodiscard]] std::int64_t integer(const NumberName& name) {
-    const std::string word = words_.token();
-    std::int64_t number = 0;
-    const char* const end = word.data() + word.size();
-    const auto result = std::from_chars(word.data(), end, number);
-    if (word.empty() || result.ec != std::errc{} || result.ptr != end)
-      fail(ErrorCode::FileSyntax, name.text());
-    return number;
-  }
-  [[nodiscard]] std::uint64_t size(const NumberName& name) {
-    return static_cast<std::uint64_t>(integer(name));
-  }
-  void skip(std::uint64_t n, RecordShape shape) {
-    if (!words_.skip(n * shape.tokens())) fail(ErrorCode::FileSyntax, "the end of the file");
-  }
-  [[nodiscard]] std::uint64_t position() const { return words_.position(); }
-  /// Unknown; a file that is too short fails in skip().
-  [[nodiscard]] static std::size_t room(RecordShape /*shape*/) {
-    return std::numeric_limits<std::size_t>::max();
-  }
-  /// Errors lack details, since the whole-file reader reports them.
-  template <class... Parts>
-  [[noreturn]] static void fail(ErrorCode code, Parts... sentence) {
-    throw Error(code, concat(sentence...));
-  }
-
- private:
-  TextWindow& words_;
-};
-
-/// The first occurrence of a text in a file, at or after a position; empty if there is none.
-std::optional<std::uint64_t> findInFile(const ByteFile& file, std::uint64_t from,
-                                        std::string_view text, Context& context) {
-  constexpr std::size_t kAtOnce = std::size_t{1} << 22;
-  Array<char> bytes;
-  while (from + text.size() <= file.size()) {
-    context.throwIfCancelled();
-    bytes.resize(std::min<std::uint64_t>(kAtOnce, file.size() - from));
-    file.readAt(from, bytes.data(), bytes.size());
-    const std::size_t place = asText(bytes).find(text);
-    if (place != std::string_view::npos) return from + place;
-    from += bytes.size() - text.size() + 1;
-  }
-  return {};
-}
-
-/// Reads the type of the first hexahedra of a file; 0 if there are none.
-class FirstHexahedra {
- public:
-  static constexpr std::string_view kFirst = "$#/";
-
-  template <class File>
-  FirstHexahedra(const File& file, const std::string& name, Stage& stage)
-      : file_(file, name), context_(stage.context()), words_(file_, context_, TextWindow::kWords) {}
-
-  std::int64_t read() {
-    GmshVersion version = GmshVersion::V1;
-    bool isBinary = false;
-    constexpr std::string_view kFormat = "$MeshFormat";
-    std::uint64_t place = 0;
-    if (const auto format = findInFile(file_, 0, kFormat, context_)) {
-      words_.moveTo(*format + kFormat.size());
-      version = gmshVersionOf(words_.token()).value_or(version);
-      isBinary = words_.token() == "1";
-      place = *format;
-    }
-    const std::string_view section = version == GmshVersion::V1 ? "$ELM" : "$Elements";
-    const auto elements = findInFile(file_, place, section, context_);
-    if (!elements) return 0;
-    words_.moveTo(*elements + section.size());
-    const std::uint64_t count = hasEntities(version) ? 0 : words_.count().value_or(0);
-    WindowSource numbers(words_);
-    if (!isBinary) return firstGmshHexahedra(numbers, version, count);
-    if (!words_.skipLineBreak()) return 0;
-    BinarySource source(file_, static_cast<std::size_t>(words_.position()), words_.stage());
-    return firstGmshHexahedra(source, version, count);
-  }
-
- private:
-  ByteFile file_;
-  Context& context_;
-  TextWindow words_;
-};
-
-}  // namespace
-
-bool holdsCurvedGmsh(const Input& input, Stage& stage) {
-  std::int64_t type = 0;
-  try {
-    type = readWith<FirstHexahedra>(input, stage);
-  } catch (const Error& error) {
-    // The whole-file reader reports what is wrong.
-    if (error.code() != ErrorCode::FileSyntax && error.code() != ErrorCode::FileUnsupported) throw;
-  }
-  return isGmshHexahedron(type) && type != kGmshHexahedron;
+ElementLists readGmsh(const Input& input, ElementParts parts, Stage& stage) {
+  Array<char> room;
+  return GmshReader(input.text(room, stage, "$#/"), input, parts, stage).read();
 }
 
 namespace {
@@ -725,7 +920,7 @@ std::optional<PlainLayout> lookAtGmsh(const ByteFile& file, Context& context) {
 }  // namespace
 
 void readGmshTo(MeshSink& sink, const Input& input, Context& context) {
-  readPlainMesh({lookAtGmsh, readGmsh}, sink, input, context);
+  readPlainMesh({lookAtGmsh, GmshFormat::readMesh}, sink, input, context);
 }
 
 }  // namespace hexhex::io

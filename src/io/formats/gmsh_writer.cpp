@@ -25,7 +25,6 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/gmsh_elements.hpp>
 #include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {

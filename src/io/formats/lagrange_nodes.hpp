@@ -45,6 +45,15 @@ using Node = std::array<int, 3>;
   return places;
 }
 
+/// The order of cells with (p + 1)^3 nodes; 0 if there is no such p from 1 to 9.
+[[nodiscard]] constexpr int orderOfNodes(std::uint64_t nodes) {
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    const auto n = static_cast<std::uint64_t>(order) + 1;
+    if (n * n * n == nodes) return order;
+  }
+  return 0;
+}
+
 inline void append(std::vector<Node>& nodes, const std::vector<Node>& more) {
   nodes.insert(nodes.end(), more.begin(), more.end());
 }
@@ -62,6 +71,21 @@ enum class VtkEdges : std::uint8_t { Around, RowByRow };
 /// each pair first.
 [[nodiscard]] std::vector<std::uint32_t> vtkNodeOrder(int order,
                                                       VtkEdges upright = VtkEdges::Around);
+
+// Gmsh's element types.
+inline constexpr unsigned kGmshLine = 1;
+inline constexpr unsigned kGmshTriangle = 2;
+inline constexpr unsigned kGmshQuad = 3;
+inline constexpr unsigned kGmshHexahedron = 5;
+inline constexpr unsigned kGmshPoint = 15;
+// Order 2, without face and interior nodes.
+inline constexpr unsigned kGmshQuad8 = 16;
+inline constexpr unsigned kGmshHexahedron20 = 17;
+// Complete elements of order 1 to 9.
+using GmshTypes = std::array<unsigned, kMaxOrder>;
+inline constexpr GmshTypes kGmshLines = {kGmshLine, 8, 26, 27, 28, 62, 63, 64, 65};
+inline constexpr GmshTypes kGmshQuads = {kGmshQuad, 10, 36, 37, 38, 47, 48, 49, 50};
+inline constexpr GmshTypes kGmshHexahedra = {kGmshHexahedron, 12, 92, 93, 94, 95, 96, 97, 98};
 
 /// Entry k: the LagrangeMesh index of Gmsh's node k. Gmsh lists corners, edges, faces, interior,
 /// which is a smaller cell. The first 20 of order 2 are those of 20-node hexahedra.

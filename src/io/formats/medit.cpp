@@ -1,5 +1,5 @@
 // `.mesh` and `.meshb` files (see formats.hpp): one reader and one writer of sections over two
-// encodings of numbers, for whole files and for streaming.
+// encodings of numbers, for whole files, for streaming, and for cells of order 2.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -26,7 +26,9 @@
 #include <io/core/number_source.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/plain_mesh.hpp>
+#include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 namespace {
@@ -42,11 +44,15 @@ enum class MeditSection : std::uint32_t {
   Hexahedra = 10,
   Corners = 13,
   RequiredVertices = 15,
-  End = 54
+  EdgesP2 = 25,
+  QuadrilateralsQ2 = 27,
+  HexahedraQ2 = 33,
+  End = 54,
+  HexahedraQ2Ordering = 139
 };
 
 /// Keywords of sections in text files.
-constexpr std::array<std::pair<MeditSection, std::string_view>, 10> kMeditKeywords = {
+constexpr std::array<std::pair<MeditSection, std::string_view>, 14> kMeditKeywords = {
     {{MeditSection::Dimension, "Dimension"},
      {MeditSection::Vertices, "Vertices"},
      {MeditSection::Edges, "Edges"},
@@ -56,10 +62,34 @@ constexpr std::array<std::pair<MeditSection, std::string_view>, 10> kMeditKeywor
      {MeditSection::Hexahedra, "Hexahedra"},
      {MeditSection::Corners, "Corners"},
      {MeditSection::RequiredVertices, "RequiredVertices"},
+     {MeditSection::EdgesP2, "EdgesP2"},
+     {MeditSection::QuadrilateralsQ2, "QuadrilateralsQ2"},
+     {MeditSection::HexahedraQ2, "HexahedraQ2"},
+     {MeditSection::HexahedraQ2Ordering, "HexahedraQ2Ordering"},
      {MeditSection::End, "End"}}};
 
-constexpr const auto& edgesOf(const Hex& /*cell*/) { return adjacency::kHexEdges; }
+/// Hexahedra of order 2.
+using Hex27 = std::array<Index, 27>;
+struct MeditQuadratic {
+  Array<Vec3> points;
+  Array<Hex27> cells;
+  HexFeatures features = {};
+  Array<std::int32_t> regions = {};
+};
+template <std::size_t corners>
+using MeditMesh = std::conditional_t<corners == 27, MeditQuadratic, CellMesh<corners>>;
+
+/// Entry k: the position of VTK's node k where a file does not tell the order. libMeshb orders
+/// nodes so; only the faces differ.
+constexpr std::array<std::uint8_t, 27> kMeditPlaces = {0,  1,  2,  3,  4,  5,  6,  7,  8,
+                                                       9,  10, 11, 12, 13, 14, 15, 16, 17,
+                                                       18, 19, 25, 23, 22, 24, 20, 21, 26};
+
 constexpr const auto& edgesOf(const Tet& /*cell*/) { return adjacency::kTetEdges; }
+template <class Cell>
+constexpr const auto& edgesOf(const Cell& /*cell*/) {
+  return adjacency::kHexEdges;
+}
 
 /// References of some vertex and two of its neighbours along cell edges, ascending: these mark
 /// curves or surfaces, not single vertices.
@@ -123,9 +153,22 @@ std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
 constexpr CellKind kMeditEdges = {.corners = 2, .singular = "edge", .plural = "edges"};
 constexpr CellKind kMeditQuads = {
     .corners = 4, .singular = "quadrilateral", .plural = "quadrilaterals"};
-/// Faces of tets, or of hexahedra.
+constexpr CellKind kMeditEdges3 = {.corners = 3, .singular = "edge", .plural = "edges"};
+constexpr CellKind kMeditQuads9 = {
+    .corners = 9, .singular = "quadrilateral", .plural = "quadrilaterals"};
+/// Cells, with their edges and faces; elements begin with their corners.
 template <std::size_t corners>
-constexpr CellKind kMeditFaces = corners == 4 ? kTriangleKind : kMeditQuads;
+struct MeditKinds {
+  static constexpr MeditSection kEdges =
+      corners == 27 ? MeditSection::EdgesP2 : MeditSection::Edges;
+  static constexpr MeditSection kFaces =
+      corners == 4
+          ? MeditSection::Triangles
+          : (corners == 27 ? MeditSection::QuadrilateralsQ2 : MeditSection::Quadrilaterals);
+  static constexpr CellKind kEdge = corners == 27 ? kMeditEdges3 : kMeditEdges;
+  static constexpr CellKind kFace =
+      corners == 4 ? kTriangleKind : (corners == 27 ? kMeditQuads9 : kMeditQuads);
+};
 constexpr CellKind kMeditCorners = {.corners = 1, .singular = "corner", .plural = "corners"};
 
 /// `.mesh`: keywords and numbers separated by white space.
@@ -339,15 +382,21 @@ class MeditReader {
       const std::shared_ptr<CellCounts>& counts)
       : encoding_(file, fileName, stage), fileName_(fileName), counts_(*counts) {}
 
-  CellMesh<corners> read() {
+  MeditMesh<corners> read() {
     encoding_.readHead();
     while (const auto section = encoding_.nextSection()) readSection(*section);
     mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
     if (hasCells_) return std::move(mesh_);
     throw Error(ErrorCode::FileUnsupported,
                 concat(fileName_, ": the file holds no ", kKind.plural, ": it has no section ",
-                       kKind.meditKeyword, counts_.instead(), "."));
+                       kKind.meditKeyword, counts_.instead(), ".",
+                       (corners == 8 ? counts_.adviceOnCurved() : std::string())));
   }
+  void requireOnlyCells() const {
+    counts_.requireOnly(kKind, fileName_, "Give the others a file of their own.");
+  }
+  /// Entry k: the index in LagrangeMesh of node k of cells of order 2.
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const noexcept { return order_; }
 
  private:
   static constexpr CellKind kKind = kCellKind<corners>;
@@ -361,16 +410,15 @@ class MeditReader {
         return countCells(type);
       }
     }
+    if (section == MeditSection::HexahedraQ2Ordering && corners == 27) return readOrder();
     // Elements before the vertices cannot be validated, and no known program writes them there.
     if (!hasVertices_) return;
-    constexpr MeditSection kFaces =
-        corners == 4 ? MeditSection::Triangles : MeditSection::Quadrilaterals;
-    if (section == MeditSection::Edges) {
-      static_cast<void>(readFeatures(mesh_.features.edges, kMeditEdges));
-    } else if (section == kFaces) {
+    if (section == MeditKinds<corners>::kEdges) {
+      static_cast<void>(readFeatures(mesh_.features.edges, MeditKinds<corners>::kEdge));
+    } else if (section == MeditKinds<corners>::kFaces) {
       // Faces of an untagged boundary are not features.
       auto& faces = facesIn(mesh_.features);
-      if (!readFeatures(faces, kMeditFaces<corners>)) faces.clear();
+      if (!readFeatures(faces, MeditKinds<corners>::kFace)) faces.clear();
     } else if (section == MeditSection::Corners || section == MeditSection::RequiredVertices) {
       readCorners();
     }
@@ -406,6 +454,28 @@ class MeditReader {
     });
   }
 
+  /// Reads where the nodes of a cell of order 2 are: 0, 1 or 2 along each axis.
+  void readOrder() {
+    auto& source = encoding_.source();
+    const RecordShape shape = encoding_.shape(3);
+    std::vector<std::uint32_t> order(encoding_.readCount("places of nodes", shape));
+    source.records(order.size(), shape, [&](auto& record, std::size_t i) {
+      encoding_.beginElement(record, i, order.size(), "places of nodes");
+      for (const std::uint32_t step : {1U, 3U, 9U}) {
+        const std::uint64_t place = encoding_.vertex(record, "the place of a node");
+        order[i] += place > 2 ? 27 : step * static_cast<std::uint32_t>(place);
+      }
+    });
+    std::vector<std::uint32_t> all = order;
+    std::sort(all.begin(), all.end());
+    if (all.size() != order_.size() || all.back() != 26 ||
+        std::adjacent_find(all.begin(), all.end()) != all.end()) {
+      source.fail(ErrorCode::FileSyntax, "the section HexahedraQ2Ordering does not have the 27 ",
+                  "places of nodes, each with 0, 1 or 2 along three axes.");
+    }
+    order_ = std::move(order);
+  }
+
   /// Counts the cells of a section without reading them.
   void countCells(const VolumeCells& type) {
     counts_.add(type, encoding_.readCount(type.plural, encoding_.shape(type.meditVertices + 1)));
@@ -437,7 +507,10 @@ class MeditReader {
     encoding_.source().records(features.size(), shape, [&](auto& record, std::size_t i) {
       const std::size_t begin = record.position();
       encoding_.beginElement(record, i, features.size(), elements.singular);
-      for (Index& vertex : features[i].vertices) vertex = readVertex(record, elements, i, begin);
+      for (std::size_t k = 0; k < elements.corners; ++k) {
+        const Index vertex = readVertex(record, elements, i, begin);
+        if (k < features[i].vertices.size()) features[i].vertices[k] = vertex;
+      }
       const std::int64_t reference = encoding_.reference(record, "a reference");
       if (!std::in_range<std::int32_t>(reference)) failFeature(record, elements, i, begin);
       features[i].tag = static_cast<std::int32_t>(reference);
@@ -531,7 +604,82 @@ class MeditReader {
   bool hasCells_ = false;
   std::vector<Index> corners_;           ///< from the sections Corners and RequiredVertices
   Array<std::int32_t> references_ = {};  ///< of vertices, if they carry information
-  CellMesh<corners> mesh_;
+  std::vector<std::uint32_t> order_ = quadraticOrder(kMeditPlaces);
+  MeditMesh<corners> mesh_;
+};
+
+/// Reads cells of order 2.
+template <class Encoding>
+class QuadraticMeditReader : MeditReader<Encoding, 27> {
+ public:
+  using MeditReader<Encoding, 27>::MeditReader;
+  using MeditReader<Encoding, 27>::kFirst;
+
+  LagrangeMesh read() {
+    MeditQuadratic cells = MeditReader<Encoding, 27>::read();
+    this->requireOnlyCells();
+    LagrangeMesh mesh;
+    mesh.order = 2;
+    mesh.points = std::move(cells.points);
+    mesh.features = std::move(cells.features);
+    mesh.regions = std::move(cells.regions);
+    mesh.nodes.resize(27 * cells.cells.size());
+    for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+      for (std::size_t k = 0; k < 27; ++k)
+        mesh.nodes[27 * c + this->order()[k]] = cells.cells[c][k];
+    }
+    putCornersFirst(mesh);
+    return mesh;
+  }
+};
+
+/// Whether the first hexahedra of a file are of order 2.
+template <class Encoding>
+class FirstHexahedra {
+ public:
+  static constexpr std::string_view kFirst = {};
+
+  template <class File>
+  FirstHexahedra(const File& file, const std::string& name, Stage& stage)
+      : file_(file, name), stage_(stage) {}
+
+  bool read() {
+    if constexpr (Encoding::kIsText) return areQuadratic();
+    MeditBytes bytes(file_, stage_);
+    bytes.readHead();
+    while (const auto section = bytes.nextSection()) {
+      if (section == MeditSection::Hexahedra) return false;
+      if (section == MeditSection::HexahedraQ2) return true;
+    }
+    return false;
+  }
+
+ private:
+  /// Searches a text for the keyword, which is much faster than reading all tokens before it.
+  bool areQuadratic() {
+    constexpr std::string_view kWord = "Hexahedra";
+    constexpr std::size_t kShared = 64;  // by pieces, so that none cuts the keyword off
+    constexpr std::size_t kAtOnce = std::size_t{1} << 22;
+    Array<char> room(std::min(kAtOnce, file_.size()));
+    for (std::size_t begin = 0; begin < file_.size(); begin += kAtOnce - kShared) {
+      stage_.context().throwIfCancelled();
+      const std::size_t size = std::min(kAtOnce, file_.size() - begin);
+      const std::string_view text(file_.view(begin, size, room.data()), size);
+      const std::size_t last = begin + size < file_.size() ? size - kShared / 2 : size;
+      for (std::size_t at = text.find(kWord); at < last; at = text.find(kWord, at + 1)) {
+        const std::size_t line = text.rfind('\n', at) + 1;  // 0 in the first line
+        const std::string_view before = text.substr(line, at - line);
+        const std::string_view rest = text.substr(at + kWord.size());
+        const bool isWord = before.empty() || isSpace(before.back());
+        if (!isWord || before.find('#') != std::string_view::npos) continue;
+        if (!rest.starts_with("Q2Ordering")) return rest.starts_with("Q2");
+      }
+    }
+    return false;
+  }
+
+  ByteFile file_;
+  Stage& stage_;
 };
 
 }  // namespace
@@ -550,6 +698,22 @@ TetCells readMeditTets(const Input& input, Stage& stage) {
 
 TetCells readMeshbTets(const Input& input, Stage& stage) {
   return readWith<MeditReader<MeditBytes, 4>>(input, stage, input.counts());
+}
+
+bool holdsQuadraticMedit(const Input& input, Stage& stage) {
+  return readWith<FirstHexahedra<MeditText>>(input, stage);
+}
+
+bool holdsQuadraticMeshb(const Input& input, Stage& stage) {
+  return readWith<FirstHexahedra<MeditBytes>>(input, stage);
+}
+
+LagrangeMesh readQuadraticMedit(const Input& input, Stage& stage) {
+  return readWith<QuadraticMeditReader<MeditText>>(input, stage, input.counts());
+}
+
+LagrangeMesh readQuadraticMeshb(const Input& input, Stage& stage) {
+  return readWith<QuadraticMeditReader<MeditBytes>>(input, stage, input.counts());
 }
 
 namespace {
@@ -639,6 +803,7 @@ struct MeditCounts {
   std::uint64_t edges = 0;
   std::uint64_t quads = 0;
   std::uint64_t hexahedra = 0;
+  std::uint64_t nodes = 8;  ///< of each hexahedron
 };
 
 /// Everything except vertices and cells.
@@ -740,8 +905,12 @@ class MeditRecords {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     if (std::max({counts.vertices, counts.quads, counts.hexahedra}) > kMost) return 4;
     setVersion(2);
-    const std::uint64_t bytes = 64 + bytesOf(counts.vertices, 1, 3) + bytesOf(counts.edges, 3, 0) +
-                                bytesOf(counts.quads, 5, 0) + bytesOf(counts.hexahedra, 9, 0);
+    const bool quadratic = counts.nodes == 27;
+    const std::uint64_t bytes = 64 + bytesOf(counts.vertices, 1, 3) +
+                                bytesOf(counts.edges, quadratic ? 4 : 3, 0) +
+                                bytesOf(counts.quads, quadratic ? 10 : 5, 0) +
+                                bytesOf(counts.hexahedra, counts.nodes + 1, 0) +
+                                (quadratic ? bytesOf(counts.nodes, 3, 0) : 0);
     return bytes > kMost ? 3 : 2;
   }
 
@@ -766,22 +935,28 @@ class MeditWriter {
  public:
   MeditWriter(OutputFile& output, int threads) : lines_(output, threads), encoding_(output) {}
 
-  /// Writes a whole mesh.
-  void write(const HexMesh& mesh, const MeditGroups& groups, std::uint32_t version, Stage& stage) {
-    const MeditCounts counts = {mesh.points.size(), groups.edges.elements.size(),
-                                groups.quads.elements.size(), mesh.cells.size()};
+  /// Writes a whole mesh. Elements list all their nodes.
+  template <std::size_t ofEdge, std::size_t ofQuad, std::size_t ofCell>
+  void write(std::span<const Vec3> points, std::span<const std::array<Index, ofEdge>> edges,
+             std::span<const std::array<Index, ofQuad>> quads,
+             std::span<const std::array<Index, ofCell>> cells, const MeditGroups& groups,
+             std::uint32_t version, Stage& stage) {
+    using Kinds = MeditKinds<ofCell>;
+    const MeditCounts counts = {points.size(), edges.size(), quads.size(), cells.size(), ofCell};
     LoopProgress progress(stage, counts.vertices + counts.edges + counts.quads + counts.hexahedra);
     encoding_.begin(counts, version);
     encoding_.beginSection(MeditSection::Vertices, counts.vertices, 1, 3);
-    writeVertices(mesh.points, groups.vertexReferences, &progress);
+    writeVertices(points, groups.vertexReferences, &progress);
     if (counts.edges > 0) {
-      encoding_.beginSection(MeditSection::Edges, counts.edges, 3);
-      writeElements(std::span(groups.edges.elements), groups.edgeReferences, &progress);
+      encoding_.beginSection(Kinds::kEdges, counts.edges, ofEdge + 1);
+      writeElements(edges, groups.edgeReferences, &progress);
     }
-    encoding_.beginSection(MeditSection::Quadrilaterals, counts.quads, 5);
-    writeElements(std::span(groups.quads.elements), groups.quadReferences, &progress);
-    encoding_.beginSection(MeditSection::Hexahedra, counts.hexahedra, 9);
-    writeElements(std::span(mesh.cells), groups.cellReferences, &progress);
+    encoding_.beginSection(Kinds::kFaces, counts.quads, ofQuad + 1);
+    writeElements(quads, groups.quadReferences, &progress);
+    if constexpr (ofCell == 27) writeOrder();
+    encoding_.beginSection(static_cast<MeditSection>(kCellKind<ofCell>.meshbKeyword),
+                           counts.hexahedra, ofCell + 1);
+    writeElements(cells, groups.cellReferences, &progress);
     end();
   }
 
@@ -810,6 +985,17 @@ class MeditWriter {
     lines_.write(points.size(), 4 * Encoding::kRoom, vertex, progress);
   }
 
+  /// Writes where the nodes of cells of order 2 are.
+  void writeOrder() {
+    const std::vector<std::uint32_t> order = quadraticOrder(kMeditPlaces);
+    encoding_.beginSection(MeditSection::HexahedraQ2Ordering, order.size(), 3);
+    const auto place = [&](char* to, std::size_t i) {
+      to = encoding_.vertex(encoding_.vertex(to, order[i] % 3), order[i] / 3 % 3);
+      return encoding_.reference(to, order[i] / 9);
+    };
+    lines_.write(order.size(), 3 * Encoding::kRoom, place, nullptr);
+  }
+
   /// @param references  empty: all are 1
   template <class Vertex, std::size_t n>
   void writeElements(std::span<const std::array<Vertex, n>> elements,
@@ -833,7 +1019,36 @@ template <class Encoding>
 void writeWhole(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                 const WriteOptions& options, Stage& stage) {
   const MeditGroups groups(mesh, Encoding::kHoldsEdges, options.patchAngle, stage);
-  MeditWriter<Encoding>(output, stage.context().threads()).write(mesh, groups, version, stage);
+  MeditWriter<Encoding>(output, stage.context().threads())
+      .write(std::span<const Vec3>(mesh.points),
+             std::span<const std::array<Index, 2>>(groups.edges.elements),
+             std::span<const Quad>(groups.quads.elements), std::span<const Hex>(mesh.cells), groups,
+             version, stage);
+}
+
+/// Views numbers as rows.
+template <std::size_t n>
+std::span<const std::array<Index, n>> inRows(const Array<Index>& numbers) {
+  return {reinterpret_cast<const std::array<Index, n>*>(numbers.data()), numbers.size() / n};
+}
+
+template <class Encoding>
+void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                    Stage& stage) {
+  const HexMesh straight = straightMesh(mesh);
+  MeditGroups groups(straight, Encoding::kHoldsEdges, options.patchAngle, stage);
+  if (!groups.vertexReferences.empty()) groups.vertexReferences.resize(mesh.points.size(), 0);
+  GroupNodes nodes;
+  withThreads(stage.context().threads(),
+              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
+  const std::vector<std::uint32_t> order = quadraticOrder(kMeditPlaces);
+  Array<Hex27> cells(mesh.cellCount());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (std::size_t k = 0; k < 27; ++k) cells[c][k] = mesh.nodes[27 * c + order[k]];
+  }
+  MeditWriter<Encoding>(output, stage.context().threads())
+      .write(std::span<const Vec3>(mesh.points), inRows<3>(nodes.edges), inRows<9>(nodes.quads),
+             std::span<const Hex27>(cells), groups, 0, stage);
 }
 
 }  // namespace
@@ -846,6 +1061,16 @@ void writeMedit(const HexMesh& mesh, OutputFile& output, const WriteOptions& opt
 void writeMeshb(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                 Stage& stage) {
   writeWhole<MeditRecords>(mesh, output, 0, options, stage);
+}
+
+void writeQuadraticMedit(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                         Stage& stage) {
+  writeQuadratic<MeditLines>(mesh, output, options, stage);
+}
+
+void writeQuadraticMeshb(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
+                         Stage& stage) {
+  writeQuadratic<MeditRecords>(mesh, output, options, stage);
 }
 
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,

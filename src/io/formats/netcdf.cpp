@@ -133,11 +133,11 @@ constexpr std::array<std::uint8_t, 12> kNetcdfBytes = {0, 1, 1, 2, 4, 4, 8, 1, 2
 class NetcdfHeadReader {
  public:
   NetcdfHeadReader(std::string_view bytes, const std::string& fileName)
-      : bytes_(bytes), fileName_(fileName) {
+      : bytes_(bytes), cursor_(bytes, bytes, fileName) {
     requireNetcdf(bytes, fileName);
     wideCounts_ = bytes[3] == 5;
     widePlaces_ = bytes[3] != 1;
-    place_ = 4;
+    take(4);
   }
 
   std::vector<NetcdfValues> read() {
@@ -155,19 +155,14 @@ class NetcdfHeadReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& sentence) const {
-    throw Error(ErrorCode::FileSyntax, concat(fileName_, ", byte ", place_, ": ", sentence));
+  [[noreturn]] void fail(const char* sentence) const {
+    cursor_.fail(ErrorCode::FileSyntax, sentence);
   }
-  const char* take(std::uint64_t size) {
-    if (size > bytes_.size() - place_) fail("the file ends within its head.");
-    const char* const begin = bytes_.data() + place_;
-    place_ += static_cast<std::size_t>(size);
-    return begin;
-  }
+  const char* take(std::uint64_t size) { return cursor_.take(size, "the head").data(); }
   std::uint32_t word() { return loadBig<std::uint32_t>(take(4)); }
   std::uint64_t wide() { return loadBig<std::uint64_t>(take(8)); }
   std::uint64_t count() { return wideCounts_ ? wide() : word(); }
-  void skipPadding() { take((4 - place_ % 4) % 4); }
+  void skipPadding() { take((4 - cursor_.position() % 4) % 4); }
   std::string_view text() {
     const std::uint64_t size = count();
     const std::string_view result(take(size), static_cast<std::size_t>(size));
@@ -232,8 +227,7 @@ class NetcdfHeadReader {
   }
 
   std::string_view bytes_;
-  const std::string& fileName_;
-  std::size_t place_ = 0;
+  ByteCursor cursor_;
   bool wideCounts_ = false;
   bool widePlaces_ = false;
   std::uint64_t valueBytes_ = 0;  ///< of the variables so far
@@ -295,38 +289,30 @@ const NetcdfValues& NetcdfReader::get(std::string_view name) const {
               concat(fileName_, ": the file lacks the variable \"", name, "\"."));
 }
 
-std::vector<std::int64_t> NetcdfReader::integers(const NetcdfValues& values) const {
-  if (hdf_ != nullptr) return hdf_->integers(values.name);
-  constexpr std::uint32_t kInt = 4;
-  constexpr std::uint32_t kWideInt = 10;
-  if (values.type != kInt && values.type != kWideInt) {
-    throw Error(ErrorCode::FileSyntax, fileName_ + ": the variable \"" + values.name +
-                                           "\" has no integers of 32 or 64 bits.");
+template <class Narrow, class Number>
+std::vector<Number> NetcdfReader::numbers(const NetcdfValues& values, std::uint32_t narrow,
+                                          std::uint32_t wide, const char* what) const {
+  if (values.type != narrow && values.type != wide) {
+    throw Error(ErrorCode::FileSyntax,
+                concat(fileName_, ": the variable \"", values.name, "\" has no ", what, "."));
   }
-  std::vector<std::int64_t> numbers(static_cast<std::size_t>(values.count));
+  std::vector<Number> numbers(static_cast<std::size_t>(values.count));
   const char* place = bytes_.data() + values.begin;
-  for (std::int64_t& number : numbers) {
-    number = values.type == kInt ? loadBig<std::int32_t>(place) : loadBig<std::int64_t>(place);
+  for (Number& number : numbers) {
+    number = values.type == narrow ? Number{loadBig<Narrow>(place)} : loadBig<Number>(place);
     place += kNetcdfBytes[values.type];
   }
   return numbers;
 }
 
+std::vector<std::int64_t> NetcdfReader::integers(const NetcdfValues& values) const {
+  if (hdf_ != nullptr) return hdf_->integers(values.name);
+  return numbers<std::int32_t, std::int64_t>(values, 4, 10, "integers of 32 or 64 bits");
+}
+
 std::vector<double> NetcdfReader::reals(const NetcdfValues& values) const {
   if (hdf_ != nullptr) return hdf_->reals(values.name);
-  constexpr std::uint32_t kFloat = 5;
-  constexpr std::uint32_t kDouble = 6;
-  if (values.type != kFloat && values.type != kDouble) {
-    throw Error(ErrorCode::FileSyntax, fileName_ + ": the variable \"" + values.name +
-                                           "\" has no floating-point numbers.");
-  }
-  std::vector<double> numbers(static_cast<std::size_t>(values.count));
-  const char* place = bytes_.data() + values.begin;
-  for (double& number : numbers) {
-    number = values.type == kFloat ? double{loadBig<float>(place)} : loadBig<double>(place);
-    place += kNetcdfBytes[values.type];
-  }
-  return numbers;
+  return numbers<float, double>(values, 5, 6, "floating-point numbers");
 }
 
 std::vector<std::string> NetcdfReader::texts(const NetcdfValues& values) const {

@@ -93,6 +93,11 @@ class NetcdfReader {
   [[nodiscard]] std::vector<std::string> texts(const NetcdfValues& values) const;
 
  private:
+  /// The numbers of a variable of one of two types, of 32 and of 64 bits.
+  template <class Narrow, class Number>
+  [[nodiscard]] std::vector<Number> numbers(const NetcdfValues& values, std::uint32_t narrow,
+                                            std::uint32_t wide, const char* what) const;
+
   std::string_view bytes_;
   std::unique_ptr<HdfReader> hdf_;  ///< NetCDF-4 files only; null: classic layout in bytes_
   const std::string& fileName_;

@@ -172,14 +172,13 @@ void requireFiles(const Input& input, const std::vector<std::filesystem::path>& 
     if (missing || std::filesystem::is_directory(status)) continue;
     files.push_back(file);
     if (std::filesystem::is_regular_file(status)) continue;
-    throw Error(ErrorCode::FileUnsupported,
-                input.name() + ": the piece " + piece.string() + " is a pipe or a device.");
+    input.fail(ErrorCode::FileUnsupported,
+               "the piece " + piece.string() + " is a pipe or a device.");
   }
   std::sort(files.begin(), files.end());
   const auto twice = std::adjacent_find(files.begin(), files.end());
   if (twice == files.end()) return;
-  throw Error(ErrorCode::FileSyntax,
-              input.name() + ": two pieces are the same file, " + twice->string() + '.');
+  input.fail(ErrorCode::FileSyntax, "two pieces are the same file, " + twice->string() + '.');
 }
 
 /// The files of all pieces.
@@ -199,9 +198,9 @@ std::vector<std::filesystem::path> findPieces(const Input& input, Stage& stage) 
     pieces.push_back(input.path().parent_path() / source);
   }
   if (pieces.empty()) {
-    throw Error(ErrorCode::FileSyntax, input.name() +
-                                           ": the file names no pieces: there is no <Piece> in a "
-                                           "<PUnstructuredGrid>.");
+    input.fail(ErrorCode::FileSyntax,
+               "the file names no pieces: there is no <Piece> in a "
+               "<PUnstructuredGrid>.");
   }
   requireFiles(input, pieces);
   return pieces;

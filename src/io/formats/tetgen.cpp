@@ -122,9 +122,9 @@ TetCells parseTetgen(const TetgenText& nodes, const TetgenText& faces, const Inp
   }
   input.counts()->add(*type, mesh.cells.size());
   if (tets.width() != 4) {
-    throw Error(ErrorCode::FileUnsupported,
-                input.name() + ": the file holds no tetrahedra with 4 nodes" +
-                    input.counts()->instead() + ". Let TetGen write them, without -o2.");
+    input.fail(ErrorCode::FileUnsupported, "the file holds no tetrahedra with 4 nodes" +
+                                               input.counts()->instead() +
+                                               ". Let TetGen write them, without -o2.");
   }
   tets.readRows(stage, [&](std::size_t i) {
     for (Index& vertex : mesh.cells[i]) vertex = tets.readVertex(points, "tetrahedron", i);
@@ -145,8 +145,8 @@ TetCells parseTetgen(const TetgenText& nodes, const TetgenText& faces, const Inp
 
 TetCells readTetgen(const Input& input, Stage& stage) {
   if (input.path().empty()) {
-    throw Error(ErrorCode::FileUnsupported,
-                input.name() + ": tets in memory have no file .node of points beside them.");
+    input.fail(ErrorCode::FileUnsupported,
+               "tets in memory have no file .node of points beside them.");
   }
   std::filesystem::path nodes = input.path();
   nodes.replace_extension(".node");

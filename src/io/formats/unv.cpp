@@ -224,8 +224,7 @@ class UnvReader {
   /// Resolves node numbers, and turns groups into tags.
   void finish() {
     if (nodeNumbers_.empty()) {
-      throw Error(ErrorCode::FileUnsupported,
-                  input_.name() + ": the file has no nodes: no data set 2411 or 781.");
+      input_.fail(ErrorCode::FileUnsupported, "the file has no nodes: no data set 2411 or 781.");
     }
     const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
     tags_.sort();

@@ -53,15 +53,6 @@ const CellKind* quadraticKind(const VtkSource& source) {
   return nullptr;
 }
 
-/// The order of cells with (p + 1)^3 nodes; 0 if there is no such p from 1 to 9.
-int orderOf(std::uint64_t nodes) {
-  for (int order = 1; order <= kMaxOrder; ++order) {
-    const auto n = static_cast<std::uint64_t>(order) + 1;
-    if (n * n * n == nodes) return order;
-  }
-  return 0;
-}
-
 /// The order of the cells, which must be equal for all.
 int findOrder(const VtkSource& source) {
   Array<std::int64_t> types(source.cells);
@@ -77,7 +68,7 @@ int findOrder(const VtkSource& source) {
     if (begin < 0 || ends[c] < begin || ends[c] > stored) break;
     const std::int64_t count = ends[c] - begin;
     const bool first = nodes == 0;
-    if (first && orderOf(static_cast<std::uint64_t>(count)) > 0) nodes = count;
+    if (first && orderOfNodes(static_cast<std::uint64_t>(count)) > 0) nodes = count;
     if (count == nodes) continue;
     source.fail(ErrorCode::FileUnsupported, Place{PlaceKind::Cell, c}, "cell ", c, " has ", count,
                 " nodes",
@@ -86,7 +77,7 @@ int findOrder(const VtkSource& source) {
                        : concat(", but the cells before it have ", nodes,
                                 ". Cells of different orders are not supported.")));
   }
-  return nodes == 0 ? 1 : orderOf(static_cast<std::uint64_t>(nodes));
+  return nodes == 0 ? 1 : orderOfNodes(static_cast<std::uint64_t>(nodes));
 }
 
 /// Converts nodes from VTK's order to that of LagrangeMesh.
@@ -123,7 +114,53 @@ void renumberFeatures(const std::vector<bool>& isCorner, const Array<Index>& new
   renumber(features.quads);
 }
 
-/// Renumbers nodes: corners first, otherwise in file order.
+/// Extends rows of 20 nodes to rows of 27.
+void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string& fileName) {
+  const std::size_t perCell = mesh.nodesPerCell();
+  Array<Index> rows(mesh.nodes.size() / nodesEach * perCell);
+  std::vector<std::size_t> cells(rows.size() / perCell);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    cells[c] = c;
+    std::copy_n(mesh.nodes.data() + nodesEach * c, nodesEach, rows.data() + perCell * c);
+  }
+  mesh.nodes = std::move(rows);
+  addMiddles(mesh.points, mesh.nodes, cells, fileName);
+}
+
+}  // namespace
+
+bool holdsVtkLagrange(const VtkSource& source) {
+  return countCells(source, lagrangeCells(0)) > 0 || quadraticKind(source) != nullptr;
+}
+
+LagrangeMesh readVtkLagrange(const VtkSource& source, Stage& stage) {
+  source.requireIndexable();
+  LagrangeMesh mesh;
+  const bool isLagrange = countCells(source, lagrangeCells(0)) > 0;
+  const CellKind* const quadratic = isLagrange ? nullptr : quadraticKind(source);
+  mesh.order = quadratic != nullptr ? 2 : findOrder(source);
+  const CellKind wanted = quadratic != nullptr ? *quadratic : lagrangeCells(mesh.nodesPerCell());
+  if (source.cells == 0) failWithoutVtkCells(source, wanted);
+  mesh.points.resize(source.points);
+  readVtkPoints(source, mesh.points, stage);
+  Array<std::size_t> numbers;
+  const auto makeRoom = [&](std::size_t cells) {
+    mesh.nodes.resize(cells * wanted.corners);
+    return mesh.nodes.data();
+  };
+  readVtkCells(source, wanted, makeRoom, &numbers, stage);
+  source.counts->requireOnly(wanted, source.name(), "Give the others a file of their own.");
+  if (wanted.corners < mesh.nodesPerCell()) {
+    completeCells(mesh, wanted.corners, source.name());  // new nodes have no generators
+  } else {
+    readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  }
+  mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkHexFeatures(source);
+  fromVtkOrder(mesh, stage, isLagrange ? source.uprightEdges : VtkEdges::Around);
+  return mesh;
+}
+
 void putCornersFirst(LagrangeMesh& mesh) {
   std::vector<bool> isCorner(mesh.points.size(), false);
   const std::vector<std::uint32_t> places = vtkNodeOrder(mesh.order);  // corners come first
@@ -150,53 +187,6 @@ void putCornersFirst(LagrangeMesh& mesh) {
   renumberFeatures(isCorner, newNumber, mesh.features);
 }
 
-/// Extends rows of 20 nodes to rows of 27.
-void completeCells(LagrangeMesh& mesh, std::size_t nodesEach, const std::string& fileName) {
-  const std::size_t perCell = mesh.nodesPerCell();
-  Array<Index> rows(mesh.nodes.size() / nodesEach * perCell);
-  std::vector<std::size_t> cells(rows.size() / perCell);
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    cells[c] = c;
-    std::copy_n(mesh.nodes.data() + nodesEach * c, nodesEach, rows.data() + perCell * c);
-  }
-  mesh.nodes = std::move(rows);
-  addMiddles(mesh.points, mesh.nodes, cells, fileName);
-}
-
-}  // namespace
-
-bool holdsVtkLagrange(const VtkSource& source) {
-  return countCells(source, lagrangeCells(0)) > 0 || quadraticKind(source) != nullptr;
-}
-
-LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileName, Stage& stage) {
-  source.requireIndexable();
-  LagrangeMesh mesh;
-  const bool isLagrange = countCells(source, lagrangeCells(0)) > 0;
-  const CellKind* const quadratic = isLagrange ? nullptr : quadraticKind(source);
-  mesh.order = quadratic != nullptr ? 2 : findOrder(source);
-  const CellKind wanted = quadratic != nullptr ? *quadratic : lagrangeCells(mesh.nodesPerCell());
-  if (source.cells == 0) failWithoutVtkCells(source, wanted);
-  mesh.points.resize(source.points);
-  readVtkPoints(source, mesh.points, stage);
-  Array<std::size_t> numbers;
-  const auto makeRoom = [&](std::size_t cells) {
-    mesh.nodes.resize(cells * wanted.corners);
-    return mesh.nodes.data();
-  };
-  readVtkCells(source, wanted, makeRoom, &numbers, stage);
-  source.counts->requireOnly(wanted, fileName, "Give the others a file of their own.");
-  if (wanted.corners < mesh.nodesPerCell()) {
-    completeCells(mesh, wanted.corners, fileName);  // new nodes have no generators
-  } else {
-    readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
-  }
-  mesh.regions = readVtkRegions(source, numbers);
-  mesh.features = readVtkHexFeatures(source);
-  fromVtkOrder(mesh, stage, isLagrange ? source.uprightEdges : VtkEdges::Around);
-  return mesh;
-}
-
 void fromVtkOrder(LagrangeMesh& mesh, Stage& stage, VtkEdges upright) {
   reorderNodes(mesh, upright, stage);
   putCornersFirst(mesh);
@@ -213,11 +203,11 @@ bool holdsCurvedVtkLegacy(const Input& input, Stage& stage) {
 LagrangeMesh readCurvedVtkLegacy(const Input& input, Stage& stage) {
   const auto source = openVtkLegacyFile(input, true, stage);
   if (quadraticKind(*source) == nullptr) failWithoutVtkCells(*source, kQuadratic.back());
-  return readVtkLagrange(*source, input.name(), stage);
+  return readVtkLagrange(*source, stage);
 }
 
 LagrangeMesh readLagrangeVtu(const Input& input, Stage& stage) {
-  return readVtkLagrange(*openVtuFile(input, stage), input.name(), stage);
+  return readVtkLagrange(*openVtuFile(input, stage), stage);
 }
 
 void writeLagrangeVtu(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,

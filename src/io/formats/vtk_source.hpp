@@ -125,6 +125,8 @@ class VtkSource {
   template <class T>
   void copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const;
 
+  /// Of the file, for messages.
+  [[nodiscard]] const std::string& name() const noexcept { return fileName_; }
   /// Throws an error about the file.
   /// @param sentence  its parts, as for concat()
   template <class... Parts>
@@ -252,9 +254,7 @@ using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)
 
 /// Whether there are Lagrange hexahedra, or hexahedra with 20 or 27 nodes but no straight ones.
 [[nodiscard]] bool holdsVtkLagrange(const VtkSource& source);
-/// @param fileName  for messages
-[[nodiscard]] LagrangeMesh readVtkLagrange(const VtkSource& source, const std::string& fileName,
-                                           Stage& stage);
+[[nodiscard]] LagrangeMesh readVtkLagrange(const VtkSource& source, Stage& stage);
 
 /// Reads points and tets.
 [[nodiscard]] TetCells readVtkTets(VtkSource& source, Stage& stage);

@@ -49,115 +49,13 @@ void writeVtkHdfKind(const HdfFile& file, hid_t grid) {
   file.writeAttribute(grid, "Type", text.id(), file.space({}), kind.data());
 }
 
-/// Writes a whole data set.
-class VtkHdfWriter {
- public:
-  VtkHdfWriter(const OutputFile& file, const VtkDataSet& data, Stage& stage)
-      : data_(data),
-        file_(file, HdfFile::Order::OfNames),
-        grid_(file_.group(file_.root(), "VTKHDF")),
-        progress_(stage, data.points + data.cells) {}
-
-  void write() {
-    writeVtkHdfKind(file_, grid_.id());
-    count("NumberOfPoints", data_.points);
-    count("NumberOfCells", data_.cells);
-    count("NumberOfConnectivityIds", 8 * data_.cells);
-    for (const VtkArray& array : data_.arrays()) {
-      if (array.section == VtkSection::Points) writeRows(grid_, "Points", array);
-    }
-    progress_.advance(data_.points);
-    writeCells();
-    progress_.advance(data_.cells);
-    writeGroup("PointData", VtkSection::PointData);
-    writeGroup("CellData", VtkSection::CellData);
-    writeGroup("FieldData", VtkSection::FieldData);
-    grid_.close();
-    file_.close();
-  }
-
- private:
-  void count(const char* name, std::uint64_t number) {
-    writeNumbers(name, 1, [number](std::size_t) { return number; });
-  }
-  /// Writes n 64-bit integers.
-  template <class F>
-  void writeNumbers(const char* name, std::uint64_t n, const F& valueOf) {
-    VtkArray array;
-    array.type = "Int64";
-    array.rows = n;
-    array.write = [&](const VtkBytes& output) { writeValues<std::int64_t>(output, n, valueOf); };
-    writeRows(grid_, name, array);
-  }
-
-  /// Writes a dataset in pieces, as the array produces its bytes.
-  void writeRows(const HdfObject& group, const char* name, const VtkArray& array) {
-    const hid_t memory = vtkHdfTypeOf(array.type);
-    const hid_t stored = array.section == VtkSection::Cells && memory == HDF5(H5T_NATIVE_INT32_g)
-                             ? HDF5(H5T_STD_I64LE_g)  // whatever the number of points
-                             : memory;
-    const auto spaceOf = [&](hsize_t rows) {
-      return array.components == 1 ? file_.space({rows}) : file_.space({rows, array.components});
-    };
-    const HdfObject space = spaceOf(array.rows);
-    const HdfObject set = file_.dataset(group.id(), name, stored, space);
-    std::array<hsize_t, 2> begin = {0, 0};
-    array.write([&](const void* bytes, std::size_t size) {
-      if (size == 0) return;
-      const std::array<hsize_t, 2> count = {size / (array.components * HDF5(H5Tget_size)(memory)),
-                                            array.components};
-      const HdfObject part = spaceOf(count[0]);
-      space.require(HDF5(H5Sselect_hyperslab)(space.id(), H5S_SELECT_SET, begin.data(), nullptr,
-                                              count.data(), nullptr));
-      set.require(HDF5(H5Dwrite)(set.id(), memory, part.id(), space.id(), H5P_DEFAULT, bytes));
-      begin[0] += count[0];
-    });
-  }
-
-  void writeCells() {
-    for (const VtkArray& array : data_.arrays()) {
-      if (array.section != VtkSection::Cells) continue;
-      if (array.name == "connectivity") writeRows(grid_, "Connectivity", array);
-      if (array.name == "types") writeRows(grid_, "Types", array);
-      if (array.name != "offsets") continue;
-      // Offsets, including the end of the last cell.
-      writeNumbers("Offsets", data_.cells + 1, [](std::size_t i) { return 8 * i; });
-    }
-  }
-
-  void writeGroup(const char* name, VtkSection section) {
-    const HdfObject group = file_.group(grid_.id(), name);
-    for (const VtkArray& array : data_.arrays()) {
-      // names are not written: docs/user/formats.md
-      if (array.name == kVtkTagNames || array.name == kVtkNamedTags) continue;
-      if (array.section == section) writeRows(group, std::string(array.name).c_str(), array);
-    }
-  }
-
-  const VtkDataSet& data_;
-  HdfFile file_;
-  HdfObject grid_;
-  LoopProgress progress_;
-};
-
-}  // namespace
-
-void writeVtkHdf(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                 Stage& stage) {
-  VtkPiece piece;
-  const VtkDataSet data = hexDataSet(mesh, options, piece);
-  VtkHdfWriter(output, data, stage).write();
-}
-
-namespace {
-
 // One VTKHDF file with all parts: their arrays are concatenated, and the lengths are stored for
 // each part.
 //
-// A single process appends part by part to extensible datasets. In a team with a part per process,
-// all lengths are known before anything is written: the first process has HDF5 lay out the file
-// with space for everything, then each writes its bytes to their position, as parallel HDF5 does
-// for contiguous datasets. This requires neither parallel HDF5 nor MPI.
+// A whole mesh is one part. For it, and in a team with a part per process, all lengths are known
+// before anything is written: HDF5 lays out the file with space for everything, then each process
+// writes its bytes to their position, as parallel HDF5 does for contiguous datasets. This requires
+// neither parallel HDF5 nor MPI. A single process appends several parts to extensible datasets.
 
 /// The contribution of a part to a dataset of the file.
 struct Column {
@@ -165,12 +63,11 @@ struct Column {
   const VtkArray* array;
 };
 
-/// Adds the arrays that VTKHDF has in addition to those of `.pvtu` pieces.
-void addLayout(VtkDataSet& data, const MeshPart& part) {
+/// Adds the arrays that VTKHDF has in addition to those of `.vtu`.
+void addLayout(VtkDataSet& data, const Array<Hex>& cells) {
   const auto addCount = [&data](const char* name, std::uint64_t count) {
     data.addOwn(VtkSection::Cells, name, std::vector{static_cast<std::int64_t>(count)});
   };
-  const Array<Hex>& cells = part.mesh.cells;
   constexpr std::size_t kCorners = std::tuple_size_v<Hex>;
   addCount("NumberOfPoints", data.points);
   addCount("NumberOfCells", data.cells);
@@ -206,6 +103,66 @@ HdfObject addGrid(const HdfFile& file) {
   }
   return grid;
 }
+
+/// Lays out a file with datasets of these numbers of rows.
+/// @param more  adds what else the grid has
+/// @return the position of each dataset in the file
+template <class More>
+std::vector<std::uint64_t> layOut(const OutputFile& output, const std::vector<Column>& columns,
+                                  const std::vector<std::uint64_t>& rows, const More& more) {
+  HdfFile file(output, HdfFile::Order::OfNames);
+  HdfObject grid = addGrid(file);
+  std::vector<std::uint64_t> places;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const VtkArray& array = *columns[i].array;
+    places.push_back(file.reserve(grid.id(), columns[i].name, vtkHdfTypeOf(array.type), rows[i],
+                                  array.components));
+  }
+  more(file, grid.id());
+  grid.close();
+  file.close();
+  return places;
+}
+
+std::vector<std::uint64_t> rowsOf(const std::vector<Column>& columns) {
+  std::vector<std::uint64_t> rows(columns.size());
+  std::transform(columns.begin(), columns.end(), rows.begin(),
+                 [](const Column& column) { return column.array->rows; });
+  return rows;
+}
+
+/// Writes the rows of an array to their position in a file.
+void writeAt(OutputFile& output, std::uint64_t position, const VtkArray& array) {
+  if (array.rows == 0) return;
+  FilePart part(output, position);
+  array.write([&](const void* bytes, std::size_t size) { part.writeBytes(bytes, size); });
+  part.flush();
+}
+
+}  // namespace
+
+void writeVtkHdf(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
+                 Stage& stage) {
+  VtkPiece piece;
+  VtkDataSet data = hexDataSet(mesh, options, piece);
+  addLayout(data, mesh.cells);
+  std::vector<Column> columns = columnsOf(data);
+  for (const VtkArray& array : data.arrays()) {
+    // names are not written: docs/user/formats.md
+    if (array.name == kVtkTagNames || array.name == kVtkNamedTags) continue;
+    if (array.section != VtkSection::FieldData) continue;
+    columns.push_back({concat("FieldData/", array.name), &array});
+  }
+  LoopProgress progress(stage, columns.size());
+  const std::vector<std::uint64_t> places =
+      layOut(output, columns, rowsOf(columns), [](const HdfFile&, hid_t) {});
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    writeAt(output, places[i], *columns[i].array);
+    progress.advance(1);
+  }
+}
+
+namespace {
 
 /// An extensible dataset.
 struct GrowingSet {
@@ -279,7 +236,7 @@ class VtkHdfSink final : public PartSink {
     Stage stage(context_, "write mesh");
     VtkPiece piece;
     VtkDataSet data = partDataSet(part, info_, piece);
-    addLayout(data, part);
+    addLayout(data, part.mesh.cells);
     edges_.add(part, part.mesh.features.edges);
     quads_.add(part, part.mesh.features.quads);
     if (team_ != nullptr) return writeTogether(columnsOf(data));
@@ -315,9 +272,7 @@ class VtkHdfSink final : public PartSink {
   }
 
   void writeTogether(const std::vector<Column>& columns) {
-    std::vector<std::uint64_t> rows(columns.size());
-    std::transform(columns.begin(), columns.end(), rows.begin(),
-                   [](const Column& column) { return column.array->rows; });
+    const std::vector<std::uint64_t> rows = rowsOf(columns);
     const GatheredNumbers ofAll = team_->gather(rows);
     std::vector<std::uint64_t> before(columns.size(), 0);
     std::vector<std::uint64_t> total(columns.size(), 0);
@@ -328,33 +283,16 @@ class VtkHdfSink final : public PartSink {
     edges_.gather(*team_);
     quads_.gather(*team_);
     std::vector<std::uint64_t> places(columns.size());
-    if (team_->rank() == 0) places = layOut(columns, total);
+    if (team_->rank() == 0) {
+      places = layOut(target_.output(), columns, total,
+                      [this](const HdfFile& file, hid_t grid) { writeTags(file, grid); });
+    }
     team_->share(std::as_writable_bytes(std::span(places)));
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (rows[i] == 0) continue;
       const VtkArray& array = *columns[i].array;
-      FilePart output(target_.output(), places[i] + before[i] * (array.bytes / array.rows));
-      array.write([&](const void* bytes, std::size_t size) { output.writeBytes(bytes, size); });
-      output.flush();
+      writeAt(target_.output(), places[i] + before[i] * (array.bytes / array.rows), array);
     }
-  }
-
-  /// @param rows  of each dataset
-  /// @return the position of each dataset in the file
-  std::vector<std::uint64_t> layOut(const std::vector<Column>& columns,
-                                    const std::vector<std::uint64_t>& rows) {
-    HdfFile file(target_.output(), HdfFile::Order::OfNames);
-    HdfObject grid = addGrid(file);
-    std::vector<std::uint64_t> places;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const VtkArray& array = *columns[i].array;
-      places.push_back(file.reserve(grid.id(), columns[i].name, vtkHdfTypeOf(array.type), rows[i],
-                                    array.components));
-    }
-    writeTags(file, grid.id());
-    grid.close();
-    file.close();
-    return places;
   }
 
   Context& context_;
@@ -413,23 +351,23 @@ class VtkHdfReader {
       : input_(input), file_(HdfReader::openAny(input, stage)) {
     const std::vector<std::string> top = file_->members("/");
     if (std::find(top.begin(), top.end(), "VTKHDF") == top.end()) {
-      fail(ErrorCode::FileSyntax, "the file has no group VTKHDF.");
+      input_.fail(ErrorCode::FileSyntax, "the file has no group VTKHDF.");
     }
     if (const std::string type = file_->attribute("VTKHDF", "Type"); type != "UnstructuredGrid") {
-      fail(ErrorCode::FileUnsupported, "the file's type is ", quoted(std::string_view(type)),
-           ", only UnstructuredGrid is supported.");
+      input_.fail(ErrorCode::FileUnsupported, "the file's type is ", quoted(std::string_view(type)),
+                  ", only UnstructuredGrid is supported.");
     }
     const std::string steps = pathOf("Steps/Values");
     if (file_->has(steps) && rowsOf(steps) > 1) {
-      fail(ErrorCode::FileUnsupported,
-           "the file holds several steps of time. Save the mesh of one step.");
+      input_.fail(ErrorCode::FileUnsupported,
+                  "the file holds several steps of time. Save the mesh of one step.");
     }
     points_ = begins("NumberOfPoints", 0, "Points");
     cells_ = begins("NumberOfCells", 0, "Types");
     offsets_ = begins("NumberOfCells", 1, "Offsets");
     corners_ = begins("NumberOfConnectivityIds", 0, "Connectivity");
     if (cells_.size() != points_.size() || corners_.size() != points_.size()) {
-      fail(ErrorCode::FileSyntax, "the numbers of partitions differ.");
+      input_.fail(ErrorCode::FileSyntax, "the numbers of partitions differ.");
     }
   }
 
@@ -452,8 +390,8 @@ class VtkHdfReader {
   /// The only partition of a file, with all arrays.
   [[nodiscard]] std::unique_ptr<VtkSource> openOnly() const {
     if (partitions() == 1) return open(0, true);
-    fail(ErrorCode::FileUnsupported, "the file has ", partitions(),
-         " partitions, of which straight hexahedra are read only. Save it as one.");
+    input_.fail(ErrorCode::FileUnsupported, "the file has ", partitions(),
+                " partitions, of which straight hexahedra are read only. Save it as one.");
   }
 
   [[nodiscard]] HexMesh readHexes(Stage& stage) const {
@@ -474,10 +412,6 @@ class VtkHdfReader {
  private:
   using Begins = std::vector<std::uint64_t>;  ///< first row per partition, and the last end
 
-  template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
-    throw Error(code, concat(input_.name(), ": ", sentence...));
-  }
   [[nodiscard]] std::uint64_t rowsOf(const std::string& path) const {
     const std::vector<std::uint64_t> shape = file_->shape(path);
     return shape.empty() ? 1 : shape[0];
@@ -497,8 +431,8 @@ class VtkHdfReader {
     }
     const bool all = begins.size() == rowsOf(pathOf(counts)) + 1;
     if (all && begins.size() > 1 && begins.back() == rows) return begins;
-    fail(ErrorCode::FileSyntax, "the dataset \"", path, "\" does not have as many rows as \"",
-         pathOf(counts), "\" says.");
+    input_.fail(ErrorCode::FileSyntax, "the dataset \"", path,
+                "\" does not have as many rows as \"", pathOf(counts), "\" says.");
   }
 
   /// The rows of a partition. A dataset is read only once.
@@ -512,8 +446,8 @@ class VtkHdfReader {
     if (place == known.end()) place = known.emplace(path, ((*file_).*read)(path)).first;
     const std::vector<T>& all = place->second;
     if (all.size() != components * begins.back()) {
-      fail(ErrorCode::FileSyntax, "the dataset \"", path, "\" has ", all.size(),
-           " numbers instead of ", components * begins.back(), ".");
+      input_.fail(ErrorCode::FileSyntax, "the dataset \"", path, "\" has ", all.size(),
+                  " numbers instead of ", components * begins.back(), ".");
     }
     const std::uint64_t count = begins[part + 1] - begins[part];
     VtkColumn column = columnOf(std::span<const T>(all).subspan(
@@ -599,7 +533,7 @@ bool holdsCurvedVtkHdf(const Input& input, Stage& stage) {
 
 LagrangeMesh readCurvedVtkHdf(const Input& input, Stage& stage) {
   const VtkHdfReader reader(input, stage);
-  return readVtkLagrange(*reader.openOnly(), input.name(), stage);
+  return readVtkLagrange(*reader.openOnly(), stage);
 }
 
 }  // namespace hexhex::io

@@ -621,9 +621,8 @@ class VtuFile final : public VtkSource {
       encoded = text().substr(appended_ ? *appended_ + offset : text().size());
       base64 = appendedBase64_;
     }
-    if (compressed_ && !hasZlib()) {
-      tags_.fail(ErrorCode::FileUnsupported, tag,
-                 "this program was built without zlib, which compressed arrays need.");
+    if (compressed_) {
+      requireZlib(name(), "read compressed arrays", "save the file without compression");
     }
     return decodeVtuArray(
         encoded, {base64, compressed_, lengthBytes_}, stage_,

@@ -32,6 +32,8 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#else
+#include <base/missing_library.hpp>
 #endif
 
 #if defined(HEXHEX_HAS_QUANTIZE)
@@ -245,9 +247,7 @@ TetMap mapFromFlags(const TetMesh& tets, std::span<const FaceFlags> flags, Conte
 #else
 TetMap mapFromFlags(const TetMesh& /*tets*/, std::span<const FaceFlags> /*flags*/,
                     Context& /*context*/) {
-  throw Error(ErrorCode::InvalidArgument,
-              "This build of hexhex cannot make maps of labels. Install Eigen (libeigen3-dev) and "
-              "build it anew.");
+  failWithoutLibrary("make maps of labels", "Eigen (libeigen3-dev)");
 }
 #endif
 
