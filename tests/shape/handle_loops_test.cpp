@@ -21,7 +21,7 @@ using test::CubeBody;
 using Cell = CubeBody::Cell;
 using Deform = std::function<Vec3(const Vec3&)>;
 
-Vec3 asItIs(const Vec3& p) { return p; }
+Vec3 unmoved(const Vec3& p) { return p; }
 
 /// Turned such that the z axis is (1, 1, 1), and the others are no axes either.
 Vec3 atAnOddAngle(const Vec3& p) {
@@ -38,7 +38,7 @@ CubeBody ring() {
 }
 
 struct Part {
-  explicit Part(const CubeBody& body, const Deform& deform = asItIs)
+  explicit Part(const CubeBody& body, const Deform& deform = unmoved)
       : surface(readSurface(PositiveTets(TetMesh(body.labelled(3, deform).tets)), context)) {}
 
   Context context;
@@ -61,7 +61,7 @@ std::size_t countPieces(const Surface& surface, const std::set<Index>& without) 
   return pieces.count() - without.size();
 }
 
-void expectLoops(const CubeBody& body, std::size_t handles, const Deform& deform = asItIs) {
+void expectLoops(const CubeBody& body, std::size_t handles, const Deform& deform = unmoved) {
   Part part(body, deform);
   const std::vector<HandleLoop> loops = handleLoops(part.surface, 1, part.context);
   ASSERT_EQ(loops.size(), handles);
