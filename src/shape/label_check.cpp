@@ -13,6 +13,8 @@ namespace {
 constexpr double kNoise = 0.7;
 /// Below this cosine, a triangle is nearly perpendicular to its label: 87 degrees.
 constexpr double kPerpendicular = 0.05;
+/// Energy of a triangle without the label required there.
+constexpr double kWrongLabel = 0.5;
 
 /// @param shape  energy of steep triangles and of the length of borders
 double energyOf(const LabelReport& report, double shape) {
@@ -54,10 +56,15 @@ void LabelCheck::reset() {
 void LabelCheck::visitTriangles(const Labels& labels, Verdict& verdict) {
   double deviation = 0;
   double steep = 0;
+  double wrong = 0;
   double length = 0;
   for (Index t = 0; t < labels.size(); ++t) {
     const double cos = cosine(surface_.normals[t], labels[t]);
     deviation += surface_.areas[t] * (1 - cos);
+    if (costs_.isWrong(t, labels[t])) {
+      wrong += kWrongLabel;
+      verdict.places.push_back(t);
+    }
     if (cos < kPerpendicular) steep += surface_.areas[t] * (kPerpendicular - cos);
     for (Side side = 3 * t; side < 3 * t + 3; ++side) {
       const lattice::Direction beyond = labels[surface_.beyond(side)];
@@ -72,7 +79,7 @@ void LabelCheck::visitTriangles(const Labels& labels, Verdict& verdict) {
     }
   }
   verdict.report.deviation = deviation / surface_.area;
-  verdict.energy = 20 * steep / surface_.area + 0.03 * length / std::sqrt(surface_.area);
+  verdict.energy = wrong + 20 * steep / surface_.area + 0.03 * length / std::sqrt(surface_.area);
 }
 
 void LabelCheck::findCharts(const Labels& labels) {
