@@ -253,15 +253,15 @@ class Moving {
     return best;
   }
 
-  /// Per vertex: 1 if it must not leave the surface, since it is a corner, on a tagged edge, or at
-  /// a face inside.
+  /// Per vertex: 1 if it must not leave the surface, since it is a corner, on something tagged, or
+  /// at a face inside.
   [[nodiscard]] std::vector<std::uint8_t> heldOnSurface() const {
     std::vector<std::uint8_t> isHeld(subject_.mesh.points.size(), 0);
     for (Index v = 0; v < isHeld.size(); ++v) {
       const Freedom freedom = places_.freedom[v];
-      const bool isOnTagged =
-          freedom == Freedom::OnCurve && places_.surface.isTagged(freedom, places_.simplex[v]);
-      if (freedom == Freedom::Fixed || isOnTagged) isHeld[v] = 1;
+      if (freedom == Freedom::Free) continue;
+      const bool isTagged = places_.surface.isTagged(freedom, places_.simplex[v]);
+      if (isTagged || freedom == Freedom::Fixed) isHeld[v] = 1;
     }
     for (const Quad& quad : places_.innerQuads) {
       for (const Index v : quad) isHeld[v] = 1;
@@ -272,7 +272,7 @@ class Moving {
   /// Moves vertices off the surface where the mesh is a different shape although they are on it:
   /// the error of chords is then on both sides.
   BoundaryDistance close(Sweeps& sweeps, BoundaryDistance best) const {
-    if (best.largest.hausdorff() <= kOtherShape || slack_ == 0) return best;
+    if (best.largest.hausdorff() <= kOtherShape || slack_ == 0 || places_.isOwn) return best;
     const std::vector<std::uint8_t> isHeld = heldOnSurface();
     Array<Vec3> points = subject_.mesh.points;
     Array<Index> simplices = places_.simplex;
