@@ -29,7 +29,7 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
       addValue(parser, "--slack", options.slack, "NUMBER [1e-3]",
                "Where nothing else helps, let vertices without tags leave\n"
                "the surface by up to this share of the diagonal of its\n"
-               "bounding box")
+               "bounding box; 0: nor to bring a coarse mesh nearer")
           ->check(CLI::Range(0.0, 0.1)),
       addChoice<PillowMode>(parser, "--pillow", options.pillow,
                             options.pillow == PillowMode::Never ? "MODE [never]" : "MODE [auto]",
@@ -37,8 +37,8 @@ std::vector<CLI::Option*> addImproveOptions(CLI::App& parser, ImproveOptions& op
                              {"always", PillowMode::Always},
                              {"never", PillowMode::Never}},
                             "Add a layer of cells under the boundary. auto: if that\n"
-                            "leaves fewer cells that are not positive, or raises the\n"
-                            "minimum by at least 0.02"),
+                            "leaves fewer cells that are not positive, raises the\n"
+                            "minimum by at least 0.02, or is better overall"),
       parser.add_flag("--snap-curves,!--no-snap-curves", options.snapCurves,
                       "Where edges of the mesh do not follow sharp and tagged\n"
                       "edges of the object, move some onto them, with a pillow,\n"
@@ -180,7 +180,7 @@ void printImprovement(const ImproveReport& report) {
   }
   if (report.offSurface > 0) {
     printLine("off the surface",
-              fmt::format("{} vertices, where cells could not be good on it", report.offSurface));
+              fmt::format("{} vertices, to get nearer to it or for good cells", report.offSurface));
   }
   if (report.offCreases > 0) {
     printLine("off creases", fmt::format("{} vertices, where nothing else made cells positive",

@@ -19,7 +19,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 /// them, as at label borders on a smooth surface, wherever its vertices move.
 enum class PillowMode : std::uint8_t {
   Never,
-  Auto,  ///< if it leaves fewer cells that are not positive, or raises the minimum by at least 0.02
+  Auto,  ///< if fewer cells are not positive, the minimum rises by 0.02, or it is better overall
   Always  ///< report an error if a layer is impossible
 };
 
@@ -35,8 +35,8 @@ struct ImproveOptions {
   /// are boundary edges with other than two cells.
   double featureAngle = 40;
   /// How far untagged vertices may leave the surface where vertices on it cannot make cells
-  /// positive, in diagonals of the bounding box. In such meshes, this also applies to raising cells
-  /// below the target. 0 to 0.1.
+  /// positive, in diagonals of the bounding box; also to raise cells below the target in such
+  /// meshes. Unless it is 0, coarse meshes may leave it farther, to get nearer. 0 to 0.1.
   double slack = 1e-3;
   PillowMode pillow = PillowMode::Never;  ///< straight cells only
   /// Where mesh edges do not follow the curves of a map's surface: snap paths of boundary edges to
@@ -105,7 +105,7 @@ struct ImproveReport {
   double largestMove = 0;  ///< in diagonals
   double meanMove = 0;     ///< mean over the moved vertices
   std::uint64_t offSurface =
-      0;  ///< vertices off the surface: by the slack, or where cells could not be good on it
+      0;  ///< vertices off the surface: by the slack, to get nearer, or for the sake of cells
   double seconds = 0;
   /// Vertices that left creases because nothing else made cells positive. A crease is an untagged
   /// curve with surface on both sides.

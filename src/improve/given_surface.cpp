@@ -209,6 +209,7 @@ VertexPlaces placesOnSurface(const HexMesh& mesh, const TriangleMesh& surface,
     if (places.freedom[v] == Freedom::Fixed && places.simplex[v] == kNone) ++places.tagged;
   }
   places.isGiven = true;
+  places.isOwn = false;
   return places;
 }
 

@@ -214,13 +214,16 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
     const BoundaryDistance distance =
         movePoints(subject, boundary, places, options, points, report, context, stage);
     const ImproveReport moved = report;
+    reportAfter(subject, boundary, places, distance, places.surface, points, report, stage);
     std::optional<Improved> best =
-        improvedWithPillow(mesh, boundary, places, distance, options, report, context, stage);
+        improvedWithPillow(mesh, boundary, places, options, moved, context, stage);
     if (best) {
       reportAfter(*best, places.surface, points, stage);
-      report = best->report;
-    } else {
-      reportAfter(subject, boundary, places, distance, places.surface, points, report, stage);
+      if (options.pillow == PillowMode::Always || isWorthLayer(best->report, report)) {
+        report = best->report;
+      } else {
+        best.reset();
+      }
     }
     if (couldSnap(options, report)) {
       std::optional<Improved> snapped =

@@ -5,6 +5,7 @@
 #include <adjacency/hex_topology.hpp>
 
 #include <improve/all_at_once.hpp>
+#include <improve/closing.hpp>
 #include <improve/moving.hpp>
 #include <improve/sweeps.hpp>
 #include <improve/untangling.hpp>
@@ -24,6 +25,13 @@ constexpr double kFarChord = 2.5e-3;
 /// Maximum number of rounds, and of consecutive rounds without a nearer mesh.
 constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
+/// Gaps are closed to this or, as no more can be had of chords, to half of the largest, until none
+/// is longer than the second one: below kOtherShape, since samples miss some of the distance.
+/// Maximum number of rounds, and of consecutive rounds without a nearer mesh.
+constexpr double kClosed = 3.5e-3;
+constexpr double kCloseEnough = 4e-3;
+constexpr int kMostClosings = 10;
+constexpr int kClosingStalls = 3;
 /// A smaller reduction of the distance is not worth the quality that it costs.
 constexpr double kNearer = 0.99;
 /// Nor is one after which less than this fraction of the sum of scaled Jacobians is left.
@@ -74,8 +82,8 @@ Boundary::Boundary(const HexMesh& mesh, TriangleTree surface_, Stage& stage)
       surface(std::move(surface_)) {}
 
 BoundaryDistance Boundary::distanceTo(const VertexPlaces& places, const Array<Vec3>& points,
-                                      double diagonal, Stage& stage) const {
-  return distanceBetween(points, quads, places.surface, surface, diagonal, stage);
+                                      double diagonal, Stage& stage, double gapsFrom) const {
+  return distanceBetween(points, quads, places.surface, surface, diagonal, stage, gapsFrom);
 }
 
 Array<std::uint64_t> Boundary::cellsBeyond(double limit, const BoundaryDistance& distance,
@@ -163,7 +171,7 @@ class Moving {
       }
     }
     const bool canSpread = !curved_ && options_.passes > 0 && !options_.fixBoundary;
-    return canSpread ? spread(sweeps, floor, after) : after;
+    return canSpread ? close(sweeps, spread(sweeps, floor, after)) : after;
   }
 
   /// Restores all points that moved together with those of some cells.
@@ -237,6 +245,49 @@ class Moving {
       best = now;
       points = subject_.mesh.points;
       simplices = places_.simplex;
+    }
+    sweeps.putBackAll(points, simplices);
+    return best;
+  }
+
+  /// Per vertex: 1 if it must not leave the surface, since it is a corner, on something tagged, or
+  /// at a face inside.
+  [[nodiscard]] std::vector<std::uint8_t> heldOnSurface() const {
+    std::vector<std::uint8_t> isHeld(subject_.mesh.points.size(), 0);
+    for (Index v = 0; v < isHeld.size(); ++v) {
+      const Freedom freedom = places_.freedom[v];
+      if (freedom == Freedom::Free) continue;
+      const bool isTagged = places_.surface.isTagged(freedom, places_.simplex[v]);
+      if (isTagged || freedom == Freedom::Fixed) isHeld[v] = 1;
+    }
+    for (const Quad& quad : places_.innerQuads) {
+      for (const Index v : quad) isHeld[v] = 1;
+    }
+    return isHeld;
+  }
+
+  /// Moves vertices off the surface where the mesh is a different shape although they are on it:
+  /// the error of chords is then on both sides.
+  BoundaryDistance close(Sweeps& sweeps, BoundaryDistance best) const {
+    if (best.largest.hausdorff() <= kOtherShape || slack_ == 0 || places_.isOwn) return best;
+    const std::vector<std::uint8_t> isHeld = heldOnSurface();
+    Array<Vec3> points = subject_.mesh.points;
+    Array<Index> simplices = places_.simplex;
+    double limit = kOtherShape;
+    for (int i = 0, stalls = -1; i < kMostClosings && stalls < kClosingStalls; ++i) {
+      const BoundaryDistance now =
+          boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_, limit / 2);
+      ++stalls;
+      if (now.largest.hausdorff() < kNearer * best.largest.hausdorff()) {
+        stalls = 0;
+        best = now;
+        points = subject_.mesh.points;
+        simplices = places_.simplex;
+      }
+      if (now.largest.hausdorff() <= kCloseEnough) break;
+      limit = std::max(kClosed, best.largest.hausdorff() / 2);
+      sweeps.shift(closingMoves(now.gaps, boundary_.quads, isHeld, limit * report_.diagonal),
+                   options_.target);
     }
     sweeps.putBackAll(points, simplices);
     return best;

@@ -33,15 +33,6 @@ bool couldHelp(const Boundary& boundary, const ImproveOptions& options,
   return false;
 }
 
-bool isBetter(const Improved& pillowed, const BoundaryDistance& distance,
-              const ImproveReport& report) {
-  if (pillowed.distance.largest.hausdorff() > farthestAllowed(distance.largest)) return false;
-  const std::uint64_t bad = notPositive(pillowed.report.after);
-  const std::uint64_t badWithout = notPositive(report.after);
-  if (bad != badWithout) return bad < badWithout;
-  return pillowed.report.after.quality.minimum > report.after.quality.minimum + kWorthwhile;
-}
-
 /// New vertices are free, or have the place of their leader.
 /// @return a leader that is fixed, so that its copy cannot move off it; kNone if there is none
 Index extend(VertexPlaces& places, const mesh::Pillow& pillow) {
@@ -61,6 +52,15 @@ Index extend(VertexPlaces& places, const mesh::Pillow& pillow) {
 
 }  // namespace
 
+bool isWorthLayer(const ImproveReport& pillowed, const ImproveReport& without) {
+  if (meritOf(pillowed) > meritOf(without)) return true;
+  if (pillowed.distanceAfter.hausdorff() > farthestAllowed(without.distanceAfter)) return false;
+  const std::uint64_t bad = notPositive(pillowed.after);
+  const std::uint64_t badWithout = notPositive(without.after);
+  if (bad != badWithout) return bad < badWithout;
+  return pillowed.after.quality.minimum > without.after.quality.minimum + kWorthwhile;
+}
+
 void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
                   Context& context, Stage& stage) {
   ImproveReport& report = improved.report;
@@ -77,7 +77,6 @@ void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptio
 
 std::optional<Improved> improvedWithPillow(const HexMesh& mesh, const Boundary& boundary,
                                            const VertexPlaces& places,
-                                           const BoundaryDistance& distance,
                                            const ImproveOptions& options,
                                            const ImproveReport& report, Context& context,
                                            Stage& stage) {
@@ -105,7 +104,6 @@ std::optional<Improved> improvedWithPillow(const HexMesh& mesh, const Boundary& 
   result.mesh = std::move(pillow.mesh);
   result.boundary = Boundary(result.mesh, boundary.surface, stage);
   moveEnlarged(result, mesh, options, context, stage);
-  if (!isAlways && !isBetter(result, distance, report)) return std::nullopt;
   return result;
 }
 

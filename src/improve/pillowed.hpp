@@ -25,13 +25,17 @@ struct Improved {
 void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
                   Context& context, Stage& stage);
 
+/// Whether PillowMode::Auto keeps a pillow: if the mesh is better overall or, at no greater
+/// distance from the surface, in its cells.
+/// @param pillowed, without  complete reports
+[[nodiscard]] bool isWorthLayer(const ImproveReport& pillowed, const ImproveReport& without);
+
 /// Improves a copy with a pillow.
-/// @param boundary, places, distance, report  of the mesh, which is already improved
-/// @return nothing if no pillow is requested or, with PillowMode::Auto, if none helps
+/// @param boundary, places, report  of the mesh, which is already improved
+/// @return nothing if no pillow is requested or, with PillowMode::Auto, if none can help
 /// @throws Error  with PillowMode::Always, if no pillow is possible
 [[nodiscard]] std::optional<Improved> improvedWithPillow(
     const HexMesh& mesh, const Boundary& boundary, const VertexPlaces& places,
-    const BoundaryDistance& distance, const ImproveOptions& options, const ImproveReport& report,
-    Context& context, Stage& stage);
+    const ImproveOptions& options, const ImproveReport& report, Context& context, Stage& stage);
 
 }  // namespace hexhex::improvement

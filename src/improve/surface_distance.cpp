@@ -132,26 +132,33 @@ Vec3 between(const Vec3& a, const Vec3& b, double share) {
   return plus(times(1 - share, a), times(share, b));
 }
 
-/// The largest distance of corners and of samples on edges and inside. An edge of two quads is only
-/// sampled for one.
-double distanceOf(const Array<Vec3>& points, const Quad& quad, const TriangleTree& tree) {
-  const std::array<Vec3, 4> corners = cornersOf(points, quad);
-  double largest = 0;
-  const auto ask = [&](const Vec3& point) {
-    largest = std::max(largest, tree.nearest(point).distance);
-  };
+Vec3 pointOf(const std::array<Vec3, 4>& corners, const std::array<double, 4>& weights) {
+  Vec3 point{};
+  for (std::size_t i = 0; i < 4; ++i) point = plus(point, times(weights[i], corners[i]));
+  return point;
+}
+
+/// Calls visit(weights of the corners) for the corners of a quad and for samples on edges and
+/// inside. An edge of two quads is only sampled for one.
+template <class Visit>
+void forSamples(const Quad& quad, const Visit& visit) {
   for (std::size_t i = 0; i < 4; ++i) {
-    ask(corners[i]);
+    std::array<double, 4> weights{};
+    weights[i] = 1;
+    visit(weights);
     const std::size_t next = (i + 1) % 4;
     if (quad[i] > quad[next]) continue;
-    for (const double share : kQuarters) ask(between(corners[i], corners[next], share));
+    for (const double share : kQuarters) {
+      weights[i] = 1 - share;
+      weights[next] = share;
+      visit(weights);
+    }
   }
-  for (const double across : kQuarters) {
-    const Vec3 begin = between(corners[0], corners[3], across);
-    const Vec3 end = between(corners[1], corners[2], across);
-    for (const double share : kQuarters) ask(between(begin, end, share));
+  for (const double s : kQuarters) {
+    for (const double t : kQuarters) {
+      visit(std::array<double, 4>{(1 - s) * (1 - t), (1 - s) * t, s * t, s * (1 - t)});
+    }
   }
-  return largest;
 }
 
 /// Vertices, midpoints of edges, and centres of boundary triangles: each once.
@@ -177,9 +184,49 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
   std::vector<double> distances(quads.size());
-  parallelFor(stage, quads.size(), kSurfaceDistanceGrain,
-              [&](std::size_t q) { distances[q] = distanceOf(points, quads[q], tree) / diagonal; });
+  parallelFor(stage, quads.size(), kSurfaceDistanceGrain, [&](std::size_t q) {
+    const std::array<Vec3, 4> corners = cornersOf(points, quads[q]);
+    double largest = 0;
+    forSamples(quads[q], [&](const std::array<double, 4>& weights) {
+      largest = std::max(largest, tree.nearest(pointOf(corners, weights)).distance);
+    });
+    distances[q] = largest / diagonal;
+  });
   return distances;
+}
+
+/// Adds those of the samples of a quad.
+void addGaps(const Array<Vec3>& points, std::span<const Quad> quads, Index quad,
+             const ReferenceSurface& surface, const TriangleTree& tree, std::vector<Gap>& gaps) {
+  const std::array<Vec3, 4> corners = cornersOf(points, quads[quad]);
+  forSamples(quads[quad], [&](const std::array<double, 4>& weights) {
+    const Vec3 point = pointOf(corners, weights);
+    const auto nearest = static_cast<Index>(tree.nearest(point).triangle);
+    gaps.push_back({quad, weights, minus(nearestOf(surface.triangle(nearest), point), point)});
+  });
+}
+
+/// The gap to a sample of the surface.
+/// @param triangle  that is nearest to it, of treeOf()
+Gap gapTo(const Vec3& sample, const Array<Vec3>& points, std::span<const Quad> quads,
+          std::size_t triangle) {
+  const auto quad = static_cast<Index>(triangle / 4);
+  const std::array<Vec3, 4> corners = cornersOf(points, quads[quad]);
+  const std::size_t i = triangle % 4;
+  const std::size_t next = (i + 1) % 4;
+  const Vec3 centre = centreOf(corners);
+  const Vec3 point = nearestOf(std::array<Vec3, 3>{corners[i], corners[next], centre}, sample);
+  const Vec3 u = minus(corners[i], centre);
+  const Vec3 v = minus(corners[next], centre);
+  const Vec3 w = minus(point, centre);  // first u + second v
+  const double square = dot(cross(u, v), cross(u, v));
+  const double first = square > 0 ? dot(cross(w, v), cross(u, v)) / square : 0;
+  const double second = square > 0 ? dot(cross(u, w), cross(u, v)) / square : 0;
+  Gap gap{quad, {}, minus(sample, point)};
+  gap.weights.fill((1 - first - second) / 4);
+  gap.weights[i] += first;
+  gap.weights[next] += second;
+  return gap;
 }
 
 double largestOf(std::span<const double> distances) {
@@ -210,7 +257,7 @@ std::vector<Index> BoundaryDistance::quadsBeyond(double limit) const {
 
 BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad> quads,
                                  const ReferenceSurface& surface, const TriangleTree& tree,
-                                 double diagonal, Stage& stage) {
+                                 double diagonal, Stage& stage, double gapsFrom) {
   BoundaryDistance distance;
   distance.ofQuads = distancesOf(points, quads, tree, diagonal, stage);
   distance.largest.fromMesh = largestOf(distance.ofQuads);
@@ -225,6 +272,15 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
     ofQuad = std::max(ofQuad, far / diagonal);
     distance.largest.fromSurface = std::max(distance.largest.fromSurface, far / diagonal);
   }
+  for (Index q = 0; q < quads.size(); ++q) {
+    if (distance.ofQuads[q] > gapsFrom) addGaps(points, quads, q, surface, tree, distance.gaps);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (found[i].distance <= gapsFrom * diagonal) continue;
+    distance.gaps.push_back(gapTo(samples[i], points, quads, found[i].triangle));
+  }
+  std::erase_if(distance.gaps,
+                [&](const Gap& gap) { return length(gap.way) <= gapsFrom * diagonal; });
   return distance;
 }
 

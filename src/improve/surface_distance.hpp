@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,26 +40,37 @@ class TriangleTree {
 /// The diagonal of the bounding box.
 [[nodiscard]] double diagonalOf(const ReferenceSurface& surface);
 
+/// The way between a point of a boundary quad and the surface.
+struct Gap {
+  Index quad = 0;
+  std::array<double, 4> weights{};  ///< of the quad's corners, whose sum is the point
+  Vec3 way{};                       ///< from the point to the surface
+};
+
 struct BoundaryDistance {
   SurfaceDistance largest;
   /// Per quad: the largest distance of its own samples, and of samples of the surface for which it
   /// is the nearest quad.
   std::vector<double> ofQuads;
+  std::vector<Gap> gaps;  ///< of samples in both directions: those requested
 
   /// Ascending.
   [[nodiscard]] std::vector<Index> quadsBeyond(double limit) const;
 };
+
+inline constexpr double kNoGaps = std::numeric_limits<double>::infinity();
 
 /// The distance between the boundaries of a mesh and of a surface, in both directions. From the
 /// surface, each quad counts as four triangles around its centre.
 /// @param quads     of the boundary of the mesh
 /// @param tree      of the surface's boundary
 /// @param diagonal  by which distances are divided
+/// @param gapsFrom  gaps longer than this, in diagonals, are requested
 [[nodiscard]] BoundaryDistance distanceBetween(const Array<Vec3>& points,
                                                std::span<const Quad> quads,
                                                const ReferenceSurface& surface,
                                                const TriangleTree& tree, double diagonal,
-                                               Stage& stage);
+                                               Stage& stage, double gapsFrom = kNoGaps);
 
 /// A tree of the boundary triangles of a surface.
 [[nodiscard]] TriangleTree treeOf(const ReferenceSurface& surface);

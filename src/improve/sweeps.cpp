@@ -471,4 +471,19 @@ void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors,
   sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
 }
 
+void Sweeps::shift(const Array<Vec3>& moves, double floor) {
+  std::vector<Index> outer;
+  std::vector<Index> inner;
+  for (Index v = 0; v < mesh_.points.size(); ++v) {
+    if (moves[v] != Vec3{}) outer.push_back(v);
+    if (places_.freedom[v] == Freedom::Free && !meshAround_(v).empty()) inner.push_back(v);
+  }
+  sweep(outer, 0, [&](VertexMover& mover, Index v) {
+    const Vec3 to = plus(mesh_.points[v], moves[v]);
+    mover.moveTo(v, {to, places_.nearest(v, to).simplex}, true, floor);
+  });
+  takeBoxes();
+  sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+}
+
 }  // namespace hexhex::improvement

@@ -145,6 +145,11 @@ class Sweeps {
   void spread(std::span<const Quad> quads, std::span<const double> errors, double even,
               double floor);
 
+  /// Moves boundary vertices, off the surface as well; then smooths the vertices inside. Scaled
+  /// Jacobians stay within the bounds of smooth().
+  /// @param moves  per vertex
+  void shift(const Array<Vec3>& moves, double floor);
+
   /// The point lists of the cells that are improved.
   [[nodiscard]] CellPoints cellPoints() const { return cells_->points(); }
 

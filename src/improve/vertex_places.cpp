@@ -268,6 +268,7 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isA
   if (!parts.areTagged) addSingularEdges(mesh, stage, parts);
   parts.sharp = creaseChains(parts, isAtBad, stage);
   VertexPlaces places;
+  places.isOwn = true;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
       mesh.points, mesh.features,

@@ -29,6 +29,8 @@ struct VertexPlaces {
 
   /// Whether the surface was given separately: the boundary may be off it, and is pulled onto it.
   bool isGiven = false;
+  /// Whether the surface is the initial boundary of the mesh, with the folds of bad cells.
+  bool isOwn = false;
 
   /// Whether all of the vertices are fixed.
   [[nodiscard]] bool areHeld(std::span<const Index> vertices) const {

@@ -1205,7 +1205,8 @@ def improve(mesh: AnyMesh, map: Map | None = None, *,
             edges: vertices do not leave them.
         slack: how far untagged vertices may leave the surface where nothing else makes cells
             positive, in diagonals of its bounding box, 0 to 0.1; in meshes with bad cells, this
-            also applies to raising cells below the target.
+            also applies to raising cells below the target. Unless it is 0, coarse meshes may leave
+            it farther, to get nearer.
         pillow: whether to add a layer of straight cells under the boundary: "never", "always", or
             "auto": if it leaves fewer cells that are not positive, or raises the minimum by at
             least 0.02.
