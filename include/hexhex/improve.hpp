@@ -19,7 +19,7 @@ namespace hexhex HEXHEX_API_NAMESPACE {
 /// them, as at label borders on a smooth surface, wherever its vertices move.
 enum class PillowMode : std::uint8_t {
   Never,
-  Auto,  ///< if fewer cells are not positive, the minimum rises by 0.02, or it is better overall
+  Auto,   ///< if fewer cells are not positive, the minimum rises by 0.02, or it is better overall
   Always  ///< report an error if a layer is impossible
 };
 

@@ -203,6 +203,26 @@ bool couldSnap(const ImproveOptions& options, const ImproveReport& report) {
           report.after.quality.minimum < options.target);
 }
 
+/// Moves vertices off the surface at the end, as layers and snapped curves need them on it. Keeps
+/// the mesh as it is if that makes it no better.
+/// @param bare            the report without what reportAfter() adds
+/// @param[in,out] report  the complete one
+void closeIfBetter(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
+                   const BoundaryDistance& distance, const ImproveOptions& options,
+                   const ReferenceSurface& object, const Array<Vec3>& before, ImproveReport bare,
+                   ImproveReport& report, Context& context, Stage& stage) {
+  const Array<Vec3> points = subject.mesh.points;
+  const std::optional<BoundaryDistance> closed =
+      closeGaps(subject, boundary, places, distance, options, bare, context, stage);
+  if (!closed) return;
+  reportAfter(subject, boundary, places, *closed, object, before, bare, stage);
+  if (meritOf(bare) > meritOf(report)) {
+    report = std::move(bare);
+  } else {
+    subject.putBack(points);
+  }
+}
+
 /// Moves points. Adds a layer and snaps edges to curves where that is requested and helps.
 void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions& options,
              ImproveReport& report, Context& context, Stage& stage) {
@@ -214,12 +234,15 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
     const BoundaryDistance distance =
         movePoints(subject, boundary, places, options, points, report, context, stage);
     const ImproveReport moved = report;
+    ImproveReport bare = moved;  // of the best mesh
     reportAfter(subject, boundary, places, distance, places.surface, points, report, stage);
     std::optional<Improved> best =
         improvedWithPillow(mesh, boundary, places, options, moved, context, stage);
     if (best) {
+      const ImproveReport own = best->report;
       reportAfter(*best, places.surface, points, stage);
       if (options.pillow == PillowMode::Always || isWorthLayer(best->report, report)) {
+        bare = own;
         report = best->report;
       } else {
         best.reset();
@@ -229,12 +252,21 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
       std::optional<Improved> snapped =
           improvedWithCurves(mesh, boundary, places, options, moved, context, stage);
       if (snapped) {
+        const ImproveReport own = snapped->report;
         reportAfter(*snapped, places.surface, points, stage);
         if (meritOf(snapped->report) > meritOf(report)) {
+          bare = own;
           report = snapped->report;
           best = std::move(snapped);
         }
       }
+    }
+    if (best) {
+      closeIfBetter({best->mesh}, best->boundary, best->places, best->distance, options,
+                    places.surface, points, std::move(bare), report, context, stage);
+    } else {
+      closeIfBetter(subject, boundary, places, distance, options, places.surface, points,
+                    std::move(bare), report, context, stage);
     }
     stage.finish();
     if (best) mesh = std::move(best->mesh);

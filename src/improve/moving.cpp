@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <adjacency/hex_topology.hpp>
@@ -170,8 +171,15 @@ class Moving {
         after = distance();
       }
     }
-    const bool canSpread = !curved_ && options_.passes > 0 && !options_.fixBoundary;
-    return canSpread ? close(sweeps, spread(sweeps, floor, after)) : after;
+    return canMoveBoundary() ? spread(sweeps, floor, after) : after;
+  }
+
+  /// Moves vertices off the surface where the mesh is a different shape although they are on it:
+  /// the error of chords is then on both sides.
+  BoundaryDistance close(const BoundaryDistance& after) {
+    if (!canMoveBoundary() || slack_ == 0 || places_.isOwn) return after;
+    Sweeps sweeps = newSweeps();
+    return close(sweeps, after);
   }
 
   /// Restores all points that moved together with those of some cells.
@@ -180,6 +188,10 @@ class Moving {
   }
 
  private:
+  [[nodiscard]] bool canMoveBoundary() const {
+    return curved_ == nullptr && options_.passes > 0 && !options_.fixBoundary;
+  }
+
   [[nodiscard]] Sweeps newSweeps() {
     return {subject_.mesh, curved_, places_, report_.diagonal, stage_};
   }
@@ -266,10 +278,8 @@ class Moving {
     return isHeld;
   }
 
-  /// Moves vertices off the surface where the mesh is a different shape although they are on it:
-  /// the error of chords is then on both sides.
   BoundaryDistance close(Sweeps& sweeps, BoundaryDistance best) const {
-    if (best.largest.hausdorff() <= kOtherShape || slack_ == 0 || places_.isOwn) return best;
+    if (best.largest.hausdorff() <= kOtherShape) return best;
     const std::vector<std::uint8_t> isHeld = heldOnSurface();
     Array<Vec3> points = subject_.mesh.points;
     Array<Index> simplices = places_.simplex;
@@ -362,6 +372,21 @@ BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, Ve
   moving.putBackAt(worse);
   report.after = subject.certifyNow(context);
   return moving.distance();
+}
+
+std::optional<BoundaryDistance> closeGaps(const Subject& subject, const Boundary& boundary,
+                                          VertexPlaces& places, const BoundaryDistance& distance,
+                                          const ImproveOptions& options, ImproveReport& report,
+                                          Context& context, Stage& stage) {
+  const Array<Vec3> points = subject.mesh.points;
+  Moving moving(subject, boundary, places, options, points, report, stage);
+  BoundaryDistance after = moving.close(distance);
+  if (after.largest.hausdorff() >= distance.largest.hausdorff()) return std::nullopt;
+  Certificate was = std::exchange(report.after, subject.certifyNow(context));
+  if (notPositive(report.after) <= notPositive(was)) return after;
+  subject.putBack(points);
+  report.after = std::move(was);
+  return std::nullopt;
 }
 
 }  // namespace hexhex::improvement

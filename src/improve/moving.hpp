@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <hexhex/curved.hpp>
@@ -65,5 +66,15 @@ struct Boundary {
                                           VertexPlaces& places, const ImproveOptions& options,
                                           const Array<Vec3>& before, ImproveReport& report,
                                           Context& context, Stage& stage);
+
+/// Moves vertices off the surface where a straight mesh would otherwise be a different shape, and
+/// certifies the result.
+/// @param distance        as of movePoints(), for the present points
+/// @param[in,out] report  as movePoints() leaves it; gets `after`
+/// @return the new distance; nothing if no vertex was moved
+[[nodiscard]] std::optional<BoundaryDistance> closeGaps(
+    const Subject& subject, const Boundary& boundary, VertexPlaces& places,
+    const BoundaryDistance& distance, const ImproveOptions& options, ImproveReport& report,
+    Context& context, Stage& stage);
 
 }  // namespace hexhex::improvement

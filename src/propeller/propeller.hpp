@@ -48,8 +48,8 @@ struct GlobalConnectivity {
 /// Number of cells that the hex corners of all vertices form.
 [[nodiscard]] std::uint64_t countCells(const HexVertices& vertices, const LocalConnectivity& local);
 
-/// All cells in canonical order (sweep/cell_order.hpp). Each is entered from its centre at its first
-/// corner; from there the walk goes from propeller to opposite.
+/// All cells in canonical order (sweep/cell_order.hpp). Each is entered from its centre at its
+/// first corner; from there the walk goes from propeller to opposite.
 [[nodiscard]] Array<Hex> collectCells(const igm::PreparedMap& map,
                                       const Array<lattice::NormalSigns>& signs,
                                       const HexVertices& vertices, const LocalConnectivity& local,

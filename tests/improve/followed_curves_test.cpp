@@ -17,7 +17,9 @@ namespace followed {
 ImproveReport reportOf(const TetMap& map) {
   Context context(2);
   HexMesh mesh = extract(map, {}, context);
-  return improve(mesh, map, {}, context);
+  ImproveOptions options;
+  options.slack = 0;  // vertices stay on the surface, and curves on edges of the object
+  return improve(mesh, map, options, context);
 }
 
 }  // namespace followed
