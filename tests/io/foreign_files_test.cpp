@@ -227,6 +227,7 @@ TEST(ForeignFiles, AbaqusByOtherPrograms) {
   const HexMesh mesh =
       abaqus(kInpNodes + kInpCells +
              "*elset, elset=upper, generate\n4, 4\n*elset, elset=both\n LEFT, upper\n"
+             "*elset, elset=outside\n skin, left\n"
              "*Solid Section, elset=upper, material=steel\n1.,\n"
              "*surface, name=low, type=element\nleft, S1\n*surface, name=around\nboth, s3\n3, S6\n"
              "*surface, type=node, name=n\nALL, 1.\n*nset, nset=here\n14\n*Step\n*Static\n1, 2\n"

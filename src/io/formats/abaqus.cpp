@@ -333,8 +333,10 @@ class AbaqusReader {
           set.items.push_back(number);
           continue;
         }
-        const auto other = sets.find(lowerCase(unquoted(word)));
+        const std::string named = lowerCase(unquoted(word));
+        const auto other = sets.find(named);
         if (other == sets.end()) {
+          if (&sets == &elementSets_ && addFacetSet(named, name)) continue;
           fail("the set names " + quoted(word) + ", which is no number, and no set above");
         }
         const std::vector<std::uint64_t> items = other->second.items;
@@ -343,6 +345,21 @@ class AbaqusReader {
       }
     }
   }
+
+  /// Elements that are no cells have sets of their own; those of other types are not kept.
+  /// @return whether elements above have this set
+  bool addFacetSet(const std::string& named, const std::string& name) {
+    const auto facets = facetSets_.find(named);
+    if (facets == facetSets_.end()) {
+      return std::find(blockSets_.begin(), blockSets_.end(), named) != blockSets_.end();
+    }
+    const std::vector<std::uint64_t> items = facets->second.items;
+    takeRoom(items.size());
+    std::vector<std::uint64_t>& all = facetSets_[name].items;
+    all.insert(all.end(), items.begin(), items.end());
+    return true;
+  }
+
   static std::string_view unquoted(std::string_view word) {
     const bool quotes = word.size() > 1 && word.front() == '"' && word.back() == '"';
     return quotes ? word.substr(1, word.size() - 2) : word;
