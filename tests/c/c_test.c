@@ -668,7 +668,8 @@ static void test_improve(void) {
   CHECK((report.far_cells_before > 0) == (report.from_mesh_before > 1e-3));
   CHECK((report.far_cells_after > 0) == (report.from_mesh_after > 1e-3));
   CHECK(report.moved_vertices > 0 && report.largest_move >= report.mean_move);
-  CHECK(report.patch_vertices > 0 && report.free_vertices > 0 && report.off_surface <= report.moved_vertices);
+  CHECK(report.patch_vertices > 0 && report.free_vertices > 0 &&
+        report.off_surface <= report.moved_vertices);
   CHECK(report.inner_distance_before == 0 && report.inner_distance_after == 0);
   hexhex_certificate proven = HEXHEX_CERTIFICATE_INIT;
   CHECK_OK(hexhex_mesh_certify(mesh, NULL, NULL, NULL, &proven, &error));
