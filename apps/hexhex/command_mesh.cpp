@@ -56,12 +56,7 @@ void writeMeshPage(const MeshArguments& arguments, const MeshedPart& part, LongR
 void requireCertified(const MeshArguments& arguments, const MeshedPart& part, LongRun& longRun) {
   const Certificate& certificate = part.improvement.after;
   if (certificate.allPositive() || arguments.allowBad) return;
-  try {
-    writeMeshPage(arguments, part, longRun);
-  } catch (const Error& problem) {  // that there is no mesh is what matters
-    longRun.finish();
-    printWarning(std::string("There is no page: ") + problem.what());
-  }
+  tryPage([&] { writeMeshPage(arguments, part, longRun); }, longRun);
   const bool isRefuted = certificate.refuted > 0;
   throw Error(ErrorCode::NotMeshable,
               (isRefuted ? refutationAsText(certificate)

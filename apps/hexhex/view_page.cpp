@@ -213,14 +213,11 @@ void writePartPage(const TetMesh& tets, const std::string& page, const std::stri
   if (error.place().kind == PlaceKind::None) return;
   ViewOptions options;
   options.title = nameOf(part) + ", " + toString(error.place());
-  try {
+  const auto write = [&] {
     longRun.part("page",
                  [&] { writeViewPage(tets, error.place(), page, options, longRun.context()); });
-  } catch (const Error& problem) {  // the other error is the one that matters
-    longRun.finish();
-    printWarning(std::string("There is no page: ") + problem.what());
-    return;
-  }
+  };
+  if (!tryPage(write, longRun)) return;
   longRun.finish();
   printWarning(page + " shows where the part cannot be meshed: region 1.");
 }

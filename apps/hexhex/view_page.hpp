@@ -11,6 +11,7 @@
 #include <hexhex/view.hpp>
 
 #include "long_run.hpp"
+#include "output.hpp"
 
 namespace hexhex::command {
 
@@ -42,6 +43,21 @@ void writePage(const HexMesh& mesh, const std::string& page, const std::string& 
                ViewOptions options, Context& context);
 void writePage(const LagrangeMesh& mesh, const std::string& page, const std::string& output,
                ViewOptions options, Context& context);
+
+/// Calls write(), for a page that shows why there is no mesh. That it cannot be written is only a
+/// warning: the reason is what matters.
+/// @return whether it was written
+template <class Write>
+bool tryPage(const Write& write, LongRun& longRun) {
+  try {
+    write();
+    return true;
+  } catch (const Error& problem) {
+    longRun.finish();
+    printWarning(std::string("There is no page: ") + problem.what());
+    return false;
+  }
+}
 
 /// Writes the page of a part that could not be meshed, if the error has a place in it, and says so.
 /// @param page  empty: none is wanted

@@ -81,6 +81,9 @@ void requireCells(const HexMesh& mesh, Context& context) {
 }
 
 void reportMoves(const Array<Vec3>& before, const Array<Vec3>& points, ImproveReport& report) {
+  report.movedVertices = 0;
+  report.largestMove = 0;
+  report.meanMove = 0;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double move = length(minus(points[v], before[v])) / report.diagonal;
     if (move == 0) continue;
@@ -94,6 +97,7 @@ void reportMoves(const Array<Vec3>& before, const Array<Vec3>& points, ImproveRe
 /// Counts vertices that are farther from their triangle or segment than rounding explains.
 void reportOff(const Array<Vec3>& points, const VertexPlaces& places, ImproveReport& report) {
   constexpr double kOn = 1e-9;
+  report.offSurface = 0;
   for (std::size_t v = 0; v < points.size(); ++v) {
     const Vec3& point = points[v];
     Vec3 nearest = point;
@@ -151,6 +155,7 @@ std::vector<std::uint8_t> atBadCells(const Subject& subject, const Certificate& 
 }
 
 void listNotPositive(ImproveReport& report) {
+  report.notPositive.clear();
   for (std::size_t c = 0; c < report.after.validity.size(); ++c) {
     if (report.after.validity[c] != Validity::Positive) report.notPositive.push_back(c);
   }
@@ -166,12 +171,28 @@ void reportBefore(const Subject& subject, const Boundary& boundary, const Vertex
   report.farCellsBefore = boundary.cellsBeyond(kSurfaceTolerance, distance, subject.parts()).size();
 }
 
+/// A mesh whose points were moved.
+struct Moved {
+  Subject subject;
+  const Boundary& boundary;
+  VertexPlaces& places;
+  const BoundaryDistance& distance;
+
+  explicit Moved(Improved& improved)
+      : Moved({improved.mesh}, improved.boundary, improved.places, improved.distance) {}
+  Moved(const Subject& subject_, const Boundary& boundary_, VertexPlaces& places_,
+        const BoundaryDistance& distance_)
+      : subject(subject_), boundary(boundary_), places(places_), distance(distance_) {}
+};
+
+/// Also replaces what it has written for another state of the mesh.
 /// @param object  the surface, with all of its curves
 /// @param before  the initial points
-void reportAfter(const Subject& subject, const Boundary& boundary, const VertexPlaces& places,
-                 const BoundaryDistance& distance, const ReferenceSurface& object,
-                 Array<Vec3> before, ImproveReport& report, Stage& stage) {
+void reportAfter(const Moved& moved, const ReferenceSurface& object, Array<Vec3> before,
+                 ImproveReport& report, Stage& stage) {
+  const auto& [subject, boundary, places, distance] = moved;
   before.insert(before.end(), report.addedPoints.begin(), report.addedPoints.end());
+  report.vertices = {};
   for (const Freedom freedom : places.freedom) {
     ++report.vertices[static_cast<std::size_t>(freedom)];
   }
@@ -188,12 +209,6 @@ void reportAfter(const Subject& subject, const Boundary& boundary, const VertexP
   report.worst = worstCell(subject, boundary, places, report);
 }
 
-void reportAfter(Improved& improved, const ReferenceSurface& object, const Array<Vec3>& before,
-                 Stage& stage) {
-  reportAfter({improved.mesh}, improved.boundary, improved.places, improved.distance, object,
-              before, improved.report, stage);
-}
-
 /// Whether snapping edges to curves could help: some curves are not followed, or quads with two
 /// edges on a curve are flat.
 bool couldSnap(const ImproveOptions& options, const ImproveReport& report) {
@@ -205,19 +220,19 @@ bool couldSnap(const ImproveOptions& options, const ImproveReport& report) {
 
 /// Moves vertices off the surface at the end, as layers and snapped curves need them on it. Keeps
 /// the mesh as it is if that makes it no better.
-/// @param bare            the report without what reportAfter() adds
-/// @param[in,out] report  the complete one
-void closeIfBetter(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
-                   const BoundaryDistance& distance, const ImproveOptions& options,
-                   const ReferenceSurface& object, const Array<Vec3>& before, ImproveReport bare,
-                   ImproveReport& report, Context& context, Stage& stage) {
+/// @param[in,out] report  complete
+void closeIfBetter(const Moved& moved, const ImproveOptions& options,
+                   const ReferenceSurface& object, const Array<Vec3>& before, ImproveReport& report,
+                   Context& context, Stage& stage) {
+  const auto& [subject, boundary, places, distance] = moved;
   const Array<Vec3> points = subject.mesh.points;
+  ImproveReport other = report;
   const std::optional<BoundaryDistance> closed =
-      closeGaps(subject, boundary, places, distance, options, bare, context, stage);
+      closeGaps(subject, boundary, places, distance, options, other, context, stage);
   if (!closed) return;
-  reportAfter(subject, boundary, places, *closed, object, before, bare, stage);
-  if (meritOf(bare) > meritOf(report)) {
-    report = std::move(bare);
+  reportAfter({subject, boundary, places, *closed}, object, before, other, stage);
+  if (meritOf(other) > meritOf(report)) {
+    report = std::move(other);
   } else {
     subject.putBack(points);
   }
@@ -234,15 +249,13 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
     const BoundaryDistance distance =
         movePoints(subject, boundary, places, options, points, report, context, stage);
     const ImproveReport moved = report;
-    ImproveReport bare = moved;  // of the best mesh
-    reportAfter(subject, boundary, places, distance, places.surface, points, report, stage);
+    const Moved plain(subject, boundary, places, distance);
+    reportAfter(plain, places.surface, points, report, stage);
     std::optional<Improved> best =
         improvedWithPillow(mesh, boundary, places, options, moved, context, stage);
     if (best) {
-      const ImproveReport own = best->report;
-      reportAfter(*best, places.surface, points, stage);
+      reportAfter(Moved(*best), places.surface, points, best->report, stage);
       if (options.pillow == PillowMode::Always || isWorthLayer(best->report, report)) {
-        bare = own;
         report = best->report;
       } else {
         best.reset();
@@ -252,22 +265,15 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
       std::optional<Improved> snapped =
           improvedWithCurves(mesh, boundary, places, options, moved, context, stage);
       if (snapped) {
-        const ImproveReport own = snapped->report;
-        reportAfter(*snapped, places.surface, points, stage);
+        reportAfter(Moved(*snapped), places.surface, points, snapped->report, stage);
         if (meritOf(snapped->report) > meritOf(report)) {
-          bare = own;
           report = snapped->report;
           best = std::move(snapped);
         }
       }
     }
-    if (best) {
-      closeIfBetter({best->mesh}, best->boundary, best->places, best->distance, options,
-                    places.surface, points, std::move(bare), report, context, stage);
-    } else {
-      closeIfBetter(subject, boundary, places, distance, options, places.surface, points,
-                    std::move(bare), report, context, stage);
-    }
+    closeIfBetter(best ? Moved(*best) : plain, options, places.surface, points, report, context,
+                  stage);
     stage.finish();
     if (best) mesh = std::move(best->mesh);
   } catch (...) {

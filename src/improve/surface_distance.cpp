@@ -138,25 +138,26 @@ Vec3 pointOf(const std::array<Vec3, 4>& corners, const std::array<double, 4>& we
   return point;
 }
 
-/// Calls visit(weights of the corners) for the corners of a quad and for samples on edges and
-/// inside. An edge of two quads is only sampled for one.
+/// Calls visit(weights of the corners, which corner it is) for the corners of a quad and for
+/// samples on edges and inside, which are none: 4. An edge of two quads is only sampled for one.
 template <class Visit>
 void forSamples(const Quad& quad, const Visit& visit) {
+  constexpr std::size_t kBetween = 4;
   for (std::size_t i = 0; i < 4; ++i) {
     std::array<double, 4> weights{};
     weights[i] = 1;
-    visit(weights);
+    visit(weights, i);
     const std::size_t next = (i + 1) % 4;
     if (quad[i] > quad[next]) continue;
     for (const double share : kQuarters) {
       weights[i] = 1 - share;
       weights[next] = share;
-      visit(weights);
+      visit(weights, kBetween);
     }
   }
   for (const double s : kQuarters) {
     for (const double t : kQuarters) {
-      visit(std::array<double, 4>{(1 - s) * (1 - t), (1 - s) * t, s * t, s * (1 - t)});
+      visit(std::array<double, 4>{(1 - s) * (1 - t), (1 - s) * t, s * t, s * (1 - t)}, kBetween);
     }
   }
 }
@@ -183,12 +184,20 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
 /// Per quad: the largest distance, in diagonals.
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
                                 const TriangleTree& tree, double diagonal, Stage& stage) {
+  std::vector<Index> vertices;  // each is a corner of about four quads
+  for (const Quad& quad : quads) vertices.insert(vertices.end(), quad.begin(), quad.end());
+  sortUnique(vertices);
+  std::vector<double> ofVertices(points.size());
+  parallelFor(stage, vertices.size(), kSurfaceDistanceGrain, [&](std::size_t i) {
+    ofVertices[vertices[i]] = tree.nearest(points[vertices[i]]).distance;
+  });
   std::vector<double> distances(quads.size());
   parallelFor(stage, quads.size(), kSurfaceDistanceGrain, [&](std::size_t q) {
     const std::array<Vec3, 4> corners = cornersOf(points, quads[q]);
     double largest = 0;
-    forSamples(quads[q], [&](const std::array<double, 4>& weights) {
-      largest = std::max(largest, tree.nearest(pointOf(corners, weights)).distance);
+    forSamples(quads[q], [&](const std::array<double, 4>& weights, std::size_t corner) {
+      largest = std::max(largest, corner < 4 ? ofVertices[quads[q][corner]]
+                                             : tree.nearest(pointOf(corners, weights)).distance);
     });
     distances[q] = largest / diagonal;
   });
@@ -199,7 +208,7 @@ std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad>
 void addGaps(const Array<Vec3>& points, std::span<const Quad> quads, Index quad,
              const ReferenceSurface& surface, const TriangleTree& tree, std::vector<Gap>& gaps) {
   const std::array<Vec3, 4> corners = cornersOf(points, quads[quad]);
-  forSamples(quads[quad], [&](const std::array<double, 4>& weights) {
+  forSamples(quads[quad], [&](const std::array<double, 4>& weights, std::size_t /*corner*/) {
     const Vec3 point = pointOf(corners, weights);
     const auto nearest = static_cast<Index>(tree.nearest(point).triangle);
     gaps.push_back({quad, weights, minus(nearestOf(surface.triangle(nearest), point), point)});

@@ -84,14 +84,14 @@ std::string whyKept(const WayReport& kept, const WayReport& other, bool otherIsN
   const Error& second = *outcomes[1].refusal;
   if (std::string_view(first.what()) == second.what()) throw Error(first);
   // The place of another code is one in the map.
-  const bool isInPart =
-      first.code() == ErrorCode::NotMeshable && first.place().kind != PlaceKind::None;
+  const auto placeInPart = [](const Error& error) {
+    return error.code() == ErrorCode::NotMeshable ? error.place() : Place{};
+  };
+  const Place place = placeInPart(first);
   throw Error(ErrorCode::NotMeshable,
               "Neither way leads to a mesh. By a polycube: " + std::string(first.what()) +
                   " Along frames: " + second.what(),
-              isInPart                                  ? first.place()
-              : second.code() == ErrorCode::NotMeshable ? second.place()
-                                                        : Place{});
+              place.kind == PlaceKind::None ? placeInPart(second) : place);
 }
 
 /// Runs both ways, each in a context of its own that shares the caller's progress and cancellation.
