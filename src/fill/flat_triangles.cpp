@@ -20,7 +20,7 @@ bool hasNoArea(const TriangleMesh& surface, const Corners& corners) {
   return isFlat({surface.points[a], surface.points[b], surface.points[c]});
 }
 
-/// Of three different points on a line, the two ends are this side's, its triangle's corner apart.
+/// The ends of this side are the outer two of the corners, which are on a line.
 Index longestSide(const TriangleMesh& surface, Index t) {
   const auto squaredLength = [&](Index i) {
     const Corners& corners = surface.triangles[t];

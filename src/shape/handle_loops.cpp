@@ -1,13 +1,13 @@
 // J. Erickson, K. Whittlesey, "Greedy optimal homotopy and homology generators", SODA 2005: edges
 // that neither a tree of triangles nor a tree of vertices crosses close loops around handles.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include <shape/handle_loops.hpp>
+#include <shape/triangle_paths.hpp>
 
 #include <base/disjoint_sets.hpp>
 #include <base/random.hpp>
@@ -42,7 +42,7 @@ class LoopFinder {
       context.throwIfCancelled();
       const auto start = static_cast<Index>(random_.below(surface_.triangleCount()));
       if (isCut_[start]) continue;
-      growPaths(start);
+      paths_ = shortestPaths(surface_, std::array{start}, kInfinity, isCut_);
       for (const Side side : closingSides()) {
         HandleLoop loop = loopThrough(side);
         const double weight = loop.length * (isAroundHole(loop) ? 1 : kAroundSolid);
@@ -56,34 +56,6 @@ class LoopFinder {
   }
 
  private:
-  [[nodiscard]] double distance(Index a, Index b) const {
-    return length(minus(surface_.centres[a], surface_.centres[b]));
-  }
-
-  /// Finds shortest paths from a triangle to all others that are not cut (Dijkstra).
-  void growPaths(Index start) {
-    distances_.assign(surface_.triangleCount(), kInfinity);
-    entries_.assign(surface_.triangleCount(), kNone);
-    using Front = std::pair<double, Index>;
-    std::priority_queue<Front, std::vector<Front>, std::greater<>> fronts;
-    distances_[start] = 0;
-    fronts.emplace(0, start);
-    while (!fronts.empty()) {
-      const auto [reached, t] = fronts.top();
-      fronts.pop();
-      if (reached > distances_[t]) continue;
-      for (Side side = 3 * t; side < 3 * t + 3; ++side) {
-        const Index beyond = surface_.beyond(side);
-        if (isCut_[beyond]) continue;
-        const double farther = reached + distance(t, beyond);
-        if (farther >= distances_[beyond]) continue;
-        distances_[beyond] = farther;
-        entries_[beyond] = surface_.twins[side];
-        fronts.emplace(farther, beyond);
-      }
-    }
-  }
-
   /// Returns a side of each edge that closes a loop around a handle: those edges left over by a
   /// spanning tree of the vertices that takes edges of long loops first.
   [[nodiscard]] std::vector<Side> closingSides() const {
@@ -95,8 +67,9 @@ class LoopFinder {
       // As if the cuts were filled with disks.
       if (isCut_[here] != isCut_[beyond]) vertices.unite(surface_.tails[side], surface_.head(side));
       if (side > surface_.twins[side] || isCut_[here] || isCut_[beyond]) continue;
-      if (entries_[here] == side || entries_[beyond] == surface_.twins[side]) continue;
-      const double length = distances_[here] + distances_[beyond] + distance(here, beyond);
+      if (paths_.entries[here] == side || paths_.entries[beyond] == surface_.twins[side]) continue;
+      const double length = paths_.distances[here] + paths_.distances[beyond] +
+                            distanceBetween(surface_, here, beyond);
       if (std::isfinite(length)) sides.emplace_back(-length, side);
     }
     std::sort(sides.begin(), sides.end());
@@ -116,7 +89,8 @@ class LoopFinder {
   /// The triangles from one to the start, which comes last.
   [[nodiscard]] std::vector<Index> pathFrom(Index triangle) const {
     std::vector<Index> path = {triangle};
-    while (entries_[path.back()] != kNone) path.push_back(surface_.beyond(entries_[path.back()]));
+    while (paths_.entries[path.back()] != kNone)
+      path.push_back(surface_.beyond(paths_.entries[path.back()]));
     return path;
   }
 
@@ -140,7 +114,7 @@ class LoopFinder {
     Index last = loop.triangles.back();
     const Vec3& origin = surface_.centres[last];
     for (const Index t : loop.triangles) {
-      loop.length += distance(last, t);
+      loop.length += distanceBetween(surface_, last, t);
       const Vec3 twice =
           cross(minus(surface_.centres[last], origin), minus(surface_.centres[t], origin));
       loop.area = plus(loop.area, times(0.5, twice));
@@ -164,8 +138,7 @@ class LoopFinder {
   const Surface& surface_;
   Random random_;
   std::vector<bool> isCut_;
-  std::vector<double> distances_;  ///< per triangle, from the start
-  std::vector<Side> entries_;      ///< per triangle: its side towards the start
+  TrianglePaths paths_;
 };
 
 }  // namespace

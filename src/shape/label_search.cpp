@@ -4,6 +4,8 @@
 
 #include <shape/label_search.hpp>
 
+#include <base/sorted.hpp>
+
 namespace hexhex::shape {
 
 namespace {
@@ -159,8 +161,7 @@ void LabelSearch::changeChart(Labels& labels, Index place) {
     }
   }
   if (beside.empty() || chart.size() > labels.size() / 4) return;
-  std::sort(beside.begin(), beside.end());
-  beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+  sortUnique(beside);
   const lattice::Direction label = beside[random_.below(beside.size())];
   if (random_.share() < 0.6) {
     for (const Index t : chart) labels[t] = label;

@@ -3,12 +3,10 @@
 // two axes in turn.
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
-#include <utility>
 
 #include <shape/loop_labels.hpp>
+#include <shape/triangle_paths.hpp>
 
 namespace hexhex::shape {
 
@@ -162,33 +160,20 @@ void turnToAxis(Surface& surface, const HandleLoop& loop, std::vector<bool>& isT
 /// Turns normals close to labelled triangles towards their labels.
 void turnToLabels(Surface& surface, const Labels& labels) {
   constexpr double kReach = 3;  // in mean edges
-  using Front = std::pair<double, Index>;
-  std::priority_queue<Front, std::vector<Front>, std::greater<>> fronts;
-  std::vector<double> distances(labels.size(), kReach * surface.meanEdge);
-  Labels nearest = labels;
+  const double reach = kReach * surface.meanEdge;
+  std::vector<Index> labelled;
   for (Index t = 0; t < labels.size(); ++t) {
-    if (labels[t] == lattice::kDirections) continue;
-    distances[t] = 0;
-    fronts.emplace(0, t);
+    if (labels[t] != lattice::kDirections) labelled.push_back(t);
   }
-  while (!fronts.empty()) {
-    const auto [reached, t] = fronts.top();
-    fronts.pop();
-    if (reached > distances[t]) continue;
-    for (Side side = 3 * t; side < 3 * t + 3; ++side) {
-      const Index beyond = surface.beyond(side);
-      const double farther = reached + length(minus(surface.centres[t], surface.centres[beyond]));
-      if (farther >= distances[beyond]) continue;
-      distances[beyond] = farther;
-      nearest[beyond] = nearest[t];
-      fronts.emplace(farther, beyond);
-    }
-  }
+  const TrianglePaths paths = shortestPaths(surface, labelled, reach, {});
   for (Index t = 0; t < labels.size(); ++t) {
-    if (nearest[t] == lattice::kDirections) continue;
+    Index nearest = t;
+    while (paths.entries[nearest] != kNone) nearest = surface.beyond(paths.entries[nearest]);
+    const lattice::Direction label = labels[nearest];
+    if (label == lattice::kDirections) continue;
     Vec3 normal = surface.normals[t];
-    normal[static_cast<std::size_t>(lattice::axisOf(nearest[t]))] +=
-        lattice::signOf(nearest[t]) * (1 - distances[t] / (kReach * surface.meanEdge));
+    normal[static_cast<std::size_t>(lattice::axisOf(label))] +=
+        lattice::signOf(label) * (1 - paths.distances[t] / reach);
     const double size = length(normal);
     if (size > 0) surface.normals[t] = times(1 / size, normal);
   }
