@@ -13,6 +13,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 
 namespace hexhex::adjacency {
@@ -71,8 +72,7 @@ class VertexLists {
 /// @param edges  each with the smaller vertex first; may occur repeatedly
 [[nodiscard]] inline VertexLists<Index> verticesBeside(std::vector<std::array<Index, 2>> edges,
                                                        std::size_t vertexCount, Stage& stage) {
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sortUnique(edges);
   return VertexLists<Index>(vertexCount, stage, [&](const auto& add) {
     for (const auto& [a, b] : edges) {
       add(a, b);

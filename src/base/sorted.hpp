@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include <hexhex/types.hpp>
 
@@ -18,8 +17,8 @@ template <std::size_t n>
 }
 
 /// Sorts a list and removes duplicates.
-template <class T>
-void sortUnique(std::vector<T>& list) {
+template <class List>
+void sortUnique(List& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }

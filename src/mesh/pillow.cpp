@@ -6,6 +6,7 @@
 #include <adjacency/hex_topology.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <mesh/pillow.hpp>
 
@@ -88,8 +89,7 @@ class PillowMaker {
 
   void numberVertices() {
     for (const Quad& quad : quads_) outer_.insert(outer_.end(), quad.begin(), quad.end());
-    std::sort(outer_.begin(), outer_.end());
-    outer_.erase(std::unique(outer_.begin(), outer_.end()), outer_.end());
+    sortUnique(outer_);
     const std::size_t n = mesh_.points.size();
     if (n + outer_.size() >= kNone || mesh_.cells.size() + quads_.size() >= kNone) {
       throw Error(ErrorCode::TooLarge,

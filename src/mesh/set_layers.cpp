@@ -5,6 +5,7 @@
 
 #include <adjacency/hex_topology.hpp>
 
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <mesh/set_layers.hpp>
 
@@ -72,8 +73,7 @@ class LayerMaker {
     for (const Border& border : borders_) {
       for (const Index v : border.quad) copies_.push_back({setOf[border.cell], v});
     }
-    std::sort(copies_.begin(), copies_.end());
-    copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
+    sortUnique(copies_);
   }
 
   SetLayers make() {

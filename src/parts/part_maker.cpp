@@ -9,6 +9,7 @@
 #include <parts/part_region.hpp>
 #include <parts/vertex_set.hpp>
 
+#include <base/sorted.hpp>
 #include <extract/mesh_tags.hpp>
 
 namespace hexhex::parts {
@@ -42,8 +43,7 @@ void renumber(std::span<const Cell> from, const VertexSet& vertices, Hex* to) {
 }
 
 std::vector<std::int32_t> different(std::vector<std::int32_t> tags) {
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  sortUnique(tags);
   return tags;
 }
 
@@ -232,8 +232,7 @@ class Maker final : public PartMaker {
         if (!std::binary_search(own.begin(), own.end(), vertex)) added.push_back(vertex);
       }
     }
-    std::sort(added.begin(), added.end());
-    added.erase(std::unique(added.begin(), added.end()), added.end());
+    sortUnique(added);
     const std::uint64_t count = part.ownPoints + added.size();
     requireNarrow(count, "vertices");
     requireNarrow(part.globalCells.size(), "cells");

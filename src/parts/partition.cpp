@@ -6,6 +6,7 @@
 
 #include <hexhex/team.hpp>
 
+#include <base/sorted.hpp>
 #include <lattice/wide_int.hpp>
 #include <sweep/cell_order.hpp>
 #include <sweep/tet_positions.hpp>
@@ -160,8 +161,7 @@ void assign(const std::vector<PartitionElement>& elements, const std::vector<std
     }
     entries.push_back({partOf[i], element.tet});
   }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  sortUnique(entries);
   partition.begin.assign(std::size_t{partition.parts} + 1, 0);
   for (const Entry& entry : entries) {
     ++partition.begin[std::size_t{entry.part} + 1];

@@ -14,6 +14,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 
 namespace hexhex::parts {
 
@@ -150,8 +151,7 @@ class VertexSet {
                 }
               });
         });
-    std::sort(keys_.begin(), keys_.end());
-    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    sortUnique(keys_);
     pages_.resize(keys_.size());
   }
   void count() {

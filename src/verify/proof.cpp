@@ -9,6 +9,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/stream.hpp>
 
+#include <base/sorted.hpp>
 #include <base/workspaces.hpp>
 #include <igm/measures.hpp>
 
@@ -166,8 +167,7 @@ std::vector<Index> PartProof::tetsOf(const MeshPart& part, Faults& wrongPoints,
   std::vector<Index> tets;
   addOwners(places_.begin(), part.globalPoints, tets, wrongPoints);
   addOwners(centers_.begin, part.globalCells, tets, wrongCells);
-  std::sort(tets.begin(), tets.end());
-  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  sortUnique(tets);
   return tets;
 }
 

@@ -28,8 +28,7 @@ class Simplices {
     for (const Tet& tet : tets.tets) {
       for (const auto& seen : kSeenFrom) add(tet, seen);
     }
-    std::sort(all_.begin(), all_.end());
-    all_.erase(std::unique(all_.begin(), all_.end()), all_.end());
+    sortUnique(all_);
   }
 
   void appendCentres(const TetMesh& tets, HexMesh& mesh) {

@@ -247,14 +247,7 @@ TEST(Gmsh, CellsOfOrder2) {
       writeText(folder / "a.msh", text);
       ASSERT_TRUE(holdsLagrangeCells(folder / "a.msh", context));
       const LagrangeMesh mesh = readLagrangeMesh(folder / "a.msh", context);
-      ASSERT_EQ(mesh.order, 2);
-      ASSERT_EQ(mesh.nodes.size(), 27U);
-      EXPECT_EQ(mesh.vertexCount, 8U);
-      for (std::size_t i = 0; i < 27; ++i) {
-        const Vec3 expected = {static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
-                               static_cast<double>(i / 9)};
-        EXPECT_EQ(mesh.points[mesh.nodes[i]], expected) << i;
-      }
+      expectCubeOfOrder2(mesh);
       EXPECT_EQ(mesh.regions, (Array<std::int32_t>{3}));
       EXPECT_EQ(mesh.features.quads, (std::vector<FeatureQuad>{{{0, 1, 2, 3}, 5}}));
       EXPECT_EQ(mesh.features.edges, (std::vector<FeatureEdge>{{{0, 1}, 7}}));

@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
@@ -173,6 +174,21 @@ template <class Points>
 void expectSameBits(const Points& a, const Points& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(sameBits(a[i], b[i])) << "at " << i;
+}
+
+/// That a mesh is one cell of order 2, each of whose nodes is where its number says: at 0, 1 or 2
+/// along each axis.
+inline void expectCubeOfOrder2(const LagrangeMesh& mesh) {
+  ASSERT_EQ(mesh.order, 2);
+  ASSERT_EQ(mesh.cellCount(), 1U);
+  ASSERT_EQ(mesh.nodes.size(), 27U);
+  EXPECT_EQ(mesh.points.size(), 27U);
+  EXPECT_EQ(mesh.vertexCount, 8U);
+  for (std::size_t i = 0; i < 27; ++i) {
+    const Vec3 expected = {static_cast<double>(i % 3), static_cast<double>(i / 3 % 3),
+                           static_cast<double>(i / 9)};
+    EXPECT_EQ(mesh.points[mesh.nodes[i]], expected) << i;
+  }
 }
 
 }  // namespace hexhex::test

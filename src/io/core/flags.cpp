@@ -10,6 +10,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/sorted.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
@@ -72,8 +73,7 @@ class TetBoundary {
     for (const auto& [triangle, face] : faces_) {
       if (!face.isInner) all.insert(all.end(), triangle.begin(), triangle.end());
     }
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    sortUnique(all);
     return all;
   }
 

@@ -17,6 +17,7 @@
 #include <hexhex/parts.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 
 namespace hexhex::io {
@@ -122,8 +123,7 @@ template <class Groups>
     const auto& element = groups.elements[i];
     vertices.insert(vertices.end(), element.begin(), element.end());
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sortUnique(vertices);
   return vertices;
 }
 

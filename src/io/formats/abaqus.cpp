@@ -18,6 +18,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
@@ -339,11 +340,15 @@ class AbaqusReader {
           if (&sets == &elementSets_ && addFacetSet(named, name)) continue;
           fail("the set names " + quoted(word) + ", which is no number, and no set above");
         }
-        const std::vector<std::uint64_t> items = other->second.items;
-        takeRoom(items.size());
-        set.items.insert(set.items.end(), items.begin(), items.end());
+        append(other->second.items, set);
       }
     }
+  }
+
+  /// @param items  a copy: a set may name itself
+  void append(std::vector<std::uint64_t> items, Set& set) {
+    takeRoom(items.size());
+    set.items.insert(set.items.end(), items.begin(), items.end());
   }
 
   /// Elements that are no cells have sets of their own; those of other types are not kept.
@@ -353,10 +358,7 @@ class AbaqusReader {
     if (facets == facetSets_.end()) {
       return std::find(blockSets_.begin(), blockSets_.end(), named) != blockSets_.end();
     }
-    const std::vector<std::uint64_t> items = facets->second.items;
-    takeRoom(items.size());
-    std::vector<std::uint64_t>& all = facetSets_[name].items;
-    all.insert(all.end(), items.begin(), items.end());
+    append(facets->second.items, facetSets_[name]);
     return true;
   }
 
@@ -638,8 +640,7 @@ struct QuadraticCells {
         middles.push_back(edgeMiddle(cell[edges[e][0]], cell[edges[e][1]], cell[8 + e]));
       }
     }
-    std::sort(middles.begin(), middles.end());
-    middles.erase(std::unique(middles.begin(), middles.end()), middles.end());
+    sortUnique(middles);
   }
 };
 
@@ -716,8 +717,7 @@ class AbaqusWriter {
         if (found != middles.end() && found->first == wanted.first) nodes.push_back(found->second);
       }
     }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sortUnique(nodes);
   }
 
   /// @param indexAt  returns the index of the i-th of n members

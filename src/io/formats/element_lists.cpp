@@ -13,6 +13,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/concat.hpp>
+#include <base/sorted.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
@@ -139,8 +140,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, c
     if (tag == 0) continue;
     for (const Index node : set.nodes) members.emplace_back(node, tag);
   }
-  std::sort(members.begin(), members.end());
-  members.erase(std::unique(members.begin(), members.end()), members.end());
+  sortUnique(members);
   const auto curvesAt = [&members](Index node) {
     return std::lower_bound(members.begin(), members.end(),
                             std::pair(node, std::numeric_limits<std::int32_t>::min()));
@@ -157,8 +157,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, c
       }
     }
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sortUnique(found);
   std::vector<FeatureEdge> features = lists.lines;
   for (const auto& [tag, edge] : found) features.push_back({edge, tag});
   return features;

@@ -19,6 +19,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/line_writer.hpp>
@@ -114,8 +115,7 @@ std::vector<std::int32_t> crowdedReferences(const Array<std::int32_t>& reference
   for (std::size_t v = 0; v < neighbours.size(); ++v) {
     if (neighbours[v] == v) crowded.push_back(references[v]);
   }
-  std::sort(crowded.begin(), crowded.end());
-  crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
+  sortUnique(crowded);
   return crowded;
 }
 
@@ -130,8 +130,7 @@ std::vector<FeatureVertex> vertexTags(std::vector<Index> corners,
                                       const Array<Cell>& cells) {
   std::vector<FeatureVertex> tags;
   if (!corners.empty()) {
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    sortUnique(corners);
     for (const Index v : corners) {
       const bool hasReference = !references.empty() && references[v] != 0;
       tags.push_back({v, hasReference ? references[v] : 1});

@@ -14,6 +14,7 @@
 #include <hexhex/curved.hpp>
 
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -123,8 +124,7 @@ class SharedByGroup {
       }
     }
     for (auto& [edge, owners] : edges) {
-      std::sort(owners.begin(), owners.end());
-      owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+      sortUnique(owners);
       const bool isOwn = std::binary_search(owners.begin(), owners.end(), part_.part);
       if (isOwn && owners.size() > 1) groups_[owners].edges.push_back(edge);
     }

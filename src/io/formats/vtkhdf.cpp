@@ -16,6 +16,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/team.hpp>
 
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/hdf_file.hpp>
@@ -207,8 +208,7 @@ class TagRows {
   }
   void write(const HdfFile& file, hid_t grid, std::string_view name) {
     if (rows_.empty()) return;
-    std::sort(rows_.begin(), rows_.end());
-    rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
+    sortUnique(rows_);
     const hid_t type = HDF5(H5T_NATIVE_INT64_g);
     const HdfObject set =
         file.dataset(grid, concat("FieldData/", name), type, file.space({rows_.size(), n}));

@@ -4,6 +4,8 @@
 
 #include <quantize/bend/edge_turns.hpp>
 
+#include <base/sorted.hpp>
+
 namespace hexhex::quantization {
 
 namespace {
@@ -49,8 +51,7 @@ std::vector<Index> tetsAtOtherTurns(const adjacency::TetTopology& topology,
               });
         }
       });
-  std::sort(tets.begin(), tets.end());
-  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  sortUnique(tets);
   return tets;
 }
 

@@ -3,6 +3,8 @@
 
 #include <quantize/integers/arc_integers.hpp>
 
+#include <base/sorted.hpp>
+
 namespace hexhex::quantization {
 
 namespace {
@@ -31,8 +33,7 @@ std::vector<ArcEquation> arcEquations(const MotorcycleComplex& complex) {
       for (const auto& [arc, factor] : sum) equation.emplace_back(arc, sign * factor);
     }
   }
-  std::sort(equations.begin(), equations.end());
-  equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+  sortUnique(equations);
   return equations;
 }
 

@@ -7,6 +7,7 @@
 
 #include <hexhex/extract.hpp>
 
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <igm/igm.hpp>
 #include <igm/transition_fit.hpp>
@@ -49,8 +50,7 @@ std::vector<double> conditions(const adjacency::TetTopology& topology,
         minus(triangle.there[0], igm::bestRotation(triangle)(triangle.here[0]));
     for (const double x : translation) sizes.push_back(std::abs(x));
   }
-  std::sort(sizes.begin(), sizes.end());
-  sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+  sortUnique(sizes);
   return sizes;
 }
 

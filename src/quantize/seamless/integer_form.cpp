@@ -12,6 +12,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/sorted.hpp>
 #include <lattice/wide_int.hpp>
 
 namespace hexhex::quantization {
@@ -114,8 +115,7 @@ void IntegerSystem::addEquations(std::vector<IntegerForm> equations, std::int64_
     const std::int64_t divisor = form.commonDivisor();
     form.divide(form.terms().front().second < 0 ? -divisor : divisor);
   }
-  std::sort(equations.begin(), equations.end());
-  equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+  sortUnique(equations);
   for (IntegerForm& form : equations) addEquation(std::move(form), largestPivot);
 }
 
