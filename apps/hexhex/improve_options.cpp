@@ -141,7 +141,10 @@ void printImprovement(const ImproveReport& report) {
             fmt::format("at least {:.4g}, {:.4g} on average", report.before.quality.minimum,
                         report.before.quality.mean));
   printQuality(report.after);
-  printLine("worst held by", worstAsText(report.worst));
+  constexpr double kPerfect = 0.99995;  // printed as 1
+  if (report.after.quality.minimum < kPerfect) {
+    printLine("worst held by", worstAsText(report.worst));
+  }
   if (report.addedCells > 0) {
     printLine("pillow",
               fmt::format("{} added under the boundary, {} in all",

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <quantize/polycube/labelled_mesh.hpp>
+#include <shape/counted_faults.hpp>
 #include <shape/frames_field.hpp>
 #include <shape/frames_map.hpp>
 #include <shape/frames_matching.hpp>
@@ -234,20 +235,20 @@ class FramesMapper {
 
   [[noreturn]] void failUnmeshable(const std::vector<FieldDefect>& defects) const {
     const auto count = [&](FieldDefect::Kind kind) {
-      return std::count_if(defects.begin(), defects.end(),
-                           [kind](const FieldDefect& defect) { return defect.kind == kind; });
+      return static_cast<std::uint64_t>(
+          std::count_if(defects.begin(), defects.end(),
+                        [kind](const FieldDefect& defect) { return defect.kind == kind; }));
     };
+    using enum FieldDefect::Kind;
     throw Error(
         ErrorCode::TransitionResidual,
-        "No hexahedral mesh follows the frame field of this object: " +
-            std::to_string(count(FieldDefect::Kind::Compound)) +
-            " edges turn about a diagonal, at " + std::to_string(count(FieldDefect::Kind::Zipper)) +
-            " vertices curves meet as in no hexahedral mesh, " +
-            std::to_string(count(FieldDefect::Kind::Boundary)) +
-            " edges of the boundary turn as no hexahedra do, and " +
-            std::to_string(count(FieldDefect::Kind::Flat) + count(FieldDefect::Kind::HalfTurn)) +
-            " times two singular curves run into one. Refine the tets there, or make a "
-            "polycube of the object.",
+        "No hexahedral mesh follows the frame field of this object. It has " +
+            countedFaults({{"edges that turn about a diagonal", count(Compound)},
+                           {"vertices where curves meet as in no hexahedral mesh", count(Zipper)},
+                           {"edges of the boundary that turn as no hexahedra do", count(Boundary)},
+                           {"places where two singular curves run into one",
+                            count(Flat) + count(HalfTurn)}}) +
+            ". Refine the tets there, or make a polycube of the object.",
         placeOf(defects.front().edge));
   }
 
@@ -256,8 +257,7 @@ class FramesMapper {
         ErrorCode::FlippedTet,
         "No map was found along the frame field of this object: " + std::to_string(flipped.size()) +
             " tets stay flipped, or go around an edge too often, this one among them. Refine the "
-            "tets there, or make a "
-            "polycube of the object.",
+            "tets there, or make a polycube of the object.",
         {PlaceKind::Tet, tets_.parentOf(flipped.front())});
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <quantize/polycube/polycube.hpp>
+#include <shape/counted_faults.hpp>
 #include <shape/handle_loops.hpp>
 #include <shape/labels.hpp>
 #include <shape/loop_labels.hpp>
@@ -38,20 +39,13 @@ std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std
   return flags;
 }
 
-/// For example "2 too few corners around charts, 1 points where borders turn back".
 std::string faultsOf(const LabelReport& report) {
-  std::string text;
-  const auto add = [&](std::uint64_t count, const char* what) {
-    if (count == 0) return;
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
-  };
-  add(report.badLoops, "too few corners around charts");
-  add(report.badCorners, "corners of too many charts, or without room");
-  add(report.oppositeEdges, "edges between opposite labels");
-  add(report.turningPoints, "points where borders turn back");
-  add(report.wrongTurns, "charts whose right angles do not add up");
-  add(report.flatCharts, "charts without room between two of their edges");
-  return text;
+  return countedFaults({{"too few corners around charts", report.badLoops},
+                        {"corners of too many charts, or without room", report.badCorners},
+                        {"edges between opposite labels", report.oppositeEdges},
+                        {"points where borders turn back", report.turningPoints},
+                        {"charts whose right angles do not add up", report.wrongTurns},
+                        {"charts without room between two of their edges", report.flatCharts}});
 }
 
 /// The centroid of the place of an error.

@@ -64,9 +64,7 @@ export class App {
     private readonly mesh: LoadedMesh,
     private readonly worker: MeshWorker,
   ) {
-    this.state = fromFragment(location.hash);
-    const { start } = info;
-    if (location.hash.length < 2 && start) this.state.colour = start.colour;
+    this.state = this.stateOf(location.hash);
     this.dropUnknown();
 
     const { half } = sceneOf(info);
@@ -90,7 +88,7 @@ export class App {
     worker.onVisible = (visible, curved, milliseconds) => this.showVisible(visible, curved, milliseconds);
     this.fillControls();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
-    else if (start) this.viewport.look(start.from);
+    else if (info.start) this.viewport.look(info.start.from);
     this.applyTheme();
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.applyTheme());
     window.addEventListener("hashchange", () => this.restore(location.hash));
@@ -221,12 +219,19 @@ export class App {
 
   private restore(fragment: string): void {
     if (fragment.replace(/^#/, "") === toFragment(this.state)) return;
-    this.state = fromFragment(fragment);
+    this.state = this.stateOf(fragment);
     this.dropUnknown();
     if (this.state.camera) this.viewport.cameraState = this.state.camera;
-    else this.viewport.look([1, -1.6, 0.9]);
+    else this.viewport.look(this.info.start?.from ?? [1, -1.6, 0.9]);
     this.applyTheme();
     this.update();
+  }
+
+  /** What an address says; one that says nothing leaves the choice to the page. */
+  private stateOf(fragment: string): ViewState {
+    const state = fromFragment(fragment);
+    if (fragment.length < 2 && this.info.start) state.colour = this.info.start.colour;
+    return state;
   }
 
   /** An address may come from another mesh. */
