@@ -18,6 +18,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
+#include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/parts.hpp>
 #include <hexhex/stream.hpp>
@@ -133,6 +134,7 @@ ReadMap readVtuMap;
 WriteMesh writeVtu;
 WriteMap writeVtuMap;
 /// Streams files with appended data, including generators; loads others, and pipes, as a whole.
+/// Also of structured grids, whose cells become hexahedra: `.vts`, `.vtr`, `.vti`.
 ReadPieces readVtuTo;
 /// Writes no array scaled_jacobian, which would need the vertices of all cells.
 OpenSink openVtuSink;
@@ -161,9 +163,9 @@ WritePiecewise writePatchesVtu, writePatchesVtp;
 ReadMesh readPvtu;
 OpenPartSink openPvtuSink;
 
-// `.vtk`: legacy VTK unstructured grids, ASCII or binary, versions 1.0 to 5.1. Points, cells, and
-// regions as this library writes them. Writes version 2.0, which every program reads; HexaLab,
-// OpenFOAM and MFEM read ASCII only. Binary files are limited to 2^31 points.
+// `.vtk`: legacy VTK unstructured and structured grids, ASCII or binary, versions 1.0 to 5.1.
+// Points, cells, and regions as this library writes them. Writes version 2.0, which every program
+// reads; HexaLab, OpenFOAM and MFEM read ASCII only. Binary files are limited to 2^31 points.
 ReadMesh readVtkLegacy;
 ReadTets readVtkLegacyTets;
 ReadMap readVtkLegacyMap;
@@ -199,6 +201,14 @@ struct TriangleLabels {
 /// @throws Error FileUnsupported if there is no such integer array, or no triangle
 using ReadLabels = TriangleLabels(const Input& input, std::string_view array, Stage& stage);
 ReadLabels readVtuLabels, readVtkLegacyLabels;
+
+// Surfaces. They return what the file holds: vertices as listed, and polygons triangulated as fans
+// around their first corner.
+using ReadTriangles = TriangleMesh(const Input& input, Stage& stage);
+/// `.vtp`, and the data set POLYDATA of `.vtk`. Lines and vertices are ignored; strips are refused.
+ReadTriangles readVtp, readVtkLegacySurface;
+/// Whether a `.vtk` file holds a surface, from its first lines.
+bool holdsVtkLegacySurface(const Input& input);
 
 // `.ovm` and `.ovmb`: text and binary files of OpenVolumeMesh, with maps or hex meshes.
 //
