@@ -187,12 +187,12 @@ constexpr std::array kReaders = {
     Reader{"vtk-surface", read<parse<readVtkLegacySurface>>},
     Reader{"vtp", read<parse<readVtp>>, fuzz::changeAppended},
     Reader{"gzip", read<parseGzip>},
-    Reader{"ovm-map", read<parse<readOvmMap>>},
-    Reader{"ovm-tets", read<parse<readOvmTets>>},
-    Reader{"ovm", read<parse<readOvmHexMesh>>},
-    Reader{"ovmb-map", read<parse<readOvmbMap>>, fuzz::changeOvmb},
-    Reader{"ovmb-tets", read<parse<readOvmbTets>>, fuzz::changeOvmb},
-    Reader{"ovmb", read<parse<readOvmbHexMesh>>, fuzz::changeOvmb}};
+    Reader{"ovm-map", read<parse<OvmText::readMap>>},
+    Reader{"ovm-tets", read<parse<OvmText::readTets>>},
+    Reader{"ovm", read<parse<OvmText::readMesh>>},
+    Reader{"ovmb-map", read<parse<OvmBinary::readMap>>, fuzz::changeOvmb},
+    Reader{"ovmb-tets", read<parse<OvmBinary::readTets>>, fuzz::changeOvmb},
+    Reader{"ovmb", read<parse<OvmBinary::readMesh>>, fuzz::changeOvmb}};
 
 const Reader* chosen = nullptr;
 

@@ -223,11 +223,16 @@ bool holdsVtkLegacySurface(const Input& input);
 //
 // Readers accept half-faces in any order and reorient a mesh that is inside out. Writers refuse
 // meshes that the format cannot represent: NonManifoldFace, Orientation, RepeatedVertex.
-ReadMap readOvmMap, readOvmbMap;
-ReadMesh readOvmHexMesh, readOvmbHexMesh;
-ReadTets readOvmTets, readOvmbTets;
-WriteMap writeOvmMap, writeOvmbMap;
-WriteMesh writeOvmHexMesh, writeOvmbHexMesh;
+template <bool binary>
+struct OvmFormat {
+  static ReadMap readMap;
+  static ReadTets readTets;
+  static ReadMesh readMesh;
+  static WriteMap writeMap;
+  static WriteMesh writeMesh;
+};
+using OvmText = OvmFormat<false>;
+using OvmBinary = OvmFormat<true>;
 /// Writes arcs as `.ovmb`: vertices are hex vertices and inner points of arcs, edges are segments.
 /// Properties known to other tools: `v_type` (0 hex vertex, 1 on an arc), `v_igm_uv` (position
 /// along the arc, 0), `v_tet_generator_type`, `v_tet_generator_index`, `e_linear_hex_edge`,

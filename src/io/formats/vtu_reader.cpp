@@ -365,19 +365,13 @@ class VtuFile final : public VtkSource {
 
   /// The numbers in an attribute.
   /// @param numbers  those that it has if it is missing
-  template <class T, std::size_t n>
-  std::array<T, n> readNumbers(const XmlTag& tag, std::string_view attribute,
-                               std::array<T, n> numbers) const {
+  template <std::size_t n>
+  std::array<double, n> readNumbers(const XmlTag& tag, std::string_view attribute,
+                                    std::array<double, n> numbers) const {
     TextScanner scanner(tag.attribute(attribute), name());
     if (!scanner.skipSpace()) return numbers;
-    for (T& number : numbers) {
-      bool good = false;
-      if constexpr (std::is_same_v<T, double>) {
-        good = scanner.readNumber(number);
-      } else {
-        good = scanner.readInteger(number);
-      }
-      if (good) continue;
+    for (double& number : numbers) {
+      if (scanner.readNumber(number)) continue;
       tags_.fail(ErrorCode::FileSyntax, tag, "expected ", n, " numbers as ", attribute, ", found ",
                  quoted(tag.attribute(attribute)), ".");
     }
@@ -387,11 +381,12 @@ class VtuFile final : public VtkSource {
   /// Reads a structured grid, whose cells are implied.
   void readGrid() {
     VtuPiece& piece = pieces_[0];
-    const auto extent = readNumbers(piece.tag, "Extent", std::array<std::int64_t, 6>{});
+    const auto extent = readNumbers(piece.tag, "Extent", std::array<double, 6>{});
     GridIndex size{};
     for (std::size_t i = 0; i < 3; ++i) {
-      size[i] = static_cast<std::uint64_t>(extent[2 * i + 1]) -
-                static_cast<std::uint64_t>(extent[2 * i]) + 1;
+      constexpr double kFar = 1e18;  // far beyond what can be read
+      size[i] =
+          static_cast<std::uint64_t>(std::clamp(extent[2 * i + 1] - extent[2 * i] + 1, 0.0, kFar));
     }
     const std::uint64_t dataSize = (compressed_ ? kLargestZlibRatio : 1) * fileSize();
     if (type_ == "ImageData") {
@@ -402,8 +397,8 @@ class VtuFile final : public VtkSource {
       makeGrid(size, dataSize, [=](std::size_t axis, const GridIndex& point) {
         double place = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-          place += axes[3 * axis + i] * spacing[i] *
-                   (static_cast<double>(extent[2 * i]) + static_cast<double>(point[i]));
+          place +=
+              axes[3 * axis + i] * spacing[i] * (extent[2 * i] + static_cast<double>(point[i]));
         }
         return place + origin[axis];
       });
