@@ -22,6 +22,7 @@
 #include <io/core/cell_counts.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/surface/surface.hpp>
