@@ -168,6 +168,9 @@ TEST(SurfaceFiles, OfVtkAreNoVolumes) {
   Context context(1);
   EXPECT_TRUE(io::holdsSurface(folder / "a.vtk", context));
   EXPECT_FALSE(io::holdsSurface(folder / "b.vtk", context));
+  const Failure tets =
+      failureOf([&] { static_cast<void>(readTriangleMesh(folder / "b.vtk", context)); });
+  EXPECT_NE(tets.sentence.find("no surface"), std::string::npos) << tets.sentence;
   const Failure failure =
       failureOf([&] { static_cast<void>(readHexMesh(folder / "a.vtk", context)); });
   EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
@@ -176,6 +179,7 @@ TEST(SurfaceFiles, OfVtkAreNoVolumes) {
 
 TEST(SurfaceFiles, AreReadAsOthersWriteThem) {
   expectPyramid(kVtk, "a.vtk");
+  expectPyramid(replaced(kVtk, "POLYGONS 5 21\n", "POLYGONS 6 22\n0\n"), "none.vtk");
   expectPyramid(kVtk5, "b.vtk");
   expectPyramid(kVtp, "a.vtp");
   expectPyramid(stlText(), "text.stl");

@@ -599,6 +599,9 @@ TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage) {
 }
 
 TriangleMesh readVtkSurface(const VtkSource& source, Stage& stage) {
+  if (!source.isSurface) {
+    source.fail(ErrorCode::FileUnsupported, "the data set is no surface, which is POLYDATA.");
+  }
   source.requireIndexable();
   TriangleMesh mesh;
   mesh.points.resize(source.points);
@@ -609,8 +612,8 @@ TriangleMesh readVtkSurface(const VtkSource& source, Stage& stage) {
   for (std::size_t i = 0; i < source.cells; ++i) {
     if (!table.isGood(i)) table.fail(i);
     corners.resize(table.end(i) - table.begin(i));
-    readRun(source, std::max<std::size_t>(corners.size(), 1), i, table.begin(i),
-            std::span(corners));
+    if (corners.empty()) continue;
+    readRun(source, corners.size(), i, table.begin(i), std::span(corners));
     addPolygon(mesh, corners);
   }
   return mesh;

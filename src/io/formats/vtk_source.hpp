@@ -274,7 +274,7 @@ using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)
 [[nodiscard]] LagrangeMesh readVtkLagrange(const VtkSource& source, Stage& stage);
 
 /// Reads points and polygons.
-/// @throws Error FileUnsupported for a cell that is no polygon; IndexOutOfRange
+/// @throws Error FileUnsupported if the data set is no surface; IndexOutOfRange
 [[nodiscard]] TriangleMesh readVtkSurface(const VtkSource& source, Stage& stage);
 
 /// Reads points and tets.
