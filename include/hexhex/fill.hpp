@@ -22,8 +22,8 @@ struct TriangleMesh {
   std::vector<std::array<Index, 3>> triangles;  ///< three vertices each
 };
 
-/// Reads a surface: `.stl`, `.ply` (text and binary), `.obj`, `.off`. Polygons are split into
-/// triangles around their first corner. Vertices at the same position are merged, and triangles
+/// Reads a surface: `.stl`, `.ply` (text and binary), `.obj`, `.off`, `.vtp`, `.vtk`. Polygons are
+/// split into triangles around their first corner. Vertices at the same position are merged, and triangles
 /// left without three distinct corners are dropped.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, NotFinite
 [[nodiscard]] TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& context);

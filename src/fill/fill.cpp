@@ -20,6 +20,7 @@
 #include <base/stage.hpp>
 #include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
 
 namespace hexhex {
@@ -163,21 +164,10 @@ FilledPart fillStep(const std::filesystem::path& file, const FillOptions& option
   });
 }
 
-std::string extensionOf(const std::filesystem::path& file) {
-  return io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
-}
-
-bool isSurface(const std::string& extension) {
-  const auto formats = fileFormats();
-  return std::any_of(formats.begin(), formats.end(), [&](const FileFormat& format) {
-    return format.readsSurfaces && format.extension == extension;
-  });
-}
-
 FilledPart read(const std::filesystem::path& file, const FillOptions& options, Context& context) {
-  const std::string extension = extensionOf(file);
+  const std::string extension = io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
   if (extension == ".step" || extension == ".stp") return fillStep(file, options, context);
-  if (!isSurface(extension)) {
+  if (!io::holdsSurface(file, context)) {
     if (options.mesher != Mesher::Auto || options.tetSize != 0) {
       throw Error(ErrorCode::InvalidArgument,
                   file.string() +
@@ -204,7 +194,7 @@ FilledPart fillSurface(const TriangleMesh& surface, const FillOptions& options, 
 }
 
 TriangleMesh readSurfaceOf(const std::filesystem::path& file, Context& context) {
-  if (fill::isSurface(fill::extensionOf(file))) return readTriangleMesh(file, context);
+  if (io::holdsSurface(file, context)) return readTriangleMesh(file, context);
   return boundaryOf(readTetMesh(file, {}, context), context);
 }
 

@@ -22,6 +22,7 @@
 #include <io/core/cell_counts.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/input_file.hpp>
+#include <io/core/text_scanner.hpp>
 #include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/surface/surface.hpp>
@@ -41,6 +42,8 @@ constexpr std::size_t kConstant = std::size_t{4} << 20;
 constexpr std::size_t kFactor = 64;
 /// What is set aside for HDF5 whenever it is used, in place of kConstant.
 constexpr std::size_t kHdf5Constant = std::size_t{17} << 20;
+/// For the cells that a grid implies: 32 bytes for each point that a file may have without data.
+constexpr std::size_t kGridConstant = std::size_t{32} << 22;
 // A compressed file takes up to this many times as much.
 constexpr std::string_view kCompressed = "vtkZLibDataCompressor";
 
@@ -182,13 +185,15 @@ constexpr std::array kReaders = {
     Reader{"obj", read<parse<readObj>>},
     Reader{"off", read<parse<readOff>>},
     Reader{"ply", read<parse<readPly>>},
+    Reader{"vtk-surface", read<parse<readVtkLegacySurface>>},
+    Reader{"vtp", read<parse<readVtp>>, fuzz::changeAppended},
     Reader{"gzip", read<parseGzip>},
-    Reader{"ovm-map", read<parse<readOvmMap>>},
-    Reader{"ovm-tets", read<parse<readOvmTets>>},
-    Reader{"ovm", read<parse<readOvmHexMesh>>},
-    Reader{"ovmb-map", read<parse<readOvmbMap>>, fuzz::changeOvmb},
-    Reader{"ovmb-tets", read<parse<readOvmbTets>>, fuzz::changeOvmb},
-    Reader{"ovmb", read<parse<readOvmbHexMesh>>, fuzz::changeOvmb}};
+    Reader{"ovm-map", read<parse<OvmText::readMap>>},
+    Reader{"ovm-tets", read<parse<OvmText::readTets>>},
+    Reader{"ovm", read<parse<OvmText::readMesh>>},
+    Reader{"ovmb-map", read<parse<OvmBinary::readMap>>, fuzz::changeOvmb},
+    Reader{"ovmb-tets", read<parse<OvmBinary::readTets>>, fuzz::changeOvmb},
+    Reader{"ovmb", read<parse<OvmBinary::readMesh>>, fuzz::changeOvmb}};
 
 const Reader* chosen = nullptr;
 
@@ -243,7 +248,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(unsigned char* data, std::size_t 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const bool compressed = text.find(kCompressed) != std::string_view::npos;
-  allowed = (takesHdf5() ? kHdf5Constant : kConstant) +
+  const std::string words = lowerCase(text);
+  const bool implied = words.find("dimensions") != words.npos || words.find("extent") != words.npos;
+  allowed = (takesHdf5() ? kHdf5Constant : (implied ? kGridConstant : kConstant)) +
             kFactor * (compressed ? kLargestZlibRatio : 1) * size;
   try {
     chosen->read(text);

@@ -201,17 +201,17 @@ TEST(DamagedOvm, Maps) {
   const TemporaryFolder folder;
   writeMap(richMap(), folder / "a.ovmb");
   writeMap(richMap(), folder / "a.ovm");
-  damage(contentOf(folder / "a.ovmb"), readOvmbMap, true);
-  damage(contentOf(folder / "a.ovm") + "VProp string \"s\"\n1:a\n0:\n2:bc\n0:\n0:\n", readOvmMap,
-         false);
+  damage(contentOf(folder / "a.ovmb"), OvmBinary::readMap, true);
+  damage(contentOf(folder / "a.ovm") + "VProp string \"s\"\n1:a\n0:\n2:bc\n0:\n0:\n",
+         OvmText::readMap, false);
 }
 
 TEST(DamagedOvm, HexMeshes) {
   const TemporaryFolder folder;
   writeHexMesh(richMesh(), folder / "a.ovmb");
   writeHexMesh(richMesh(), folder / "a.ovm");
-  damage(contentOf(folder / "a.ovmb"), readOvmbHexMesh, true);
-  damage(contentOf(folder / "a.ovm"), readOvmHexMesh, false);
+  damage(contentOf(folder / "a.ovmb"), OvmBinary::readMesh, true);
+  damage(contentOf(folder / "a.ovm"), OvmText::readMesh, false);
 }
 
 #if !defined(HEXHEX_SANITIZED)
@@ -239,17 +239,17 @@ TEST(DamagedOvm, AbsurdCounts) {
       file.chunk("TOPO", Bytes().span(0, count & 0xFFFFFFFF).u8(which).u8(3).u8(0).u8(4).u64(0));
       file.chunk("PROP", Bytes().span(0, count & 0xFFFFFFFF).u32(0).f64(0));
       file.chunk("EOF ", {});
-      EXPECT_TRUE(isRefused(file.str(), readOvmbMap));
-      EXPECT_TRUE(isRefused(file.str(), readOvmbHexMesh));
+      EXPECT_TRUE(isRefused(file.str(), OvmBinary::readMap));
+      EXPECT_TRUE(isRefused(file.str(), OvmBinary::readMesh));
       const std::string empty =
           ovmbHeader(1, counts).chunk("DIRP", entries).chunk("EOF ", {}).str();
-      EXPECT_TRUE(isRefused(empty, readOvmbMap));
+      EXPECT_TRUE(isRefused(empty, OvmBinary::readMap));
     }
     const std::string number = std::to_string(count);
-    EXPECT_TRUE(isRefused("Vertices\n" + number + "\n0 0 0\n", readOvmMap));
-    EXPECT_TRUE(isRefused("Vertices\n1\n0 0 0\nEdges\n" + number + "\n0 0\n", readOvmMap));
+    EXPECT_TRUE(isRefused("Vertices\n" + number + "\n0 0 0\n", OvmText::readMap));
+    EXPECT_TRUE(isRefused("Vertices\n1\n0 0 0\nEdges\n" + number + "\n0 0\n", OvmText::readMap));
     EXPECT_TRUE(isRefused("Vertices\n1\n0 0 0\nEdges\n1\n0 0\nFaces\n1\n" + number + " 0 0 0\n",
-                          readOvmMap));
+                          OvmText::readMap));
   }
 }
 

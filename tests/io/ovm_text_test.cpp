@@ -19,12 +19,12 @@ namespace {
 
 TetMap map(const std::string& text) {
   Context context;
-  return readBytes<readOvmMap>(text, "m.ovm", context, ReadOptions{});
+  return readBytes<OvmText::readMap>(text, "m.ovm", context, ReadOptions{});
 }
 
 HexMesh mesh(const std::string& text) {
   Context context;
-  return readBytes<readOvmHexMesh>(text, "m.ovm", context);
+  return readBytes<OvmText::readMesh>(text, "m.ovm", context);
 }
 
 const std::string kGeometry =

@@ -21,12 +21,12 @@ namespace {
 
 TetMap map(const std::string& bytes) {
   Context context;
-  return readBytes<readOvmbMap>(bytes, "m.ovmb", context, ReadOptions{});
+  return readBytes<OvmBinary::readMap>(bytes, "m.ovmb", context, ReadOptions{});
 }
 
 HexMesh mesh(const std::string& bytes) {
   Context context;
-  return readBytes<readOvmbHexMesh>(bytes, "m.ovmb", context);
+  return readBytes<OvmBinary::readMesh>(bytes, "m.ovmb", context);
 }
 
 /// Two tets at the face 1 2 3, as lists of the format. Edges 0: 0-1, 1: 0-2, 2: 0-3, 3: 1-2,

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <hexhex/fill.hpp>
+#include <hexhex/io.hpp>
+
+#include <io/core/registry.hpp>
 
 #include "io_test_support.hpp"
 
@@ -138,7 +141,47 @@ const std::string kOff =
     "# by hand\nCOFF\n# counts\n5 5 8\n0 0 0 255 0 0 255\n1 0 0 1 1 1\n1 1 0\n0 1 0\n0.5 0.25 1.5\n"
     "4 0 3 2 1 0.5 0.5 0.5\n3 0 1 4\n3 1 2 4 7\n3 2 3 4\n3 3 0 4\n";
 
+const std::string kVtkPoints = "POINTS 5 float\n0 0 0 1 0 0 1 1 0 0 1 0 0.5 0.25 1.5\n";
+const std::string kVtkHead = "# vtk DataFile Version 5.1\nby hand\nASCII\nDATASET POLYDATA\n";
+const std::string kVtk = kVtkHead + kVtkPoints + "LINES 1 3\n2 0 1\nPOLYGONS 5 21\n4 0 3 2 1\n" +
+                         "3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\nCELL_DATA 6\n";
+const std::string kVtk5 = kVtkHead + kVtkPoints + "POLYGONS 6 16\nOFFSETS vtktypeint64\n" +
+                          "0 4 7 10 13 16\nCONNECTIVITY vtktypeint64\n" +
+                          "0 3 2 1 0 1 4 1 2 4 2 3 4 3 0 4\n";
+const std::string kVtp =
+    "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"5\" NumberOfVerts=\"1\" "
+    "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"5\"><Points><DataArray "
+    "type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0 0.5 "
+    "0.25 1.5</DataArray></Points><Verts><DataArray type=\"Int32\" Name=\"connectivity\" "
+    "format=\"ascii\">0</DataArray><DataArray type=\"Int32\" Name=\"offsets\" "
+    "format=\"ascii\">1</DataArray></Verts><Polys><DataArray type=\"Int32\" "
+    "Name=\"connectivity\" format=\"ascii\">0 3 2 1 0 1 4 1 2 4 2 3 4 3 0 4</DataArray>"
+    "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4 7 10 13 16</DataArray>"
+    "</Polys></Piece></PolyData></VTKFile>";
+
+TEST(SurfaceFiles, OfVtkAreNoVolumes) {
+  const TemporaryFolder folder;
+  writeText(folder / "a.vtk", kVtk);
+  writeText(folder / "b.vtk",
+            "# vtk DataFile Version 2.0\ntets\nASCII\nDATASET UNSTRUCTURED_GRID\n" + kVtkPoints +
+                "CELLS 1 5\n4 0 1 2 4\nCELL_TYPES 1\n10\n");
+  Context context(1);
+  EXPECT_TRUE(io::holdsSurface(folder / "a.vtk", context));
+  EXPECT_FALSE(io::holdsSurface(folder / "b.vtk", context));
+  const Failure tets =
+      failureOf([&] { static_cast<void>(readTriangleMesh(folder / "b.vtk", context)); });
+  EXPECT_NE(tets.sentence.find("no surface"), std::string::npos) << tets.sentence;
+  const Failure failure =
+      failureOf([&] { static_cast<void>(readHexMesh(folder / "a.vtk", context)); });
+  EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
+  EXPECT_NE(failure.sentence.find("surface: `hexhex mesh`"), std::string::npos) << failure.sentence;
+}
+
 TEST(SurfaceFiles, AreReadAsOthersWriteThem) {
+  expectPyramid(kVtk, "a.vtk");
+  expectPyramid(replaced(kVtk, "POLYGONS 5 21\n", "POLYGONS 6 22\n0\n"), "none.vtk");
+  expectPyramid(kVtk5, "b.vtk");
+  expectPyramid(kVtp, "a.vtp");
   expectPyramid(stlText(), "text.stl");
   expectPyramid(stlBytes("made by hand"), "bytes.STL");
   expectPyramid(stlBytes("solid as some programs begin"), "solid.stl");
@@ -197,6 +240,12 @@ TEST(SurfaceFiles, SayWhatIsWrong) {
        ErrorCode::IndexOutOfRange, "no vertex"},
       {"a.ply", plyBytes(false).substr(0, plyBytes(false).size() - 3), ErrorCode::FileSyntax,
        "byte"},
+      {"a.vtk", replaced(kVtk, "3 3 0 4", "3 3 0 5"), ErrorCode::IndexOutOfRange, "names point 5"},
+      {"a.vtk", kVtkHead + "TRIANGLE_STRIPS 0 0\n", ErrorCode::FileUnsupported, "strips"},
+      {"a.vtk", kVtkHead + "POLYGONS 0 0\n", ErrorCode::FileSyntax, "without the section POINTS"},
+      {"a.vtp", replaced(kVtp, "Strips=\"0\"", "Strips=\"1\""), ErrorCode::FileUnsupported,
+       "strips"},
+      {"a.vtp", replaced(kVtp, "4 7 10", "4 3 10"), ErrorCode::FileSyntax, "before they begin"},
       {"a.xyz", "", ErrorCode::FileUnsupported, "no format of surfaces"}};
   for (const Broken& broken : all) {
     SCOPED_TRACE(broken.name + ": " + broken.text.substr(0, 60));

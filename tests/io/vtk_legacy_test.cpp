@@ -133,7 +133,8 @@ void expectFailure(const std::string& from, const std::string& to, const std::st
 
 TEST(VtkLegacyReader, ErrorsTellTheLine) {
   expectFailure("# vtk", "<?xml", "m.vtk, line 1: a .vtk file begins");
-  expectFailure("UNSTRUCTURED_GRID", "POLYDATA", "m.vtk, line 4:");
+  expectFailure("UNSTRUCTURED_GRID", "FIELD", "m.vtk, line 4:");
+  expectFailure("UNSTRUCTURED_GRID", "POLYDATA", "line 9: expected a section of the data set");
   expectFailure("0 1 0 0 0 1", "0 1 0 0 zero 1", "line 7: expected a coordinate of point 4");
   expectFailure("POINTS 8", "POINTS 99999", "has room for at most");
   expectFailure("CELLS 1 9\n8", "CELLS 1 9\n9", "cell 0 of 1 goes beyond");

@@ -687,7 +687,7 @@ def map_from_tets(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = Non
 
     Args:
         points: positions, float64 of shape (n, 3); or a file: either one that read_tets() reads,
-            whose tags the map inherits, or a closed surface (.stl, .obj, .ply, .off) or STEP file,
+            whose tags the map inherits, or a closed surface (.stl, .obj, .ply, .off, .vtp) or STEP file,
             which a mesher fills with tets.
         tets: 0-based vertices of each tet: integers of shape (m, 4).
         method: "frames" (follows a smooth frame field: good cells, if there is such a map),

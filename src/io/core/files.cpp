@@ -272,7 +272,7 @@ TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& contex
   return inSteps(context, "readTriangleMesh", io::kReadTriangles, [&] {
     const io::Input input = io::openInput(file, context);
     return io::inStage(context, "read triangles", [&](Stage& stage) {
-      return io::welded(format.readTriangles(input, stage));
+      return io::welded(format.triangles.read(input, stage));
     });
   });
 }

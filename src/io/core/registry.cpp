@@ -49,6 +49,13 @@ constexpr Format exodusFormat(std::string_view name, std::string_view extension,
           .parts = {openExodusPartSink, parts}};
 }
 
+constexpr Format vtkGridFormat(std::string_view name, std::string_view extension,
+                               std::string_view description) {
+  return {.label = {name, extension, description},
+          .meshes = {.read = readVtu},
+          .pieces = {.read = readVtuTo}};
+}
+
 constexpr std::array kFormatTable = {
     Format{.label = {"hexex", ".hexex", "text of parametrized tets"},
            .maps = {readHexex, writeHexex},
@@ -85,13 +92,20 @@ constexpr std::array kFormatTable = {
            .compresses = true,
            .measures = true,
            .groups = false},
-    Format{.label = {"vtp", ".vtp"}, .writeArcs = writeArcsVtp, .writePatches = writePatchesVtp},
+    vtkGridFormat("vts", ".vts", "VTK XML structured grid"),
+    vtkGridFormat("vtr", ".vtr", "VTK XML rectilinear grid"),
+    vtkGridFormat("vti", ".vti", "VTK XML image data"),
+    Format{.label = {"vtp", ".vtp", "VTK XML surface of polygons"},
+           .triangles = {readVtp},
+           .writeArcs = writeArcsVtp,
+           .writePatches = writePatchesVtp},
     Format{.label = {"pvtu", ".pvtu", "VTK XML in pieces (extract --parts)"},
            .meshes = {.read = readPvtu},
            .parts = {openPvtuSink, "VTK XML: NAME.pvtu, and pieces in the folder NAME"}},
     Format{.label = {"vtk", ".vtk", "legacy VTK 2.0, text"},
            .maps = {readVtkLegacyMap, writeVtkLegacyMap},
            .readTets = readVtkLegacyTets,
+           .triangles = {readVtkLegacySurface, holdsVtkLegacySurface},
            .meshes = {readVtkLegacy, writeVtkLegacy},
            .curved = {holdsCurvedVtkLegacy, readCurvedVtkLegacy},
            .pieces = {openVtkLegacySink, readVtkLegacyTo},
@@ -104,14 +118,14 @@ constexpr std::array kFormatTable = {
            .pieces = {openVtkLegacyBinarySink, readVtkLegacyTo},
            .groups = false},
     Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
-           .maps = {readOvmMap, writeOvmMap},
-           .readTets = readOvmTets,
-           .meshes = {readOvmHexMesh, writeOvmHexMesh},
+           .maps = {OvmText::readMap, OvmText::writeMap},
+           .readTets = OvmText::readTets,
+           .meshes = {OvmText::readMesh, OvmText::writeMesh},
            .groups = false},
     Format{.label = {"ovmb", ".ovmb", "OpenVolumeMesh, binary"},
-           .maps = {readOvmbMap, writeOvmbMap},
-           .readTets = readOvmbTets,
-           .meshes = {readOvmbHexMesh, writeOvmbHexMesh},
+           .maps = {OvmBinary::readMap, OvmBinary::writeMap},
+           .readTets = OvmBinary::readTets,
+           .meshes = {OvmBinary::readMesh, OvmBinary::writeMesh},
            .writeArcs = writeArcsOvmb,
            .writePatches = writePatchesOvmb,
            .groups = false},
@@ -167,10 +181,10 @@ constexpr std::array kFormatTable = {
     exodusFormat("exodus", ".exo", "Exodus with Nemesis maps: NAME.exo.N.K"),
     exodusFormat("exodus-e", ".e", "Exodus with Nemesis maps: NAME.e.N.K"),
     Format{.label = {"stl", ".stl", "surface of triangles, text or binary"},
-           .readTriangles = readStl},
-    Format{.label = {"obj", ".obj", "Wavefront surface"}, .readTriangles = readObj},
-    Format{.label = {"off", ".off", "surface of polygons, text"}, .readTriangles = readOff},
-    Format{.label = {"ply", ".ply", "surface of polygons"}, .readTriangles = readPly},
+           .triangles = {readStl}},
+    Format{.label = {"obj", ".obj", "Wavefront surface"}, .triangles = {readObj}},
+    Format{.label = {"off", ".off", "surface of polygons, text"}, .triangles = {readOff}},
+    Format{.label = {"ply", ".ply", "surface of polygons"}, .triangles = {readPly}},
 };
 
 /// Aliases of formats.
@@ -222,7 +236,7 @@ constexpr std::array<Purpose, 9> kPurposes = {
      {[](const Format& format) { return holdsMaps(format) || holdsMeshes(format); },
       "maps or hexahedral meshes"},
      {[](const Format& format) { return format.readTets != nullptr; }, "tetrahedral meshes"},
-     {[](const Format& format) { return format.readTriangles != nullptr; }, "surfaces"},
+     {[](const Format& format) { return format.triangles.read != nullptr; }, "surfaces"},
      {writesParts, "meshes in parts"},
      {[](const Format& format) { return format.curved.write != nullptr; }, "cells of higher order"},
      {[](const Format& format) { return format.writeArcs != nullptr; }, "arcs"},
@@ -276,7 +290,8 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
 
 /// Advice for a file that holds something other than the requested content.
 std::string adviceOn(const std::string& extension, FileContent content) {
-  if (formatWith(extension, extensionOf, FileContent::Triangles) != nullptr) {
+  const Format* const surface = formatWith(extension, extensionOf, FileContent::Triangles);
+  if (surface != nullptr && surface->triangles.isIn == nullptr) {
     return ' ' + extension +
            " files hold surfaces: `hexhex mesh` fills them with tets and makes hexahedra of these.";
   }
@@ -322,6 +337,13 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
   return *format;
 }
 
+bool holdsSurface(const std::filesystem::path& file, Context& context) {
+  const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
+  const Format* const format = formatWith(extension, extensionOf, FileContent::Triangles);
+  return format != nullptr &&
+         (format->triangles.isIn == nullptr || format->triangles.isIn(openInput(file, context)));
+}
+
 std::string streamingFormats() {
   return listed([](const Format& format) { return format.pieces.openSink != nullptr; }, nameOf);
 }
@@ -352,7 +374,7 @@ std::span<const FileFormat> fileFormats() {
                               io::writesMeshes(format),
                               format.pieces.openSink != nullptr,
                               format.compresses && io::hasZlib(),
-                              format.readTriangles != nullptr};
+                              format.triangles.read != nullptr};
       // Skips formats that this build lacks, and those for parts, arcs or patches only.
       if (io::holdsMaps(format) || row.readsHexMeshes || row.writesHexMeshes || row.readsSurfaces ||
           row.readsTets) {

@@ -34,7 +34,10 @@ struct Format {
   } maps = {};
   /// Reads tets, ignoring a map if there is one.
   ReadTets* readTets = nullptr;
-  TriangleMesh (*readTriangles)(const Input& input, Stage& stage) = nullptr;
+  struct {
+    ReadTriangles* read = nullptr;
+    bool (*isIn)(const Input& input) = nullptr;  ///< null: all files of the format hold surfaces
+  } triangles = {};
   struct {
     ReadMesh* read = nullptr;
     WriteMesh* write = nullptr;
@@ -86,6 +89,9 @@ enum class FileContent : std::uint8_t {
 /// @throws Error FileUnsupported, listing the known extensions or names
 [[nodiscard]] const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                                        FileContent content);
+
+/// Whether a file holds a surface, rather than tets.
+[[nodiscard]] bool holdsSurface(const std::filesystem::path& file, Context& context);
 
 /// The names of all formats that can be written piece by piece: "vtu, mesh".
 [[nodiscard]] std::string streamingFormats();

@@ -18,6 +18,7 @@
 
 #include <hexhex/context.hpp>
 #include <hexhex/curved.hpp>
+#include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/parts.hpp>
 #include <hexhex/stream.hpp>
@@ -133,6 +134,7 @@ ReadMap readVtuMap;
 WriteMesh writeVtu;
 WriteMap writeVtuMap;
 /// Streams files with appended data, including generators; loads others, and pipes, as a whole.
+/// Also of structured grids, whose cells become hexahedra: `.vts`, `.vtr`, `.vti`.
 ReadPieces readVtuTo;
 /// Writes no array scaled_jacobian, which would need the vertices of all cells.
 OpenSink openVtuSink;
@@ -161,9 +163,9 @@ WritePiecewise writePatchesVtu, writePatchesVtp;
 ReadMesh readPvtu;
 OpenPartSink openPvtuSink;
 
-// `.vtk`: legacy VTK unstructured grids, ASCII or binary, versions 1.0 to 5.1. Points, cells, and
-// regions as this library writes them. Writes version 2.0, which every program reads; HexaLab,
-// OpenFOAM and MFEM read ASCII only. Binary files are limited to 2^31 points.
+// `.vtk`: legacy VTK unstructured and structured grids, ASCII or binary, versions 1.0 to 5.1.
+// Points, cells, and regions as this library writes them. Writes version 2.0, which every program
+// reads; HexaLab, OpenFOAM and MFEM read ASCII only. Binary files are limited to 2^31 points.
 ReadMesh readVtkLegacy;
 ReadTets readVtkLegacyTets;
 ReadMap readVtkLegacyMap;
@@ -200,6 +202,14 @@ struct TriangleLabels {
 using ReadLabels = TriangleLabels(const Input& input, std::string_view array, Stage& stage);
 ReadLabels readVtuLabels, readVtkLegacyLabels;
 
+// Surfaces. They return what the file holds: vertices as listed, and polygons triangulated as fans
+// around their first corner.
+using ReadTriangles = TriangleMesh(const Input& input, Stage& stage);
+/// `.vtp`, and the data set POLYDATA of `.vtk`. Lines and vertices are ignored; strips are refused.
+ReadTriangles readVtp, readVtkLegacySurface;
+/// Whether a `.vtk` file holds a surface, from its first lines.
+bool holdsVtkLegacySurface(const Input& input);
+
 // `.ovm` and `.ovmb`: text and binary files of OpenVolumeMesh, with maps or hex meshes.
 //
 // A map is the property `HexHex::Parametrization`: for each half-face of a tet, the parameters of
@@ -213,11 +223,16 @@ ReadLabels readVtuLabels, readVtkLegacyLabels;
 //
 // Readers accept half-faces in any order and reorient a mesh that is inside out. Writers refuse
 // meshes that the format cannot represent: NonManifoldFace, Orientation, RepeatedVertex.
-ReadMap readOvmMap, readOvmbMap;
-ReadMesh readOvmHexMesh, readOvmbHexMesh;
-ReadTets readOvmTets, readOvmbTets;
-WriteMap writeOvmMap, writeOvmbMap;
-WriteMesh writeOvmHexMesh, writeOvmbHexMesh;
+template <bool binary>
+struct OvmFormat {
+  static ReadMap readMap;
+  static ReadTets readTets;
+  static ReadMesh readMesh;
+  static WriteMap writeMap;
+  static WriteMesh writeMesh;
+};
+using OvmText = OvmFormat<false>;
+using OvmBinary = OvmFormat<true>;
 /// Writes arcs as `.ovmb`: vertices are hex vertices and inner points of arcs, edges are segments.
 /// Properties known to other tools: `v_type` (0 hex vertex, 1 on an arc), `v_igm_uv` (position
 /// along the arc, 0), `v_tet_generator_type`, `v_tet_generator_index`, `e_linear_hex_edge`,

@@ -1,10 +1,22 @@
 // Converts hex meshes, and maps on tets, to and from polyhedral meshes (see ovm_cells.hpp).
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <adjacency/cell_faces.hpp>
 
 #include <hexhex/error.hpp>
+#include <hexhex/features.hpp>
 
 #include <base/concat.hpp>
+#include <base/low_level.hpp>
 #include <base/parallel.hpp>
+#include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/formats/ovm_cells.hpp>
@@ -13,7 +25,284 @@ namespace hexhex::io {
 
 namespace {
 
-constexpr std::size_t kOvmHexesGrain = 4096;
+constexpr std::size_t kOvmCellsGrain = 4096;
+
+/// Whether valueOf(i) is negative more often than positive, for i in [0, n).
+template <class F>
+bool areMostlyNegative(Stage& stage, std::size_t n, const F& valueOf) {
+  std::atomic<std::int64_t> balance{0};
+  parallelBlocks(stage, n, kOvmCellsGrain,
+                 [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::int64_t local = 0;
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const double value = valueOf(i);
+                     local += value > 0 ? 1 : (value < 0 ? -1 : 0);
+                   }
+                   balance.fetch_add(local, std::memory_order_relaxed);
+                 });
+  return balance.load() < 0;
+}
+
+// Shared by tets and hexahedra: building cells from half-faces.
+
+/// Builds cells from a mesh that was read.
+/// @tparam orders  number of corner orders that the property CornerOrder distinguishes
+template <std::size_t corners, std::size_t orders>
+class OvmCellReader {
+  using Cell = std::array<Index, corners>;
+  static constexpr CellKind kKind = kCellKind<corners>;
+  static constexpr std::size_t kFaces = adjacency::kFaceCount<Cell>;
+  static constexpr std::size_t kFaceCorners = adjacency::kFaceSize<Cell>;
+
+ public:
+  /// @param fileName  must outlive this
+  OvmCellReader(OvmMesh&& mesh, const std::string& fileName, Stage& stage)
+      : mesh_(std::move(mesh)),
+        topology_(mesh_.topology),
+        properties_(mesh_.properties),
+        fileName_(fileName),
+        stage_(stage),
+        loops_(topology_.faces.size()) {
+    parallelFor(stage, loops_.size(), kGrain,
+                [this](std::size_t f) { loops_[f] = loopOfFace<kFaceCorners>(topology_, f); });
+  }
+
+ protected:
+  /// Calls read(cell, loops of its half-faces, number of its corner order) for all cells, in
+  /// parallel. read() returns false if the half-faces do not bound a cell, or its data are invalid.
+  /// @return the first cell for which it returned false, or the number of cells
+  /// @throws Error as requireProper()
+  template <class Read>
+  [[nodiscard]] std::size_t firstUnreadable(const Read& read) const {
+    if (mesh_.otherCell) requireProper();
+    Array<char> used(2 * topology_.faces.size(), 0);
+    const std::size_t cells = topology_.cells.size();
+    const auto isGood = [&](std::size_t c) {
+      if (c + kAhead < cells) {
+        for (const Index halfFace : topology_.cells[c + kAhead]) {
+          prefetch(&used[halfFace]);
+          prefetch(&loops_[halfFace / 2]);
+        }
+      }
+      for (const Index halfFace : topology_.cells[c]) {
+        std::atomic_ref(used[halfFace]).store(1, std::memory_order_relaxed);
+      }
+      return readCell(c, read);
+    };
+    const std::size_t fault = firstFault(stage_, cells, isGood, kGrain);
+    // No half-face is used twice if there are as many different ones as uses.
+    const auto different = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+    if (fault < cells || different < topology_.cells.handles.size()) requireProper();
+    return fault;
+  }
+
+  /// Calls read() for one cell.
+  template <class Read>
+  bool readCell(std::size_t cell, const Read& read) const {
+    std::array<std::array<Index, kFaceCorners>, kFaces> loops;
+    for (std::size_t s = 0; s < kFaces; ++s) {
+      const Index halfFace = topology_.cells[cell][s];
+      loops[s] = loopOfHalfFace(loops_[halfFace / 2], halfFace);
+    }
+    const Array<std::int32_t>& numbers = properties_[OvmInteger::CornerOrder];
+    const auto order = static_cast<std::size_t>(numbers.empty() ? 0 : numbers[cell]);
+    return order < orders && read(cell, loops, order);
+  }
+
+  /// Throws unless all cells have the right number of half-faces, no half-face is used twice, and
+  /// all have valid loops.
+  void requireProper() const {
+    const auto fail = [&](std::size_t cell, const std::string& sentence,
+                          ErrorCode code = ErrorCode::FileSyntax) {
+      throw Error(code, concat(fileName_, ": cell ", cell, " ", sentence),
+                  Place{PlaceKind::Cell, cell});
+    };
+    Array<char> used(2 * topology_.faces.size(), 0);
+    for (std::size_t c = 0; c < topology_.cells.size(); ++c) {
+      if (mesh_.otherCell && mesh_.otherCell->first == c) {
+        fail(c,
+             concat("has ", mesh_.otherCell->second, " faces; here, all cells must be ",
+                    kKind.plural, " with ", kFaces, "."),
+             ErrorCode::FileUnsupported);
+      }
+      for (const Index halfFace : topology_.cells[c]) {
+        if (!isGoodFace(halfFace / 2)) {
+          fail(c, concat("has face ", halfFace / 2, ", which is no closed loop of ", kFaceCorners,
+                         " half-edges."));
+        }
+        if (std::exchange(used[halfFace], 1) != 0) {
+          fail(c, concat("has half-face ", halfFace,
+                         " a second time, or another cell has it. Each side of a face belongs to "
+                         "one cell."));
+        }
+      }
+    }
+  }
+
+  /// Throws an error about a cell whose half-faces do not bound one.
+  [[noreturn]] void failToBound(std::size_t cell) const {
+    throw Error(ErrorCode::FileSyntax,
+                concat(fileName_, ": the half-faces of cell ", cell, " do not bound a ",
+                       kKind.singular, ", or its corner order is not from 0 to ", orders - 1, "."),
+                Place{kKind.place, cell});
+  }
+
+  /// @param faces  the faces of `features`
+  template <class Features, class FaceFeature>
+  void readFeatures(Features& features, std::vector<FaceFeature>& faces) const {
+    forEachTag(OvmInteger::FeatureVertices, [&](std::size_t v, std::int32_t tag) {
+      features.vertices.push_back({static_cast<Index>(v), tag});
+    });
+    forEachTag(OvmInteger::FeatureEdges, [&](std::size_t e, std::int32_t tag) {
+      features.edges.push_back({topology_.edges[e], tag});
+    });
+    forEachTag(OvmInteger::FeatureFaces, [&](std::size_t f, std::int32_t tag) {
+      if (!isGoodFace(f)) {
+        throw Error(
+            ErrorCode::FileSyntax,
+            concat(fileName_, ": face ", f, " is tagged as a feature, but is no closed loop of ",
+                   kFaceCorners, " half-edges."));
+      }
+      faces.push_back({loops_[f], tag});
+    });
+  }
+
+  /// Calls f(element, value) for all elements with a nonzero value.
+  template <class F>
+  void forEachTag(OvmInteger property, const F& f) const {
+    const Array<std::int32_t>& tags = properties_[property];
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      if (tags[i] != 0) f(i, tags[i]);
+    }
+  }
+
+  OvmMesh mesh_;
+  const OvmTopology& topology_;
+  const OvmProperties& properties_;
+  const std::string& fileName_;
+  Stage& stage_;
+
+ private:
+  static constexpr std::size_t kGrain = 2048;
+  /// Prefetch distance: the faces of a cell may be scattered in memory. Without prefetching,
+  /// reading a mesh with cells in random order takes 50 % longer.
+  static constexpr std::size_t kAhead = 16;
+
+  [[nodiscard]] bool isGoodFace(std::size_t face) const { return loops_[face][0] != kNone; }
+
+  /// The vertices of each face in loop order, as of half-face 2f; kNone if it is not a closed loop
+  /// of the expected length.
+  Array<std::array<Index, kFaceCorners>> loops_;
+};
+
+// Features and regions, converted between lists of the few tagged elements and properties with a
+// value per element.
+
+/// Sets the property CornerOrder, unless all cells have the order that a reader derives.
+/// @param orderOf  called with a cell
+template <class OrderOf>
+void setOvmOrders(OvmProperties& properties, std::size_t cells, const OrderOf& orderOf,
+                  Stage& stage) {
+  Array<std::int32_t> orders(cells);
+  const std::size_t unlike = firstFault(stage, cells, [&](std::size_t c) {
+    orders[c] = static_cast<std::int32_t>(orderOf(c));
+    return orders[c] == 0;
+  });
+  if (unlike < cells) properties[OvmInteger::CornerOrder] = std::move(orders);
+}
+
+/// Sets the value of one element, which must exist and have none yet.
+/// @param element  index, or kNone; @param what  e.g. "feature edge 3-17", for the message
+void setOvmValue(Array<std::int32_t>& values, Index element, std::int32_t value,
+                 const std::string& what, Place place) {
+  if (element >= values.size()) {
+    throw Error(ErrorCode::InvalidArgument, "The " + what + " is not in the mesh.", place);
+  }
+  if (values[element] != 0) {
+    throw Error(ErrorCode::InvalidArgument, "The " + what + " is listed twice.", place);
+  }
+  values[element] = value;
+}
+
+/// Sets the tags of elements with n vertices.
+/// @param features  with vertices in any order
+/// @param verticesOf  the vertices of an element, in any order
+/// @param nameOf, placeOf  of a feature, for messages
+template <std::size_t n, class Feature, class Vertices, class Name, class At>
+void setOvmTags(Array<std::int32_t>& tags, std::size_t elements, std::size_t vertexCount,
+                const std::vector<Feature>& features, const Vertices& verticesOf,
+                const Name& nameOf, const At& placeOf) {
+  if (features.empty()) return;
+  tags.assign(elements, 0);
+  struct Wanted {
+    const Feature* feature;
+    Index element;
+  };
+  std::multimap<std::array<Index, n>, Wanted> wanted;
+  // Filter by smallest vertex: all elements are checked, but few have one that a feature has.
+  Array<std::uint8_t> isSmallest(vertexCount, 0);
+  for (const Feature& feature : features) {
+    const auto place = wanted.emplace(sorted(feature.vertices), Wanted{&feature, kNone});
+    if (place->first[0] < vertexCount) isSmallest[place->first[0]] = 1;
+  }
+  for (std::size_t i = 0; i < elements; ++i) {
+    const std::array<Index, n> vertices = verticesOf(i);
+    if (isSmallest[*std::min_element(vertices.begin(), vertices.end())] == 0) continue;
+    const auto [begin, end] = wanted.equal_range(sorted(vertices));
+    for (auto found = begin; found != end; ++found) found->second.element = static_cast<Index>(i);
+  }
+  for (const auto& [vertices, entry] : wanted) {
+    setOvmValue(tags, entry.element, entry.feature->tag, nameOf(*entry.feature),
+                placeOf(*entry.feature));
+  }
+}
+
+/// Adds the properties of features and regions.
+/// @param faces  the faces of `features`
+/// @param regions  one per cell, or none
+/// @throws Error InvalidArgument if they refer to a missing element, or to one twice; or if the
+///         number of regions is wrong
+template <std::size_t n, class Features, class FaceFeature, class Regions>
+void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
+                    const Features& features, const std::vector<FaceFeature>& faces,
+                    const Regions& regions) {
+  if (!features.vertices.empty()) {
+    Array<std::int32_t>& tags = properties[OvmInteger::FeatureVertices];
+    tags.assign(topology.vertexCount, 0);
+    for (const auto& [vertex, tag] : features.vertices) {
+      setOvmValue(tags, vertex, tag, concat("feature vertex ", vertex),
+                  {PlaceKind::Vertex, vertex});
+    }
+  }
+  const auto placeOf = [](const FeatureEdge& feature) {
+    return Place{PlaceKind::Edge, feature.vertices[0], feature.vertices[1]};
+  };
+  setOvmTags<2>(
+      properties[OvmInteger::FeatureEdges], topology.edges.size(), topology.vertexCount,
+      features.edges, [&](std::size_t e) { return topology.edges[e]; },
+      [&](const FeatureEdge& feature) { return "feature " + toString(placeOf(feature)); }, placeOf);
+  if (!faces.empty()) {
+    const auto nameOf = [](const FaceFeature& feature) {
+      std::string name = "feature face";
+      for (const Index vertex : feature.vertices)
+        name.append(1, ' ').append(std::to_string(vertex));
+      return name;
+    };
+    setOvmTags<n>(
+        properties[OvmInteger::FeatureFaces], topology.faces.size(), topology.vertexCount, faces,
+        [&](std::size_t f) { return loopOfFace<n>(topology, f); }, nameOf,
+        [](const FaceFeature& /*feature*/) { return Place{}; });
+  }
+  if (!regions.empty() && regions.size() != topology.cells.size()) {
+    throw Error(ErrorCode::InvalidArgument,
+                concat("The mesh has ", topology.cells.size(), " cells, but regions for ",
+                       regions.size(), "."));
+  }
+  properties[OvmInteger::Region].assign(regions.begin(), regions.end());
+}
+
+// Hex meshes.
+
 constexpr std::size_t kReversed = 4;  // added for the reverse order from the same corner
 
 using QuadLoops = std::array<std::array<Index, 4>, 6>;
@@ -91,7 +380,7 @@ bool isMostlyNegative(std::span<const Vec3> points, std::span<const Hex> cells, 
 }
 
 void reverse(std::span<Hex> cells, Stage& stage) {
-  parallelFor(stage, cells.size(), kOvmHexesGrain,
+  parallelFor(stage, cells.size(), kOvmCellsGrain,
               [&](std::size_t c) { cells[c] = inHexOrder(cells[c], kReversed); });
 }
 
@@ -167,12 +456,7 @@ void setCornerOrder(OvmProperties& properties, const OvmTopology& topology,
     return (4 - placeIn({cells[c][0], cells[c][1], cells[c][2], cells[c][3]}, begin)) % 4 +
            direction;
   };
-  Array<std::int32_t> orders(cells.size());
-  const std::size_t unlike = firstFault(stage, cells.size(), [&](std::size_t c) {
-    orders[c] = static_cast<std::int32_t>(orderOf(c));
-    return orders[c] == 0;
-  });
-  if (unlike < cells.size()) properties[OvmInteger::CornerOrder] = std::move(orders);
+  setOvmOrders(properties, cells.size(), orderOf, stage);
 }
 
 void setGenerators(OvmProperties& properties, const HexMesh& mesh, Stage& stage) {
@@ -233,8 +517,6 @@ OvmOutput toOvm(const HexMesh& mesh, Stage& stage) {
 namespace {
 
 // Maps on tets.
-
-constexpr std::size_t kOvmTetsGrain = 4096;
 
 using TetOrder = std::array<std::uint8_t, 4>;
 
@@ -415,7 +697,7 @@ std::size_t writtenOrder(std::span<const Vec3> points, std::span<const Tet> tets
 OvmTopology topologyOf(std::size_t points, std::span<const Tet> tets, const TetOrder& order,
                        Stage& stage) {
   Array<Tet> ordered(tets.size());
-  parallelFor(stage, tets.size(), kOvmTetsGrain, [&](std::size_t t) {
+  parallelFor(stage, tets.size(), kOvmCellsGrain, [&](std::size_t t) {
     for (std::size_t i = 0; i < 4; ++i) ordered[t][i] = tets[t][order[i]];
   });
   return buildOvmTopology(points, ordered, stage);
@@ -432,7 +714,8 @@ class TetWriter {
         topology_(topologyOf(map.points.size(), map.tets, order_, stage)) {}
 
   OvmOutput write() {
-    setCornerOrder();
+    setOvmOrders(
+        properties_, map_.tets.size(), [this](std::size_t t) { return listedOrder(t); }, stage_);
     setHalfFaceValues();
     setEdgeValences();
     setOvmFeatures<3>(properties_, topology_, map_.features, map_.features.faces, map_.regions);
@@ -456,15 +739,6 @@ class TetWriter {
     return static_cast<std::size_t>(found - kTetOrders.begin());
   }
 
-  void setCornerOrder() {
-    Array<std::int32_t> orders(map_.tets.size());
-    const std::size_t unlike = firstFault(stage_, orders.size(), [&](std::size_t t) {
-      orders[t] = static_cast<std::int32_t>(listedOrder(t));
-      return orders[t] == 0;
-    });
-    if (unlike < orders.size()) properties_[OvmInteger::CornerOrder] = std::move(orders);
-  }
-
   /// Sets parameters and rotations, which half-faces store for their opposite corners.
   void setHalfFaceValues() {
     Array<Vec3>& parameters = properties_.parametrization;
@@ -472,7 +746,7 @@ class TetWriter {
     // Boundary half-faces have no cell; all others are overwritten.
     parameters.assign(2 * topology_.faces.size(), Vec3{});
     if (!map_.rotations.empty()) rotations.assign(parameters.size(), -1);
-    parallelFor(stage_, map_.tets.size(), kOvmTetsGrain, [&](std::size_t t) {
+    parallelFor(stage_, map_.tets.size(), kOvmCellsGrain, [&](std::size_t t) {
       for (std::size_t s = 0; s < 4; ++s) {
         const Index halfFace = topology_.cells.handles[4 * t + s];
         const std::size_t corner = order_[kOvmTetOpposite[s]];

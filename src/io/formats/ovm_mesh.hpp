@@ -6,12 +6,13 @@
 //
 // Text files have the sections Vertices, Edges, Faces, Polyhedra, each with a count and one element
 // per line; then properties: a line `HFProp vec3d "name"`, and a value per element. Binary files
-// are a header and chunks (ovmb_reader.cpp).
+// are a header and chunks (ovmb.cpp).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
 #include <io/core/output_file.hpp>
 
 namespace hexhex::io {
@@ -56,16 +58,16 @@ inline constexpr std::uint64_t kMaxOvmEntities = (std::uint64_t{1} << 31) - 1;
 /// Lists of handles, concatenated.
 struct OvmLists {
   Array<Index> handles;
-  std::size_t length = 0;        ///< common length of all lists; 0 if they differ
-  Array<std::uint64_t> offsets;  ///< if lengths differ: list i is [offsets[i], offsets[i + 1])
+  std::size_t length = 0;                       ///< of all lists; 0 if they differ
+  std::span<const std::uint64_t> offsets = {};  ///< if they differ: where lists begin, and the end
 
   [[nodiscard]] std::size_t size() const noexcept {
     if (length > 0) return handles.size() / length;
     return offsets.empty() ? 0 : offsets.size() - 1;
   }
+  /// @pre  all lists have the same length
   [[nodiscard]] std::span<const Index> operator[](std::size_t i) const noexcept {
-    if (length > 0) return {handles.data() + i * length, length};
-    return {handles.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+    return {handles.data() + i * length, length};
   }
 };
 
@@ -162,11 +164,22 @@ struct OvmProperties {
 /// The kind of a property's values.
 enum class OvmNumbers : std::uint8_t { Integers, Points, Others };
 
-/// A mesh as read.
+/// A mesh as read, for cells of one kind.
 struct OvmMesh {
+  explicit OvmMesh(const CellKind& kind) {
+    topology.faces.length = kind.corners == 4 ? 3 : 4;
+    topology.cells.length = kind.corners == 4 ? 4 : 6;
+  }
+  /// Notes a list of another length than wanted, which is filled with kNone.
+  void noteOther(const OvmLists& lists, std::size_t i, std::uint64_t length) {
+    if (&lists == &topology.cells && !otherCell) otherCell = {i, length};
+  }
+
   Array<Vec3> points;
   OvmTopology topology;
   OvmProperties properties;
+  /// The first cell with another number of faces than wanted, and that number.
+  std::optional<std::pair<std::size_t, std::uint64_t>> otherCell = {};
   /// Whether a property has the map's name but another type; for error messages.
   bool hasForeignParametrization = false;
 
@@ -210,9 +223,9 @@ inline constexpr std::string_view kOvmbMagic = "OVMB\n\r\n\xff";
 /// not checked otherwise.
 /// @throws Error FileSyntax, FileUnsupported, IndexOutOfRange, NotFinite, TooLarge, with the line
 ///         or byte
-[[nodiscard]] OvmMesh parseOvmText(std::string_view text, const std::string& fileName,
-                                   Stage& stage);
-[[nodiscard]] OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage);
+using ParseOvm = OvmMesh(std::string_view bytes, const std::string& fileName, const CellKind& kind,
+                         Stage& stage);
+ParseOvm parseOvmText, parseOvmb;
 
 /// Write a mesh in the layout of OpenVolumeMesh's own files: one chunk or section for each kind of
 /// element, handles without offset. Numbers in `.ovm` have the fewest digits that read back to the

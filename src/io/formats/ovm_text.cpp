@@ -99,12 +99,14 @@ std::uint32_t readValence(TextScanner& scanner, const OvmElements& elements, std
 
 class OvmTextReader {
  public:
-  OvmTextReader(std::string_view text, const std::string& fileName, Stage& stage)
+  OvmTextReader(std::string_view text, const std::string& fileName, const CellKind& kind,
+                Stage& stage)
       : text_(text),
         scanner_(text, fileName, TextScanner::Comments::Hash),
         stage_(stage),
         index_(text, stage),
-        hasComments_(text.find('#') != std::string_view::npos) {}
+        hasComments_(text.find('#') != std::string_view::npos),
+        mesh_(kind) {}
 
   OvmMesh read() {
     OvmTopology& topology = mesh_.topology;
@@ -171,57 +173,40 @@ class OvmTextReader {
                  });
   }
 
+  /// Reads lists in parallel if they have the wanted length and there are no comments.
   void readLists(OvmLists& lists, const OvmElements& elements, std::size_t limit) {
     const std::size_t count = readSection(elements);
-    if (readUniformLists(lists, count, elements, limit)) return;
-    lists.offsets.push_back(0);
-    readElements(scanner_, nullptr, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
-      scanner.failIfAtEnd(i, count, elements.many);
-      const std::uint32_t length = readValence(scanner, elements, i);
-      for (std::uint32_t k = 0; k < length; ++k) {
-        lists.handles.push_back(readHandle(scanner, elements, i, limit));
-      }
-      lists.offsets.push_back(lists.handles.size());
-    });
-    // Use a common length if there is one: comments prevent readUniformLists().
-    const std::uint64_t length = count > 0 ? lists.offsets[1] : 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (lists.offsets[i + 1] - lists.offsets[i] != length) return;
-    }
-    lists.offsets = {};
-    lists.length = static_cast<std::size_t>(length);
-  }
-
-  /// Reads lists of equal length in parallel, unless there are comments. @return false, with
-  /// nothing read, if lengths differ or a list is invalid
-  bool readUniformLists(OvmLists& lists, std::size_t count, const OvmElements& elements,
-                        std::size_t limit) {
-    if (hasComments_ || count == 0 || !scanner_.skipSpace()) return false;
     const std::size_t begin = scanner_.position();
-    const std::uint32_t length = readValence(scanner_, elements, 0);
-    scanner_.moveTo(begin);
-    const std::size_t tokensEach = length + std::size_t{1};
-    // Also keeps memory proportional to the file.
-    if ((index_.count() - index_.countBefore(begin)) / tokensEach < count) return false;
-    lists.length = length;
-    lists.handles.resize(count * length);
-    try {
-      readElements(scanner_, &index_, stage_, count, tokensEach,
+    lists.handles.resize(count * lists.length);
+    const auto readAll = [&](const TokenIndex* index) {
+      readElements(scanner_, index, stage_, count, 1 + lists.length,
                    [&](TextScanner& scanner, std::size_t i) {
-                     if (readValence(scanner, elements, i) != length) {
-                       scanner.fail(ErrorCode::FileUnsupported, "valences vary.");
+                     scanner.failIfAtEnd(i, count, elements.many);
+                     const std::uint32_t valence = readValence(scanner, elements, i);
+                     const auto list =
+                         std::span(lists.handles).subspan(i * lists.length, lists.length);
+                     if (valence == lists.length) {
+                       for (Index& handle : list) handle = readHandle(scanner, elements, i, limit);
+                       return;
                      }
-                     for (std::size_t k = i * length; k < (i + 1) * length; ++k) {
-                       lists.handles[k] = readHandle(scanner, elements, i, limit);
+                     if (index != nullptr) {
+                       scanner.fail(ErrorCode::FileUnsupported, "lengths differ.");
                      }
+                     for (std::uint32_t k = 0; k < valence; ++k) {
+                       static_cast<void>(readHandle(scanner, elements, i, limit));
+                     }
+                     std::fill(list.begin(), list.end(), kNone);
+                     mesh_.noteOther(lists, i, valence);
                    });
+    };
+    if (hasComments_) return readAll(nullptr);
+    try {
+      readAll(&index_);
     } catch (const Error& error) {
       if (error.code() == ErrorCode::Cancelled) throw;
       scanner_.moveTo(begin);
-      lists = {};
-      return false;
+      readAll(nullptr);
     }
-    return true;
   }
 
   /// Reads the supported properties and skips all others.
@@ -324,8 +309,9 @@ class OvmTextReader {
 
 }  // namespace
 
-OvmMesh parseOvmText(std::string_view text, const std::string& fileName, Stage& stage) {
-  return OvmTextReader(text, fileName, stage).read();
+OvmMesh parseOvmText(std::string_view text, const std::string& fileName, const CellKind& kind,
+                     Stage& stage) {
+  return OvmTextReader(text, fileName, kind, stage).read();
 }
 
 namespace {
@@ -410,63 +396,53 @@ void writeOvmText(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
 
 namespace {
 
-using Parse = OvmMesh (*)(std::string_view bytes, const std::string& fileName, Stage& stage);
-using Write = void (*)(const OvmOutput& mesh, OutputFile& output, Stage& stage);
-template <class Result>
-using Convert = Result (*)(OvmMesh&& mesh, const std::string& fileName, Stage& stage);
-
-template <class Result>
-Result read(const Input& input, Stage& stage, Parse parse, Convert<Result> convert) {
-  const auto parsed = [&] {
-    Array<char> room;  // freed before cells are built
-    // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
-    return parse(input.text(room, stage, "OoVv#"), input.name(), stage);
-  };
-  return convert(parsed(), input.name(), stage);
+/// Reads a file, whose bytes are freed before cells are built.
+template <bool binary, std::size_t corners>
+OvmMesh readOvm(const Input& input, Stage& stage) {
+  Array<char> room;
+  // "OVM ASCII" or "Vertices" in any case, a comment, or "OVMB".
+  const std::string_view bytes = input.text(room, stage, "OoVv#");
+  return (binary ? parseOvmb : parseOvmText)(bytes, input.name(), kCellKind<corners>, stage);
 }
 
 /// @param mesh  a map or a hex mesh
-template <class Mesh>
-void write(const Mesh& mesh, OutputFile& output, Stage& stage, Write writeFile) {
-  withThreads(stage.context().threads(), [&] { writeFile(toOvm(mesh, stage), output, stage); });
+template <bool binary, class Mesh>
+void writeOvm(const Mesh& mesh, OutputFile& output, Stage& stage) {
+  withThreads(stage.context().threads(),
+              [&] { (binary ? writeOvmb : writeOvmText)(toOvm(mesh, stage), output, stage); });
 }
 
 }  // namespace
 
-TetMap readOvmMap(const Input& input, const ReadOptions& /*options*/, Stage& stage) {
-  return read<TetMap>(input, stage, parseOvmText, toTetMap);
-}
-TetMap readOvmbMap(const Input& input, const ReadOptions& /*options*/, Stage& stage) {
-  return read<TetMap>(input, stage, parseOvmb, toTetMap);
-}
-TetCells readOvmTets(const Input& input, Stage& stage) {
-  return read<TetCells>(input, stage, parseOvmText, toTetCells);
-}
-TetCells readOvmbTets(const Input& input, Stage& stage) {
-  return read<TetCells>(input, stage, parseOvmb, toTetCells);
-}
-HexMesh readOvmHexMesh(const Input& input, Stage& stage) {
-  return read<HexMesh>(input, stage, parseOvmText, toHexMesh);
-}
-HexMesh readOvmbHexMesh(const Input& input, Stage& stage) {
-  return read<HexMesh>(input, stage, parseOvmb, toHexMesh);
+template <bool binary>
+TetMap OvmFormat<binary>::readMap(const Input& input, const ReadOptions& /*options*/,
+                                  Stage& stage) {
+  return toTetMap(readOvm<binary, 4>(input, stage), input.name(), stage);
 }
 
-void writeOvmMap(const TetMap& map, OutputFile& output, const WriteOptions& /*options*/,
-                 Stage& stage) {
-  write(map, output, stage, writeOvmText);
+template <bool binary>
+TetCells OvmFormat<binary>::readTets(const Input& input, Stage& stage) {
+  return toTetCells(readOvm<binary, 4>(input, stage), input.name(), stage);
 }
-void writeOvmbMap(const TetMap& map, OutputFile& output, const WriteOptions& /*options*/,
-                  Stage& stage) {
-  write(map, output, stage, writeOvmb);
+
+template <bool binary>
+HexMesh OvmFormat<binary>::readMesh(const Input& input, Stage& stage) {
+  return toHexMesh(readOvm<binary, 8>(input, stage), input.name(), stage);
 }
-void writeOvmHexMesh(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
-                     Stage& stage) {
-  write(mesh, output, stage, writeOvmText);
+
+template <bool binary>
+void OvmFormat<binary>::writeMap(const TetMap& map, OutputFile& output,
+                                 const WriteOptions& /*options*/, Stage& stage) {
+  writeOvm<binary>(map, output, stage);
 }
-void writeOvmbHexMesh(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
-                      Stage& stage) {
-  write(mesh, output, stage, writeOvmb);
+
+template <bool binary>
+void OvmFormat<binary>::writeMesh(const HexMesh& mesh, OutputFile& output,
+                                  const WriteOptions& /*options*/, Stage& stage) {
+  writeOvm<binary>(mesh, output, stage);
 }
+
+template struct OvmFormat<false>;
+template struct OvmFormat<true>;
 
 }  // namespace hexhex::io

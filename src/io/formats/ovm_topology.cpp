@@ -16,6 +16,7 @@
 
 #include <adjacency/cell_faces.hpp>
 #include <adjacency/corner_order.hpp>
+#include <adjacency/hex_topology.hpp>
 #include <adjacency/key_table.hpp>
 #include <adjacency/tet_topology.hpp>
 #include <adjacency/vertex_lists.hpp>
@@ -26,13 +27,14 @@
 
 namespace hexhex::io {
 
+namespace {
+
+/// @param what  plural, e.g. "edges"
 void requireOvmCount(std::uint64_t limit, std::uint64_t count, const char* what) {
   if (count <= limit) return;
   throw Error(ErrorCode::TooLarge, concat("The mesh has ", count, " ", what,
                                           "; files of OpenVolumeMesh hold at most ", limit, "."));
 }
-
-namespace {
 
 constexpr std::size_t kOvmTopologyGrain = 2048;
 
@@ -190,62 +192,10 @@ class TetFaceLister {
   OvmEdgeFinder edges_;
 };
 
-}  // namespace
-
-OvmEdgeFinder::OvmEdgeFinder(std::size_t vertexCount, std::span<const std::array<Index, 2>> edges)
-    : edges_(edges), begins_(vertexCount + 1) {
-  std::size_t e = 0;
-  for (std::size_t v = 0; v <= vertexCount; ++v) {
-    while (e < edges_.size() && edges_[e][0] < v) ++e;
-    begins_[v] = static_cast<Index>(e);
-  }
-}
-
-Index OvmEdgeFinder::find(Index a, Index b) const noexcept {
-  const Index low = std::min(a, b);
-  const Index high = std::max(a, b);
-  if (high + std::size_t{1} >= begins_.size()) return kNone;
-  for (Index e = begins_[low]; e < begins_[low + 1]; ++e) {
-    if (edges_[e][1] == high) return e;
-  }
-  return kNone;
-}
-
-OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells, Stage& stage) {
-  requireCounts(vertexCount, cells.size(), 4);
-  requireDifferentVertices(cells, stage);
-  adjacency::TetTopology tets;
-  tets.tets = cells;
-  tets.pointCount = vertexCount;
-  if (!adjacency::matchFaces(tets, stage)) throwFaceFault(vertexCount, cells, stage);
-  adjacency::addStars(tets, stage);
-  OvmTopology topology;
-  topology.vertexCount = vertexCount;
-  const std::vector<Edge> edges = listEdges(tets, stage);
-  requireOvmCount(kMaxOvmEntities, edges.size(), "edges");
-  topology.edges.assign(edges.begin(), edges.end());
-  TetFaceLister(tets, topology).run(stage);
-  return topology;
-}
-
-OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
-  requireCounts(vertexCount, cells.size(), 6);
-  std::optional<adjacency::HexMates> mates = adjacency::matchHexFaces(vertexCount, cells, stage);
-  if (mates) {
-    std::optional<OvmTopology> topology = numberHexes(vertexCount, cells, std::move(*mates), stage);
-    if (topology) return std::move(*topology);
-  }
-  requireDifferentVertices(cells, stage);
-  throwFaceFault(vertexCount, cells, stage);
-}
-
-namespace {
-
 // Each edge and face of a hexahedron is owned by one of its cells. Away from seams (HexMates), a
 // cell owns the three edges and three faces at its corner 0, so that its neighbours determine all
 // elements that it shares. Edges along seams are listed separately.
 
-constexpr std::size_t kOvmHexTopologyGrain = 2048;
 /// The row of kHexFaces in each slot of kOvmHexFaces.
 constexpr std::array<std::uint8_t, 6> kFaceOfSlot = {4, 5, 2, 3, 1, 0};
 constexpr std::array<std::uint8_t, 6> kSlotOfFace = {5, 4, 2, 3, 0, 1};
@@ -284,8 +234,6 @@ bool owns(Index halfFace, Index mate) {
   return std::pair(rank(halfFace), halfFace) < std::pair(rank(mate), mate);
 }
 
-using Edge = std::array<Index, 2>;
-
 /// By edge of kHexEdges: its two faces.
 constexpr std::array<std::array<std::uint8_t, 12>, 2> kFacesAtEdges = {
     {{2, 1, 3, 0, 2, 1, 3, 0, 0, 1, 0, 1}, {4, 4, 4, 4, 5, 5, 5, 5, 2, 2, 3, 3}}};
@@ -300,7 +248,7 @@ Array<Edge> listSeamEdges(std::size_t vertexCount, std::span<const Hex> cells,
     });
   };
   const adjacency::VertexLists<Index, std::uint64_t> ends(vertexCount, stage, [&](const auto& add) {
-    parallelFor(stage, cells.size(), kOvmHexTopologyGrain, [&](std::size_t c) {
+    parallelFor(stage, cells.size(), kOvmTopologyGrain, [&](std::size_t c) {
       const unsigned seams = mates.seamCorners[c];
       for (std::size_t e = 0; seams != 0 && e < 12; ++e) {
         const auto& [i, k] = adjacency::kHexEdges[e];
@@ -334,6 +282,7 @@ class HexTopologyBuilder {
     seamCorners_ = std::move(mates.seamCorners);
   }
 
+  /// @return empty if a cell has a vertex twice
   std::optional<OvmTopology> build() {
     number();
     listEdges();
@@ -375,7 +324,7 @@ class HexTopologyBuilder {
   /// Numbers edges and faces.
   void number() {
     own_.resize(cells_.size());
-    parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain,
+    parallelFor(stage_, cells_.size(), kOvmTopologyGrain,
                 [this](std::size_t c) { own_[c] = ownOf(c); });
     std::uint64_t edges = seamEdges_.size();
     std::uint64_t faces = 0;
@@ -392,7 +341,7 @@ class HexTopologyBuilder {
 
   void listEdges() {
     std::copy(seamEdges_.begin(), seamEdges_.end(), topology_.edges.begin());
-    parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain, [this](std::size_t c) {
+    parallelFor(stage_, cells_.size(), kOvmTopologyGrain, [this](std::size_t c) {
       Edge* edge = topology_.edges.data() + own_[c].firstEdge;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if ((own_[c].edges >> axis & 1U) != 0)
@@ -459,7 +408,7 @@ class HexTopologyBuilder {
     const auto numberOf = [this](std::size_t cell, std::size_t slot) {
       return own_[cell].firstFace + rankOf(own_[cell].faces, slot);
     };
-    parallelFor(stage_, cells_.size(), kOvmHexTopologyGrain, [&](std::size_t c) {
+    parallelFor(stage_, cells_.size(), kOvmTopologyGrain, [&](std::size_t c) {
       Index* const handles = topology_.cells.handles.data() + 6 * c;
       std::array<Index, 6> mates;  // NOLINT(*-member-init): fully overwritten
       std::copy_n(handles, 6, mates.begin());
@@ -483,9 +432,52 @@ class HexTopologyBuilder {
 
 }  // namespace
 
-std::optional<OvmTopology> numberHexes(std::size_t vertexCount, std::span<const Hex> cells,
-                                       adjacency::HexMates mates, Stage& stage) {
-  return HexTopologyBuilder(vertexCount, cells, std::move(mates), stage).build();
+OvmEdgeFinder::OvmEdgeFinder(std::size_t vertexCount, std::span<const std::array<Index, 2>> edges)
+    : edges_(edges), begins_(vertexCount + 1) {
+  std::size_t e = 0;
+  for (std::size_t v = 0; v <= vertexCount; ++v) {
+    while (e < edges_.size() && edges_[e][0] < v) ++e;
+    begins_[v] = static_cast<Index>(e);
+  }
+}
+
+Index OvmEdgeFinder::find(Index a, Index b) const noexcept {
+  const Index low = std::min(a, b);
+  const Index high = std::max(a, b);
+  if (high + std::size_t{1} >= begins_.size()) return kNone;
+  for (Index e = begins_[low]; e < begins_[low + 1]; ++e) {
+    if (edges_[e][1] == high) return e;
+  }
+  return kNone;
+}
+
+OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Tet> cells, Stage& stage) {
+  requireCounts(vertexCount, cells.size(), 4);
+  requireDifferentVertices(cells, stage);
+  adjacency::TetTopology tets;
+  tets.tets = cells;
+  tets.pointCount = vertexCount;
+  if (!adjacency::matchFaces(tets, stage)) throwFaceFault(vertexCount, cells, stage);
+  adjacency::addStars(tets, stage);
+  OvmTopology topology;
+  topology.vertexCount = vertexCount;
+  const std::vector<Edge> edges = listEdges(tets, stage);
+  requireOvmCount(kMaxOvmEntities, edges.size(), "edges");
+  topology.edges.assign(edges.begin(), edges.end());
+  TetFaceLister(tets, topology).run(stage);
+  return topology;
+}
+
+OvmTopology buildOvmTopology(std::size_t vertexCount, std::span<const Hex> cells, Stage& stage) {
+  requireCounts(vertexCount, cells.size(), 6);
+  std::optional<adjacency::HexMates> mates = adjacency::matchHexFaces(vertexCount, cells, stage);
+  if (mates) {
+    std::optional<OvmTopology> topology =
+        HexTopologyBuilder(vertexCount, cells, std::move(*mates), stage).build();
+    if (topology) return std::move(*topology);
+  }
+  requireDifferentVertices(cells, stage);
+  throwFaceFault(vertexCount, cells, stage);
 }
 
 }  // namespace hexhex::io

@@ -134,13 +134,111 @@ class VtkLegacyFile final : public VtkSource {
     binary_ = encoding == "binary";
     if (!binary_ && encoding != "ascii") scanner_.failToken("\"ASCII\" or \"BINARY\"");
     if (readKeyword() != "dataset") scanner_.failToken("\"DATASET\"");
-    if (readKeyword() != "unstructured_grid") {
-      scanner_.fail(ErrorCode::FileUnsupported, "the data set must be an UNSTRUCTURED_GRID, found ",
-                    quoted(scanner_.currentToken()),
-                    ". Save grids as one (in PyVista: grid.cast_to_unstructured_grid()), and "
-                    "surfaces as .ply or .stl.");
+    const std::string kind = readKeyword();
+    const bool isGrid =
+        kind == "structured_points" || kind == "structured_grid" || kind == "rectilinear_grid";
+    if (!isGrid && kind != "polydata" && kind != "unstructured_grid") {
+      scanner_.fail(ErrorCode::FileUnsupported, "the data set ", quoted(scanner_.currentToken()),
+                    " is not supported.");
     }
     if (!binary_) index_.emplace(text(), stage_);
+    if (isGrid) readGrid(kind);
+    if (kind == "polydata") readPolygons();
+  }
+
+  /// Reads the sections of a structured grid, whose cells are implied.
+  void readGrid(const std::string& kind) {
+    GridIndex size{};
+    Vec3 origin{};
+    Vec3 spacing{1, 1, 1};
+    std::array<Array<double>, 3> axes;
+    readSections([&](const std::string& keyword) {
+      if (keyword == "dimensions") {
+        for (auto& n : size) n = static_cast<std::uint64_t>(scanner_.integer("a dimension"));
+      } else if (keyword == "origin" || keyword == "spacing" || keyword == "aspect_ratio") {
+        Vec3& numbers = keyword == "origin" ? origin : spacing;
+        for (double& x : numbers) x = scanner_.number("a number");
+      } else if (keyword == "points") {
+        beginSection(hasPoints_, "POINTS");
+        readPoints();
+      } else if (keyword.size() == 13 && keyword.ends_with("_coordinates")) {
+        readAxis(axes[static_cast<std::size_t>(keyword[0] - 'x') % 3]);
+      } else {
+        return false;
+      }
+      return true;
+    });
+    const std::uint64_t given = points;
+    if (kind == "structured_points") {
+      makeGrid(size, fileSize(), [=](std::size_t axis, const GridIndex& point) {
+        return spacing[axis] * static_cast<double>(point[axis]) + origin[axis];
+      });
+    } else if (kind == "structured_grid") {
+      makeGrid(size, fileSize(), {});
+      if (given != points) failSizes(points, given);
+    } else {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (axes[i].size() != size[i]) failSizes(size[i], axes[i].size());
+      }
+      makeGrid(size, fileSize(),
+               [axes](std::size_t i, const GridIndex& point) { return axes[i][point[i]]; });
+    }
+    hasPoints_ = hasCells_ = hasTypes_ = true;
+  }
+
+  [[noreturn]] void failSizes(std::uint64_t expected, std::uint64_t found) const {
+    scanner_.fail(ErrorCode::FileSyntax, "the section DIMENSIONS announces ", expected,
+                  " points or coordinates, but there are ", found, ".");
+  }
+
+  void readAxis(Array<double>& axis) {
+    axis.resize(scanner_.readCount("coordinates", 2));
+    const VtkColumn column = readNumbers(axis.size(), readType(), VtkNumbers::Reals,
+                                         [](std::size_t) { return "a coordinate"; });
+    copy(column, 0, axis.size(), axis.data());
+  }
+
+  /// Reads the sections of a surface. Of its cells, polygons remain.
+  void readPolygons() {
+    readSections([&](const std::string& keyword) {
+      if (keyword == "points") {
+        beginSection(hasPoints_, "POINTS");
+        readPoints();
+      } else if (keyword == "polygons") {
+        beginSection(hasCells_, "POLYGONS");
+        readCells();
+      } else if (keyword == "vertices" || keyword == "lines") {
+        skipCells();
+      } else if (keyword == "triangle_strips") {
+        scanner_.fail(ErrorCode::FileUnsupported,
+                      "triangle strips are not read; save the surface as triangles.");
+      } else {
+        return false;
+      }
+      return true;
+    });
+    makePolygons();
+    hasCells_ = hasTypes_ = true;
+  }
+
+  /// Reads sections up to the arrays of points and cells.
+  /// @param read  reads the section of a keyword; false if it is none of this data set
+  template <class Read>
+  void readSections(const Read& read) {
+    while (scanner_.skipSpace()) {
+      const std::size_t begin = scanner_.position();
+      const std::string keyword = readKeyword();
+      if (keyword == "field") {
+        beginField();
+        while (fieldArrays_ > 0) readFieldArray();
+      } else if (keyword == "metadata") {
+        skipMetadata();
+      } else if (keyword == "point_data" || keyword == "cell_data") {
+        return scanner_.moveTo(begin);
+      } else if (!read(keyword)) {
+        scanner_.failToken("a section of the data set");
+      }
+    }
   }
 
   /// Whether only arrays follow.
@@ -188,6 +286,13 @@ class VtkLegacyFile final : public VtkSource {
     coordinates = readNumbers(3 * points, type, VtkNumbers::Reals, [](std::size_t i) {
       return NumberName("a coordinate of ", "point", i / 3);
     });
+  }
+
+  /// Skips cells that are not read.
+  void skipCells() {
+    const auto kept = std::tuple(cells, offsets, stride, connectivity, gap);
+    readCells();
+    std::tie(cells, offsets, stride, connectivity, gap) = kept;
   }
 
   void readCells() {
@@ -429,6 +534,17 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
   file->counts = input.counts();
   if (withRegions) file->readRegions();
   return file;
+}
+
+bool holdsVtkLegacySurface(const Input& input) {
+  std::array<char, 1024> bytes{};  // the title, which comes before, has at most 256 characters
+  std::string_view head(bytes.data(), bytes.size());
+  if (input.bytes()) {
+    head = input.bytes()->substr(0, bytes.size());
+  } else if (const InputFile file(input.path()); file.isRegular()) {
+    head = head.substr(0, file.read(bytes.data(), bytes.size()));
+  }
+  return lowerCase(head).find("dataset polydata") != std::string::npos;
 }
 
 namespace {

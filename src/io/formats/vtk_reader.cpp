@@ -14,6 +14,7 @@
 #include <io/core/input_file.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/vtk_source.hpp>
+#include <io/surface/surface.hpp>
 
 namespace hexhex::io {
 
@@ -87,6 +88,10 @@ VtkColumn VtkSource::load(const VtkSourceArray& array) const {
 
 template <class T>
 void VtkSource::copy(const VtkColumn& column, std::uint64_t begin, std::size_t count, T* to) const {
+  if (column.compute) {
+    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<T>(column.compute(begin + i));
+    return;
+  }
   const std::size_t size = count * bytesOf(column.scalar);
   const std::uint64_t position = column.position + begin * bytesOf(column.scalar);
   if (!column.decoded.empty()) return convert(column, column.decoded.data() + position, count, to);
@@ -102,6 +107,62 @@ template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, doub
 template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, std::int64_t*) const;
 template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, Index*) const;
 template void VtkSource::copy(const VtkColumn&, std::uint64_t, std::size_t, CornerSet*) const;
+
+namespace {
+
+/// A column of numbers that the file implies.
+VtkColumn computedColumn(std::uint64_t count, std::function<double(std::uint64_t i)> compute) {
+  VtkColumn column;
+  column.count = count;
+  column.compute = std::move(compute);
+  return column;
+}
+
+}  // namespace
+
+void VtkSource::makeGrid(
+    const GridIndex& size, std::uint64_t dataSize,
+    const std::function<double(std::size_t axis, const GridIndex& point)>& place) {
+  // A few lines may describe a grid of any size. Larger ones have at least a byte for each point.
+  constexpr std::uint64_t kMostWithoutData = std::uint64_t{1} << 22;
+  const std::uint64_t most = std::min(std::uint64_t{kNone}, kMostWithoutData + dataSize);
+  points = cells = 1;
+  for (const std::uint64_t n : size) {
+    const std::string sizes =
+        concat("a grid of ", size[0], " x ", size[1], " x ", size[2], " points");
+    if (n < 2) {
+      fail(ErrorCode::FileUnsupported, sizes, " has a single layer, so it has no hexahedra.");
+    }
+    if (n > most / points) {
+      fail(ErrorCode::TooLarge, sizes, " is larger than the data of this file: at most ", most,
+           " are read. If it is right, save it as an unstructured grid.");
+    }
+    points *= n;
+    cells *= n - 1;
+  }
+  types = computedColumn(cells, [](std::uint64_t) { return double{kVtkHexahedron}; });
+  stride = 8;
+  connectivity = computedColumn(stride * cells, [size](std::uint64_t i) {
+    const std::uint64_t cell = i / 8;
+    const std::uint64_t corner = i % 8;
+    const std::uint64_t row = cell / (size[0] - 1);
+    const std::uint64_t x = cell % (size[0] - 1) + ((corner + 1) / 2 % 2);
+    const std::uint64_t y = row % (size[1] - 1) + (corner / 2 % 2);
+    const std::uint64_t z = row / (size[1] - 1) + corner / 4;
+    return static_cast<double>(x + size[0] * (y + size[1] * z));
+  });
+  if (!place) return;
+  coordinates = computedColumn(3 * points, [size, place](std::uint64_t i) {
+    const std::uint64_t point = i / 3;
+    const std::uint64_t row = point / size[0];
+    return place(i % 3, {point % size[0], row % size[1], row / size[1]});
+  });
+}
+
+void VtkSource::makePolygons() {
+  isSurface = true;
+  types = computedColumn(cells, [](std::uint64_t) { return double{kVtkPolygon}; });
+}
 
 void VtkSource::see(std::string_view name, bool ofCells, std::size_t components) {
   constexpr std::size_t kMostSeen = 20;  // listed in an error message
@@ -427,7 +488,7 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
   });
   const std::size_t count = exclusiveScan(std::span(begins));
   noteVtkCells(source, cells, count);
-  if (all > 0 && count == 0) failWithoutVtkCells(source, cells);
+  if ((all > 0 || source.isSurface) && count == 0) failWithoutVtkCells(source, cells);
   Index* const vertices = makeRoom(count);
   if (numbers != nullptr) numbers->resize(count);
   forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
@@ -455,7 +516,8 @@ void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
   source.fail(ErrorCode::FileUnsupported, "the file holds no ", cells.plural, ": none of its ",
               source.cells, " cells has the type ", cells.vtkType, source.counts->instead(), ".",
-              (cells.corners == 8 ? source.counts->adviceOnCurved() : ""));
+              (cells.corners == 8 ? source.counts->adviceOnCurved() : ""),
+              (source.isSurface ? " It is a surface: `hexhex mesh` fills it with tets." : ""));
 }
 
 HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
@@ -534,6 +596,27 @@ TetMap readVtkMap(VtkSource& source, std::string_view mapArray, Stage& stage) {
   }
   map.features = readVtkTetFeatures(source);
   return map;
+}
+
+TriangleMesh readVtkSurface(const VtkSource& source, Stage& stage) {
+  if (!source.isSurface) {
+    source.fail(ErrorCode::FileUnsupported, "the data set is no surface, which is POLYDATA.");
+  }
+  source.requireIndexable();
+  TriangleMesh mesh;
+  mesh.points.resize(source.points);
+  readVtkPoints(source, mesh.points, stage);
+  constexpr CellKind kPolygonKind = {.singular = "polygon", .plural = "polygons"};
+  const CellTable table(source, kPolygonKind, 0, source.cells);
+  std::vector<Index> corners;
+  for (std::size_t i = 0; i < source.cells; ++i) {
+    if (!table.isGood(i)) table.fail(i);
+    corners.resize(table.end(i) - table.begin(i));
+    if (corners.empty()) continue;
+    readRun(source, corners.size(), i, table.begin(i), std::span(corners));
+    addPolygon(mesh, corners);
+  }
+  return mesh;
 }
 
 TriangleLabels readVtkLabels(VtkSource& source, std::string_view name, Stage& stage) {
@@ -873,6 +956,14 @@ TetCells readVtkLegacyTets(const Input& input, Stage& stage) {
 
 TetMap readVtkLegacyMap(const Input& input, const ReadOptions& options, Stage& stage) {
   return readVtkMap(*openVtkLegacyFile(input, false, stage), options.mapArray, stage);
+}
+
+TriangleMesh readVtp(const Input& input, Stage& stage) {
+  return readVtkSurface(*openVtuFile(input, stage), stage);
+}
+
+TriangleMesh readVtkLegacySurface(const Input& input, Stage& stage) {
+  return readVtkSurface(*openVtkLegacyFile(input, false, stage), stage);
 }
 
 void readVtuTo(MeshSink& sink, const Input& input, Context& context) {

@@ -20,6 +20,7 @@
 
 #include <hexhex/error.hpp>
 #include <hexhex/features.hpp>
+#include <hexhex/fill.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -54,7 +55,12 @@ struct VtkColumn {
   std::uint64_t count = 0;
   std::uint64_t position = 0;  ///< in the file, or in `decoded`
   Array<char> decoded = {};    ///< data that the file does not store as plain binary
+  /// Returns number i of a column that the file implies; otherwise null.
+  std::function<double(std::uint64_t i)> compute = {};
 };
+
+/// Points or indices along the axes of a grid.
+using GridIndex = std::array<std::uint64_t, 3>;
 
 /// An array of a file.
 struct VtkSourceArray {
@@ -99,6 +105,7 @@ class VtkSource {
   VtkColumn connectivity;
   std::size_t gap = 0;  ///< numbers in `connectivity` before the corners of each cell
   VtkEdges uprightEdges = VtkEdges::Around;  ///< of Lagrange cells
+  bool isSurface = false;                    ///< whether the data set is one of polygons
 
   std::shared_ptr<CellCounts> counts;  ///< of the input
 
@@ -142,6 +149,16 @@ class VtkSource {
   /// Records the name of a point or cell array, for messages.
   void see(std::string_view name, bool ofCells, std::size_t components);
 
+  /// Makes the points and cells of a structured grid.
+  /// @param size      points along each axis
+  /// @param place     coordinate `axis` of a point; null: the points are given
+  /// @param dataSize  bytes of the file, uncompressed: bounds grids whose cells have no data
+  /// @throws Error FileUnsupported for a single layer of points; TooLarge
+  void makeGrid(const GridIndex& size, std::uint64_t dataSize,
+                const std::function<double(std::size_t axis, const GridIndex& point)>& place);
+  /// Makes all cells polygons.
+  void makePolygons();
+
   [[nodiscard]] std::string_view text() const noexcept { return content_.text; }
   [[nodiscard]] std::uint64_t fileSize() const noexcept { return bytes_.size(); }
 
@@ -151,8 +168,8 @@ class VtkSource {
   ByteFile bytes_;
 };
 
-/// Opens a `.vtu` file, loading only its header if the arrays are appended raw. Every size and
-/// offset is checked against the file.
+/// Opens a `.vtu`, `.vts`, `.vtr`, `.vti` or `.vtp` file, loading only its header if the arrays are
+/// appended raw. Every size and offset is checked against the file.
 /// @param input, stage  must outlive the source
 /// @throws Error FileSyntax, FileUnsupported, NotFinite
 [[nodiscard]] std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage);
@@ -255,6 +272,10 @@ using OpenVtkPiece = std::function<std::unique_ptr<VtkSource>(std::size_t piece)
 /// Whether there are Lagrange hexahedra, or hexahedra with 20 or 27 nodes but no straight ones.
 [[nodiscard]] bool holdsVtkLagrange(const VtkSource& source);
 [[nodiscard]] LagrangeMesh readVtkLagrange(const VtkSource& source, Stage& stage);
+
+/// Reads points and polygons.
+/// @throws Error FileUnsupported if the data set is no surface; IndexOutOfRange
+[[nodiscard]] TriangleMesh readVtkSurface(const VtkSource& source, Stage& stage);
 
 /// Reads points and tets.
 [[nodiscard]] TetCells readVtkTets(VtkSource& source, Stage& stage);

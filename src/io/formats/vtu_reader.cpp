@@ -199,11 +199,13 @@ Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, S
 
 constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
 
-constexpr std::array<std::pair<std::string_view, VtkSection>, 5> kSections = {
+constexpr std::array<std::pair<std::string_view, VtkSection>, 7> kSections = {
     {{"FieldData", VtkSection::FieldData},
      {"PointData", VtkSection::PointData},
      {"CellData", VtkSection::CellData},
      {"Points", VtkSection::Points},
+     {"Coordinates", VtkSection::Points},  // of rectilinear grids
+     {"Polys", VtkSection::Polys},
      {"Cells", VtkSection::Cells}}};
 
 constexpr std::array<std::pair<std::string_view, VtkScalar>, 11> kScalars = {
@@ -257,7 +259,15 @@ class VtuFile final : public VtkSource {
   VtuFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
       : VtkSource(std::move(bytes), fileName), stage_(stage), tags_(text(), fileName) {
     readTags();
+    if (type_ != "UnstructuredGrid" && pieces_.size() > 1) {
+      tags_.fail(ErrorCode::FileUnsupported, pieces_[1].tag,
+                 "several pieces are read of unstructured grids only; save it as one piece.");
+    }
     leaveOutEmpty();
+    if (isGrid()) {
+      readGrid();
+      return;
+    }
     for (const VtuPiece& piece : pieces_) {
       pointsBefore_.push_back(std::exchange(points, points + piece.points));
       cells += piece.cells;
@@ -293,6 +303,7 @@ class VtuFile final : public VtkSource {
       }
       if (tag.closing) continue;
       if (tag.name == "VTKFile") readFileTag(tag);
+      if (tag.name == "ImageData") image_ = tag;
       if (tag.name == "Piece") readPieceTag(tag);
       // VTK writes arrays of strings with the tag Array.
       const bool isTexts =
@@ -310,9 +321,10 @@ class VtuFile final : public VtkSource {
 
   void readFileTag(const XmlTag& tag) {
     hasFileTag_ = true;
-    if (tag.attribute("type") != "UnstructuredGrid") {
-      tags_.fail(ErrorCode::FileUnsupported, tag, "the file's type is ",
-                 quoted(tag.attribute("type")), ", only UnstructuredGrid is supported.");
+    type_ = tag.attribute("type");
+    if (!isGrid() && !isPolyData() && type_ != "UnstructuredGrid") {
+      tags_.fail(ErrorCode::FileUnsupported, tag, "the file's type is ", quoted(type_),
+                 ", only grids and surfaces in one file are supported.");
     }
     const std::string_view compressor = tag.attribute("compressor");
     compressed_ = !compressor.empty();
@@ -334,8 +346,88 @@ class VtuFile final : public VtkSource {
     uprightEdges = isOld ? VtkEdges::RowByRow : VtkEdges::Around;
   }
 
+  [[nodiscard]] bool isPolyData() const { return type_ == "PolyData"; }
+  [[nodiscard]] bool isGrid() const {
+    return type_ == "ImageData" || type_ == "RectilinearGrid" || type_ == "StructuredGrid";
+  }
+
   void readPieceTag(const XmlTag& tag) {
-    pieces_.push_back({tag, readCount(tag, "NumberOfPoints"), readCount(tag, "NumberOfCells")});
+    VtuPiece& piece = pieces_.emplace_back(VtuPiece{tag});
+    if (isGrid()) return;
+    piece.points = readCount(tag, "NumberOfPoints");
+    piece.cells = readCount(tag, isPolyData() ? "NumberOfPolys" : "NumberOfCells");
+    const bool strips = isPolyData() && !tag.attribute("NumberOfStrips").empty() &&
+                        readCount(tag, "NumberOfStrips") > 0;
+    if (!strips) return;
+    tags_.fail(ErrorCode::FileUnsupported, tag,
+               "triangle strips are not read; save the surface as triangles.");
+  }
+
+  /// The numbers in an attribute.
+  /// @param numbers  those that it has if it is missing
+  template <std::size_t n>
+  std::array<double, n> readNumbers(const XmlTag& tag, std::string_view attribute,
+                                    std::array<double, n> numbers) const {
+    TextScanner scanner(tag.attribute(attribute), name());
+    if (!scanner.skipSpace()) return numbers;
+    for (double& number : numbers) {
+      if (scanner.readNumber(number)) continue;
+      tags_.fail(ErrorCode::FileSyntax, tag, "expected ", n, " numbers as ", attribute, ", found ",
+                 quoted(tag.attribute(attribute)), ".");
+    }
+    return numbers;
+  }
+
+  /// Reads a structured grid, whose cells are implied.
+  void readGrid() {
+    VtuPiece& piece = pieces_[0];
+    const auto extent = readNumbers(piece.tag, "Extent", std::array<double, 6>{});
+    GridIndex size{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      constexpr double kFar = 1e18;  // far beyond what can be read
+      size[i] =
+          static_cast<std::uint64_t>(std::clamp(extent[2 * i + 1] - extent[2 * i] + 1, 0.0, kFar));
+    }
+    const std::uint64_t dataSize = (compressed_ ? kLargestZlibRatio : 1) * fileSize();
+    if (type_ == "ImageData") {
+      const auto origin = readNumbers(image_, "Origin", Vec3{});
+      const auto spacing = readNumbers(image_, "Spacing", Vec3{1, 1, 1});
+      const auto axes =
+          readNumbers(image_, "Direction", std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+      makeGrid(size, dataSize, [=](std::size_t axis, const GridIndex& point) {
+        double place = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+          place +=
+              axes[3 * axis + i] * spacing[i] * (extent[2 * i] + static_cast<double>(point[i]));
+        }
+        return place + origin[axis];
+      });
+    } else if (type_ == "RectilinearGrid") {
+      makeGrid(size, dataSize, readAxes(size));
+    } else {
+      makeGrid(size, dataSize, {});
+      piece.points = points;
+      coordinates = std::move(columnsOf(VtkSection::Points, {}, "points", VtkNumbers::Reals, 3)[0]);
+    }
+    arrays.insert(arrays.end(), piece.arrays.begin(), piece.arrays.end());
+  }
+
+  /// The coordinates of a rectilinear grid: three arrays, one for each axis.
+  std::function<double(std::size_t axis, const GridIndex& point)> readAxes(const GridIndex& size) {
+    std::array<std::vector<double>, 3> axes;
+    std::size_t axis = 0;
+    for (const VtkSourceArray& array : pieces_[0].arrays) {
+      if (array.section != VtkSection::Points || axis == axes.size()) continue;
+      const VtkColumn column = array.load(array.numbers, size[axis]);
+      axes[axis].resize(memorySize(size[axis]));
+      copy(column, 0, axes[axis].size(), axes[axis].data());
+      ++axis;
+    }
+    if (axis < axes.size()) {
+      fail(ErrorCode::FileSyntax, "the file has ", axis,
+           " arrays of coordinates instead of three.");
+    }
+    return [axes](std::size_t i, const GridIndex& point) { return axes[i][point[i]]; };
   }
 
   std::uint64_t readCount(const XmlTag& tag, std::string_view attribute) const {
@@ -445,9 +537,14 @@ class VtuFile final : public VtkSource {
 
   void readCells() {
     const auto load = [this](std::string_view name, const char* what, std::size_t each) {
-      return columnsOf(VtkSection::Cells, name, what, VtkNumbers::Integers, each);
+      return columnsOf(isPolyData() ? VtkSection::Polys : VtkSection::Cells, name, what,
+                       VtkNumbers::Integers, each);
     };
-    types = joined(load("types", "cell types", 1), VtkNumbers::Integers);
+    if (isPolyData()) {
+      makePolygons();
+    } else {
+      types = joined(load("types", "cell types", 1), VtkNumbers::Integers);
+    }
     std::vector<VtkColumn> corners = load("connectivity", "cell corners", 0);
     std::vector<std::uint64_t> cornersBefore;
     std::uint64_t cornerCount = 0;
@@ -658,6 +755,8 @@ class VtuFile final : public VtkSource {
   Stage& stage_;
   XmlTags tags_;
   bool hasFileTag_ = false;
+  std::string_view type_;  ///< of the data set
+  XmlTag image_;           ///< the tag ImageData
   std::vector<VtuPiece> pieces_;
   Array<std::size_t> kept_;  ///< of several pieces: points without an earlier duplicate
   std::vector<std::uint64_t> pointsBefore_;  ///< per piece: points before it

@@ -1,5 +1,4 @@
-// Readers of surface files. They return what the file contains: vertices as listed, and polygons
-// triangulated as fans around their first corner.
+// Readers of surface files (see ReadTriangles).
 #pragma once
 
 #include <cstddef>
@@ -7,14 +6,11 @@
 
 #include <hexhex/fill.hpp>
 
-#include <io/core/input_file.hpp>
+#include <io/formats/formats.hpp>
 
 namespace hexhex::io {
 
-[[nodiscard]] TriangleMesh readStl(const Input& input, Stage& stage);
-[[nodiscard]] TriangleMesh readObj(const Input& input, Stage& stage);
-[[nodiscard]] TriangleMesh readOff(const Input& input, Stage& stage);
-[[nodiscard]] TriangleMesh readPly(const Input& input, Stage& stage);
+ReadTriangles readStl, readObj, readOff, readPly;
 
 inline void addPolygon(TriangleMesh& mesh, std::span<const Index> corners) {
   for (std::size_t i = 2; i < corners.size(); ++i) {

@@ -1,15 +1,18 @@
-// Reads `.ovmb` files: a header followed by chunks with vertices, edges, faces, cells and
-// properties.
+// Reads and writes `.ovmb` files (see ovm_mesh.hpp): a header followed by chunks with vertices,
+// edges, faces, cells and properties.
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <initializer_list>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +21,7 @@
 #include <base/vector3.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/line_writer.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/ovm_mesh.hpp>
 
@@ -131,6 +135,7 @@ class ElementReader {
     withWidth(encoding_.handleBytes, [&]<class Stored>(Stored /*width*/) {
       decodeHandles<Stored>(cursor, handles, entity);
     });
+    if (handles.data() == mixed_.data()) appendMixed(count, entity);
   }
 
   void requireAll() const {
@@ -227,8 +232,33 @@ class ElementReader {
     if (handles > cursor.remaining() || cursor.remaining() != handles * encoding_.handleBytes) {
       cursor.fail(ErrorCode::FileSyntax, "a TOPO chunk has the wrong size for its ", many, ".");
     }
-    return appendLists(entity == kFaces ? mesh_.topology.faces : mesh_.topology.cells, count,
-                       static_cast<std::size_t>(handles));
+    OvmLists& lists = listsOf(entity);
+    Array<Index>& target = encoding_.valence == lists.length ? lists.handles : mixed_;
+    if (&target == &mixed_) mixed_.clear();
+    target.resize(target.size() + static_cast<std::size_t>(handles));
+    return std::span(target).last(static_cast<std::size_t>(handles));
+  }
+
+  [[nodiscard]] OvmLists& listsOf(std::size_t entity) const {
+    return entity == kFaces ? mesh_.topology.faces : mesh_.topology.cells;
+  }
+
+  /// Appends lists whose lengths may differ from that wanted.
+  void appendMixed(std::size_t count, std::size_t entity) {
+    OvmLists& lists = listsOf(entity);
+    const std::size_t before = lists.size();
+    const auto lengthOf = [&](std::size_t i) {
+      return encoding_.valence > 0 ? encoding_.valence : valences_[i];
+    };
+    lists.handles.resize((before + count) * lists.length, kNone);
+    const Index* from = mixed_.data();
+    for (std::size_t i = 0; i < count; from += lengthOf(i++)) {
+      if (lengthOf(i) == lists.length) {
+        std::copy_n(from, lists.length, lists.handles.data() + (before + i) * lists.length);
+      } else {
+        mesh_.noteOther(lists, before + i, lengthOf(i));
+      }
+    }
   }
 
   template <class Stored>
@@ -243,27 +273,6 @@ class ElementReader {
     if (fault == valences_.size()) return;
     cursor.failAt(begin + fault * sizeof(Stored), ErrorCode::FileSyntax, anyOf(entity),
                   " has the valence ", valences_[fault], "; at least ", least, " is needed.");
-  }
-
-  /// Appends lists with this total number of handles, and returns memory for these.
-  std::span<Index> appendLists(OvmLists& lists, std::size_t count, std::size_t handles) const {
-    const bool uniform =
-        encoding_.valence > 0 || std::adjacent_find(valences_.begin(), valences_.end(),
-                                                    std::not_equal_to<>()) == valences_.end();
-    const std::size_t length = uniform ? handles / count : 0;
-    const std::size_t before = lists.size();
-    if (before == 0) lists.length = length;
-    if (length == 0 || lists.length != length) {  // from here on, store the length of each list
-      if (lists.offsets.empty()) {
-        for (std::size_t i = 0; i <= before; ++i) lists.offsets.push_back(i * lists.length);
-        lists.length = 0;
-      }
-      for (std::size_t i = 0; i < count; ++i) {
-        lists.offsets.push_back(lists.offsets.back() + (uniform ? length : valences_[i]));
-      }
-    }
-    lists.handles.resize(lists.handles.size() + handles);
-    return std::span(lists.handles).last(handles);
   }
 
   template <class Stored>
@@ -313,6 +322,7 @@ class ElementReader {
     std::uint64_t handleOffset = 0;
   } encoding_;
   Array<std::uint32_t> valences_;  ///< if they vary
+  Array<Index> mixed_;             ///< handles of lists that may have other lengths than wanted
 };
 
 /// Decodes all VERT and TOPO chunks, with any encoding of numbers, handles and valences, and any
@@ -629,9 +639,10 @@ class PropertyReader {
 
 }  // namespace
 
-OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& stage) {
+OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, const CellKind& kind,
+                  Stage& stage) {
   const OvmbFrame frame = splitOvmb(bytes, fileName);
-  OvmMesh mesh;
+  OvmMesh mesh(kind);
   readOvmbElements(frame, mesh, stage);
   PropertyReader reader(frame, mesh, stage);
   for (const OvmbChunk& chunk : frame.chunks) {
@@ -639,6 +650,196 @@ OvmMesh parseOvmb(std::string_view bytes, const std::string& fileName, Stage& st
     if (chunk.type == "PROP") reader.readProperty(chunk.payload);
   }
   return mesh;
+}
+
+namespace {
+
+// Writing.
+
+// Elements written between checks for cancellation: a few milliseconds of work.
+constexpr std::size_t kSlice = std::size_t{1} << 18;
+
+/// The type of values in the property directory.
+struct ElementType {
+  std::string_view name;
+  std::size_t bytes;
+};
+ElementType typeOf(const OvmProperty& property) {
+  constexpr std::array<ElementType, 3> kTypes = {
+      {{"i32", sizeof(std::int32_t)}, {"3d", sizeof(Vec3)}, {"2d", 2 * sizeof(double)}}};
+  return kTypes[property.values.index()];
+}
+
+/// Views arrays of numbers as one range.
+template <class Number, std::size_t n>
+std::span<const Number> flat(std::span<const std::array<Number, n>> arrays) {
+  return {reinterpret_cast<const Number*>(arrays.data()), n * arrays.size()};
+}
+std::span<const std::int32_t> flat(std::span<const std::int32_t> numbers) { return numbers; }
+
+class OvmbWriter {
+ public:
+  OvmbWriter(const OvmOutput& mesh, OutputFile& output, Stage& stage)
+      : mesh_(mesh),
+        topology_(mesh.topology),
+        output_(output),
+        progress_(stage, mesh.points.size() + 2 * topology_.edges.size() +
+                             topology_.faces.handles.size() + topology_.cells.handles.size()) {}
+
+  void write() {
+    writeHeader();
+    writeDirectory();
+    writeVertices();
+    const std::span<const std::array<Index, 2>> edges(topology_.edges);
+    writeTopology(OvmEntity::Edge, 2, {}, flat(edges), OvmEntity::Vertex);
+    const OvmLists& faces = topology_.faces;
+    const OvmLists& cells = topology_.cells;
+    writeTopology(OvmEntity::Face, faces.length, faces.offsets, faces.handles, OvmEntity::HalfEdge);
+    writeTopology(OvmEntity::Cell, cells.length, cells.offsets, cells.handles, OvmEntity::HalfFace);
+    for (std::uint32_t i = 0; i < mesh_.properties.size(); ++i) writeProperty(i);
+    writeChunk("EOF ", 0, [] {});
+  }
+
+ private:
+  template <class T>
+  void put(T value) {
+    writeBytesOf(output_, value);
+  }
+  void putBytes(std::initializer_list<std::uint64_t> bytes) {
+    for (const std::size_t byte : bytes) put(static_cast<std::uint8_t>(byte));
+  }
+  void putZeros(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) putBytes({0});
+  }
+  void putText(std::string_view text) {
+    put(static_cast<std::uint32_t>(text.size()));
+    output_.write(text);
+  }
+  void putSpan(std::size_t count) {
+    put(std::uint64_t{0});
+    put(static_cast<std::uint32_t>(count));
+  }
+
+  /// Writes numbers converted to Stored.
+  template <class Stored, class T>
+  void putArray(std::span<const T> values) {
+    constexpr bool kAsInMemory =
+        std::is_same_v<Stored, T> && std::endian::native == std::endian::little;
+    for (std::size_t begin = 0; begin < values.size(); begin += kSlice) {
+      const std::span<const T> slice =
+          values.subspan(begin, std::min(kSlice, values.size() - begin));
+      if constexpr (kAsInMemory) {
+        output_.writeBytes(slice.data(), slice.size_bytes());
+      } else {
+        for (const T value : slice) put(static_cast<Stored>(value));
+      }
+      progress_.advance(0);
+    }
+  }
+
+  /// @param payload  the number of bytes that body() writes
+  template <class Body>
+  void writeChunk(std::string_view type, std::uint64_t payload, const Body& body) {
+    const std::uint64_t padding = (8 - payload % 8) % 8;
+    output_.write(type);
+    putBytes({0, padding, 0, 1});  // version, padding, compression, mandatory
+    put(payload + padding);
+    body();
+    putZeros(padding);
+  }
+
+  void writeHeader() {
+    output_.write(kOvmbMagic);
+    const std::size_t valence = topology_.cells.size() > 0 ? topology_.faces.length : 0;
+    const bool tets = valence == 3;
+    const bool hexes = valence == 4;
+    putBytes({1, 1, 3, tets ? 1U : (hexes ? 2U : 0U)});  // versions of file and header, dimension
+    put(std::uint32_t{0});
+    for (const std::size_t count : {mesh_.points.size(), topology_.edges.size(),
+                                    topology_.faces.size(), topology_.cells.size()}) {
+      put(std::uint64_t{count});
+    }
+  }
+  void writeDirectory() {
+    if (mesh_.properties.empty()) return;
+    constexpr std::size_t kEntryBytes = 13;  // an entity and three lengths
+    std::uint64_t payload = 0;
+    for (const OvmProperty& property : mesh_.properties) {
+      const ElementType type = typeOf(property);
+      payload += kEntryBytes + property.name.size() + type.name.size() + type.bytes;
+    }
+    writeChunk("DIRP", payload, [this] {
+      for (const OvmProperty& property : mesh_.properties) {
+        const ElementType type = typeOf(property);
+        put(static_cast<std::uint8_t>(property.entity));
+        putText(property.name);
+        putText(type.name);
+        put(static_cast<std::uint32_t>(type.bytes));
+        putZeros(type.bytes);  // the default value
+      }
+    });
+  }
+  void writeVertices() {
+    if (mesh_.points.empty()) return;
+    constexpr std::size_t kHeaderBytes = 16;
+    constexpr std::uint32_t kFloat64 = 2;
+    writeChunk("VERT", kHeaderBytes + mesh_.points.size_bytes(), [this] {
+      putSpan(mesh_.points.size());
+      put(kFloat64);
+      putArray<double>(flat(mesh_.points));
+    });
+    progress_.advance(mesh_.points.size());
+  }
+
+  /// @param offsets     of lists with different valences, which are at most 255; otherwise empty
+  /// @param referenced  the kind of elements that handles refer to
+  void writeTopology(OvmEntity entity, std::size_t valence, std::span<const std::uint64_t> offsets,
+                     std::span<const Index> handles, OvmEntity referenced) {
+    constexpr std::size_t kHeaderBytes = 24;
+    const std::size_t count = topology_.count(entity);
+    if (count == 0) return;
+    // Like OpenVolumeMesh, choose the width by the number of elements, not by the largest handle.
+    const std::size_t limit = topology_.count(referenced);
+    const bool wide = mesh_.hasWideHandles || limit > std::numeric_limits<std::uint16_t>::max();
+    const bool narrow = !wide && limit <= std::numeric_limits<std::uint8_t>::max();
+    const std::size_t bytesEach = wide ? 4 : (narrow ? 1 : 2);
+    const std::size_t varying = offsets.empty() ? 0 : count;
+    writeChunk("TOPO", kHeaderBytes + varying + handles.size() * bytesEach, [&] {
+      putSpan(count);
+      const std::size_t bytesOfValence = varying > 0 ? 1 : 0;
+      putBytes({static_cast<std::uint64_t>(entity), valence, bytesOfValence, bytesEach});
+      put(std::uint64_t{0});  // OpenVolumeMesh misreads other offsets of edges
+      for (std::size_t i = 0; i < varying; ++i) putBytes({offsets[i + 1] - offsets[i]});
+      if (bytesEach == 1) putArray<std::uint8_t>(handles);
+      if (bytesEach == 2) putArray<std::uint16_t>(handles);
+      if (bytesEach == 4) putArray<std::uint32_t>(handles);
+    });
+    progress_.advance(handles.size());
+  }
+  void writeProperty(std::uint32_t number) {
+    constexpr std::size_t kHeaderBytes = 16;
+    std::visit(
+        [&](const auto& values) {
+          const auto numbers = flat(std::span(values));
+          writeChunk("PROP", kHeaderBytes + numbers.size_bytes(), [&] {
+            putSpan(values.size());
+            put(number);
+            putArray<typename decltype(numbers)::value_type>(numbers);
+          });
+        },
+        mesh_.properties[number].values);
+  }
+
+  const OvmOutput& mesh_;
+  const OvmTopology& topology_;
+  OutputFile& output_;
+  LoopProgress progress_;
+};
+
+}  // namespace
+
+void writeOvmb(const OvmOutput& mesh, OutputFile& output, Stage& stage) {
+  OvmbWriter(mesh, output, stage).write();
 }
 
 }  // namespace hexhex::io
