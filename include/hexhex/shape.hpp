@@ -33,9 +33,11 @@ struct ShapeOptions {
 /// labelling, they are the faces of the polycube.
 struct LabelReport {
   std::uint64_t charts = 0;
-  std::uint64_t corners = 0;        ///< where at least three charts meet
-  std::uint64_t badLoops = 0;       ///< chart borders with fewer than four corners
-  std::uint64_t badCorners = 0;     ///< of more than three charts, or without room for their faces
+  std::uint64_t corners = 0;   ///< where at least three charts meet
+  std::uint64_t badLoops = 0;  ///< chart borders with fewer than four corners
+  /// Corners of more than three charts or without room for their faces, and points around which
+  /// labels wind otherwise than normals.
+  std::uint64_t badCorners = 0;
   std::uint64_t oppositeEdges = 0;  ///< mesh edges between opposite labels
   std::uint64_t turningPoints = 0;  ///< where edges of the polycube would reverse direction
   std::uint64_t wrongTurns = 0;     ///< charts whose right angles do not add up

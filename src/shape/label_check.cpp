@@ -13,8 +13,6 @@ namespace {
 constexpr double kNoise = 0.7;
 /// Below this cosine, a triangle is nearly perpendicular to its label: 87 degrees.
 constexpr double kPerpendicular = 0.05;
-/// Energy of a triangle without the label required there.
-constexpr double kWrongLabel = 0.5;
 
 /// @param shape  energy of steep triangles and of the length of borders
 double energyOf(const LabelReport& report, double shape) {
@@ -33,6 +31,7 @@ double energyOf(const LabelReport& report, double shape) {
 LabelCheck::LabelCheck(const Surface& surface, const LabelCosts& costs)
     : surface_(surface),
       costs_(costs),
+      windingOf_(surface),
       chartOf_(surface.triangleCount()),
       borderCount_(surface.pointCount),
       isDone_(surface.tails.size()) {
@@ -56,15 +55,10 @@ void LabelCheck::reset() {
 void LabelCheck::visitTriangles(const Labels& labels, Verdict& verdict) {
   double deviation = 0;
   double steep = 0;
-  double wrong = 0;
   double length = 0;
   for (Index t = 0; t < labels.size(); ++t) {
     const double cos = cosine(surface_.normals[t], labels[t]);
     deviation += surface_.areas[t] * (1 - cos);
-    if (costs_.isWrong(t, labels[t])) {
-      wrong += kWrongLabel;
-      verdict.places.push_back(t);
-    }
     if (cos < kPerpendicular) steep += surface_.areas[t] * (kPerpendicular - cos);
     for (Side side = 3 * t; side < 3 * t + 3; ++side) {
       const lattice::Direction beyond = labels[surface_.beyond(side)];
@@ -79,7 +73,7 @@ void LabelCheck::visitTriangles(const Labels& labels, Verdict& verdict) {
     }
   }
   verdict.report.deviation = deviation / surface_.area;
-  verdict.energy = wrong + 20 * steep / surface_.area + 0.03 * length / std::sqrt(surface_.area);
+  verdict.energy = 20 * steep / surface_.area + 0.03 * length / std::sqrt(surface_.area);
 }
 
 void LabelCheck::findCharts(const Labels& labels) {
@@ -124,6 +118,16 @@ void LabelCheck::visitCorners(Verdict& verdict) {
   const auto bad = std::unique(seen.begin(), seen.end()) - seen.begin();
   verdict.report.badCorners = static_cast<std::uint64_t>(bad);
   verdict.report.corners += verdict.report.badCorners;
+}
+
+void LabelCheck::visitWindings(const Labels& labels, Verdict& verdict) {
+  const std::vector<double>& spheres = windingOf_(labels);
+  for (const Side side : sideAt_) {
+    const double winding = std::abs(spheres[surface_.tails[side]]);
+    if (winding == 0) continue;
+    verdict.report.badCorners += static_cast<std::uint64_t>(winding);
+    verdict.places.push_back(Surface::triangleOf(side));
+  }
 }
 
 /// Collects the sides of a loop of borders, with the chart to their left.
@@ -405,6 +409,7 @@ Verdict LabelCheck::operator()(const Labels& labels) {
   findCharts(labels);
   verdict.report.charts = charts_.size();
   visitCorners(verdict);
+  visitWindings(labels, verdict);
   for (const Side border : borders_) {
     if (isDone_[border]) continue;
     walkLoop(labels, border);

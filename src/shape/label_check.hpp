@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <shape/label_costs.hpp>
+#include <shape/label_winding.hpp>
 
 #include <hexhex/shape.hpp>
 
@@ -24,7 +25,8 @@ struct Verdict {
 /// Each chart is a disk with holes and a positive width everywhere, bounded by loops of at least
 /// four edges that turn by four right angles. Three charts meet at a corner, and opposite labels
 /// never at an edge. Edges run along an axis without turning back, and all edges between two planes
-/// run in the same direction. No faces overlap around a corner.
+/// run in the same direction. No faces overlap around a corner. Labels wind around each vertex as
+/// normals do; in pairs that cancel each other, exceptions may be possible, but had no map.
 class LabelCheck {
  public:
   LabelCheck(const Surface& surface, const LabelCosts& costs);
@@ -52,6 +54,7 @@ class LabelCheck {
   void visitTriangles(const Labels& labels, Verdict& verdict);
   void findCharts(const Labels& labels);
   void visitCorners(Verdict& verdict);
+  void visitWindings(const Labels& labels, Verdict& verdict);
   void walkLoop(const Labels& labels, Side first);
   void visitLoop(const Labels& labels, Verdict& verdict);
   void addPieces();
@@ -67,6 +70,7 @@ class LabelCheck {
 
   const Surface& surface_;
   const LabelCosts& costs_;
+  LabelWinding windingOf_;
 
   struct Chart {
     Index first = 0;  ///< triangle

@@ -41,16 +41,6 @@ LabelCosts::LabelCosts(const Surface& surface)
   }
 }
 
-void LabelCosts::require(const Labels& labels) {
-  constexpr double kMuch = 1000;
-  required_ = labels;
-  for (Index t = 0; t < ofTriangles_.size(); ++t) {
-    for (lattice::Direction label = 0; label < lattice::kDirections; ++label) {
-      if (isWrong(t, label)) ofTriangles_[t][label] += asInteger(kMuch);
-    }
-  }
-}
-
 void LabelCosts::avoidCornersAt(const Vec3& point) {
   constexpr double kMost = 0.3;  // the cost of a turning point
   constexpr double kReach = 4;   // in mean edges

@@ -42,14 +42,6 @@ class LabelCosts {
   /// where the surface turns.
   [[nodiscard]] double weight(Side side) const { return weights_[side]; }
 
-  /// Requires labels of some triangles, practically.
-  /// @param labels  lattice::kDirections where any label will do
-  void require(const Labels& labels);
-  [[nodiscard]] bool isWrong(Index triangle, lattice::Direction label) const {
-    return !required_.empty() && required_[triangle] != lattice::kDirections &&
-           required_[triangle] != label;
-  }
-
   /// Makes corners of charts costly near a point where no map was found.
   void avoidCornersAt(const Vec3& point);
   [[nodiscard]] double ofCorner(Index triangle) const { return ofCorners_[triangle]; }
@@ -59,7 +51,6 @@ class LabelCosts {
   std::vector<std::array<std::int64_t, lattice::kDirections>> ofTriangles_;
   std::vector<double> weights_;    ///< per side, in mean edges
   std::vector<double> ofCorners_;  ///< per triangle
-  Labels required_;                ///< empty if none are
 };
 
 /// Unit of integer costs: the cost of a mean area, or of a mean edge on a flat part.

@@ -10,9 +10,7 @@
 
 #include <quantize/polycube/polycube.hpp>
 #include <shape/counted_faults.hpp>
-#include <shape/handle_loops.hpp>
 #include <shape/labels.hpp>
-#include <shape/loop_labels.hpp>
 #include <shape/polycube_map.hpp>
 #include <shape/rotation.hpp>
 
@@ -22,10 +20,8 @@
 namespace hexhex::shape {
 namespace {
 
-/// Budget for all attempts together, about twenty seconds.
-constexpr double kMostWork = 4e7;
-/// Share of the budget for attempts with labels led around handles, in addition.
-constexpr double kShareOfHandles = 0.5;
+/// Budget for all attempts together, about thirty seconds.
+constexpr double kMostWork = 6e7;
 /// Minimum budget in solver steps, for large meshes.
 constexpr double kStepsOfAll = 300;
 
@@ -40,12 +36,14 @@ std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std
 }
 
 std::string faultsOf(const LabelReport& report) {
-  return countedFaults({{"too few corners around charts", report.badLoops},
-                        {"corners of too many charts, or without room", report.badCorners},
-                        {"edges between opposite labels", report.oppositeEdges},
-                        {"points where borders turn back", report.turningPoints},
-                        {"charts whose right angles do not add up", report.wrongTurns},
-                        {"charts without room between two of their edges", report.flatCharts}});
+  return countedFaults(
+      {{"too few corners around charts", report.badLoops},
+       {"corners of too many charts, without room, or where labels wind otherwise than normals",
+        report.badCorners},
+       {"edges between opposite labels", report.oppositeEdges},
+       {"points where borders turn back", report.turningPoints},
+       {"charts whose right angles do not add up", report.wrongTurns},
+       {"charts without room between two of their edges", report.flatCharts}});
 }
 
 /// The centroid of the place of an error.
@@ -60,91 +58,74 @@ Vec3 pointAt(const TetMesh& mesh, const Place& place) {
   return centreOf(points);
 }
 
-/// The mean of 1 minus the cosine between normals and labels.
-double deviationOf(const Surface& surface, const Labels& labels) {
-  double sum = 0;
-  for (Index t = 0; t < labels.size(); ++t) {
-    sum += surface.areas[t] * (1 - cosine(surface.normals[t], labels[t]));
-  }
-  return sum / surface.area;
-}
-
 /// Tries labels until some have a map.
 class PolycubeSearch {
  public:
-  PolycubeSearch(const PositiveTets& tets, const Surface& surface, std::uint64_t seed,
-                 ShapeReport& report, Context& context)
-      : tets_(tets), surface_(surface), seed_(seed), report_(report), context_(context) {}
+  PolycubeSearch(const PositiveTets& tets, const Surface& surface, ShapeReport& report,
+                 Context& context)
+      : tets_(tets), surface_(surface), costs_(surface), report_(report), context_(context) {}
 
-  /// @param surface  with the normals that labels are to follow
-  /// @param[in,out] costs  avoids corners where no map was found
-  std::optional<TetMap> run(const Surface& surface, LabelCosts& costs, double workLeft) {
-    // Labels without a map mostly fail at one or two corners, close to where tets stay flipped.
+  TetMap run(std::uint64_t seed, double workLeft) {
+    std::optional<CheckedLabels> invalid;  // the best of them
     for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
-      const CheckedLabels found = label(surface, costs, attempt, workLeft);
-      const bool isValid = found.verdict.report.isValid();
-      // Invalid labels may have a map, but hardly where valid ones had none.
-      if (problem_ && best_.isValid() && !isValid) continue;
-      report_.labels = found.verdict.report;
-      report_.labels.deviation = deviationOf(surface_, found.labels);
-      report_.labelMoves = found.moves;
-      try {
-        return quantization::mapFromLabels(tets_.mesh(),
-                                           flagsOf(surface, found.labels, tets_.mesh().tets.size()),
-                                           workLeft, context_);
-      } catch (const Error& error) {
-        if (error.code() != ErrorCode::InvalidArgument && error.code() != ErrorCode::FlippedTet) {
-          throw;
-        }
-        costs.avoidCornersAt(pointAt(tets_.mesh(), error.place()));
-        if (problem_ && (best_.isValid() || !isValid)) continue;
-        problem_ = error;
-        best_ = found.verdict.report;
+      CheckedLabels found = label(seed + attempt, workLeft);
+      if (found.verdict.report.isValid()) {
+        if (std::optional<TetMap> map = mapOf(found, workLeft)) return std::move(*map);
+      } else if (!invalid || found.verdict.energy < invalid->verdict.energy) {
+        invalid = std::move(found);
       }
     }
-    isSpent_ = workLeft <= 0;
-    return std::nullopt;
-  }
-
-  [[noreturn]] void fail() const {
-    const std::string labels = best_.isValid()
-                                   ? "labels were found, but no map of them"
-                                   : "the best labels that were found have " + faultsOf(best_);
-    throw Error(ErrorCode::NotMeshable,
-                "No polycube of the shape was found: " + labels + ". " + problem_->what() +
-                    (isSpent_ ? " The search ended at the bound of its work." : "") +
-                    " Another seed may find other labels; a finer tet mesh leaves more room.",
-                tets_.givenPlace(problem_->place()));
+    // Invalid labels hardly ever have a map, and none where valid ones do not.
+    if (!problem_) {
+      if (std::optional<TetMap> map = mapOf(*invalid, workLeft)) return std::move(*map);
+    }
+    fail(workLeft <= 0);
   }
 
  private:
-  CheckedLabels label(const Surface& surface, const LabelCosts& costs, std::uint64_t attempt,
-                      double& workLeft) {
+  CheckedLabels label(std::uint64_t seed, double& workLeft) {
     Stage stage(context_, "labelling");
-    return labelsOf(surface, costs, seed_ + attempt, workLeft, stage);
+    return labelsOf(surface_, costs_, seed, workLeft, stage);
+  }
+
+  std::optional<TetMap> mapOf(const CheckedLabels& found, double& workLeft) {
+    report_.labels = found.verdict.report;
+    report_.labelMoves = found.moves;
+    try {
+      return quantization::mapFromLabels(tets_.mesh(),
+                                         flagsOf(surface_, found.labels, tets_.mesh().tets.size()),
+                                         workLeft, context_);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::InvalidArgument && error.code() != ErrorCode::FlippedTet) {
+        throw;
+      }
+      // Labels without a map mostly fail at one or two corners, close to where tets stay flipped.
+      costs_.avoidCornersAt(pointAt(tets_.mesh(), error.place()));
+      problem_ = error;
+      return std::nullopt;
+    }
+  }
+
+  [[noreturn]] void fail(bool isSpent) const {
+    const LabelReport& labels = report_.labels;
+    throw Error(
+        ErrorCode::NotMeshable,
+        "No polycube of the shape was found: " +
+            (labels.isValid() ? "labels were found, but no map of them"
+                              : "the best labels that were found have " + faultsOf(labels)) +
+            ". " + problem_->what() +
+            (isSpent ? " The search ended at the bound of its work." : "") +
+            " Another seed may find other labels; a finer tet mesh leaves more room.",
+        tets_.givenPlace(problem_->place()));
   }
 
   const PositiveTets& tets_;
   const Surface& surface_;
-  std::uint64_t seed_;
+  LabelCosts costs_;
   ShapeReport& report_;
   Context& context_;
-  std::optional<Error> problem_;
-  LabelReport best_;  ///< of the labels that have the problem
-  bool isSpent_ = false;
+  std::optional<Error> problem_;  ///< of the last labels without a map
 };
-
-/// Searches once more with labels that wind around handles, if there are any.
-std::optional<TetMap> mapAroundHandles(PolycubeSearch& search, const Surface& surface,
-                                       std::uint64_t seed, double workLeft, Context& context) {
-  const std::vector<HandleLoop> loops = handleLoops(surface, seed, context);
-  if (loops.empty()) return std::nullopt;
-  Surface bent = surface;
-  const Labels required = turnAroundHandles(bent, loops);
-  LabelCosts costs(bent);
-  costs.require(required);
-  return search.run(bent, costs, workLeft);
-}
 
 }  // namespace
 
@@ -157,13 +138,9 @@ TetMap polycubeMap(PositiveTets tets, Surface surface, std::uint64_t seed, doubl
   report.rotation = bestRotation(surface, seed);
   surface.turn(report.rotation);
   tets.turn(report.rotation);
-  LabelCosts costs(surface);
-  PolycubeSearch search(tets, surface, seed, report, context);
-  std::optional<TetMap> map = search.run(surface, costs, workLeft);
-  if (!map) map = mapAroundHandles(search, surface, seed, kShareOfHandles * workLeft, context);
-  if (!map) search.fail();
-  for (Vec3& point : map->points) point = turnedBack(report.rotation, point);
-  return std::move(*map);
+  TetMap map = PolycubeSearch(tets, surface, report, context).run(seed, workLeft);
+  for (Vec3& point : map.points) point = turnedBack(report.rotation, point);
+  return map;
 }
 
 }  // namespace hexhex::shape

@@ -12,7 +12,7 @@
 namespace hexhex::shape {
 
 /// Maximum number of labellings to try, each with its own seed.
-inline constexpr std::uint64_t kMostAttempts = 6;
+inline constexpr std::uint64_t kMostAttempts = 8;
 
 /// The budget for a part with this many tets, as in quantization::mapFromLabels().
 [[nodiscard]] double workFor(std::size_t tets);

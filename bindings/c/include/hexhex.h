@@ -1292,7 +1292,9 @@ typedef struct hexhex_shape_report {
   uint64_t charts;    /**< faces of the polycube; this and the next eight are for polycubes only */
   uint64_t corners;   /**< where at least three charts meet */
   uint64_t bad_loops; /**< invalid: chart borders with fewer than four corners */
-  uint64_t bad_corners;    /**< invalid: of more than three charts, or without room for faces */
+  /** invalid: corners of more than three charts or without room for their faces, and points around
+   * which labels wind otherwise than normals */
+  uint64_t bad_corners;
   uint64_t opposite_edges; /**< invalid: mesh edges between opposite labels */
   uint64_t turning_points; /**< invalid: where edges of the polycube would reverse direction */
   uint64_t wrong_turns;    /**< invalid: charts whose right angles do not add up */

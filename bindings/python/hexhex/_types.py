@@ -360,7 +360,7 @@ class ShapeReport:
     charts: int  #: faces of the polycube; this and the next nine are for polycubes only
     corners: int  #: where at least three charts meet
     bad_loops: int  #: chart borders with fewer than four corners
-    bad_corners: int  #: corners of more than three charts, or without room for their faces
+    bad_corners: int  #: of more than three charts, without room, or where labels wind otherwise than normals
     opposite_edges: int  #: mesh edges between opposite labels
     turning_points: int  #: where edges of the polycube would reverse direction
     wrong_turns: int  #: charts whose right angles do not add up

@@ -81,10 +81,11 @@ std::string counted(Count count, const std::string& noun) {
     const std::vector<std::size_t> flat = untangle::flatElements(problem.solved());
     if (!flat.empty()) {
       first = flat.front();
-      what += " " + std::to_string(flat.size()) +
-              " are flat wherever they go, as labels bind their vertices to one plane or line: the "
-              "first is " +
-              problem.nameOf(first) + ".";
+      what.append(" ").append(std::to_string(flat.size()));
+      what +=
+          " are flat wherever they go, as labels bind their vertices to one plane or line: the "
+          "first is " +
+          problem.nameOf(first) + ".";
     }
   }
   throw Error(ErrorCode::FlippedTet,
