@@ -70,10 +70,9 @@ class PointMover {
     double share = kind.power > 2 ? 1 : kOverrelaxation;
     for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
       const Step step = stepBy(point, direction, share);
-      const double energy = energyAt(terms, kind, step.moved);
-      if (!(energy <= slope.energy + kDecrease * share * promised)) continue;
       take(point, step.place);
-      if (isAccepted()) return step.length;
+      const double enough = slope.energy + kDecrease * share * promised;
+      if (isAccepted() && energyAt(terms, kind, step.moved) <= enough) return step.length;
       take(point, old);
     }
     return 0;
