@@ -9,7 +9,6 @@
 #include <improve/closing.hpp>
 #include <improve/moving.hpp>
 #include <improve/sweeps.hpp>
-#include <improve/untangling.hpp>
 
 namespace hexhex::improvement {
 

@@ -10,7 +10,6 @@
 #include <improve/all_at_once.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/sweeps.hpp>
-#include <improve/untangling.hpp>
 
 namespace hexhex::improvement {
 
@@ -95,6 +94,13 @@ constexpr std::size_t kSweepsGrain = 1024;
 /// curved, and tens of microseconds if they are straight.
 constexpr std::size_t kMeasureGrain = 128;
 constexpr std::size_t kVertexGrain = 16;
+
+/// Untangling: rounds without progress before another ring of vertices takes part, and maximum
+/// number of rings. The slack starts at a fraction of what is allowed, and grows by a factor.
+constexpr int kPatience = 10;
+constexpr int kMostRings = 4;
+constexpr double kFirstSlack = 0.1;
+constexpr double kSlackGrowth = 2.16;
 
 /// Powers of the energy for the worst cells: low ones make fast progress while many cells are bad,
 /// the high one improves the last. Rounds per power at most: with ten, vertices come to rest at low
@@ -234,21 +240,40 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
   }
 }
 
+std::vector<Index> Sweeps::untangleCells(Neighbourhoods& near, double slack,
+                                         std::vector<Index> bad) {
+  std::size_t fewest = bad.size();
+  int since = 0;
+  for (int rings = 0; rings <= kMostRings && !bad.empty();) {
+    std::vector<Index> cells = bad;
+    std::vector<Index> vertices = near.pointsOf(rings, cells);
+    std::erase_if(vertices, [&](Index v) { return places_.freedom[v] == Freedom::Fixed; });
+    sweep(vertices, slack, [](VertexMover& mover, Index v) { mover.untangle(v); });
+    measure(cells.size(), [&](std::size_t c) { return cells[c]; });
+    bad = movable(std::move(cells), kIsBad);
+    ++since;
+    if (bad.size() < fewest) {
+      fewest = bad.size();
+      since = 0;
+    } else if (since > kPatience) {
+      since = 0;
+      ++rings;
+    }
+  }
+  return bad;
+}
+
 void Sweeps::untangle(double slack) {
   std::vector<Index> bad = movableCells(kIsBad);
   if (bad.empty()) return;
   const Array<Vec3> points = mesh_.points;
   const Array<Index> simplices = places_.simplex;
-  const UntanglingMoves moves = {
-      [&](std::span<const Index> vertices, double used) {
-        sweep(vertices, used, [](VertexMover& mover, Index v) { mover.untangle(v); });
-      },
-      [&](std::span<const Index> cells) {
-        measure(cells.size(), [&](std::size_t c) { return cells[c]; });
-        return movable(std::vector<Index>(cells.begin(), cells.end()), kIsBad);
-      }};
   Neighbourhoods near(cellPoints());
-  bad = untangleCells(near, places_, moves, slack, std::move(bad));
+  bad = untangleCells(near, 0, std::move(bad));
+  for (double used = kFirstSlack * slack; slack > 0 && used < 1.01 * slack && !bad.empty();
+       used *= kSlackGrowth) {
+    bad = untangleCells(near, used, std::move(bad));
+  }
   if (bad.empty()) return;
   putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
   measureAll();

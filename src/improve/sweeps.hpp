@@ -17,6 +17,7 @@
 
 #include <base/stage.hpp>
 #include <improve/improved_cells.hpp>
+#include <improve/neighbourhoods.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
@@ -170,6 +171,9 @@ class Sweeps {
   [[nodiscard]] std::vector<Index> movableCells(const Wanted& isWanted) const;
   template <class Wanted>
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> list, const Wanted& isWanted) const;
+  /// Moves vertices around uncertified cells, and more rings of them if that does not help.
+  /// @return cells that are still not certified
+  std::vector<Index> untangleCells(Neighbourhoods& near, double slack, std::vector<Index> bad);
   /// Improves cells below exchange.floor, which is the target.
   void raise(const Exchange& exchange, double slack);
   template <class Move>

@@ -1,43 +1,9 @@
 #include <algorithm>
 
 #include <base/disjoint_sets.hpp>
-#include <improve/untangling.hpp>
+#include <improve/neighbourhoods.hpp>
 
 namespace hexhex::improvement {
-
-namespace {
-
-/// Rounds without progress before another ring of points takes part, and maximum number of rings.
-constexpr int kPatience = 10;
-constexpr int kMostRings = 4;
-/// The slack starts at this fraction of what is allowed, and grows by this factor.
-constexpr double kFirstSlack = 0.1;
-constexpr double kSlackGrowth = 2.16;
-
-std::vector<Index> untangleWithin(Neighbourhoods& near, const VertexPlaces& places,
-                                  const UntanglingMoves& moves, double slack,
-                                  std::vector<Index> bad) {
-  std::size_t fewest = bad.size();
-  int since = 0;
-  for (int rings = 0; rings <= kMostRings && !bad.empty();) {
-    std::vector<Index> cells = bad;
-    std::vector<Index> points = near.pointsOf(rings, cells);
-    std::erase_if(points, [&](Index v) { return places.freedom[v] == Freedom::Fixed; });
-    moves.sweep(points, slack);
-    bad = moves.badAmong(cells);
-    ++since;
-    if (bad.size() < fewest) {
-      fewest = bad.size();
-      since = 0;
-    } else if (since > kPatience) {
-      since = 0;
-      ++rings;
-    }
-  }
-  return bad;
-}
-
-}  // namespace
 
 std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells) {
   for (const Index cell : cells) isCell_[cell] = 1;
@@ -61,17 +27,6 @@ std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells
   for (const Index cell : cells) isCell_[cell] = 0;
   for (const Index v : points) isPoint_[v] = 0;
   return points;
-}
-
-std::vector<Index> untangleCells(Neighbourhoods& near, const VertexPlaces& places,
-                                 const UntanglingMoves& moves, double slack,
-                                 std::vector<Index> bad) {
-  bad = untangleWithin(near, places, moves, 0, std::move(bad));
-  for (double used = kFirstSlack * slack; slack > 0 && used < 1.01 * slack && !bad.empty();
-       used *= kSlackGrowth) {
-    bad = untangleWithin(near, places, moves, used, std::move(bad));
-  }
-  return bad;
 }
 
 void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<Vec3>& before,

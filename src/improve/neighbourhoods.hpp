@@ -1,8 +1,8 @@
-// Makes cells positive: moves points around uncertified cells until there are none.
+// Sets of cells that are connected: rings of cells around some, and all that moved together.
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <span>
 #include <vector>
 
 #include <hexhex/types.hpp>
@@ -11,14 +11,6 @@
 #include <improve/vertex_places.hpp>
 
 namespace hexhex::improvement {
-
-/// The operations that differ between straight and curved cells.
-struct UntanglingMoves {
-  /// Moves each point once; untagged ones may leave the surface by up to `slack`.
-  std::function<void(std::span<const Index> points, double slack)> sweep;
-  /// The cells of a list that are not certified.
-  std::function<std::vector<Index>(std::span<const Index> cells)> badAmong;
-};
 
 /// Finds rings of cells and their points.
 class Neighbourhoods {
@@ -36,13 +28,6 @@ class Neighbourhoods {
   std::vector<std::uint8_t> isPoint_;  ///< found so far; 0 between calls
   std::vector<std::uint8_t> isCell_;
 };
-
-/// @param bad    cells that are not certified
-/// @param slack  maximum distance by which untagged points may leave the surface, as a last resort
-/// @return cells that are still not certified
-[[nodiscard]] std::vector<Index> untangleCells(Neighbourhoods& near, const VertexPlaces& places,
-                                               const UntanglingMoves& moves, double slack,
-                                               std::vector<Index> bad);
 
 /// Restores all points that moved together with those of some cells: a connected set of moved
 /// points is restored as a whole.
