@@ -29,10 +29,10 @@ std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells
   return points;
 }
 
-void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<Vec3>& before,
-             const Array<Index>& placesBefore, Array<Vec3>& points, VertexPlaces& places) {
+void putBack(const CellPoints& mesh, std::span<const Index> cells, const Positions& before,
+             Array<Vec3>& points, VertexPlaces& places) {
   DisjointSets sets(points.size());
-  const auto isMoved = [&](Index v) { return points[v] != before[v]; };
+  const auto isMoved = [&](Index v) { return points[v] != before.points[v]; };
   for (std::size_t c = 0; c < mesh.cellCount(); ++c) {
     Index first = kNone;
     for (const Index v : mesh.of(c)) {
@@ -50,8 +50,8 @@ void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<V
   std::sort(back.begin(), back.end());
   for (Index v = 0; v < points.size(); ++v) {
     if (!isMoved(v) || !std::binary_search(back.begin(), back.end(), sets.find(v))) continue;
-    points[v] = before[v];
-    places.simplex[v] = placesBefore[v];
+    points[v] = before.points[v];
+    places.simplex[v] = before.simplices[v];
   }
 }
 

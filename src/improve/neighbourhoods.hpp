@@ -29,10 +29,15 @@ class Neighbourhoods {
   std::vector<std::uint8_t> isCell_;
 };
 
+/// The positions of all points, and where on the surface they are.
+struct Positions {
+  Array<Vec3> points;
+  Array<Index> simplices;  ///< VertexPlaces::simplex
+};
+
 /// Restores all points that moved together with those of some cells: a connected set of moved
 /// points is restored as a whole.
-/// @param before, placesBefore  of all points
-void putBack(const CellPoints& mesh, std::span<const Index> cells, const Array<Vec3>& before,
-             const Array<Index>& placesBefore, Array<Vec3>& points, VertexPlaces& places);
+void putBack(const CellPoints& mesh, std::span<const Index> cells, const Positions& before,
+             Array<Vec3>& points, VertexPlaces& places);
 
 }  // namespace hexhex::improvement

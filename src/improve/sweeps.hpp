@@ -114,8 +114,9 @@ class Sweeps {
   /// around.
   [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const;
 
+  [[nodiscard]] Positions positions() const { return {mesh_.points, places_.simplex}; }
   /// Restores all vertices.
-  void putBackAll(const Array<Vec3>& before, const Array<Index>& simplicesBefore);
+  void putBackAll(const Positions& before);
 
   /// Moves vertices around cells whose scaled Jacobian is below the target. Cells that meet the
   /// target still do afterwards.
@@ -134,9 +135,7 @@ class Sweeps {
   static constexpr int kReturns = 8;
   /// Moves the vertices of boundary quads back towards earlier points, as far as the bounds of
   /// smooth() allow.
-  /// @param before, simplicesBefore  of all vertices
-  void moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
-                const Array<Index>& simplicesBefore, double floor);
+  void moveBack(std::span<const Quad> quads, const Positions& before, double floor);
 
   /// Moves boundary vertices along the surface towards quads that are far from it, so that these
   /// shrink and others grow; then smooths the vertices inside. Scaled Jacobians stay within the
@@ -178,6 +177,8 @@ class Sweeps {
   void raise(const Exchange& exchange, double slack);
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
+  /// Moves the vertices inside once, for ideal boxes of their present lengths.
+  void smoothInside(double floor);
 
   HexMesh& mesh_;
   VertexPlaces& places_;
