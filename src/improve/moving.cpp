@@ -101,6 +101,10 @@ double farthestAllowed(const SurfaceDistance& before) {
   return kSame * std::max(before.hausdorff(), kSurfaceTolerance);
 }
 
+bool isOtherShape(const BoundaryDistance& distance) {
+  return distance.largest.hausdorff() > kOtherShape;
+}
+
 double meritOf(const ImproveReport& report) {
   constexpr double kGood = 0.3;        // no credit for a higher minimum
   constexpr double kNear = 5e-3;       // distance in diagonals that halves the merit
@@ -122,8 +126,7 @@ namespace {
 class Moving {
  public:
   Moving(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
-         const ImproveOptions& options, const Array<Vec3>& before, ImproveReport& report,
-         Stage& stage)
+         const ImproveOptions& options, Positions& before, ImproveReport& report, Stage& stage)
       : subject_(subject),
         boundary_(boundary),
         places_(places),
@@ -131,7 +134,7 @@ class Moving {
         report_(report),
         stage_(stage),
         curved_(subject.curved),
-        before_{before, places.simplex},
+        before_(before),
         limit_(farthestAllowed(report.distanceBefore)),
         slack_(options.slack * report.diagonal) {}
 
@@ -235,7 +238,7 @@ class Moving {
   /// Shrinks quads that are far from the surface, as long as the mesh gets nearer. Preserves the
   /// least scaled Jacobian, and nearly all of the mean.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
-    if (best.largest.hausdorff() <= kOtherShape) return best;
+    if (!isOtherShape(best)) return best;
     Positions nearest = sweeps.positions();
     BoundaryDistance now = best;
     const auto sum = [&] {
@@ -276,7 +279,6 @@ class Moving {
   }
 
   BoundaryDistance close(Sweeps& sweeps, BoundaryDistance best) const {
-    if (best.largest.hausdorff() <= kOtherShape) return best;
     const std::vector<std::uint8_t> isHeld = heldOnSurface();
     Positions nearest = sweeps.positions();
     double limit = kOtherShape;
@@ -347,16 +349,16 @@ class Moving {
   ImproveReport& report_;
   Stage& stage_;
   const LagrangeMesh* curved_;
-  Positions before_;  ///< of the initial points
-  double limit_;      ///< of distances, in diagonals
+  Positions& before_;
+  double limit_;  ///< of distances, in diagonals
   double slack_;
 };
 
 }  // namespace
 
 BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
-                            const ImproveOptions& options, const Array<Vec3>& before,
-                            ImproveReport& report, Context& context, Stage& stage) {
+                            const ImproveOptions& options, Positions& before, ImproveReport& report,
+                            Context& context, Stage& stage) {
   Moving moving(subject, boundary, places, options, before, report, stage);
   BoundaryDistance after = moving.run();
   report.after = subject.certifyNow(context);
@@ -371,13 +373,13 @@ std::optional<BoundaryDistance> closeGaps(const Subject& subject, const Boundary
                                           VertexPlaces& places, const BoundaryDistance& distance,
                                           const ImproveOptions& options, ImproveReport& report,
                                           Context& context, Stage& stage) {
-  const Array<Vec3> points = subject.mesh.points;
-  Moving moving(subject, boundary, places, options, points, report, stage);
+  Positions before{subject.mesh.points, places.simplex};
+  Moving moving(subject, boundary, places, options, before, report, stage);
   BoundaryDistance after = moving.close(distance);
   if (after.largest.hausdorff() >= distance.largest.hausdorff()) return std::nullopt;
   Certificate was = std::exchange(report.after, subject.certifyNow(context));
   if (notPositive(report.after) <= notPositive(was)) return after;
-  subject.putBack(points);
+  subject.putBack(before.points);
   report.after = std::move(was);
   return std::nullopt;
 }
