@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include <adjacency/cell_faces.hpp>
+
 #include <hexhex/types.hpp>
 
 #include <base/parallel.hpp>
@@ -79,6 +81,17 @@ class VertexLists {
       add(b, a);
     }
   });
+}
+
+/// The same for the edges of quads.
+[[nodiscard]] inline VertexLists<Index> verticesBeside(std::span<const Quad> quads,
+                                                       std::size_t vertexCount, Stage& stage) {
+  std::vector<std::array<Index, 2>> edges;
+  edges.reserve(4 * quads.size());
+  for (const Quad& quad : quads) {
+    for (std::size_t i = 0; i < 4; ++i) edges.push_back(ascending(quad[i], quad[(i + 1) % 4]));
+  }
+  return verticesBeside(std::move(edges), vertexCount, stage);
 }
 
 }  // namespace hexhex::adjacency

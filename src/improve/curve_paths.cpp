@@ -95,12 +95,10 @@ class PathFinder {
  public:
   PathFinder(const Array<Vec3>& points, std::span<const Quad> quads,
              const ReferenceSurface& surface, Stage& stage)
-      : points_(points), surface_(surface), owner_(points.size(), kNone) {
-    std::vector<std::array<Index, 2>> edges;
-    for (const Quad& quad : quads) {
-      for (std::size_t i = 0; i < 4; ++i) edges.push_back(ascending(quad[i], quad[(i + 1) % 4]));
-    }
-    beside_ = adjacency::verticesBeside(std::move(edges), points.size(), stage);
+      : points_(points),
+        surface_(surface),
+        beside_(adjacency::verticesBeside(quads, points.size(), stage)),
+        owner_(points.size(), kNone) {
     double sum = 0;
     std::size_t count = 0;
     for (Index v = 0; v < points.size(); ++v) {

@@ -48,19 +48,6 @@ ReferenceSurface surfaceOf(const TriangleMesh& given, double angle, Stage& stage
   return {std::move(parts), stage};
 }
 
-/// Per vertex: its neighbours along boundary edges.
-adjacency::VertexLists<Index> besideOnBoundary(std::size_t points, std::span<const Quad> quads,
-                                               Stage& stage) {
-  std::vector<std::array<Index, 2>> edges;
-  edges.reserve(4 * quads.size());
-  for (const Quad& quad : quads) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      edges.push_back(adjacency::ascending(quad[i], quad[(i + 1) % 4]));
-    }
-  }
-  return adjacency::verticesBeside(std::move(edges), points, stage);
-}
-
 /// Per vertex: the mean length of its edges on the boundary, or 0 inside.
 std::vector<double> edgeLengths(const Array<Vec3>& points,
                                 const adjacency::VertexLists<Index>& beside) {
@@ -202,7 +189,7 @@ VertexPlaces placesOnSurface(const HexMesh& mesh, const TriangleMesh& surface,
   VertexPlaces places = placesOnMesh(mesh, isAtBad, angle, stage);
   const Array<Quad> quads = adjacency::quadsAt(mesh, adjacency::boundaryPlaces(mesh, stage));
   Belonging belonging(mesh, places, surfaceOf(surface, angle, stage),
-                      besideOnBoundary(mesh.points.size(), quads, stage));
+                      adjacency::verticesBeside(quads, mesh.points.size(), stage));
   places.surface = belonging.find(stage);
   places.tagged = 0;  // those on tagged faces inside, unlike corners, have no simplex
   for (std::size_t v = 0; v < places.freedom.size(); ++v) {

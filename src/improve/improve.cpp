@@ -225,6 +225,7 @@ void closeIfBetter(const Moved& moved, const ImproveOptions& options,
                    const ReferenceSurface& object, const Array<Vec3>& before, ImproveReport& report,
                    Context& context, Stage& stage) {
   const auto& [subject, boundary, places, distance] = moved;
+  if (!isOtherShape(distance)) return;
   const Array<Vec3> points = subject.mesh.points;
   ImproveReport other = report;
   const std::optional<BoundaryDistance> closed =
@@ -244,10 +245,11 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
   HexMesh& mesh = subject.mesh;
   const Boundary boundary(mesh, treeOf(places.surface), stage);
   reportBefore(subject, boundary, places, report, stage);
-  const Array<Vec3> points = mesh.points;
+  Positions initial{mesh.points, places.simplex};
+  const Array<Vec3>& points = initial.points;
   try {
     const BoundaryDistance distance =
-        movePoints(subject, boundary, places, options, points, report, context, stage);
+        movePoints(subject, boundary, places, options, initial, report, context, stage);
     const ImproveReport moved = report;
     const Moved plain(subject, boundary, places, distance);
     reportAfter(plain, places.surface, points, report, stage);

@@ -9,7 +9,6 @@
 #include <improve/closing.hpp>
 #include <improve/moving.hpp>
 #include <improve/sweeps.hpp>
-#include <improve/untangling.hpp>
 
 namespace hexhex::improvement {
 
@@ -102,6 +101,10 @@ double farthestAllowed(const SurfaceDistance& before) {
   return kSame * std::max(before.hausdorff(), kSurfaceTolerance);
 }
 
+bool isOtherShape(const BoundaryDistance& distance) {
+  return distance.largest.hausdorff() > kOtherShape;
+}
+
 double meritOf(const ImproveReport& report) {
   constexpr double kGood = 0.3;        // no credit for a higher minimum
   constexpr double kNear = 5e-3;       // distance in diagonals that halves the merit
@@ -123,17 +126,15 @@ namespace {
 class Moving {
  public:
   Moving(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
-         const ImproveOptions& options, const Array<Vec3>& before, ImproveReport& report,
-         Stage& stage)
+         const ImproveOptions& options, Positions& before, ImproveReport& report, Stage& stage)
       : subject_(subject),
         boundary_(boundary),
         places_(places),
         options_(options),
-        before_(before),
         report_(report),
         stage_(stage),
         curved_(subject.curved),
-        simplices_(places.simplex),
+        before_(before),
         limit_(farthestAllowed(report.distanceBefore)),
         slack_(options.slack * report.diagonal) {}
 
@@ -167,7 +168,7 @@ class Moving {
     BoundaryDistance after = distance();
     for (const double kept : {floor, lowest}) {
       for (int i = 0; i < Sweeps::kReturns && after.largest.hausdorff() > limit_; ++i) {
-        sweeps.moveBack(quadsBeyond(after.ofQuads), before_, simplices_, kept);
+        sweeps.moveBack(quadsBeyond(after.ofQuads), before_, kept);
         after = distance();
       }
     }
@@ -184,7 +185,7 @@ class Moving {
 
   /// Restores all points that moved together with those of some cells.
   void putBackAt(std::span<const Index> cells) {
-    putBack(newSweeps().cellPoints(), cells, before_, simplices_, subject_.mesh.points, places_);
+    putBack(newSweeps().cellPoints(), cells, before_, subject_.mesh.points, places_);
   }
 
  private:
@@ -218,7 +219,8 @@ class Moving {
   void noteLoose(std::span<const Index> vertices) {
     report_.offCreases += vertices.size();
     for (const Index v : vertices) {
-      simplices_[v] = places_.surface.acrossCreases(before_[v], places_.simplex[v]).simplex;
+      before_.simplices[v] =
+          places_.surface.acrossCreases(before_.points[v], places_.simplex[v]).simplex;
     }
   }
 
@@ -236,9 +238,8 @@ class Moving {
   /// Shrinks quads that are far from the surface, as long as the mesh gets nearer. Preserves the
   /// least scaled Jacobian, and nearly all of the mean.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
-    if (best.largest.hausdorff() <= kOtherShape) return best;
-    Array<Vec3> points = subject_.mesh.points;
-    Array<Index> simplices = places_.simplex;
+    if (!isOtherShape(best)) return best;
+    Positions nearest = sweeps.positions();
     BoundaryDistance now = best;
     const auto sum = [&] {
       const Array<double>& all = sweeps.qualities();
@@ -255,10 +256,9 @@ class Moving {
       if (now.largest.hausdorff() > kNearer * best.largest.hausdorff() || sum() < enough) continue;
       stalls = 0;
       best = now;
-      points = subject_.mesh.points;
-      simplices = places_.simplex;
+      nearest = sweeps.positions();
     }
-    sweeps.putBackAll(points, simplices);
+    sweeps.putBackAll(nearest);
     return best;
   }
 
@@ -279,10 +279,8 @@ class Moving {
   }
 
   BoundaryDistance close(Sweeps& sweeps, BoundaryDistance best) const {
-    if (best.largest.hausdorff() <= kOtherShape) return best;
     const std::vector<std::uint8_t> isHeld = heldOnSurface();
-    Array<Vec3> points = subject_.mesh.points;
-    Array<Index> simplices = places_.simplex;
+    Positions nearest = sweeps.positions();
     double limit = kOtherShape;
     for (int i = 0, stalls = -1; i < kMostClosings && stalls < kClosingStalls; ++i) {
       const BoundaryDistance now =
@@ -291,15 +289,14 @@ class Moving {
       if (now.largest.hausdorff() < kNearer * best.largest.hausdorff()) {
         stalls = 0;
         best = now;
-        points = subject_.mesh.points;
-        simplices = places_.simplex;
+        nearest = sweeps.positions();
       }
       if (now.largest.hausdorff() <= kCloseEnough) break;
       limit = std::max(kClosed, best.largest.hausdorff() / 2);
       sweeps.shift(closingMoves(now.gaps, boundary_.quads, isHeld, limit * report_.diagonal),
                    options_.target);
     }
-    sweeps.putBackAll(points, simplices);
+    sweeps.putBackAll(nearest);
     return best;
   }
 
@@ -312,12 +309,11 @@ class Moving {
     const double target = options_.target;
     const Sweeps::Standing standing = sweeps.standing(target);
     const Array<double> qualities = sweeps.qualities();
-    const Array<Vec3> points = subject_.mesh.points;
     std::vector<Index> low = sweeps.verticesBelow(target, 0);
     std::erase_if(low,
                   [&](Index v) { return !std::binary_search(wereBad.begin(), wereBad.end(), v); });
-    LooseVertices loose(places_, low, points);
-    const Array<Index> simplices = places_.simplex;
+    LooseVertices loose(places_, low, subject_.mesh.points);
+    const Positions before = sweeps.positions();
     sweeps.moveAtOnce(target, slack_, false, [&] { return quadsBeyond(distance().ofQuads); });
     oneByOne(sweeps);
     if (!wereBad.empty()) sweeps.raiseWorst(target, slack_);
@@ -325,7 +321,7 @@ class Moving {
     const bool isMended = now.bad == 0 && standing.bad > 0;
     const bool isBetter =
         isMended || (now < standing && sweeps.fallenSince(qualities, target).empty());
-    if (!isBetter) sweeps.putBackAll(points, simplices);
+    if (!isBetter) sweeps.putBackAll(before);
     noteLoose(loose.holdUnmoved(subject_.mesh.points));
   }
 
@@ -350,20 +346,19 @@ class Moving {
   const Boundary& boundary_;
   VertexPlaces& places_;
   const ImproveOptions& options_;
-  const Array<Vec3>& before_;
   ImproveReport& report_;
   Stage& stage_;
   const LagrangeMesh* curved_;
-  Array<Index> simplices_;  ///< those of the initial points
-  double limit_;            ///< of distances, in diagonals
+  Positions& before_;
+  double limit_;  ///< of distances, in diagonals
   double slack_;
 };
 
 }  // namespace
 
 BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary, VertexPlaces& places,
-                            const ImproveOptions& options, const Array<Vec3>& before,
-                            ImproveReport& report, Context& context, Stage& stage) {
+                            const ImproveOptions& options, Positions& before, ImproveReport& report,
+                            Context& context, Stage& stage) {
   Moving moving(subject, boundary, places, options, before, report, stage);
   BoundaryDistance after = moving.run();
   report.after = subject.certifyNow(context);
@@ -378,13 +373,13 @@ std::optional<BoundaryDistance> closeGaps(const Subject& subject, const Boundary
                                           VertexPlaces& places, const BoundaryDistance& distance,
                                           const ImproveOptions& options, ImproveReport& report,
                                           Context& context, Stage& stage) {
-  const Array<Vec3> points = subject.mesh.points;
-  Moving moving(subject, boundary, places, options, points, report, stage);
+  Positions before{subject.mesh.points, places.simplex};
+  Moving moving(subject, boundary, places, options, before, report, stage);
   BoundaryDistance after = moving.close(distance);
   if (after.largest.hausdorff() >= distance.largest.hausdorff()) return std::nullopt;
   Certificate was = std::exchange(report.after, subject.certifyNow(context));
   if (notPositive(report.after) <= notPositive(was)) return after;
-  subject.putBack(points);
+  subject.putBack(before.points);
   report.after = std::move(was);
   return std::nullopt;
 }

@@ -10,6 +10,7 @@
 #include <hexhex/improve.hpp>
 
 #include <base/stage.hpp>
+#include <improve/neighbourhoods.hpp>
 #include <improve/surface_distance.hpp>
 #include <improve/vertex_places.hpp>
 
@@ -58,14 +59,17 @@ struct Boundary {
 [[nodiscard]] double meritOf(const ImproveReport& report);
 
 /// Moves points and certifies the result. Restores the points around cells that became worse.
-/// @param before          the initial points
+/// @param[in,out] before  the initial positions; simplices change where vertices left creases
 /// @param[in,out] report  with `before`, `diagonal` and `distanceBefore`; gets `after` and
 ///         `offCreases`
 /// @return the final distance of the boundary from the surface
 [[nodiscard]] BoundaryDistance movePoints(const Subject& subject, const Boundary& boundary,
                                           VertexPlaces& places, const ImproveOptions& options,
-                                          const Array<Vec3>& before, ImproveReport& report,
+                                          Positions& before, ImproveReport& report,
                                           Context& context, Stage& stage);
+
+/// Whether a mesh is so far from the surface that closeGaps() may help.
+[[nodiscard]] bool isOtherShape(const BoundaryDistance& distance);
 
 /// Moves vertices off the surface where a straight mesh would otherwise be a different shape, and
 /// certifies the result.

@@ -64,13 +64,14 @@ bool isWorthLayer(const ImproveReport& pillowed, const ImproveReport& without) {
 void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
                   Context& context, Stage& stage) {
   ImproveReport& report = improved.report;
-  const Array<Vec3> points = improved.mesh.points;
+  Positions initial{improved.mesh.points, improved.places.simplex};
+  const Array<Vec3>& points = initial.points;
   report.addedCells = improved.mesh.cells.size() - without.cells.size();
   report.addedPoints.assign(points.begin() + static_cast<std::ptrdiff_t>(without.points.size()),
                             points.end());
   const Subject subject{improved.mesh};
   Certificate before = std::exchange(report.before, subject.certifyNow(context));
-  improved.distance = movePoints(subject, improved.boundary, improved.places, options, points,
+  improved.distance = movePoints(subject, improved.boundary, improved.places, options, initial,
                                  report, context, stage);
   report.before = std::move(before);
 }

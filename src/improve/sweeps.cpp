@@ -10,7 +10,6 @@
 #include <improve/all_at_once.hpp>
 #include <improve/curved_cells.hpp>
 #include <improve/sweeps.hpp>
-#include <improve/untangling.hpp>
 
 namespace hexhex::improvement {
 
@@ -95,6 +94,13 @@ constexpr std::size_t kSweepsGrain = 1024;
 /// curved, and tens of microseconds if they are straight.
 constexpr std::size_t kMeasureGrain = 128;
 constexpr std::size_t kVertexGrain = 16;
+
+/// Untangling: rounds without progress before another ring of vertices takes part, and maximum
+/// number of rings. The slack starts at a fraction of what is allowed, and grows by a factor.
+constexpr int kPatience = 10;
+constexpr int kMostRings = 4;
+constexpr double kFirstSlack = 0.1;
+constexpr double kSlackGrowth = 2.16;
 
 /// Powers of the energy for the worst cells: low ones make fast progress while many cells are bad,
 /// the high one improves the last. Rounds per power at most: with ten, vertices come to rest at low
@@ -234,23 +240,41 @@ void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& mo
   }
 }
 
+std::vector<Index> Sweeps::untangleCells(Neighbourhoods& near, double slack,
+                                         std::vector<Index> bad) {
+  std::size_t fewest = bad.size();
+  int since = 0;
+  for (int rings = 0; rings <= kMostRings && !bad.empty();) {
+    std::vector<Index> cells = bad;
+    std::vector<Index> vertices = near.pointsOf(rings, cells);
+    std::erase_if(vertices, [&](Index v) { return places_.freedom[v] == Freedom::Fixed; });
+    sweep(vertices, slack, [](VertexMover& mover, Index v) { mover.untangle(v); });
+    measure(cells.size(), [&](std::size_t c) { return cells[c]; });
+    bad = movable(std::move(cells), kIsBad);
+    ++since;
+    if (bad.size() < fewest) {
+      fewest = bad.size();
+      since = 0;
+    } else if (since > kPatience) {
+      since = 0;
+      ++rings;
+    }
+  }
+  return bad;
+}
+
 void Sweeps::untangle(double slack) {
   std::vector<Index> bad = movableCells(kIsBad);
   if (bad.empty()) return;
-  const Array<Vec3> points = mesh_.points;
-  const Array<Index> simplices = places_.simplex;
-  const UntanglingMoves moves = {
-      [&](std::span<const Index> vertices, double used) {
-        sweep(vertices, used, [](VertexMover& mover, Index v) { mover.untangle(v); });
-      },
-      [&](std::span<const Index> cells) {
-        measure(cells.size(), [&](std::size_t c) { return cells[c]; });
-        return movable(std::vector<Index>(cells.begin(), cells.end()), kIsBad);
-      }};
+  const Positions before = positions();
   Neighbourhoods near(cellPoints());
-  bad = untangleCells(near, places_, moves, slack, std::move(bad));
+  bad = untangleCells(near, 0, std::move(bad));
+  for (double used = kFirstSlack * slack; slack > 0 && used < 1.01 * slack && !bad.empty();
+       used *= kSlackGrowth) {
+    bad = untangleCells(near, used, std::move(bad));
+  }
   if (bad.empty()) return;
-  putBack(cellPoints(), bad, points, simplices, mesh_.points, places_);
+  putBack(cellPoints(), bad, before, mesh_.points, places_);
   measureAll();
 }
 
@@ -283,9 +307,9 @@ std::vector<Index> Sweeps::verticesBelow(double target, int rings) const {
   return Neighbourhoods(cellPoints()).pointsOf(rings, cells);
 }
 
-void Sweeps::putBackAll(const Array<Vec3>& before, const Array<Index>& simplicesBefore) {
-  std::copy(before.begin(), before.end(), mesh_.points.begin());
-  places_.simplex = simplicesBefore;
+void Sweeps::putBackAll(const Positions& before) {
+  std::copy(before.points.begin(), before.points.end(), mesh_.points.begin());
+  places_.simplex = before.simplices;
   measureAll();
 }
 
@@ -321,20 +345,18 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
     measureAll();
   }
   double least = deficitOf(cells);
-  Array<Vec3> best = mesh_.points;
-  Array<Index> bestSimplices = places_.simplex;
+  Positions best = positions();
   std::size_t stalls = 0;
   for (std::size_t round = 0; round < rounds && stalls < kStallsAtOnce; ++round) {
-    const Array<Vec3> points = mesh_.points;
-    const Array<Index> simplices = places_.simplex;
+    const Positions before = positions();
     takeBoxes();
     improvement::moveAtOnce(mesh_, places_, {vertices, cells, boxes_}, isFolded && round == 0,
                             isHeld, stage_);
     for (const Quad& quad : farQuads()) {
       for (const Index v : quad) {
         isHeld[v] = 1;
-        mesh_.points[v] = points[v];
-        places_.simplex[v] = simplices[v];
+        mesh_.points[v] = before.points[v];
+        places_.simplex[v] = before.simplices[v];
       }
     }
     measureAll();
@@ -344,10 +366,9 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
     if (now > (1 - kStallAtOnce) * least) ++stalls;
     if (now >= least) continue;
     least = now;
-    best = mesh_.points;
-    bestSimplices = places_.simplex;
+    best = positions();
   }
-  putBackAll(best, bestSimplices);
+  putBackAll(best);
 }
 
 void Sweeps::raiseWorst(double target, double slack) {
@@ -358,13 +379,12 @@ void Sweeps::raiseWorst(double target, double slack) {
     raise({target, false, kPrice}, slack);
     return;
   }
-  const Array<Vec3> points = mesh_.points;
-  const Array<Index> simplices = places_.simplex;
+  const Positions before = positions();
   const Array<double> qualities = qualities_;
   raise({target, true, kPrice}, slack);
   const std::vector<Index> fallen = fallenSince(qualities, target);
   if (fallen.empty()) return;
-  putBack(cellPoints(), fallen, points, simplices, mesh_.points, places_);
+  putBack(cellPoints(), fallen, before, mesh_.points, places_);
   measureAll();
   raise({target, false, kPrice}, slack);
 }
@@ -414,17 +434,16 @@ void Sweeps::smooth(int passes, double floor) {
   }
 }
 
-void Sweeps::moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
-                      const Array<Index>& simplicesBefore, double floor) {
+void Sweeps::moveBack(std::span<const Quad> quads, const Positions& before, double floor) {
   std::vector<Index> vertices;
   for (const Quad& quad : quads) {
     for (const Index v : quad) {
-      if (mesh_.points[v] != before[v]) vertices.push_back(v);
+      if (mesh_.points[v] != before.points[v]) vertices.push_back(v);
     }
   }
   sortUnique(vertices);
   sweep(vertices, 0, [&](VertexMover& mover, Index v) {
-    mover.moveTo(v, {before[v], simplicesBefore[v]}, false, floor);
+    mover.moveTo(v, {before.points[v], before.simplices[v]}, false, floor);
   });
 }
 
@@ -444,6 +463,15 @@ void Sweeps::pullOntoSurface(double floor) {
   }
 }
 
+void Sweeps::smoothInside(double floor) {
+  std::vector<Index> inner;
+  for (Index v = 0; v < mesh_.points.size(); ++v) {
+    if (places_.freedom[v] == Freedom::Free && !meshAround_(v).empty()) inner.push_back(v);
+  }
+  takeBoxes();
+  sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+}
+
 void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors, double even,
                     double floor) {
   std::vector<Vec3> sums(mesh_.points.size());
@@ -458,32 +486,26 @@ void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors,
     }
   }
   std::vector<Index> outer;
-  std::vector<Index> inner;
   for (Index v = 0; v < mesh_.points.size(); ++v) {
     if (weights[v] > 0 && places_.freedom[v] != Freedom::Fixed) outer.push_back(v);
-    if (places_.freedom[v] == Freedom::Free && !meshAround_(v).empty()) inner.push_back(v);
   }
   sweep(outer, 0, [&](VertexMover& mover, Index v) {
     mover.moveTo(v, places_.nearest(v, times(1 / weights[v], sums[v])), false, floor,
                  mover.farthestAt(v));
   });
-  takeBoxes();
-  sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+  smoothInside(floor);
 }
 
 void Sweeps::shift(const Array<Vec3>& moves, double floor) {
   std::vector<Index> outer;
-  std::vector<Index> inner;
   for (Index v = 0; v < mesh_.points.size(); ++v) {
     if (moves[v] != Vec3{}) outer.push_back(v);
-    if (places_.freedom[v] == Freedom::Free && !meshAround_(v).empty()) inner.push_back(v);
   }
   sweep(outer, 0, [&](VertexMover& mover, Index v) {
     const Vec3 to = plus(mesh_.points[v], moves[v]);
     mover.moveTo(v, {to, places_.nearest(v, to).simplex}, true, floor);
   });
-  takeBoxes();
-  sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+  smoothInside(floor);
 }
 
 }  // namespace hexhex::improvement

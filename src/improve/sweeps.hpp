@@ -17,6 +17,7 @@
 
 #include <base/stage.hpp>
 #include <improve/improved_cells.hpp>
+#include <improve/neighbourhoods.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
@@ -113,8 +114,9 @@ class Sweeps {
   /// around.
   [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const;
 
+  [[nodiscard]] Positions positions() const { return {mesh_.points, places_.simplex}; }
   /// Restores all vertices.
-  void putBackAll(const Array<Vec3>& before, const Array<Index>& simplicesBefore);
+  void putBackAll(const Positions& before);
 
   /// Moves vertices around cells whose scaled Jacobian is below the target. Cells that meet the
   /// target still do afterwards.
@@ -133,9 +135,7 @@ class Sweeps {
   static constexpr int kReturns = 8;
   /// Moves the vertices of boundary quads back towards earlier points, as far as the bounds of
   /// smooth() allow.
-  /// @param before, simplicesBefore  of all vertices
-  void moveBack(std::span<const Quad> quads, const Array<Vec3>& before,
-                const Array<Index>& simplicesBefore, double floor);
+  void moveBack(std::span<const Quad> quads, const Positions& before, double floor);
 
   /// Moves boundary vertices along the surface towards quads that are far from it, so that these
   /// shrink and others grow; then smooths the vertices inside. Scaled Jacobians stay within the
@@ -170,10 +170,15 @@ class Sweeps {
   [[nodiscard]] std::vector<Index> movableCells(const Wanted& isWanted) const;
   template <class Wanted>
   [[nodiscard]] std::vector<Index> movable(std::vector<Index> list, const Wanted& isWanted) const;
+  /// Moves vertices around uncertified cells, and more rings of them if that does not help.
+  /// @return cells that are still not certified
+  std::vector<Index> untangleCells(Neighbourhoods& near, double slack, std::vector<Index> bad);
   /// Improves cells below exchange.floor, which is the target.
   void raise(const Exchange& exchange, double slack);
   template <class Move>
   void sweep(std::span<const Index> vertices, double slack, const Move& move);
+  /// Moves the vertices inside once, for ideal boxes of their present lengths.
+  void smoothInside(double floor);
 
   HexMesh& mesh_;
   VertexPlaces& places_;

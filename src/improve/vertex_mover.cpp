@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <base/vector3.hpp>
 #include <improve/vertex_energy.hpp>
@@ -50,9 +51,19 @@ constexpr double kVolume = 0.1;
 constexpr double kLeastEpsilon = 1e-4;
 constexpr double kRegularization = 0.2;
 
-}  // namespace
+/// First fraction of Newton's step to try for low powers. As neighbours follow, sweeps converge
+/// much faster with more than one (successive overrelaxation).
+constexpr double kOverrelaxation = 1.6;
+/// Maximum number of trials, each half as long as the one before; fewer for moves to a place.
+constexpr int kHalvings = 8;
+constexpr int kHalvingsTo = 4;
+/// Required fraction of the decrease that the slope predicts.
+constexpr double kDecrease = 1e-4;
+/// Steps with a smaller predicted decrease, relative to the energy, are not worth their time.
+constexpr double kLeastPromise = 1e-7;
 
-EnergyKind PointMover::untangling(const EnergyTerms& terms) {
+/// The energy that makes determinants positive, for terms of Bezier coefficients.
+EnergyKind untangling(const EnergyTerms& terms) {
   const double least = terms.leastDeterminantAt({});
   EnergyKind kind;
   kind.volume = kVolume;
@@ -61,36 +72,62 @@ EnergyKind PointMover::untangling(const EnergyTerms& terms) {
   return kind;
 }
 
-bool PointMover::hasSlack(Index point) const {
-  const Freedom freedom = places_.freedom[point];
+}  // namespace
+
+bool VertexMover::hasSlack(Index vertex) const {
+  const Freedom freedom = all_.places.freedom[vertex];
   return slack_ > 0 && (freedom == Freedom::OnPatch || freedom == Freedom::OnCurve) &&
-         !places_.surface.isTagged(freedom, places_.simplex[point]);
+         !all_.places.surface.isTagged(freedom, all_.places.simplex[vertex]);
 }
 
-std::size_t PointMover::directionsAt(Index point, std::array<Vec3, 3>& directions) const {
-  if (!hasSlack(point)) return places_.directionsAt(point, directions);
+std::size_t VertexMover::directionsAt(Index vertex, std::array<Vec3, 3>& directions) const {
+  if (!hasSlack(vertex)) return all_.places.directionsAt(vertex, directions);
   directions = kAxes;
   return directions.size();
 }
 
-PointMover::Step PointMover::stepBy(Index point, const Vec3& direction, double share) const {
-  const Vec3& from = points_[point];
+VertexMover::Step VertexMover::stepBy(Index vertex, const Vec3& direction, double share) const {
+  const Vec3& from = all_.mesh.points[vertex];
   const Vec3 to = plus(from, times(share, direction));
-  Step step{places_.nearest(point, to), {}, 0};
-  if (hasSlack(point)) {
+  Step step{all_.places.nearest(vertex, to), {}};
+  if (hasSlack(vertex)) {
     const Vec3 off = minus(to, step.place.point);
     const double distance = length(off);
     step.place.point =
         plus(step.place.point, times(distance > slack_ ? slack_ / distance : 1, off));
   }
   step.moved = minus(step.place.point, from);
-  step.length = length(step.moved);
   return step;
 }
 
-void PointMover::take(Index point, const SurfacePlace& place) {
-  points_[point] = place.point;
-  places_.simplex[point] = place.simplex;
+void VertexMover::take(Index vertex, const SurfacePlace& place) {
+  all_.mesh.points[vertex] = place.point;
+  all_.places.simplex[vertex] = place.simplex;
+}
+
+/// Takes a step of Newton's method down the energy of the collected terms, halved until it is
+/// accepted and lowers the energy.
+/// @param isAccepted  called after the vertex has moved
+/// @return the distance moved
+template <class Accept>
+double VertexMover::descend(Index vertex, const EnergyKind& kind, const Accept& isAccepted) {
+  std::array<Vec3, 3> directions;
+  const std::size_t count = directionsAt(vertex, directions);
+  const EnergySlope slope = slopeOf(terms_, kind);
+  const Vec3 direction = newtonStep(slope, std::span(directions).first(count));
+  const double promised = dot(slope.gradient, direction);
+  if (!(promised < -kLeastPromise * slope.energy)) return 0;
+  const SurfacePlace old{all_.mesh.points[vertex], all_.places.simplex[vertex]};
+  double share = kind.power > 2 ? 1 : kOverrelaxation;
+  for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
+    const Step step = stepBy(vertex, direction, share);
+    take(vertex, step.place);
+    // Nearly all steps lower the energy, but many make cells worse.
+    const double enough = slope.energy + kDecrease * share * promised;
+    if (isAccepted() && energyAt(terms_, kind, step.moved) <= enough) return length(step.moved);
+    take(vertex, old);
+  }
+  return 0;
 }
 
 void VertexMover::collect(Index vertex, bool bezier) {
@@ -130,11 +167,9 @@ bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& excha
   return exchange.price == 0 || lost <= 0 || lost <= exchange.price * gained;
 }
 
-double VertexMover::untangle(Index vertex) {
-  if (!mover_.canMove(vertex)) return 0;
+void VertexMover::untangle(Index vertex) {
   collect(vertex, true);
-  return mover_.descend(vertex, terms_, PointMover::untangling(terms_), [] { return true; }) /
-         sizeAt(vertex);
+  descend(vertex, untangling(terms_), [] { return true; });
 }
 
 double VertexMover::leastQualityAt(Index vertex) const {
@@ -150,13 +185,12 @@ void VertexMover::keepMeasured() {
 }
 
 double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
-  if (!mover_.canMove(vertex)) return 0;
   const double before = leastQualityAt(vertex);
   if (!isCertified(before)) return 0;
   collect(vertex, false);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
   const double farthest = bounded ? farthestAt(vertex) : 0;
-  const double moved = mover_.descend(vertex, terms_, EnergyKind{power, 0, 0}, [&] {
+  const double moved = descend(vertex, EnergyKind{power, 0, 0}, [&] {
     return isGoodAround(vertex, before, exchange) &&
            (!bounded || all_.chordError.at(vertex, farthest) <= farthest);
   });
@@ -174,11 +208,21 @@ void VertexMover::moveTo(Index vertex, const SurfacePlace& place, bool isPulled,
                          double farthest) {
   const double least = leastQualityAt(vertex);
   if (!isCertified(least)) return;
-  const auto isGood = [&] {
-    return isGoodAround(vertex, least, {floor}) &&
-           (std::isinf(farthest) || all_.chordError.at(vertex, farthest) <= farthest);
-  };
-  if (mover_.moveTo(vertex, place, isPulled, isGood)) keepMeasured();
+  const SurfacePlace old{all_.mesh.points[vertex], all_.places.simplex[vertex]};
+  const Vec3 way = minus(place.point, old.point);
+  double share = 1;
+  for (int i = 0; i < kHalvingsTo; ++i, share *= 0.5) {
+    const Vec3 part = plus(old.point, times(share, way));
+    take(vertex, share == 1 ? place
+                 : isPulled ? SurfacePlace{part, place.simplex}
+                            : stepBy(vertex, way, share).place);
+    if (isGoodAround(vertex, least, {floor}) &&
+        (std::isinf(farthest) || all_.chordError.at(vertex, farthest) <= farthest)) {
+      keepMeasured();
+      return;
+    }
+    take(vertex, old);
+  }
 }
 
 }  // namespace hexhex::improvement
