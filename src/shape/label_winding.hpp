@@ -20,8 +20,7 @@ class LabelWinding {
   explicit LabelWinding(const Surface& surface);
 
   /// @return per vertex: the number of spheres, positive if counterclockwise; meaningless at edges
-  /// between
-  ///         opposite labels
+  ///         between opposite labels
   [[nodiscard]] const std::vector<double>& operator()(const Labels& labels);
 
  private:
