@@ -10,7 +10,7 @@ namespace hexhex::shape {
 
 namespace {
 
-Vec3 vectorOf(lattice::Direction label) {
+Vec3 unitVector(lattice::Direction label) {
   Vec3 v{};
   v[static_cast<std::size_t>(lattice::axisOf(label))] = lattice::signOf(label);
   return v;
@@ -45,7 +45,7 @@ LabelWinding::LabelWinding(const Surface& surface)
     for (lattice::Direction label = 0; label < lattice::kDirections; ++label) {
       swept_[side][label] =
           areaBetween(surface.normals[surface.beyond(side)],
-                      surface.normals[Surface::triangleOf(side)], vectorOf(label));
+                      surface.normals[Surface::triangleOf(side)], unitVector(label));
     }
   }
 }
@@ -53,12 +53,12 @@ LabelWinding::LabelWinding(const Surface& surface)
 /// The area between the labels around the tail of a border.
 double LabelWinding::areaAround(const Labels& labels, Side border) const {
   double area = 0;
-  const Vec3 first = vectorOf(labels[Surface::triangleOf(border)]);
+  const Vec3 first = unitVector(labels[Surface::triangleOf(border)]);
   Side side = border;
   do {
     const Side next = surface_.twins[Surface::next(Surface::next(side))];
-    area += areaBetween(first, vectorOf(labels[Surface::triangleOf(side)]),
-                        vectorOf(labels[Surface::triangleOf(next)]));
+    area += areaBetween(first, unitVector(labels[Surface::triangleOf(side)]),
+                        unitVector(labels[Surface::triangleOf(next)]));
     side = next;
   } while (side != border);
   return area;
@@ -78,8 +78,8 @@ const std::vector<double>& LabelWinding::operator()(const Labels& labels) {
     if (side > surface_.twins[side]) continue;
     double swept = swept_[side][labels[here]];
     if (labels[here] != labels[beyond]) {
-      swept +=
-          areaBetween(surface_.normals[beyond], vectorOf(labels[here]), vectorOf(labels[beyond]));
+      swept += areaBetween(surface_.normals[beyond], unitVector(labels[here]),
+                           unitVector(labels[beyond]));
     }
     spheres_[surface_.tails[side]] += swept;
     spheres_[surface_.head(side)] -= swept;
