@@ -21,7 +21,6 @@
 #include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/registry.hpp>
-#include <io/core/text_scanner.hpp>
 
 namespace hexhex {
 
@@ -165,7 +164,7 @@ FilledPart fillStep(const std::filesystem::path& file, const FillOptions& option
 }
 
 FilledPart read(const std::filesystem::path& file, const FillOptions& options, Context& context) {
-  const std::string extension = io::lowerCaseExtension(io::isGzip(file) ? file.stem() : file);
+  const std::string extension = io::contentExtension(file);
   if (extension == ".step" || extension == ".stp") return fillStep(file, options, context);
   if (!io::holdsSurface(file, context)) {
     if (options.mesher != Mesher::Auto || options.tetSize != 0) {

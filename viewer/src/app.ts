@@ -87,8 +87,7 @@ export class App {
     worker.onLayers = (layers) => this.setLayers(layers);
     worker.onVisible = (visible, curved, milliseconds) => this.showVisible(visible, curved, milliseconds);
     this.fillControls();
-    if (this.state.camera) this.viewport.cameraState = this.state.camera;
-    else if (info.start) this.viewport.look(info.start.from);
+    this.placeCamera();
     this.applyTheme();
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.applyTheme());
     window.addEventListener("hashchange", () => this.restore(location.hash));
@@ -147,7 +146,7 @@ export class App {
   }
 
   look(direction: "home" | "x" | "y" | "z"): void {
-    this.viewport.look(direction === "home" ? [1, -1.6, 0.9] : kAxes[direction]);
+    this.viewport.look(direction === "home" ? undefined : kAxes[direction]);
     this.saveFragment();
   }
 
@@ -221,10 +220,14 @@ export class App {
     if (fragment.replace(/^#/, "") === toFragment(this.state)) return;
     this.state = this.stateOf(fragment);
     this.dropUnknown();
-    if (this.state.camera) this.viewport.cameraState = this.state.camera;
-    else this.viewport.look(this.info.start?.from ?? [1, -1.6, 0.9]);
+    this.placeCamera();
     this.applyTheme();
     this.update();
+  }
+
+  private placeCamera(): void {
+    if (this.state.camera) this.viewport.cameraState = this.state.camera;
+    else this.viewport.look(this.info.start?.from);
   }
 
   /** What an address says; one that says nothing leaves the choice to the page. */

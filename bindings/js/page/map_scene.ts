@@ -82,7 +82,7 @@ export class MapScene {
     for (const object of this.objects) this.viewport.remove(object);
     this.objects = [surfaceOf(shape), thinLines(edgesOf(shape.triangles), shape.positions, null), markersOf(shape)];
     for (const object of this.objects) this.viewport.add(object);
-    this.viewport.look([1, -1.6, 0.9]);
+    this.viewport.look();
   }
 
   lookAt(place: [number, number, number]): void {

@@ -123,6 +123,10 @@ Array<char> readWholeFile(const std::filesystem::path& file, Stage& stage, std::
 
 bool isGzip(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".gz"; }
 
+std::string contentExtension(const std::filesystem::path& file) {
+  return lowerCaseExtension(isGzip(file) ? file.stem() : file);
+}
+
 Input openInput(const std::filesystem::path& file, Context& context) {
   if (!isGzip(file)) return file;
   Stage stage(context, "unpack");

@@ -126,6 +126,8 @@ class Input {
 
 /// Whether a file's name ends in ".gz".
 [[nodiscard]] bool isGzip(const std::filesystem::path& file);
+/// The extension of a file's name in lower case; of "NAME.vtk.gz", that is ".vtk".
+[[nodiscard]] std::string contentExtension(const std::filesystem::path& file);
 /// Opens a file for its readers; ".gz" files are uncompressed first.
 /// @throws Error FileNotFound, and as inflateGzip()
 [[nodiscard]] Input openInput(const std::filesystem::path& file, Context& context);

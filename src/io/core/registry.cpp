@@ -327,7 +327,7 @@ std::string adviceOn(const std::string& extension, FileContent content) {
 const Format& findFormat(const std::filesystem::path& file, std::string_view name,
                          FileContent content) {
   const std::string_view usual = usualName(file, name, content);
-  const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
+  const std::string extension = contentExtension(file);
   const Format* const format = usual.empty() ? formatWith(extension, extensionOf, content)
                                              : formatWith(usual, nameOf, content);
   if (format == nullptr && !usual.empty()) {
@@ -338,7 +338,7 @@ const Format& findFormat(const std::filesystem::path& file, std::string_view nam
 }
 
 bool holdsSurface(const std::filesystem::path& file, Context& context) {
-  const std::string extension = lowerCaseExtension(isGzip(file) ? file.stem() : file);
+  const std::string extension = contentExtension(file);
   const Format* const format = formatWith(extension, extensionOf, FileContent::Triangles);
   return format != nullptr &&
          (format->triangles.isIn == nullptr || format->triangles.isIn(openInput(file, context)));

@@ -21,6 +21,8 @@ export interface CameraState {
 }
 
 const kFieldOfView = 30;
+/** Where one looks from at first. */
+const kHome: Triple = [1, -1.6, 0.9];
 /** Share of the canvas that the mesh fills at first. */
 const kFilled = 0.9;
 /** The same for a ball that one goes close to. */
@@ -58,7 +60,7 @@ export class Viewport {
     this.controls.minDistance = 0.005;
     this.controls.maxDistance = 20;
     this.resize();  // first: how far away is far enough depends on the canvas' shape
-    this.look([1, -1.6, 0.9]);
+    this.look();
     this.controls.addEventListener("change", () => this.redraw());
     this.controls.addEventListener("end", onMoved);
     new ResizeObserver(() => this.reshape()).observe(canvas);
@@ -91,7 +93,7 @@ export class Viewport {
   }
 
   /** Looks at the whole mesh from a direction. */
-  look(from: [number, number, number]): void {
+  look(from: [number, number, number] = kHome): void {
     // A camera straight above would not know which way is up.
     const direction = new Vector3(...from).normalize();
     if (Math.abs(direction.z) > 0.999) direction.y -= 1e-4;
