@@ -122,6 +122,7 @@ TEST(VtkGrids, SayWhatIsWrong) {
       {kOldImage, "3 2 2", "3 -2 2", ErrorCode::TooLarge, "points is larger"},
       {kOldImage, "3 2 2", "3 99999 99999", ErrorCode::TooLarge, "points is larger"},
       {kOldImage, "DIMENSIONS 3 2 2", "", ErrorCode::FileUnsupported, "0 x 0 x 0 points"},
+      {kOldImage, "DIMENSIONS 3", "DIMENSIONS -3", ErrorCode::FileUnsupported, "0 x 2 x 2 points"},
       {kOldImage, "CELL_DATA", "CELLS", ErrorCode::FileSyntax, "line 8: expected a section"},
       {kOldRectilinear, "DIMENSIONS 3", "DIMENSIONS 4", ErrorCode::FileSyntax,
        "announces 4 points or coordinates, but there are 3"},

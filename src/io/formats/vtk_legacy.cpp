@@ -154,7 +154,10 @@ class VtkLegacyFile final : public VtkSource {
     std::array<Array<double>, 3> axes;
     readSections([&](const std::string& keyword) {
       if (keyword == "dimensions") {
-        for (auto& n : size) n = static_cast<std::uint64_t>(scanner_.integer("a dimension"));
+        for (auto& n : size) {
+          n = static_cast<std::uint64_t>(
+              std::max(std::int64_t{0}, scanner_.integer("a dimension")));
+        }
       } else if (keyword == "origin" || keyword == "spacing" || keyword == "aspect_ratio") {
         Vec3& numbers = keyword == "origin" ? origin : spacing;
         for (double& x : numbers) x = scanner_.number("a number");
