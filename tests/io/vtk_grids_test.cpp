@@ -119,7 +119,7 @@ TEST(VtkGrids, SayWhatIsWrong) {
       {kRectilinear, "2 4 6", "2 4", ErrorCode::FileSyntax, "number"},
       {kCurved, "<Points>", "<Dots>", ErrorCode::FileSyntax, "no array of points"},
       {kOldImage, "3 2 2", "3 1 2", ErrorCode::FileUnsupported, "3 x 1 x 2 points"},
-      {kOldImage, "3 2 2", "3 -2 2", ErrorCode::TooLarge, "points is larger"},
+      {kOldImage, "3 2 2", "3 -2 2", ErrorCode::FileUnsupported, "3 x 0 x 2 points"},
       {kOldImage, "3 2 2", "3 99999 99999", ErrorCode::TooLarge, "points is larger"},
       {kOldImage, "DIMENSIONS 3 2 2", "", ErrorCode::FileUnsupported, "0 x 0 x 0 points"},
       {kOldImage, "DIMENSIONS 3", "DIMENSIONS -3", ErrorCode::FileUnsupported, "0 x 2 x 2 points"},
