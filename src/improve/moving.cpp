@@ -82,8 +82,9 @@ Boundary::Boundary(const HexMesh& mesh, TriangleTree surface_, Stage& stage)
       surface(std::move(surface_)) {}
 
 BoundaryDistance Boundary::distanceTo(const VertexPlaces& places, const Array<Vec3>& points,
-                                      double diagonal, Stage& stage, double gapsFrom) const {
-  return distanceBetween(points, quads, places.surface, surface, diagonal, stage, gapsFrom);
+                                      double diagonal, Stage& stage,
+                                      const Accuracy& accuracy) const {
+  return distanceBetween(points, quads, places.surface, surface, diagonal, stage, accuracy);
 }
 
 Array<std::uint64_t> Boundary::cellsBeyond(double limit, const BoundaryDistance& distance,
@@ -138,8 +139,8 @@ class Moving {
         limit_(farthestAllowed(report.distanceBefore)),
         slack_(options.slack * report.diagonal) {}
 
-  [[nodiscard]] BoundaryDistance distance() const {
-    return boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_);
+  [[nodiscard]] BoundaryDistance distance(const Accuracy& accuracy = {}) const {
+    return boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_, accuracy);
   }
 
   /// Improves the mesh as far as possible.
@@ -150,8 +151,7 @@ class Moving {
     // Near cells that cannot become positive, others would get worse.
     const bool canAtOnce = !curved_ && report_.cannotBePositive.empty() && canMoveAtOnce();
     const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
-    if (isFolded)
-      sweeps.moveAtOnce(target, slack_, true, [&] { return quadsBeyond(distance().ofQuads); });
+    if (isFolded) sweeps.moveAtOnce(target, slack_, true, [&] { return quadsTooFar(); });
     pull(sweeps);
     oneByOne(sweeps);
     pull(sweeps);  // vertices that bad cells held back
@@ -165,13 +165,14 @@ class Moving {
       floor = std::max(floor, raiseFurther(sweeps));
     }
     sweeps.smooth(options_.passes, floor);
-    BoundaryDistance after = distance();
+    Array<Quad> far = quadsTooFar();
     for (const double kept : {floor, lowest}) {
-      for (int i = 0; i < Sweeps::kReturns && after.largest.hausdorff() > limit_; ++i) {
-        sweeps.moveBack(quadsBeyond(after.ofQuads), before_, kept);
-        after = distance();
+      for (int i = 0; i < Sweeps::kReturns && !far.empty(); ++i) {
+        sweeps.moveBack(far, before_, kept);
+        far = quadsTooFar();
       }
     }
+    const BoundaryDistance after = distance();
     return canMoveBoundary() ? spread(sweeps, floor, after) : after;
   }
 
@@ -197,10 +198,10 @@ class Moving {
     return {subject_.mesh, curved_, places_, report_.diagonal, stage_};
   }
 
-  [[nodiscard]] Array<Quad> quadsBeyond(const std::vector<double>& distances) const {
+  [[nodiscard]] Array<Quad> quadsTooFar() const {
     Array<Quad> far;
-    for (Index q = 0; q < distances.size(); ++q) {
-      if (distances[q] > limit_) far.push_back(boundary_.quads[q]);
+    for (const Index q : distance({.enough = limit_}).quadsBeyond(limit_)) {
+      far.push_back(boundary_.quads[q]);
     }
     return far;
   }
@@ -283,8 +284,7 @@ class Moving {
     Positions nearest = sweeps.positions();
     double limit = kOtherShape;
     for (int i = 0, stalls = -1; i < kMostClosings && stalls < kClosingStalls; ++i) {
-      const BoundaryDistance now =
-          boundary_.distanceTo(places_, subject_.mesh.points, report_.diagonal, stage_, limit / 2);
+      const BoundaryDistance now = distance({.gapsFrom = limit / 2});
       ++stalls;
       if (now.largest.hausdorff() < kNearer * best.largest.hausdorff()) {
         stalls = 0;
@@ -314,7 +314,7 @@ class Moving {
                   [&](Index v) { return !std::binary_search(wereBad.begin(), wereBad.end(), v); });
     LooseVertices loose(places_, low, subject_.mesh.points);
     const Positions before = sweeps.positions();
-    sweeps.moveAtOnce(target, slack_, false, [&] { return quadsBeyond(distance().ofQuads); });
+    sweeps.moveAtOnce(target, slack_, false, [&] { return quadsTooFar(); });
     oneByOne(sweeps);
     if (!wereBad.empty()) sweeps.raiseWorst(target, slack_);
     const Sweeps::Standing now = sweeps.standing(target);

@@ -37,10 +37,9 @@ struct Boundary {
   Boundary() = default;
   Boundary(const HexMesh& mesh, TriangleTree surface, Stage& stage);
 
-  /// @param gapsFrom  as for distanceBetween()
   [[nodiscard]] BoundaryDistance distanceTo(const VertexPlaces& places, const Array<Vec3>& points,
                                             double diagonal, Stage& stage,
-                                            double gapsFrom = kNoGaps) const;
+                                            const Accuracy& accuracy = {}) const;
   /// @param parts  Subject::parts()
   [[nodiscard]] Array<std::uint64_t> cellsBeyond(double limit, const BoundaryDistance& distance,
                                                  std::size_t parts) const;

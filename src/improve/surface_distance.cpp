@@ -59,27 +59,31 @@ void TriangleTree::build(std::size_t node, std::size_t begin, std::size_t end) {
   build(2 * node + 2, middle, end);
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, std::size_t begin,
+                                            double enough) const {
   struct Range {
     std::size_t node;
     std::size_t begin;
     std::size_t end;
     double squared;
   };
+  if (triangles_.empty()) return {kFar};
   double best = kFar;
-  std::size_t triangle = 0;
-  std::vector<Range> open = {{0, 0, triangles_.size(), squaredDistance(boxes_[0], point)}};
-  while (!open.empty()) {
-    const Range range = open.back();
-    open.pop_back();
+  std::size_t place = 0;
+  const auto look = [&](std::size_t t) {
+    const Vec3 d = minus(nearestOf(triangles_[t].corners, point), point);
+    if (dot(d, d) >= best) return;
+    best = dot(d, d);
+    place = t;
+  };
+  look(begin);
+  std::array<Range, 64> open;  // twice as many as levels
+  open[0] = {0, 0, triangles_.size(), squaredDistance(boxes_[0], point)};
+  for (std::size_t count = 1; count > 0 && best > enough * enough;) {
+    const Range range = open[--count];
     if (range.squared >= best) continue;
     if (2 * range.node + 2 >= boxes_.size()) {
-      for (std::size_t t = range.begin; t < range.end; ++t) {
-        const Vec3 d = minus(nearestOf(triangles_[t].corners, point), point);
-        if (dot(d, d) >= best) continue;
-        best = dot(d, d);
-        triangle = triangles_[t].number;
-      }
+      for (std::size_t t = range.begin; t < range.end; ++t) look(t);
       continue;
     }
     const std::size_t middle = range.begin + (range.end - range.begin) / 2;
@@ -87,10 +91,10 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
     Range low{child, range.begin, middle, squaredDistance(boxes_[child], point)};
     Range high{child + 1, middle, range.end, squaredDistance(boxes_[child + 1], point)};
     if (low.squared < high.squared) std::swap(low, high);
-    open.push_back(low);
-    open.push_back(high);
+    open[count++] = low;
+    open[count++] = high;
   }
-  return {std::sqrt(best), triangle};
+  return {std::sqrt(best), triangles_[place].number, place};
 }
 
 namespace {
@@ -182,22 +186,27 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
 }
 
 /// Per quad: the largest distance, in diagonals.
+/// @param enough  smaller ones may be any below it
 std::vector<double> distancesOf(const Array<Vec3>& points, std::span<const Quad> quads,
-                                const TriangleTree& tree, double diagonal, Stage& stage) {
+                                const TriangleTree& tree, double diagonal, double enough,
+                                Stage& stage) {
   std::vector<Index> vertices;  // each is a corner of about four quads
   for (const Quad& quad : quads) vertices.insert(vertices.end(), quad.begin(), quad.end());
   sortUnique(vertices);
   std::vector<double> ofVertices(points.size());
   parallelFor(stage, vertices.size(), kSurfaceDistanceGrain, [&](std::size_t i) {
-    ofVertices[vertices[i]] = tree.nearest(points[vertices[i]]).distance;
+    ofVertices[vertices[i]] = tree.nearest(points[vertices[i]], 0, enough * diagonal).distance;
   });
   std::vector<double> distances(quads.size());
   parallelFor(stage, quads.size(), kSurfaceDistanceGrain, [&](std::size_t q) {
     const std::array<Vec3, 4> corners = cornersOf(points, quads[q]);
+    TriangleTree::Nearest nearest;
     double largest = 0;
     forSamples(quads[q], [&](const std::array<double, 4>& weights, std::size_t corner) {
-      largest = std::max(largest, corner < 4 ? ofVertices[quads[q][corner]]
-                                             : tree.nearest(pointOf(corners, weights)).distance);
+      if (corner == 4) {
+        nearest = tree.nearest(pointOf(corners, weights), nearest.place, enough * diagonal);
+      }
+      largest = std::max(largest, corner < 4 ? ofVertices[quads[q][corner]] : nearest.distance);
     });
     distances[q] = largest / diagonal;
   });
@@ -266,17 +275,24 @@ std::vector<Index> BoundaryDistance::quadsBeyond(double limit) const {
 
 BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad> quads,
                                  const ReferenceSurface& surface, const TriangleTree& tree,
-                                 double diagonal, Stage& stage, double gapsFrom) {
+                                 double diagonal, Stage& stage, const Accuracy& accuracy) {
+  const auto& [enough, gapsFrom] = accuracy;
   BoundaryDistance distance;
-  distance.ofQuads = distancesOf(points, quads, tree, diagonal, stage);
+  distance.ofQuads = distancesOf(points, quads, tree, diagonal, enough, stage);
   distance.largest.fromMesh = largestOf(distance.ofQuads);
 
   const TriangleTree ofMesh = treeOf(points, quads);
   const std::vector<Vec3> samples = samplesOf(surface);
   std::vector<TriangleTree::Nearest> found(samples.size());
-  parallelFor(stage, samples.size(), kSurfaceDistanceGrain,
-              [&](std::size_t i) { found[i] = ofMesh.nearest(samples[i]); });
-  for (const auto& [far, triangle] : found) {
+  parallelBlocks(stage, samples.size(), kSurfaceDistanceGrain,
+                 [&, enough = enough](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+                   std::size_t place = 0;
+                   for (std::size_t i = begin; i < end; ++i) {
+                     found[i] = ofMesh.nearest(samples[i], place, enough * diagonal);
+                     place = found[i].place;
+                   }
+                 });
+  for (const auto& [far, triangle, place] : found) {
     double& ofQuad = distance.ofQuads[triangle / 4];
     ofQuad = std::max(ofQuad, far / diagonal);
     distance.largest.fromSurface = std::max(distance.largest.fromSurface, far / diagonal);
@@ -289,7 +305,7 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
     distance.gaps.push_back(gapTo(samples[i], points, quads, found[i].triangle));
   }
   std::erase_if(distance.gaps,
-                [&](const Gap& gap) { return length(gap.way) <= gapsFrom * diagonal; });
+                [&](const Gap& gap) { return length(gap.way) <= accuracy.gapsFrom * diagonal; });
   return distance;
 }
 
@@ -297,7 +313,7 @@ double innerDistance(const Array<Vec3>& points, std::span<const Quad> quads,
                      const ReferenceSurface& surface, double diagonal, Stage& stage) {
   if (quads.empty() || surface.boundaryCount() == surface.triangleCount()) return 0;
   const TriangleTree tree = treeOf(surface, surface.boundaryCount(), surface.triangleCount());
-  return largestOf(distancesOf(points, quads, tree, diagonal, stage));
+  return largestOf(distancesOf(points, quads, tree, diagonal, 0, stage));
 }
 
 }  // namespace hexhex::improvement

@@ -23,8 +23,11 @@ class TriangleTree {
   struct Nearest {
     double distance = 0;  ///< infinite without triangles
     std::size_t triangle = 0;
+    std::size_t place = 0;  ///< of the triangle among the leaves
   };
-  [[nodiscard]] Nearest nearest(const Vec3& point) const;
+  /// @param begin   a place: that of a point nearby makes it fast
+  /// @param enough  any triangle nearer than this is taken
+  [[nodiscard]] Nearest nearest(const Vec3& point, std::size_t begin = 0, double enough = 0) const;
 
  private:
   void build(std::size_t node, std::size_t begin, std::size_t end);
@@ -58,19 +61,24 @@ struct BoundaryDistance {
   [[nodiscard]] std::vector<Index> quadsBeyond(double limit) const;
 };
 
-inline constexpr double kNoGaps = std::numeric_limits<double>::infinity();
+/// What is requested, in diagonals.
+struct Accuracy {
+  /// Distances below this may be any below it.
+  double enough = 0;
+  /// Longer gaps are collected.
+  double gapsFrom = std::numeric_limits<double>::infinity();
+};
 
 /// The distance between the boundaries of a mesh and of a surface, in both directions. From the
 /// surface, each quad counts as four triangles around its centre.
 /// @param quads     of the boundary of the mesh
 /// @param tree      of the surface's boundary
 /// @param diagonal  by which distances are divided
-/// @param gapsFrom  gaps longer than this, in diagonals, are requested
 [[nodiscard]] BoundaryDistance distanceBetween(const Array<Vec3>& points,
                                                std::span<const Quad> quads,
                                                const ReferenceSurface& surface,
                                                const TriangleTree& tree, double diagonal,
-                                               Stage& stage, double gapsFrom = kNoGaps);
+                                               Stage& stage, const Accuracy& accuracy = {});
 
 /// A tree of the boundary triangles of a surface.
 [[nodiscard]] TriangleTree treeOf(const ReferenceSurface& surface);

@@ -131,7 +131,7 @@ constexpr int kLeastRingsAtOnce = 3;
 constexpr std::size_t kMostCellsAtOnce = 20'000;
 /// Maximum number of rounds; one that reduces the sum of 1 - quality by less than kStallAtOnce
 /// counts as stalled.
-constexpr int kMostRoundsAtOnce = 20;
+constexpr int kMostRoundsAtOnce = 10;
 /// Maximum of rounds times cells, each of which takes a tenth of a millisecond: if cells are only
 /// below the target, and if most are inverted, since nothing else repairs these.
 constexpr std::size_t kMostWorkAtOnce = 100'000;

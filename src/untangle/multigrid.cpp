@@ -114,11 +114,36 @@ SparseMatrix prolongationOf(const SparseMatrix& matrix, double share) {
   return tentative - SparseMatrix(damping * diagonal.cwiseInverse().asDiagonal() * moved);
 }
 
-/// One Gauss-Seidel sweep through a symmetric matrix, whose columns are its rows.
-void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward) {
-  const auto n = static_cast<int>(matrix.rows());
-  for (int k = 0; k < n; ++k) {
-    const int i = forward ? k : n - 1 - k;
+/// A Gauss-Seidel sweep through a symmetric matrix, whose columns are its rows. It begins at 0, so
+/// it reads only entries before the diagonal, and leftOver() only those behind.
+Vector sweepFromZero(const SparseMatrix& matrix, const Vector& v) {
+  Vector x(v.size());
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    double rest = v[i];
+    SparseMatrix::InnerIterator it(matrix, i);
+    for (; it.row() < i; ++it) rest -= it.value() * x[it.row()];
+    assert(it.row() == i && it.value() > 0);
+    x[i] = rest / it.value();
+  }
+  return x;
+}
+
+/// v - matrix * x after sweepFromZero().
+Vector leftOver(const SparseMatrix& matrix, const Vector& x) {
+  Vector rest(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    double sum = 0;
+    for (SparseMatrix::ReverseInnerIterator it(matrix, i); it.row() > i; --it) {
+      sum -= it.value() * x[it.row()];
+    }
+    rest[i] = sum;
+  }
+  return rest;
+}
+
+/// The sweep in the other order, from any x.
+void sweepBack(const SparseMatrix& matrix, const Vector& v, Vector& x) {
+  for (Eigen::Index i = v.size() - 1; i >= 0; --i) {
     double rest = v[i];
     double diagonal = 1;
     for (SparseMatrix::InnerIterator it(matrix, i); it; ++it) {
@@ -128,7 +153,6 @@ void sweep(const SparseMatrix& matrix, const Vector& v, Vector& x, bool forward)
         rest -= it.value() * x[it.row()];
       }
     }
-    assert(diagonal > 0);
     x[i] = rest / diagonal;
   }
 }
@@ -156,15 +180,20 @@ Multigrid::Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Conte
   factor_.compute(matrix);
 }
 
+Multigrid::Multigrid(SparseMatrix matrix) {
+  levels_.emplace_back();
+  levels_.back().matrix.swap(matrix);
+}
+
 Vector Multigrid::cycle(std::size_t level, const Vector& v) const {
   assert(level == levels_.size() || levels_[level].matrix.rows() == v.size());
   if (level == levels_.size()) return factor_.solve(v);
   const auto& [matrix, prolongation] = levels_[level];
-  Vector x = Vector::Zero(v.size());
-  sweep(matrix, v, x, true);
-  const Vector rest = prolongation.transpose() * (v - matrix * x);
-  x += prolongation * cycle(level + 1, rest);
-  sweep(matrix, v, x, false);
+  Vector x = sweepFromZero(matrix, v);
+  if (prolongation.cols() > 0) {
+    x += prolongation * cycle(level + 1, prolongation.transpose() * leftOver(matrix, x));
+  }
+  sweepBack(matrix, v, x);
   return x;
 }
 

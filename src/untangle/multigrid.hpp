@@ -24,6 +24,8 @@ class Multigrid {
   /// @param matrix  symmetric and positive definite; both triangles
   /// @param mostFactored  a matrix with at most this many rows is factored
   Multigrid(SparseMatrix matrix, Eigen::Index mostFactored, const Context& context);
+  /// A single level: a cycle is a symmetric Gauss-Seidel sweep.
+  explicit Multigrid(SparseMatrix matrix);
 
   /// One cycle: a linear map, symmetric and positive definite; the inverse itself if the matrix was
   /// factored.
@@ -34,7 +36,7 @@ class Multigrid {
  private:
   struct Level {
     SparseMatrix matrix;
-    SparseMatrix prolongation;  ///< from the next coarser level
+    SparseMatrix prolongation;  ///< from the next coarser level; empty without one
   };
   [[nodiscard]] Vector cycle(std::size_t level, const Vector& v) const;
 

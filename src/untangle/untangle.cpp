@@ -33,18 +33,20 @@ class Lbfgs {
  private:
   struct Pair {
     Vector move;
-    Vector change;  ///< of the gradient
-    double product = 0;
+    Vector change;       ///< of the gradient
+    Vector steepest;     ///< the change in the metric
+    double product = 0;  ///< of move and change
   };
   [[nodiscard]] Vector direction() const;
   bool search(const Vector& towards, Vector& x);
-  void learn(Pair pair);
+  void learn(Vector move, Vector change, Vector steepest);
 
   Energy& energy_;
   const Multigrid& metric_;
   double epsilon_;
   Height height_;
   Vector gradient_;
+  Vector steepest_;         ///< the gradient in the metric
   double scale_ = 1;        ///< of the metric
   std::deque<Pair> pairs_;  ///< most recent last
 };
@@ -63,17 +65,21 @@ constexpr double kConvex = 1e-12;
 Lbfgs::Lbfgs(Energy& energy, const Multigrid& metric, const Vector& x, double epsilon)
     : energy_(energy), metric_(metric), epsilon_(epsilon) {
   height_ = energy_.at(x, epsilon_, gradient_);
+  steepest_ = metric_.cycle(gradient_);
 }
 
+/// The metric is linear: applied to each gradient once, it is known for all their sums.
 Vector Lbfgs::direction() const {
-  Vector d = -gradient_;
+  Vector rest = -gradient_;
+  Vector d = -steepest_;
   std::vector<double> shares(pairs_.size());
   for (std::size_t i = pairs_.size(); i > 0;) {
     --i;
-    shares[i] = pairs_[i].move.dot(d) / pairs_[i].product;
-    d -= shares[i] * pairs_[i].change;
+    shares[i] = pairs_[i].move.dot(rest) / pairs_[i].product;
+    rest -= shares[i] * pairs_[i].change;
+    d -= shares[i] * pairs_[i].steepest;
   }
-  d = scale_ * metric_.cycle(d);
+  d *= scale_;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     d += (shares[i] - pairs_[i].change.dot(d) / pairs_[i].product) * pairs_[i].move;
   }
@@ -97,21 +103,23 @@ bool Lbfgs::search(const Vector& towards, Vector& x) {
     const Vector there = x + length * towards;
     const Height height = energy_.at(there, epsilon_, gradient);
     if (!(height.energy <= height_.energy + kSufficient * length * slope)) continue;
-    learn({there - x, gradient - gradient_});
+    Vector steepest = metric_.cycle(gradient);
+    learn(there - x, gradient - gradient_, steepest - steepest_);
     height_ = height;
     gradient_.swap(gradient);
+    steepest_.swap(steepest);
     x = there;
     return true;
   }
   return false;
 }
 
-void Lbfgs::learn(Pair pair) {
-  pair.product = pair.move.dot(pair.change);
-  if (!(pair.product > kConvex * pair.move.norm() * pair.change.norm())) return;
-  scale_ = pair.product / pair.change.dot(metric_.cycle(pair.change));
+void Lbfgs::learn(Vector move, Vector change, Vector steepest) {
+  const double product = move.dot(change);
+  if (!(product > kConvex * move.norm() * change.norm())) return;
+  scale_ = product / change.dot(steepest);
   if (pairs_.size() == kPairs) pairs_.pop_front();
-  pairs_.push_back(std::move(pair));
+  pairs_.push_back({std::move(move), std::move(change), std::move(steepest), product});
 }
 
 namespace {
@@ -162,11 +170,17 @@ bool isTooSlow(const std::vector<std::size_t>& fewest, int patience) {
 }  // namespace
 
 struct Solver::Parts {
-  Parts(Problem& theProblem, Stage& theStage)
+  Parts(Problem& theProblem, Stage& theStage, Inverse inverse)
       : problem(theProblem),
         stage(theStage),
         energy(theProblem, theStage),
-        metric(laplacian(theProblem, energy.uses()), kMostFactored, theStage.context()) {}
+        metric(metricOf(laplacian(theProblem, energy.uses()), inverse, theStage.context())) {}
+
+  static Multigrid metricOf(Eigen::SparseMatrix<double> laplacian, Inverse inverse,
+                            const Context& context) {
+    if (inverse == Inverse::GaussSeidel) return Multigrid(std::move(laplacian));
+    return {std::move(laplacian), kMostFactored, context};
+  }
 
   /// Untangles x. Ends at the best point seen.
   End untangle(const Options& options, Vector& x, int& steps) {
@@ -223,7 +237,8 @@ struct Solver::Parts {
   Multigrid metric;
 };
 
-Solver::Solver(Problem& problem, Stage& stage) : parts_(std::make_unique<Parts>(problem, stage)) {}
+Solver::Solver(Problem& problem, Stage& stage, Inverse inverse)
+    : parts_(std::make_unique<Parts>(problem, stage, inverse)) {}
 
 Solver::~Solver() = default;
 

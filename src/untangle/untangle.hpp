@@ -9,11 +9,12 @@
 // V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, "Foldover-free maps in
 // 50 lines of code", ACM Transactions on Graphics 40 (2021): a penalty for flipped elements grows
 // as fast as the energy can follow. Each penalty gets a few steps of a quasi-Newton method whose
-// metric is the Laplacian of the elements, inverted by multigrid, so that the time per step is
-// proportional to the number of elements. The solver stops when flipped elements vanish so slowly,
-// over the last 8 penalties (16 in patient mode), that some would be left after 150 penalties.
-// (Newton's method with a semidefinite approximation of the Hessian finds the same maps, but takes
-// 1.5 times as long for those of docs/user/quantize.md, and three times as long for the hardest.)
+// metric is the Laplacian of the elements, inverted by multigrid or by one sweep, so that the time
+// per step is proportional to the number of elements. The solver stops when flipped elements vanish
+// so slowly, over the last 8 penalties (16 in patient mode), that some would be left after 150
+// penalties. (Newton's method with a semidefinite approximation of the Hessian finds the same maps,
+// but takes 1.5 times as long for those of docs/user/quantize.md, and three times as long for the
+// hardest.)
 //
 // If flips remain, flatElements() lists the elements that no unknowns can make positive.
 #pragma once
@@ -57,11 +58,17 @@ struct Result {
   End end = End::Positive;
 };
 
+/// How well the Laplacian is inverted.
+enum class Inverse : unsigned char {
+  Multigrid,    ///< for maps that are far from where they will be
+  GaussSeidel,  ///< one symmetric sweep: nothing to set up, enough for a few steps
+};
+
 /// Deterministic with any number of threads. Cancellation takes effect within a step.
 class Solver {
  public:
   /// @param problem  must outlive this and keep its elements; x and pull may change between calls
-  Solver(Problem& problem, Stage& stage);
+  Solver(Problem& problem, Stage& stage, Inverse inverse = Inverse::Multigrid);
   ~Solver();
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
