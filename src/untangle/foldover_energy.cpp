@@ -2,8 +2,7 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
+#include <untangle/energy_lanes.hpp>
 #include <untangle/foldover_energy.hpp>
 
 #include <base/parallel.hpp>
@@ -14,7 +13,8 @@ namespace {
 
 constexpr std::size_t kEnergyGrain = 512;
 
-using Corners = Eigen::Matrix<double, 3, 4>;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
 using Gradients = Eigen::Matrix<double, 4, 3>;
 
 Eigen::Vector3d toEigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
@@ -25,50 +25,35 @@ Eigen::Matrix3d toEigen(const Matrix3& rows) {
   return m;
 }
 
-Eigen::Matrix3d cofactorOf(const Eigen::Matrix3d& j) {
-  Eigen::Matrix3d columns;
-  columns.col(0) = j.col(1).cross(j.col(2));
-  columns.col(1) = j.col(2).cross(j.col(0));
-  columns.col(2) = j.col(0).cross(j.col(1));
-  return columns;
+/// Writes an element into a lane.
+/// @param x  the coordinates
+void load(const Problem& problem, const Element& element, const double* x, std::size_t lane,
+          ElementLanes& lanes) {
+  const auto copy = [lane](const auto& from, auto& to) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) to[i][k][lane] = from[i][k];
+    }
+  };
+  const auto matrix = [&problem](int index, const Matrix3& otherwise) {
+    return index < 0 ? otherwise : problem.matrices[static_cast<std::size_t>(index)];
+  };
+  constexpr Matrix3 kIdentity = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  std::array<Vec3, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = element.corners[i].at(x);
+  copy(corners, lanes.corners);
+  copy(element.gradients, lanes.gradients);
+  copy(matrix(element.offset, {}), lanes.offset);
+  if (problem.pull > 0) copy(matrix(element.target, kIdentity), lanes.target);
+  lanes.weight[lane] = element.weight;
 }
-
-/// Not std::hypot, which takes as long as the rest of an element's energy; the squares stay within
-/// the range of double.
-double rootOf(double epsilon, double det) {
-  return epsilon == 0 ? std::abs(det) : std::sqrt(epsilon * epsilon + det * det);
-}
-
-double positivePart(double epsilon, double det, double root) {
-  return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
-}
-
-/// |J|^2 / chi^(2/3) + (det^2 + 1) / chi and its derivatives: the terms for angles and for volumes.
-struct Density {
-  double value = std::numeric_limits<double>::infinity();
-  // The derivative along a change dJ is power (J : dJ) + along (cofactor : dJ).
-  double power = 0;
-  double along = 0;
-
-  Density(const Eigen::Matrix3d& j, double det, double epsilon) {
-    if (epsilon == 0 && det <= 0) return;
-    const double root = rootOf(epsilon, det);
-    const double chi = positivePart(epsilon, det, root);
-    const double slope = 0.5 * (1 + det / root);
-    const double share = 1 / std::cbrt(chi * chi);
-    const double shape = j.squaredNorm() * share;
-    const double volume = (det * det + 1) / chi;
-    value = shape + volume;
-    power = 2 * share;
-    along = (-(2.0 / 3) * shape * slope + 2 * det - volume * slope) / chi;
-  }
-};
 
 }  // namespace
 
 double regularized(double epsilon, double det) noexcept {
   assert(epsilon > 0 || det > 0);
-  return positivePart(epsilon, det, rootOf(epsilon, det));
+  const double root = std::sqrt(epsilon * epsilon + det * det);
+  // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
+  return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
 }
 
 Vector coordinatesOf(const Problem& problem, const Vector& unknowns) {
@@ -144,15 +129,33 @@ Uses::Uses(const Problem& problem) : begins_(coordinateCount(problem) + 1) {
 Energy::Energy(const Problem& problem, Stage& stage)
     : problem_(problem), stage_(stage), uses_(problem), forces_(problem.elements.size()) {}
 
-/// Sums visit(index, element, height) over all elements, block by block.
-template <class Visit>
-Height Energy::collect(const Visit& visit) const {
-  const std::size_t n = problem_.elements.size();
-  std::vector<Height> parts(blockCount(n, kEnergyGrain));
-  parallelBlocks(stage_, n, kEnergyGrain,
+/// Calls use(index of an element, its lane, forces) for all elements, four at a time.
+template <class Use>
+Height Energy::collect(const Vector& x, double epsilon, const Use& use) const {
+  static_assert(kEnergyGrain % kLanes == 0);
+  const std::vector<Element>& elements = problem_.elements;
+  std::vector<Height> parts(blockCount(elements.size(), kEnergyGrain));
+  const EnergyKernel kernel = energyKernels().back();
+  parallelBlocks(stage_, elements.size(), kEnergyGrain,
                  [&](std::size_t begin, std::size_t end, std::size_t block) {
-                   for (std::size_t i = begin; i < end; ++i)
-                     visit(i, problem_.elements[i], parts[block]);
+                   ElementLanes lanes;
+                   ForceLanes forces;
+                   Height& part = parts[block];
+                   for (std::size_t i = begin; i < end; i += kLanes) {
+                     const std::size_t count = std::min(kLanes, end - i);
+                     for (std::size_t lane = 0; lane < count; ++lane) {
+                       load(problem_, elements[i + lane], x.data(), lane, lanes);
+                     }
+                     kernel(lanes, epsilon, problem_.pull, forces);
+                     for (std::size_t lane = 0; lane < count; ++lane) {
+                       const double det = forces.determinant[lane];
+                       const bool isInfinite = epsilon == 0 && !(det > 0);
+                       part.energy += isInfinite ? kInfinite : forces.energy[lane];
+                       part.leastDeterminant = std::min(part.leastDeterminant, det);
+                       part.flipped += det > 0 ? 0 : 1;
+                       use(i + lane, lane, forces);
+                     }
+                   }
                  });
   Height all;
   for (const Height& part : parts) {
@@ -163,41 +166,22 @@ Height Energy::collect(const Visit& visit) const {
   return all;
 }
 
-void Energy::add(const Element& element, const Eigen::Matrix3d& j, double density,
-                 Height& height) const {
-  const double det = j.determinant();
-  height.leastDeterminant = std::min(height.leastDeterminant, det);
-  height.flipped += det > 0 ? 0 : 1;
-  if (problem_.pull > 0) {
-    density += 0.5 * problem_.pull * (j - targetOf(problem_, element)).squaredNorm();
-  }
-  height.energy += element.weight * density;
-}
-
 Height Energy::at(const Vector& unknowns, double epsilon) const {
-  const Vector x = coordinatesOf(problem_, unknowns);
-  return collect([&](std::size_t /*index*/, const Element& element, Height& part) {
-    const Eigen::Matrix3d j = jacobian(problem_, element, x.data());
-    add(element, j, Density(j, j.determinant(), epsilon).value, part);
-  });
+  return collect(coordinatesOf(problem_, unknowns), epsilon,
+                 [](std::size_t /*index*/, std::size_t /*lane*/, const ForceLanes& /*forces*/) {});
 }
 
 Height Energy::at(const Vector& unknowns, double epsilon, Vector& gradient) {
   const Vector x = coordinatesOf(problem_, unknowns);
   assert(forces_.size() == problem_.elements.size());
-  const Height height = collect([&](std::size_t index, const Element& element, Height& part) {
-    const Eigen::Matrix3d j = jacobian(problem_, element, x.data());
-    const Density density(j, j.determinant(), epsilon);
-    add(element, j, density.value, part);
-    Eigen::Matrix3d byMatrix = density.power * j + density.along * cofactorOf(j);
-    if (problem_.pull > 0) byMatrix += problem_.pull * (j - targetOf(problem_, element));
-    Eigen::Map<Corners>(forces_[index].data()) =
-        element.weight * byMatrix * cornerGradients(element).transpose();
-    // Apply signs while the element is in cache: reading it again below would cost more.
+  const auto keep = [this](std::size_t index, std::size_t lane, const ForceLanes& forces) {
+    const Element& element = problem_.elements[index];
     for (std::size_t use = 0; use < 12; ++use) {
-      forces_[index][use] *= element.corners[use / 3].sign[use % 3];
+      forces_[index][use] =
+          element.corners[use / 3].sign[use % 3] * forces.forces[use / 3][use % 3][lane];
     }
-  });
+  };
+  const Height height = collect(x, epsilon, keep);
   gradient.resize(x.size());
   parallelFor(stage_, coordinateCount(problem_), kEnergyGrain, [&](std::size_t unknown) {
     double sum = 0;

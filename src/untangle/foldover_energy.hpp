@@ -78,9 +78,8 @@ class Energy {
   [[nodiscard]] Height at(const Vector& unknowns, double epsilon, Vector& gradient);
 
  private:
-  template <class Visit>
-  Height collect(const Visit& visit) const;
-  void add(const Element& element, const Eigen::Matrix3d& j, double density, Height& height) const;
+  template <class Use>
+  Height collect(const Vector& x, double epsilon, const Use& use) const;
 
   const Problem& problem_;
   Stage& stage_;

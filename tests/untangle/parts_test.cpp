@@ -1,9 +1,12 @@
 // What the solver is made of: derivatives of the energy, the Laplacian, multigrid.
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <random>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <untangle/energy_lanes.hpp>
 #include <untangle/foldover_energy.hpp>
 #include <untangle/laplacian.hpp>
 #include <untangle/multigrid.hpp>
@@ -82,6 +85,50 @@ TEST_F(UntangleParts, GradientIsThatOfDifferences) {
       const double difference =
           (energy.at(more, epsilon).energy - energy.at(less, epsilon).energy) / 2e-6;
       EXPECT_NEAR(gradient[i], difference, 1e-6 * gradient.norm());
+    }
+  }
+}
+
+TEST_F(UntangleParts, EnergyIsThatOfItsDefinition) {
+  Problem problem = randomProblem();
+  const Vector x = Eigen::Map<const Vector>(problem.x.data(), std::ssize(problem.x));
+  for (; !problem.elements.empty(); problem.elements.pop_back()) {  // whole lanes, and others
+    for (const double epsilon : {1.0, 1e-3, 1e-9}) {
+      double sum = 0;
+      for (const Element& element : problem.elements) {
+        const Eigen::Matrix3d j = untangle::jacobian(problem, element, x.data());
+        const double det = j.determinant();
+        const double chi = untangle::regularized(epsilon, det);
+        const double pull = 0.5 * problem.pull * (j - targetOf(problem, element)).squaredNorm();
+        sum += element.weight *
+               (j.squaredNorm() / std::cbrt(chi * chi) + (det * det + 1) / chi + pull);
+      }
+      EXPECT_NEAR(Energy(problem, stage).at(x, epsilon).energy, sum, 1e-12 * sum);
+    }
+  }
+}
+
+TEST_F(UntangleParts, EnergiesAreTheSameInAllRegisters) {
+  const auto fill = [this](auto& rows) {
+    for (auto& row : rows) {
+      for (untangle::Number& number : row) {
+        for (std::size_t lane = 0; lane < untangle::kLanes; ++lane) number[lane] = draw();
+      }
+    }
+  };
+  for (int i = 0; i < 1000; ++i) {
+    untangle::ElementLanes elements;
+    fill(elements.corners);
+    fill(elements.gradients);
+    fill(elements.offset);
+    fill(elements.target);
+    for (std::size_t lane = 0; lane < untangle::kLanes; ++lane) elements.weight[lane] = 1 + draw();
+    const double epsilon = i % 3 == 0 ? 1 : std::exp(-10 * std::abs(draw()));
+    std::array<untangle::ForceLanes, 2> results;
+    for (const untangle::EnergyKernel kernel : untangle::energyKernels()) {
+      kernel(elements, epsilon, 0.3, results[1]);
+      if (kernel == untangle::energyKernels().front()) results[0] = results[1];
+      EXPECT_EQ(std::memcmp(&results[0], &results[1], sizeof results[0]), 0);
     }
   }
 }
