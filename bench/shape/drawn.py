@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `hexhex mesh` makes of random parts (bench/shape/solids.py): the tables of docs/results/any-part.md.
 
-    PYTHONPATH=bench:bench/improve bench/shape/drawn.py HEXHEX --seeds 0:50 [--folder build/drawn] [--seconds 60] [--docs docs/results]
+    PYTHONPATH=bench:bench/improve bench/shape/drawn.py HEXHEX --seeds 0:50 [--sizes coarse] [--folder build/drawn] [--seconds 60] [--docs docs/results]
 
 Draws the part of each seed, fills it with tets of two sizes, and asks for about as many cells as tets of that size
 usually want. A mesh that the command writes is judged by bench/shape/judge.py, which shares nothing with it. FOLDER/results.jsonl
@@ -93,11 +93,11 @@ def run_all(options):
     lines = [json.loads(line) for line in results.read_text(encoding="utf-8").splitlines()] if results.exists() else []
     done = {(line["seed"], line["size"]) for line in lines}
     for seed in options.seeds:
-        if all((seed, size) in done for size in SIZES):
+        if all((seed, size) in done for size in options.sizes):
             continue
         part, meshes = solids.draw_part(seed, [edge for edge, _ in SIZES.values()])
         for size, (points, tets) in zip(SIZES, meshes):
-            if (seed, size) not in done:
+            if size in options.sizes and (seed, size) not in done:
                 lines.append(one_run(options, part, size, points, tets))
                 with results.open("a", encoding="utf-8") as out:
                     out.write(json.dumps(lines[-1]) + "\n")
@@ -171,6 +171,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", type=lambda name: Path(name).resolve())
     parser.add_argument("--seeds", type=seed_range, default=range(0, 50), metavar="FIRST:END")
+    parser.add_argument("--sizes", nargs="+", choices=SIZES, default=list(SIZES), help="default: all; fine ones take twice as long")
     parser.add_argument("--folder", type=Path, default=Path("build/drawn"))
     parser.add_argument("--seconds", type=int, default=60)
     parser.add_argument("--docs", type=Path)
