@@ -12,14 +12,14 @@ namespace hexhex::untangle {
 
 namespace {
 
-using Vector3 = std::array<Number, 3>;
-using Matrix = std::array<Vector3, 3>;  // rows
+using LaneVector = std::array<Number, 3>;
+using LaneMatrix = std::array<LaneVector, 3>;  // rows
 
-HEXHEX_INLINE Number dot(const Vector3& a, const Vector3& b) noexcept {
+HEXHEX_INLINE Number laneDot(const LaneVector& a, const LaneVector& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-HEXHEX_INLINE Vector3 cross(const Vector3& a, const Vector3& b) noexcept {
+HEXHEX_INLINE LaneVector laneCross(const LaneVector& a, const LaneVector& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
@@ -45,8 +45,8 @@ HEXHEX_INLINE Number inverseCubeRoot(const Number& x) noexcept {
   return y;
 }
 
-HEXHEX_INLINE Matrix jacobianOf(const ElementLanes& elements) noexcept {
-  Matrix j = elements.offset;
+HEXHEX_INLINE LaneMatrix jacobianOf(const ElementLanes& elements) noexcept {
+  LaneMatrix j = elements.offset;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t row = 0; row < 3; ++row) {
       // Differences keep small elements accurate far from the origin.
@@ -59,22 +59,23 @@ HEXHEX_INLINE Matrix jacobianOf(const ElementLanes& elements) noexcept {
 
 HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double pull,
                             ForceLanes& result) noexcept {
-  const Matrix j = jacobianOf(elements);
-  const Matrix cofactors = {cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])};
-  const Number det = dot(j[0], cofactors[0]);
+  const LaneMatrix j = jacobianOf(elements);
+  const LaneMatrix cofactors = {laneCross(j[1], j[2]), laneCross(j[2], j[0]),
+                                laneCross(j[0], j[1])};
+  const Number det = laneDot(j[0], cofactors[0]);
   const Number root = rootOf<Number>(epsilon * epsilon + det * det);
   // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
   const Number chi = chosen(det, 0.5 * (det + root), Number{} + 0.5 * epsilon * epsilon) /
                      chosen(det, Number{} + 1, root - det);
   const Number slope = 0.5 * (1 + det / root);
   const Number share = inverseCubeRoot(chi * chi);
-  const Number shape = (dot(j[0], j[0]) + dot(j[1], j[1]) + dot(j[2], j[2])) * share;
+  const Number shape = (laneDot(j[0], j[0]) + laneDot(j[1], j[1]) + laneDot(j[2], j[2])) * share;
   const Number volume = (det * det + 1) / chi;
   // The derivative along a change dJ is power (J : dJ) + along (cofactors : dJ).
   const Number power = 2 * share;
   const Number along = ((-2.0 / 3) * shape * slope + 2 * det - volume * slope) / chi;
   Number energy = shape + volume;
-  Matrix byMatrix;
+  LaneMatrix byMatrix;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Number away = j[row][k] - elements.target[row][k];
@@ -87,7 +88,7 @@ HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double
   result.energy = elements.weight * energy;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t i = 0; i < 3; ++i) {
-      result.forces[i + 1][row] = dot(byMatrix[row], elements.gradients[i]);
+      result.forces[i + 1][row] = laneDot(byMatrix[row], elements.gradients[i]);
     }
     result.forces[0][row] =
         -(result.forces[1][row] + result.forces[2][row] + result.forces[3][row]);
