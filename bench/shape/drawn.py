@@ -154,7 +154,7 @@ def summary(lines, seconds):
     named = f"{seeds[0]} to {seeds[-1]}" if seeds == list(range(seeds[0], seeds[-1] + 1)) else ", ".join(map(str, seeds))
     tets = {size: sorted(line["tets"] for line in lines if line["size"] == size) for size in SIZES}
     times = sorted(line["seconds"] for line in lines if certified(line))
-    middle = "; ".join(f"{size}: {each[0]:,} to {each[-1]:,} tets, half of the parts below {each[len(each) // 2]:,}, "
+    middle = "; ".join(f"{size}: {len(each)} of {each[0]:,} to {each[-1]:,} tets, half of them below {each[len(each) // 2]:,}, "
                        f"{SIZES[size][1]:,} cells asked for" for size, each in tets.items() if each)
     spent = (f" Where there is a mesh, it took {times[0]:.0f} to {times[-1]:.0f} s, half of them below "
              f"{times[len(times) // 2]:.0f} s.") if times else ""
