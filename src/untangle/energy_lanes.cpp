@@ -40,7 +40,7 @@ HEXHEX_INLINE Number inverseCubeRoot(const Number& x) noexcept {
   constexpr std::uint64_t kMiddle = 0x553EF0FF;  // such that the largest errors are equal
   constexpr int kSteps = 4;
   const Bits high = bitsAs<Bits>(x) >> 32;
-  Number y = bitsAs<Number>((kMiddle - ((high * kThird) >> 32)) << 32);
+  auto y = bitsAs<Number>((kMiddle - ((high * kThird) >> 32)) << 32);
   for (int i = 0; i < kSteps; ++i) y = y * (4 - x * y * y * y) * (1.0 / 3);
   return y;
 }
@@ -63,7 +63,7 @@ HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double
   const LaneMatrix cofactors = {laneCross(j[1], j[2]), laneCross(j[2], j[0]),
                                 laneCross(j[0], j[1])};
   const Number det = laneDot(j[0], cofactors[0]);
-  const Number root = rootOf<Number>(epsilon * epsilon + det * det);
+  const auto root = rootOf<Number>(epsilon * epsilon + det * det);
   // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
   const Number chi = chosen(det, 0.5 * (det + root), Number{} + 0.5 * epsilon * epsilon) /
                      chosen(det, Number{} + 1, root - det);

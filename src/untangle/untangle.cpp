@@ -174,12 +174,12 @@ struct Solver::Parts {
       : problem(theProblem),
         stage(theStage),
         energy(theProblem, theStage),
-        metric(metricOf(laplacian(theProblem, energy.uses()), inverse, theStage.context())) {}
+        metric(metricOf(theProblem, energy.uses(), inverse, theStage.context())) {}
 
-  static Multigrid metricOf(Eigen::SparseMatrix<double> laplacian, Inverse inverse,
+  static Multigrid metricOf(const Problem& problem, const Uses& uses, Inverse inverse,
                             const Context& context) {
-    if (inverse == Inverse::GaussSeidel) return Multigrid(std::move(laplacian));
-    return {std::move(laplacian), kMostFactored, context};
+    if (inverse == Inverse::GaussSeidel) return Multigrid(laplacian(problem, uses));
+    return {laplacian(problem, uses), kMostFactored, context};
   }
 
   /// Untangles x. Ends at the best point seen.
