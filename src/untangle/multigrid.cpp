@@ -114,6 +114,10 @@ SparseMatrix prolongationOf(const SparseMatrix& matrix, double share) {
   return tentative - SparseMatrix(damping * diagonal.cwiseInverse().asDiagonal() * moved);
 }
 
+/// An unknown that moves nothing, as where the surface has no area, has no diagonal entry: it
+/// stays.
+double quotient(double rest, double diagonal) { return diagonal > 0 ? rest / diagonal : 0; }
+
 /// A Gauss-Seidel sweep through a symmetric matrix, whose columns are its rows. It begins at 0, so
 /// it reads only entries before the diagonal, and leftOver() only those behind.
 Vector sweepFromZero(const SparseMatrix& matrix, const Vector& v) {
@@ -121,9 +125,9 @@ Vector sweepFromZero(const SparseMatrix& matrix, const Vector& v) {
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     double rest = v[i];
     SparseMatrix::InnerIterator it(matrix, i);
-    for (; it.row() < i; ++it) rest -= it.value() * x[it.row()];
-    assert(it.row() == i && it.value() > 0);
-    x[i] = rest / it.value();
+    for (; it && it.row() < i; ++it) rest -= it.value() * x[it.row()];
+    const bool isDiagonal = it && it.row() == i;
+    x[i] = isDiagonal ? quotient(rest, it.value()) : 0;
   }
   return x;
 }
@@ -133,7 +137,7 @@ Vector leftOver(const SparseMatrix& matrix, const Vector& x) {
   Vector rest(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     double sum = 0;
-    for (SparseMatrix::ReverseInnerIterator it(matrix, i); it.row() > i; --it) {
+    for (SparseMatrix::ReverseInnerIterator it(matrix, i); it && it.row() > i; --it) {
       sum -= it.value() * x[it.row()];
     }
     rest[i] = sum;
@@ -145,7 +149,7 @@ Vector leftOver(const SparseMatrix& matrix, const Vector& x) {
 void sweepBack(const SparseMatrix& matrix, const Vector& v, Vector& x) {
   for (Eigen::Index i = v.size() - 1; i >= 0; --i) {
     double rest = v[i];
-    double diagonal = 1;
+    double diagonal = 0;
     for (SparseMatrix::InnerIterator it(matrix, i); it; ++it) {
       if (it.row() == i) {
         diagonal = it.value();
@@ -153,7 +157,7 @@ void sweepBack(const SparseMatrix& matrix, const Vector& v, Vector& x) {
         rest -= it.value() * x[it.row()];
       }
     }
-    x[i] = rest / diagonal;
+    x[i] = quotient(rest, diagonal);
   }
 }
 
