@@ -206,6 +206,29 @@ rootOf(const V& x) noexcept {
   return roots;
 }
 
+/// Per lane of doubles: `a` where the condition is positive, otherwise `b`.
+template <class V>
+HEXHEX_INLINE V wherePositive(const V& condition, const V& a, const V& b) noexcept {
+#if defined(HEXHEX_PLAIN_VECTORS)
+  return V::choose(condition > 0.0, a, b);
+#else
+  return condition > 0 ? a : b;
+#endif
+}
+
+/// @tparam V  Lanes of double
+template <class V>
+using LaneVector = std::array<V, 3>;
+
+template <class V>
+HEXHEX_INLINE V dot(const LaneVector<V>& a, const LaneVector<V>& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class V>
+HEXHEX_INLINE LaneVector<V> cross(const LaneVector<V>& a, const LaneVector<V>& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif

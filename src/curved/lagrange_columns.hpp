@@ -43,7 +43,7 @@ struct LagrangeColumns {
 inline constexpr std::size_t kCellLanes = 4;
 using CellNumber = Lanes<double, kCellLanes>;
 struct alignas(kCellLanes * sizeof(double)) CellVector {
-  mesh::LaneVector<CellNumber> at;
+  LaneVector<CellNumber> at;
 };
 
 /// Nodes of up to four cells, the first axis fastest; of fewer, the last stands in for the others.
@@ -62,11 +62,13 @@ struct LagrangeCells {
 using LagrangeScratch = std::vector<CellVector>;
 
 /// A row of a matrix with n columns times values that are so far apart.
-[[gnu::always_inline]] inline mesh::LaneVector<CellNumber> combined(
-    std::size_t n, const mesh::Matrix<double>& matrix, std::size_t row, const CellVector* values,
-    std::size_t stride) noexcept {
+[[gnu::always_inline]] inline LaneVector<CellNumber> combined(std::size_t n,
+                                                              const mesh::Matrix<double>& matrix,
+                                                              std::size_t row,
+                                                              const CellVector* values,
+                                                              std::size_t stride) noexcept {
   const double* const factors = &matrix.entries[row * n];
-  mesh::LaneVector<CellNumber> sum{};
+  LaneVector<CellNumber> sum{};
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < 3; ++k) sum[k] += factors[i] * values[i * stride].at[k];
   }

@@ -54,21 +54,20 @@ std::vector<double> gaussPoints(int n) {
 
 using Smallest = std::array<double, kCellLanes>;
 
-[[gnu::always_inline]] inline CellNumber lengthOf(const mesh::LaneVector<CellNumber>& a) noexcept {
-  return rootOf<CellNumber>(mesh::dot(a, a));
+[[gnu::always_inline]] inline CellNumber lengthOf(const LaneVector<CellNumber>& a) noexcept {
+  return rootOf<CellNumber>(dot(a, a));
 }
 
 /// Lowers numbers to the smallest scaled determinants on a grid.
 [[gnu::always_inline]] inline void lower(const LagrangeColumns& grid, const LagrangeCells& cells,
                                          LagrangeScratch& scratch, Smallest& smallest) {
-  forColumns(grid, cells, scratch,
-             [&](const auto& /*rows*/, const auto& u, const auto& v, const auto& w) {
-               const CellNumber scaled =
-                   mesh::dot(u, mesh::cross(v, w)) / (lengthOf(u) * lengthOf(v) * lengthOf(w));
-               for (std::size_t i = 0; i < kCellLanes; ++i) {
-                 smallest[i] = std::min(smallest[i], std::isfinite(scaled[i]) ? scaled[i] : 0.0);
-               }
-             });
+  forColumns(
+      grid, cells, scratch, [&](const auto& /*rows*/, const auto& u, const auto& v, const auto& w) {
+        const CellNumber scaled = dot(u, cross(v, w)) / (lengthOf(u) * lengthOf(v) * lengthOf(w));
+        for (std::size_t i = 0; i < kCellLanes; ++i) {
+          smallest[i] = std::min(smallest[i], std::isfinite(scaled[i]) ? scaled[i] : 0.0);
+        }
+      });
 }
 
 #if defined(HEXHEX_WIDE)

@@ -15,7 +15,7 @@ namespace hexhex::improvement {
 namespace {
 
 using Number = TermLanes::Number;
-using Vector = mesh::LaneVector<Number>;
+using Vector = LaneVector<Number>;
 using mesh::operator+;
 using mesh::operator-;
 using mesh::scaled;
@@ -27,19 +27,11 @@ constexpr double kUnit = 0.19245008972987526;  // 1 / (3 sqrt(3))
 
 HEXHEX_INLINE double sumOf(const Number& x) noexcept { return (x[0] + x[1]) + (x[2] + x[3]); }
 
-HEXHEX_INLINE Number chosen(const Number& condition, const Number& a, const Number& b) noexcept {
-#if defined(HEXHEX_PLAIN_VECTORS)
-  return Number::choose(condition > 0.0, a, b);
-#else
-  return condition > 0 ? a : b;
-#endif
-}
-
 /// 1 / chi, where chi = (det + root) / 2 with root^2 = det^2 + epsilon^2.
 HEXHEX_INLINE Number inverseOfChi(double epsilon, const Number& det, const Number& root) noexcept {
   // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
-  return chosen(det, Number{} + 2, 2 * (root - det)) /
-         chosen(det, det + root, Number{} + epsilon * epsilon);
+  return wherePositive(det, Number{} + 2, 2 * (root - det)) /
+         wherePositive(det, det + root, Number{} + epsilon * epsilon);
 }
 
 HEXHEX_INLINE Number rootAt(double epsilon, const Number& det) noexcept {
@@ -174,11 +166,11 @@ HEXHEX_INLINE mesh::CellEdges<Number> edgesOf(const LaneCells& cells) noexcept {
 /// The term at the corner that `edge` connects with the moving one.
 HEXHEX_INLINE void besideTerm(const Number& scale, const Vector& edge, const Vector& b,
                               const Vector& c, TermLanes& term) noexcept {
-  const Vector cofactor = mesh::cross(b, c);
-  term.square = mesh::dot(edge, edge) + mesh::dot(b, b) + mesh::dot(c, c);
+  const Vector cofactor = cross(b, c);
+  term.square = dot(edge, edge) + dot(b, b) + dot(c, c);
   term.slope = scaled(-scale, edge);
   term.growth = scale * scale;
-  term.determinant = mesh::dot(edge, cofactor);
+  term.determinant = dot(edge, cofactor);
   term.normal = scaled(-scale, cofactor);
 }
 
@@ -187,14 +179,14 @@ HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* te
   const mesh::CellEdges<Number> edges = edgesOf(cells);
   const auto& [u, v, w] = edges;
   const Vector& s = cells.scale;
-  const Vector vw = mesh::cross(v[0], w[0]);
+  const Vector vw = cross(v[0], w[0]);
   TermLanes& at = terms[0];
-  at.square = mesh::dot(u[0], u[0]) + mesh::dot(v[0], v[0]) + mesh::dot(w[0], w[0]);
+  at.square = dot(u[0], u[0]) + dot(v[0], v[0]) + dot(w[0], w[0]);
   at.slope = Vector{} - scaled(s[0], u[0]) - scaled(s[1], v[0]) - scaled(s[2], w[0]);
-  at.growth = mesh::dot(s, s);
-  at.determinant = mesh::dot(u[0], vw);
-  at.normal = Vector{} - scaled(s[0], vw) - scaled(s[1], mesh::cross(w[0], u[0])) -
-              scaled(s[2], mesh::cross(u[0], v[0]));
+  at.growth = dot(s, s);
+  at.determinant = dot(u[0], vw);
+  at.normal = Vector{} - scaled(s[0], vw) - scaled(s[1], cross(w[0], u[0])) -
+              scaled(s[2], cross(u[0], v[0]));
   besideTerm(s[0], u[0], v[1], w[1], terms[1]);
   besideTerm(s[1], v[0], w[2], u[1], terms[2]);
   besideTerm(s[2], w[0], u[2], v[2], terms[3]);
@@ -254,26 +246,25 @@ HEXHEX_INLINE ByPlace<Number> determinantsOf(const mesh::CellEdges<Number>& edge
 HEXHEX_INLINE ByPlace<Vector> normalsOf(const mesh::CellEdges<Number>& edges,
                                         const Vector& s) noexcept {
   const auto& [u, v, w] = edges;
-  const Vector corner0 = scaled(s[0], mesh::cross(v[0], w[0])) +
-                         scaled(s[1], mesh::cross(w[0], u[0])) +
-                         scaled(s[2], mesh::cross(u[0], v[0]));
-  const Vector corner1 = scaled(s[0], mesh::cross(v[1], w[1]));
-  const Vector corner2 = scaled(s[1], mesh::cross(w[2], u[1]));
-  const Vector corner4 = scaled(s[2], mesh::cross(u[2], v[2]));
+  const Vector corner0 = scaled(s[0], cross(v[0], w[0])) + scaled(s[1], cross(w[0], u[0])) +
+                         scaled(s[2], cross(u[0], v[0]));
+  const Vector corner1 = scaled(s[0], cross(v[1], w[1]));
+  const Vector corner2 = scaled(s[1], cross(w[2], u[1]));
+  const Vector corner4 = scaled(s[2], cross(u[2], v[2]));
   // Twice those on edges.
-  const Vector u0 = scaled(s[0], mesh::cross(v[0], w[1]) + mesh::cross(v[1], w[0])) +
-                    scaled(s[1], mesh::cross(w[1], u[0])) + scaled(s[2], mesh::cross(u[0], v[1]));
-  const Vector v0 = scaled(s[0], mesh::cross(v[0], w[2])) +
-                    scaled(s[1], mesh::cross(w[2], u[0]) + mesh::cross(w[0], u[1])) +
-                    scaled(s[2], mesh::cross(u[1], v[0]));
-  const Vector w0 = scaled(s[0], mesh::cross(v[2], w[0])) + scaled(s[1], mesh::cross(w[0], u[2])) +
-                    scaled(s[2], mesh::cross(u[0], v[2]) + mesh::cross(u[2], v[0]));
-  const Vector u1 = scaled(s[1], mesh::cross(w[3], u[1]));
-  const Vector u2 = scaled(s[2], mesh::cross(u[2], v[3]));
-  const Vector v1 = scaled(s[0], mesh::cross(v[1], w[3]));
-  const Vector v2 = scaled(s[2], mesh::cross(u[3], v[2]));
-  const Vector w1 = scaled(s[0], mesh::cross(v[3], w[1]));
-  const Vector w2 = scaled(s[1], mesh::cross(w[2], u[3]));
+  const Vector u0 = scaled(s[0], cross(v[0], w[1]) + cross(v[1], w[0])) +
+                    scaled(s[1], cross(w[1], u[0])) + scaled(s[2], cross(u[0], v[1]));
+  const Vector v0 = scaled(s[0], cross(v[0], w[2])) +
+                    scaled(s[1], cross(w[2], u[0]) + cross(w[0], u[1])) +
+                    scaled(s[2], cross(u[1], v[0]));
+  const Vector w0 = scaled(s[0], cross(v[2], w[0])) + scaled(s[1], cross(w[0], u[2])) +
+                    scaled(s[2], cross(u[0], v[2]) + cross(u[2], v[0]));
+  const Vector u1 = scaled(s[1], cross(w[3], u[1]));
+  const Vector u2 = scaled(s[2], cross(u[2], v[3]));
+  const Vector v1 = scaled(s[0], cross(v[1], w[3]));
+  const Vector v2 = scaled(s[2], cross(u[3], v[2]));
+  const Vector w1 = scaled(s[0], cross(v[3], w[1]));
+  const Vector w2 = scaled(s[1], cross(w[2], u[3]));
   // Four times those on faces.
   const Vector front = u0 + u2 + w0 + w1 - corner0 - corner1 - corner4;
   const Vector back = u1 + w2 - corner2;
@@ -325,7 +316,7 @@ struct alignas(TermLanes) Column {
     constexpr std::array<double, 3> kWeights = {1, 0.5, 0};
     for (std::size_t i = 0; i < 9; ++i) {
       const Number weight = kWeights[i % 3] * kWeights[i / 3] * scale;
-      square[i] = mesh::dot(at[i], at[i]);
+      square[i] = dot(at[i], at[i]);
       slope[i] = scaled(weight, at[i]);
       growth[i] = weight * weight;
     }

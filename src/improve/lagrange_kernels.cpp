@@ -15,7 +15,7 @@ using curved::kCellLanes;
 using curved::LagrangeCells;
 using curved::LagrangeScratch;
 using Number = curved::CellNumber;
-using Vector = mesh::LaneVector<Number>;
+using Vector = LaneVector<Number>;
 using mesh::operator+;
 using mesh::scaled;
 static_assert(sizeof(Number) == sizeof(TermLanes::Number));
@@ -72,14 +72,14 @@ HEXHEX_INLINE void termsOf(const LagrangeGrid& grid, const MovingNode& moving,
                        const Number byU = cells.scale[0] * along[0].derivative[row[0]] * b * c;
                        const Number byV = cells.scale[1] * along[1].derivative[row[1]] * a * c;
                        const Number byW = cells.scale[2] * along[2].derivative[row[2]] * a * b;
-                       const Vector vw = mesh::cross(v, w);
+                       const Vector vw = cross(v, w);
                        TermLanes& term = *next++;
-                       term.square = mesh::dot(u, u) + mesh::dot(v, v) + mesh::dot(w, w);
+                       term.square = dot(u, u) + dot(v, v) + dot(w, w);
                        term.slope = scaled(byU, u) + scaled(byV, v) + scaled(byW, w);
                        term.growth = byU * byU + byV * byV + byW * byW;
-                       term.determinant = mesh::dot(u, vw);
-                       term.normal = scaled(byU, vw) + scaled(byV, mesh::cross(w, u)) +
-                                     scaled(byW, mesh::cross(u, v));
+                       term.determinant = dot(u, vw);
+                       term.normal =
+                           scaled(byU, vw) + scaled(byV, cross(w, u)) + scaled(byW, cross(u, v));
                        term.weight = cells.weight;
                      });
   if (grid.toBezier.rows == 0) return;
@@ -102,7 +102,7 @@ HEXHEX_INLINE std::array<double, kCellLanes> leastSharesOf(const LagrangeGrid& g
   std::size_t count = 0;
   curved::forColumns(grid.columns, cells, scratch,
                      [&](const auto& /*row*/, const Vector& u, const Vector& v, const Vector& w) {
-                       all.numbers[count++] = mesh::dot(u, mesh::cross(v, w));
+                       all.numbers[count++] = dot(u, cross(v, w));
                      });
   curved::convert(grid.toBezier, [&](std::size_t place) -> Number& { return all.numbers[place]; });
   struct alignas(TermLanes) {

@@ -21,10 +21,6 @@
 
 namespace hexhex::mesh {
 
-/// @tparam V  Lanes of double: a number for each cell
-template <class V>
-using LaneVector = std::array<V, 3>;
-
 template <class V>
 [[gnu::always_inline]] inline LaneVector<V> operator+(const LaneVector<V>& a,
                                                       const LaneVector<V>& b) noexcept {
@@ -40,16 +36,6 @@ template <class V>
                                                    const LaneVector<V>& a) noexcept {
   return {factor * a[0], factor * a[1], factor * a[2]};
 }
-template <class V>
-[[gnu::always_inline]] inline V dot(const LaneVector<V>& a, const LaneVector<V>& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class V>
-[[gnu::always_inline]] inline LaneVector<V> cross(const LaneVector<V>& a,
-                                                  const LaneVector<V>& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// Edges along the three axes, indexed by the other two coordinates of their place, the lower axis
 /// in bit 0.
 template <class V>

@@ -12,24 +12,7 @@ namespace hexhex::untangle {
 
 namespace {
 
-using LaneVector = std::array<Number, 3>;
-using LaneMatrix = std::array<LaneVector, 3>;  // rows
-
-HEXHEX_INLINE Number laneDot(const LaneVector& a, const LaneVector& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-HEXHEX_INLINE LaneVector laneCross(const LaneVector& a, const LaneVector& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-HEXHEX_INLINE Number chosen(const Number& condition, const Number& a, const Number& b) noexcept {
-#if defined(HEXHEX_PLAIN_VECTORS)
-  return Number::choose(condition > 0.0, a, b);
-#else
-  return condition > 0 ? a : b;
-#endif
-}
+using LaneMatrix = std::array<LaneVector<Number>, 3>;  // rows
 
 /// The cube root of 1 / x for positive x: a third of the exponent, right to 4 %, then Newton's
 /// method, each step of which doubles the number of right digits. (std::cbrt takes as long as a
@@ -60,16 +43,15 @@ HEXHEX_INLINE LaneMatrix jacobianOf(const ElementLanes& elements) noexcept {
 HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double pull,
                             ForceLanes& result) noexcept {
   const LaneMatrix j = jacobianOf(elements);
-  const LaneMatrix cofactors = {laneCross(j[1], j[2]), laneCross(j[2], j[0]),
-                                laneCross(j[0], j[1])};
-  const Number det = laneDot(j[0], cofactors[0]);
+  const LaneMatrix cofactors = {cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])};
+  const Number det = dot(j[0], cofactors[0]);
   const auto root = rootOf<Number>(epsilon * epsilon + det * det);
   // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
-  const Number chi = chosen(det, 0.5 * (det + root), Number{} + 0.5 * epsilon * epsilon) /
-                     chosen(det, Number{} + 1, root - det);
+  const Number chi = wherePositive(det, 0.5 * (det + root), Number{} + 0.5 * epsilon * epsilon) /
+                     wherePositive(det, Number{} + 1, root - det);
   const Number slope = 0.5 * (1 + det / root);
   const Number share = inverseCubeRoot(chi * chi);
-  const Number shape = (laneDot(j[0], j[0]) + laneDot(j[1], j[1]) + laneDot(j[2], j[2])) * share;
+  const Number shape = (dot(j[0], j[0]) + dot(j[1], j[1]) + dot(j[2], j[2])) * share;
   const Number volume = (det * det + 1) / chi;
   // The derivative along a change dJ is power (J : dJ) + along (cofactors : dJ).
   const Number power = 2 * share;
@@ -88,7 +70,7 @@ HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double
   result.energy = elements.weight * energy;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t i = 0; i < 3; ++i) {
-      result.forces[i + 1][row] = laneDot(byMatrix[row], elements.gradients[i]);
+      result.forces[i + 1][row] = dot(byMatrix[row], elements.gradients[i]);
     }
     result.forces[0][row] =
         -(result.forces[1][row] + result.forces[2][row] + result.forces[3][row]);
