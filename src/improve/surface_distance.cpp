@@ -166,8 +166,19 @@ void forSamples(const Quad& quad, const Visit& visit) {
   }
 }
 
-/// Vertices, midpoints of edges, and centres of boundary triangles: each once.
-std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
+/// The mean length of the edges of quads.
+double meanEdge(const Array<Vec3>& points, std::span<const Quad> quads) {
+  double sum = 0;
+  for (const Quad& quad : quads) {
+    for (std::size_t i = 0; i < 4; ++i)
+      sum += length(minus(points[quad[i]], points[quad[(i + 1) % 4]]));
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, 4 * quads.size()));
+}
+
+/// Vertices, points on edges, at most a quarter of a quad's edge apart, and centres of boundary
+/// triangles: each once. What the mesh misses of the surface, it misses most at vertices or edges.
+std::vector<Vec3> samplesOf(const ReferenceSurface& surface, double quadEdge) {
   std::vector<std::array<Index, 2>> edges;  // with equal vertices: that vertex
   std::vector<Vec3> samples;
   for (Index t = 0; t < surface.boundaryCount(); ++t) {
@@ -180,7 +191,11 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface) {
   }
   sortUnique(edges);
   for (const auto& [a, b] : edges) {
-    samples.push_back(between(surface.points()[a], surface.points()[b], 0.5));
+    const Vec3& start = surface.points()[a];
+    const Vec3& end = surface.points()[b];
+    if (a == b) samples.push_back(start);
+    const double parts = std::max(2.0, std::ceil(4 * length(minus(end, start)) / quadEdge));
+    for (double i = 1; i < parts && a != b; ++i) samples.push_back(between(start, end, i / parts));
   }
   return samples;
 }
@@ -282,7 +297,7 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
   distance.largest.fromMesh = largestOf(distance.ofQuads);
 
   const TriangleTree ofMesh = treeOf(points, quads);
-  const std::vector<Vec3> samples = samplesOf(surface);
+  const std::vector<Vec3> samples = samplesOf(surface, meanEdge(points, quads));
   std::vector<TriangleTree::Nearest> found(samples.size());
   parallelBlocks(stage, samples.size(), kSurfaceDistanceGrain,
                  [&, enough = enough](std::size_t begin, std::size_t end, std::size_t /*block*/) {

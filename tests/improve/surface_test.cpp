@@ -112,6 +112,32 @@ TEST(Surface, DistancesSeeARidgeBesideTheCentreOfAQuad) {
   EXPECT_NEAR(found.fromMesh, kHeight / std::hypot(1, kHeight / 0.25), 1e-12);  // to the steep side
 }
 
+/// A strip of four quads under two long triangles, with a dent beside the middles of their edges.
+TEST(Surface, DistancesSeeADentBelowTheEdgeOfALongTriangle) {
+  constexpr double kDepth = 0.1;
+  constexpr double kWidth = 0.25;
+  SurfaceParts parts;
+  parts.points = {{0, 0, 0}, {kWidth, 0, 0}, {kWidth, 1, 0}, {0, 1, 0}};
+  parts.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}};
+  parts.boundaryTriangles = parts.triangles.size();
+  Context context(1);
+  Stage stage(context, "test");
+  const ReferenceSurface surface(std::move(parts), stage);
+  Array<Vec3> points;
+  std::vector<Quad> quads;
+  for (Index i = 0; i < 5; ++i) {
+    const double y = 0.25 * i;
+    const double z = i == 1 ? -kDepth : 0;
+    points.push_back({0, y, z});
+    points.push_back({kWidth, y, z});
+    if (i > 0) quads.push_back({2 * i - 2, 2 * i - 1, 2 * i + 1, 2 * i});
+  }
+  const SurfaceDistance found =
+      distanceBetween(points, quads, surface, treeOf(surface), 1, stage).largest;
+  EXPECT_NEAR(found.fromSurface, kDepth / std::hypot(1, kDepth / 0.25), 1e-12);
+  EXPECT_NEAR(found.fromMesh, kDepth, 1e-12);
+}
+
 /// Short chains are what bad cells make, unless they end at vertices with tags.
 TEST(Surface, AVertexThatSticksOutIsNoCornerAtABadCell) {
   HexMesh mesh = hexhex::testing::gridMesh(6);
