@@ -129,6 +129,10 @@ struct WriteOptions {
 
   /// Name of the cell array that holds a map in `.vtu` and `.vtk` files; must not be empty.
   std::string_view mapArray = "igm";
+
+  /// Type of the elements of straight cells in `.inp` files: C3D8 (if empty), C3D8R or C3D8I.
+  /// Anything but empty is an error for other formats.
+  std::string_view elementType = {};
 };
 
 /// Writes a map: `.hexex`, `.ovm`, `.ovmb`, and as a cell array `.vtu`, `.vtk`. Numbers in text

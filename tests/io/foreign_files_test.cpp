@@ -17,8 +17,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/summary.hpp>
 
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf5_library.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/netcdf.hpp>
 #include <io/io_test_support.hpp>
@@ -478,6 +478,134 @@ TEST(ForeignFiles, CubeOf20NodesInAUniversalFile) {
   writeText(folder / "a.unv", unvOf(nodes, cell + '\n', ""));
   ASSERT_TRUE(holdsLagrangeCells(folder / "a.unv", context));
   expectCubeOfOrder2(readLagrangeMesh(folder / "a.unv", context));
+}
+
+const std::string kMfemHead = "MFEM mesh v1.3\n# by hand\n\ndimension\n3\n\nelements\n";
+const std::string kMfemCube = "5 5 0 1 2 3 4 5 6 7\n";
+const std::string kMfemQuads =
+    "attribute_sets\n2\n\"a solid\" 1 5\n\"all\" 2 5 6\n\nboundary\n2\n7 3 0 1 2 3\n1 2 0 1 5\n"
+    "bdr_attribute_sets\n1\n\"bottom\" 1 7\n";
+const std::string kMfemVertices =
+    "vertices\n8\n3\n" + listed({kCorners.begin(), kCorners.end()}, false);
+
+HexMesh mfem(const std::string& text) {
+  Context context;
+  return readBytes<readMedit>(text, "m.mesh", context);
+}
+
+TEST(ForeignFiles, MeshesOfMfem) {
+  const std::string good = kMfemHead + "1\n" + kMfemCube + kMfemQuads + kMfemVertices;
+  const HexMesh mesh = mfem(good);
+  EXPECT_EQ(mesh.cells, Array<Hex>{kCell});
+  EXPECT_EQ(mesh.points[6], (Vec3{2, 2, 2}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{5}));
+  ASSERT_EQ(mesh.features.quads.size(), 1U);
+  EXPECT_EQ(mesh.features.quads[0].vertices, (Quad{0, 1, 2, 3}));
+  EXPECT_EQ(mesh.features.quads[0].tag, 7);
+  ASSERT_EQ(mesh.features.names.size(), 2U);
+  EXPECT_EQ(mesh.features.names[0].name, "a solid");
+  EXPECT_EQ(mesh.features.names[0].tag, 5);
+  EXPECT_EQ(mesh.features.names[1].name, "bottom");
+  EXPECT_EQ(mesh.features.names[1].dimension, 2);
+  // Attributes that are all 1 say nothing.
+  const HexMesh plain = mfem(replaced(replaced(replaced(good, "5 5 0", "1 5 0"), "7 3 0", "1 3 0"),
+                                      "dimension", "# x\ndimension"));
+  EXPECT_TRUE(plain.regions.empty());
+  EXPECT_TRUE(plain.features.quads.empty());
+  const auto expectFailure = [](const std::string& text, ErrorCode code, const std::string& part) {
+    expectFailureOf(mfem, text, code, part);
+  };
+  expectFailure(replaced(good, "5 6 7\n", "5 6 8\n"), ErrorCode::IndexOutOfRange, "names vertex 8");
+  expectFailure(replaced(good, "5 6 7\n", "5 6 -7\n"), ErrorCode::IndexOutOfRange, "vertex -7");
+  expectFailure(replaced(good, "5 5 0", "5 9 0"), ErrorCode::FileSyntax,
+                "line 8: there is no geometry 9");
+  expectFailure(replaced(good, "5 5 0 1 2 3 4 5 6 7", "5 7 0 1 2 3 4"), ErrorCode::FileUnsupported,
+                "it holds 1 pyramid");
+  expectFailure(replaced(good, "\n3\n\nelem", "\n2\n\nelem"), ErrorCode::FileUnsupported,
+                "dimension");
+  expectFailure(replaced(good, "mesh v1.3", "NURBS mesh v1.0"), ErrorCode::FileUnsupported,
+                "NURBS");
+  expectFailure(replaced(good, "vertices\n8", "vertices\n800"), ErrorCode::FileSyntax, "800");
+  expectFailure(replaced(good, "vertices", "vortices"), ErrorCode::FileSyntax, "\"vortices\"");
+  expectFailure(good + "boundary\n0\n", ErrorCode::FileSyntax, "out of order");
+  expectFailure(good.substr(0, good.find("vertices")), ErrorCode::FileSyntax, "\"vertices\"");
+}
+
+/// A mesh of MFEM with nodes.
+std::string mfemWithNodes(const std::string& cells, const std::string& space,
+                          const std::vector<Vec3>& nodes, std::size_t vertices) {
+  return kMfemHead + cells + "boundary\n0\nvertices\n" + std::to_string(vertices) +
+         "\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: " + space +
+         "\nVDim: 3\nOrdering: 1\n\n" + listed(nodes, false);
+}
+
+TEST(ForeignFiles, NodesOfMfem) {
+  Context context;
+  std::vector<Vec3> nodes = cubeOf20({kBottom, kTop, kUpright});
+  for (const Vec3& node : {Vec3{1, 1, 0}, Vec3{1, 0, 1}, Vec3{2, 1, 1}, Vec3{1, 2, 1},
+                           Vec3{0, 1, 1}, Vec3{1, 1, 2}, Vec3{1, 1, 1}}) {
+    nodes.push_back(node);
+  }
+  const std::string one = "1\n" + kMfemCube;
+  const std::string curved = mfemWithNodes(one, "H1_3D_P2", nodes, 8);
+  expectCubeOfOrder2(readBytes<MfemFormat::readCurved>(curved, "m.mesh", context));
+  EXPECT_TRUE(readBytes<MfemFormat::holdsCurved>(curved, "m.mesh", context));
+  const std::vector<Vec3> corners(kCorners.begin(), kCorners.end());
+  for (const std::string space : {"Linear", "H1_3D_P1"}) {
+    EXPECT_EQ(mfem(mfemWithNodes(one, space, corners, 8)).points[6], (Vec3{2, 2, 2}));
+  }
+  // Two cells that meet, each with nodes of its own; and two that do not, as in periodic meshes.
+  std::vector<Vec3> rows;
+  for (const double x : {0.0, 1.0}) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      rows.push_back({x + static_cast<double>(i % 2), static_cast<double>(i / 2 % 2),
+                      static_cast<double>(i / 4)});
+    }
+  }
+  const std::string two = "2\n1 5 0 1 2 3 4 5 6 7\n1 5 1 8 9 2 5 10 11 6\n";
+  const HexMesh mesh = mfem(mfemWithNodes(two, "L2_T1_3D_P1", rows, 12));
+  EXPECT_EQ(mesh.points[9], (Vec3{2, 1, 0}));
+  EXPECT_EQ(mesh.points[2], (Vec3{1, 1, 0}));
+  rows[8][0] = 0.5;
+  expectFailureOf(mfem, mfemWithNodes(two, "L2_T1_3D_P1", rows, 12), ErrorCode::FileUnsupported,
+                  "periodic");
+  expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P3", nodes, 8), ErrorCode::FileUnsupported,
+                  "\"H1_3D_P3\"");
+  nodes.pop_back();
+  expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P2", nodes, 8), ErrorCode::FileSyntax, "27");
+  expectFailureOf(mfem, mfemWithNodes("1\n1 6 0 1 2 3 4 5\n", "H1_3D_P2", nodes, 6),
+                  ErrorCode::FileUnsupported, "a file of their own");
+}
+
+TEST(ForeignFiles, SectionsOfMeditThatGoOn) {
+  const std::string nodes =
+      "MeshVersionFormatted 2\nDimension 3\nVertices 8\n0 0 0 0\n1 0 0 0\n1 1 0 0\n"
+      "0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 1 0\n0 1 1 0\n";
+  const std::string cell = "Hexahedra\n1\n1 2 3 4 5 6 7 8 1\n";
+  EXPECT_EQ(mfem(nodes + cell + "End").cells.size(), 1U);
+  EXPECT_EQ(mfem(nodes + cell).cells.size(), 1U);
+  // Gmsh writes cells of order 2 so.
+  expectFailureOf(mfem, nodes + replaced(cell, " 8 1", " 8 2 3 4 1") + "End", ErrorCode::FileSyntax,
+                  "line 14: the section goes on with \"3\" after the hexahedra");
+}
+
+TEST(ForeignFiles, ElementTypesOfAbaqus) {
+  const TemporaryFolder folder;
+  Context context;
+  const HexMesh mesh = gridMesh(2, 1, 1);
+  WriteOptions options;
+  for (const char* const type : {"C3D8", "C3D8R", "C3D8I"}) {
+    options.elementType = type;
+    writeHexMesh(mesh, folder / "a.inp", options, context);
+    EXPECT_NE(contentOf(folder / "a.inp").find(concat("*ELEMENT, TYPE=", type, ", ELSET")),
+              std::string::npos);
+    EXPECT_EQ(readHexMesh(folder / "a.inp").cells, mesh.cells);
+  }
+  EXPECT_EQ(failureOf([&] { writeHexMesh(mesh, folder / "a.vtu", options, context); }).code,
+            ErrorCode::FileUnsupported);
+  options.elementType = "C3D6";
+  EXPECT_EQ(failureOf([&] { writeHexMesh(mesh, folder / "b.inp", options, context); }).code,
+            ErrorCode::FileUnsupported);
 }
 
 TEST(ForeignFiles, TetsOfTetgen) {

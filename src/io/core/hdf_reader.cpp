@@ -7,7 +7,7 @@
 #include <base/concat.hpp>
 #include <io/core/hdf_file.hpp>
 #include <io/core/hdf_reader.hpp>
-#include <io/core/zlib_blocks.hpp>
+#include <io/core/compressed_blocks.hpp>
 
 namespace hexhex::io {
 

@@ -11,9 +11,9 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/surface/surface.hpp>
 
 namespace hexhex::io {
@@ -62,8 +62,12 @@ constexpr std::array kFormatTable = {
            .readTets = readHexexTets},
     // Before "mesh": .mesh files of higher order are MFEM's.
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
-           .meshes = {.write = writeMfem},
-           .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
+           .readTets = MfemFormat::readTets,
+           .meshes = {MfemFormat::readMesh, writeMfem},
+           .curved = {.isIn = MfemFormat::holdsCurved,
+                      .read = MfemFormat::readCurved,
+                      .write = writeLagrangeMfem,
+                      .extension = ".mesh"},
            .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
     Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
            .readTets = readMeditTets,
@@ -158,7 +162,7 @@ constexpr std::array kFormatTable = {
            .readTets = readTetgen},
     Format{
         .label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
-        .meshes = {.writeFolder = writeOpenFoam},
+        .meshes = {.read = readOpenFoam, .writeFolder = writeOpenFoam},
         .parts = {openOpenFoamPartSink, "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"}},
     Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
            .readTets = kOverHdf5<readVtkHdfTets>,

@@ -646,8 +646,12 @@ struct QuadraticCells {
 
 class AbaqusWriter {
  public:
-  AbaqusWriter(OutputFile& output, Stage& stage)
-      : output_(output), lines_(output, stage.context().threads()), stage_(stage) {}
+  /// @param elementType  "C3D8R"
+  AbaqusWriter(std::string_view elementType, OutputFile& output, Stage& stage)
+      : elementType_(elementType),
+        output_(output),
+        lines_(output, stage.context().threads()),
+        stage_(stage) {}
 
   /// @param middles  midpoint nodes of edges, ascending; empty for straight cells
   template <class Cells>
@@ -684,7 +688,7 @@ class AbaqusWriter {
   void writeElements(const Cells& cells) {
     constexpr std::size_t kNodes = std::tuple_size_v<typename Cells::value_type>;
     LoopProgress progress(stage_, cells.size());
-    output_.write("*ELEMENT, TYPE=C3D").write(kNodes).write(", ELSET=HEXAHEDRA\n");
+    output_.write("*ELEMENT, TYPE=").write(elementType_).write(", ELSET=HEXAHEDRA\n");
     const auto cell = [&cells](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
       for (std::size_t k = 0; k < kNodes; ++k) {
@@ -745,6 +749,7 @@ class AbaqusWriter {
     lines_.write(count, kNumberRoom + 5, face, nullptr);
   }
 
+  std::string_view elementType_;
   OutputFile& output_;
   LineWriter lines_;
   Stage& stage_;
@@ -755,14 +760,15 @@ class AbaqusWriter {
 void writeAbaqus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                  Stage& stage) {
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  AbaqusWriter(output, stage).write(mesh.points, mesh.cells, groups, {});
+  const std::string_view type = options.elementType.empty() ? "C3D8" : options.elementType;
+  AbaqusWriter(type, output, stage).write(mesh.points, mesh.cells, groups, {});
 }
 
 void writeQuadraticAbaqus(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                           Stage& stage) {
   const MeshGroups groups(straightMesh(mesh), options.patchAngle, stage);
   const QuadraticCells cells(mesh);
-  AbaqusWriter(output, stage).write(cells.points, cells.cells, groups, cells.middles);
+  AbaqusWriter("C3D20", output, stage).write(cells.points, cells.cells, groups, cells.middles);
 }
 
 }  // namespace hexhex::io

@@ -350,9 +350,17 @@ using CgnsFormat = ElementFormat<readCgns>;
 /// from 1 on, as solutions. No ghosts.
 OpenPartSink openCgnsPartSink;
 
-// MFEM mesh v1.0, text; selected by format name only, since MFEM's files have the extension of
-// MEDIT's. Writes cells (attribute: their region, or 1), boundary quads and tagged interior quads
-// (attribute: the number of their group), and vertices.
+// MFEM mesh v1.0, text. Its files have the extension of MEDIT's, whose readers recognize them; to
+// be written, the format is selected by name. Writes cells (attribute: their region, or 1),
+// boundary quads and tagged interior quads (attribute: the number of their group), and vertices.
+//
+// Reads conforming meshes, v1.0 to 1.3. Attributes are regions and tags unless all are 1; those
+// with a set of their own have its name. Nodes of order 1 are vertices; with nodes of order 2,
+// cells are curved. Other orders, periodic meshes, and nodes of other cells are refused.
+[[nodiscard]] ElementLists readMfem(const Input& input, ElementParts parts, Stage& stage);
+using MfemFormat = ElementFormat<readMfem>;
+/// Whether a regular file, or bytes, begin as MFEM's meshes do.
+[[nodiscard]] bool isMfem(const Input& input);
 WriteMesh writeMfem;
 /// Nodes as a grid function in L2 with closed equidistant nodes, listed cell by cell.
 WriteCurved writeLagrangeMfem;
@@ -368,6 +376,10 @@ OpenPartSink openMfemPartSink;
 // The file is `CASE/X.foam`, written empty for ParaView, next to `CASE/constant/polyMesh`; or the
 // folder `polyMesh` itself. Folders are created. `polyMesh` is replaced atomically; its other
 // contents are kept.
+//
+// Reads text files, plain or compressed. Patches are tags and cell zones regions, numbered as they
+// come unless this library named them.
+ReadMesh readOpenFoam;
 WriteFolder writeOpenFoam;
 /// A decomposed case, beside NAME.foam or in the named folder: for each part
 /// `processorK/constant/polyMesh`, with processor patches and the addresses of points, cells, faces

@@ -22,6 +22,7 @@
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
@@ -188,8 +189,7 @@ class MeditText {
     if (scanner_.readToken() != "MeshVersionFormatted") {
       if (scanner_.currentToken() == "MFEM") {
         scanner_.fail(ErrorCode::FileUnsupported,
-                      "this is a mesh of MFEM, which is written, but not read. Save it as .vtk "
-                      "(Mesh::PrintVTK).");
+                      "this is a mesh of MFEM, which is read from files only, not from pipes.");
       }
       scanner_.fail(ErrorCode::FileSyntax,
                     "a MEDIT file begins with \"MeshVersionFormatted\", found ",
@@ -226,6 +226,15 @@ class MeditText {
   static void beginElement(TextSource& record, std::size_t i, std::size_t count,
                            std::string_view what) {
     record.failIfAtEnd(i, count, what);
+  }
+  /// Refuses sections whose elements have more numbers, such as Gmsh's of order 2.
+  void endSection(std::string_view what) {
+    const std::string_view next = scanner_.peekToken();
+    if (next.empty() || (next[0] > '9') || next[0] == '#') return;
+    static_cast<void>(scanner_.readToken());
+    scanner_.fail(ErrorCode::FileSyntax, "the section goes on with ", quoted(next), " after the ",
+                  what,
+                  " that it announces. If these have more nodes, save them in another format.");
   }
   [[nodiscard]] static double coordinate(TextSource& record, std::size_t i) {
     return record.real({"a coordinate of ", "vertex", i + 1});
@@ -327,6 +336,7 @@ class MeditBytes {
 
   static void beginElement(BinaryRecord& /*record*/, std::size_t /*i*/, std::size_t /*count*/,
                            std::string_view /*what*/) {}
+  void endSection(std::string_view /*what*/) const {}
   [[nodiscard]] double coordinate(BinaryRecord& record, std::size_t /*i*/) const {
     const char* const what = "a coordinate of a vertex";
     return version_ == 1 ? record.shortReal(what) : record.real(what);
@@ -440,6 +450,7 @@ class MeditReader {
       for (double& coordinate : mesh_.points[i]) coordinate = encoding_.coordinate(record, i);
     };
     references_ = readReferenced(mesh_.points.size(), 0, 3, "the reference of a vertex", read);
+    encoding_.endSection("vertices");
   }
 
   void readCorners() {
@@ -494,6 +505,7 @@ class MeditReader {
       for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kKind, i, 0);
     };
     mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, "the reference of a cell", read);
+    encoding_.endSection(kKind.plural);
   }
 
   /// Reads edges or quads with their references as tags; drops those with reference 0.
@@ -515,6 +527,7 @@ class MeditReader {
       features[i].tag = static_cast<std::int32_t>(reference);
       seen.add(reference);
     });
+    encoding_.endSection(elements.plural);
     std::erase_if(features, [](const Feature& feature) { return feature.tag == 0; });
     return seen.saySomething();
   }
@@ -683,7 +696,10 @@ class FirstHexahedra {
 
 }  // namespace
 
+bool isMfem(const Input& input) { return firstBytes(input).starts_with("MFEM "); }
+
 HexMesh readMedit(const Input& input, Stage& stage) {
+  if (isMfem(input)) return MfemFormat::readMesh(input, stage);
   return readWith<MeditReader<MeditText, 8>>(input, stage, input.counts());
 }
 
@@ -692,6 +708,7 @@ HexMesh readMeshb(const Input& input, Stage& stage) {
 }
 
 TetCells readMeditTets(const Input& input, Stage& stage) {
+  if (isMfem(input)) return MfemFormat::readTets(input, stage);
   return readWith<MeditReader<MeditText, 4>>(input, stage, input.counts());
 }
 
@@ -700,6 +717,7 @@ TetCells readMeshbTets(const Input& input, Stage& stage) {
 }
 
 bool holdsQuadraticMedit(const Input& input, Stage& stage) {
+  if (isMfem(input)) return MfemFormat::holdsCurved(input, stage);
   return readWith<FirstHexahedra<MeditText>>(input, stage);
 }
 
@@ -708,6 +726,7 @@ bool holdsQuadraticMeshb(const Input& input, Stage& stage) {
 }
 
 LagrangeMesh readQuadraticMedit(const Input& input, Stage& stage) {
+  if (isMfem(input)) return MfemFormat::readCurved(input, stage);
   return readWith<QuadraticMeditReader<MeditText>>(input, stage, input.counts());
 }
 
