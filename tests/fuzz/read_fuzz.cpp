@@ -159,10 +159,10 @@ struct Reader {
 
 constexpr std::array kReaders = {
     Reader{"hexex", read<parse<readHexex>>},
-    Reader{"mesh", read<parse<readMedit>>},
-    Reader{"mesh-tets", read<parse<readMeditTets>>},
-    Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
-    Reader{"meshb-tets", read<parse<readMeshbTets>>, fuzz::changeMeshb},
+    Reader{"mesh", read<parse<Medit::readMesh>>},
+    Reader{"mesh-tets", read<parse<Medit::readTets>>},
+    Reader{"meshb", read<parse<Meshb::readMesh>>, fuzz::changeMeshb},
+    Reader{"meshb-tets", read<parse<Meshb::readTets>>, fuzz::changeMeshb},
     Reader{"msh", read<parse<GmshFormat::readMesh>>},
     Reader{"msh-tets", read<parse<GmshFormat::readTets>>},
     Reader{"msh-curved", read<parse<GmshFormat::readCurved>>},

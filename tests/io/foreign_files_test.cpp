@@ -490,7 +490,7 @@ const std::string kMfemVertices =
 
 HexMesh mfem(const std::string& text) {
   Context context;
-  return readBytes<readMedit>(text, "m.mesh", context);
+  return readBytes<Medit::readMesh>(text, "m.mesh", context);
 }
 
 TEST(ForeignFiles, MeshesOfMfem) {

@@ -19,7 +19,7 @@ namespace {
 
 HexMesh mesh(const std::string& text) {
   Context context;
-  return readBytes<readMedit>(text, "m.mesh", context);
+  return readBytes<Medit::readMesh>(text, "m.mesh", context);
 }
 
 HexMesh vtu(const std::string& text) {

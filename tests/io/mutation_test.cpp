@@ -126,7 +126,7 @@ TEST(DamagedFiles, Hexex) {
 TEST(DamagedFiles, Medit) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(2, 2, 1), folder / "a.mesh");
-  damage(contentOf(folder / "a.mesh"), parse<readMedit>);
+  damage(contentOf(folder / "a.mesh"), parse<Medit::readMesh>);
 }
 
 TEST(DamagedFiles, Vtu) {
@@ -156,7 +156,7 @@ TEST(DamagedFiles, Meshb) {
     writeBy(folder / "a.meshb", context, [&](OutputFile& output, Stage& stage) {
       writeMeshbVersion(gridMesh(2, 2, 1), output, version, stage);
     });
-    damage(contentOf(folder / "a.meshb"), parse<readMeshb>);
+    damage(contentOf(folder / "a.meshb"), parse<Meshb::readMesh>);
   }
 }
 

@@ -49,6 +49,20 @@ constexpr Format exodusFormat(std::string_view name, std::string_view extension,
           .parts = {openExodusPartSink, parts}};
 }
 
+template <bool binary>
+constexpr Format meditFormat(std::string_view name, std::string_view extension,
+                             std::string_view description) {
+  using Medit = MeditFormat<binary>;
+  return {.label = {name, extension, description},
+          .readTets = Medit::readTets,
+          .meshes = {Medit::readMesh, Medit::write},
+          .curved = {.isIn = Medit::holdsCurved,
+                     .read = Medit::readCurved,
+                     .write = Medit::writeCurved,
+                     .onlyOrder = 2},
+          .pieces = {Medit::openSink, Medit::readTo}};
+}
+
 constexpr Format vtkGridFormat(std::string_view name, std::string_view extension,
                                std::string_view description) {
   return {.label = {name, extension, description},
@@ -69,22 +83,8 @@ constexpr std::array kFormatTable = {
                       .write = writeLagrangeMfem,
                       .extension = ".mesh"},
            .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
-    Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
-           .readTets = readMeditTets,
-           .meshes = {readMedit, writeMedit},
-           .curved = {.isIn = holdsQuadraticMedit,
-                      .read = readQuadraticMedit,
-                      .write = writeQuadraticMedit,
-                      .onlyOrder = 2},
-           .pieces = {openMeditSink, readMeditTo}},
-    Format{.label = {"meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"},
-           .readTets = readMeshbTets,
-           .meshes = {readMeshb, writeMeshb},
-           .curved = {.isIn = holdsQuadraticMeshb,
-                      .read = readQuadraticMeshb,
-                      .write = writeQuadraticMeshb,
-                      .onlyOrder = 2},
-           .pieces = {openMeshbSink, readMeshbTo}},
+    meditFormat<false>("mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"),
+    meditFormat<true>("meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"),
     Format{.label = {"vtu", ".vtu", "VTK XML unstructured grid, binary"},
            .maps = {readVtuMap, writeVtuMap},
            .readTets = readVtuTets,

@@ -86,33 +86,35 @@ WriteMap writeHexex;
 // tagged, 1 for all boundary quads and cells. Other programs do likewise, so references become tags
 // and regions on reading unless all are 0 or all are 1; vertices are tagged where the file lists
 // them as corners.
-ReadMesh readMedit;
-ReadTets readMeditTets;
-/// Writes sections Vertices, Quadrilaterals (the boundary, facing outwards, and tagged quads) and
-/// Hexahedra. Tagged edges are left out: viewers that read only what they display fail on the
-/// section.
-WriteMesh writeMedit;
-/// Versions 1 to 4, in native byte order. Buffers only a few kilobytes of the file.
-ReadMesh readMeshb;
-ReadTets readMeshbTets;
-/// The same sections, and tagged edges. Writes the lowest version that can hold the file: 2 below
-/// 2^31 bytes, 3 (64-bit positions) above, 4 (all integers 64-bit) from 2^31 vertices or elements
-/// on.
-WriteMesh writeMeshb;
+//
+// Writes sections Vertices, Quadrilaterals (the boundary, facing outwards, and tagged quads) and
+// Hexahedra, and in binary files tagged edges: viewers that read only what they display fail on
+// this section of text. Binary files have the lowest version that can hold the mesh: 2 below 2^31
+// bytes, 3 (64-bit positions) above, 4 (all integers 64-bit) from 2^31 vertices or elements on; 1
+// to 4 are read, in native byte order.
+//
+// Of order 2 only: HexahedraQ2, in the order of HexahedraQ2Ordering, else in that of libMeshb, with
+// QuadrilateralsQ2 and, in binary files, EdgesP2; if they come before straight hexahedra.
+template <bool binary>
+struct MeditFormat {
+  static ReadMesh readMesh;
+  static ReadTets readTets;
+  static HoldsCurved holdsCurved;
+  static ReadCurved readCurved;
+  /// Streams regular files with one section of vertices before one of hexahedra, without comments;
+  /// loads others as a whole.
+  static ReadPieces readTo;
+  static WriteMesh write;
+  static WriteCurved writeCurved;
+  /// Without a boundary.
+  static OpenSink openSink;
+};
+using Medit = MeditFormat<false>;
+using Meshb = MeditFormat<true>;
 /// Writes a given version, 2 to 4, which must be able to hold the mesh. For tests: meshes that
 /// require a higher version are too large for them.
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                        Stage& stage);
-/// Order 2 only: HexahedraQ2, in the order of HexahedraQ2Ordering, else in that of libMeshb, with
-/// QuadrilateralsQ2 and, in `.meshb`, EdgesP2; if they come before straight hexahedra.
-HoldsCurved holdsQuadraticMedit, holdsQuadraticMeshb;
-ReadCurved readQuadraticMedit, readQuadraticMeshb;
-WriteCurved writeQuadraticMedit, writeQuadraticMeshb;
-/// Streams files with one section Vertices followed by one section Hexahedra, without comments;
-/// loads others as a whole.
-ReadPieces readMeditTo, readMeshbTo;
-/// Vertices and hexahedra only: the boundary is not known before the last cell.
-OpenSink openMeditSink, openMeshbSink;
 
 // `.vtu`: VTK's XML format for unstructured grids. Reads appended data (raw or base64), inline
 // base64 or ascii, and zlib compression if built with zlib. Writes appended raw data, which

@@ -698,42 +698,6 @@ class FirstHexahedra {
 
 bool isMfem(const Input& input) { return firstBytes(input).starts_with("MFEM "); }
 
-HexMesh readMedit(const Input& input, Stage& stage) {
-  if (isMfem(input)) return MfemFormat::readMesh(input, stage);
-  return readWith<MeditReader<MeditText, 8>>(input, stage, input.counts());
-}
-
-HexMesh readMeshb(const Input& input, Stage& stage) {
-  return readWith<MeditReader<MeditBytes, 8>>(input, stage, input.counts());
-}
-
-TetCells readMeditTets(const Input& input, Stage& stage) {
-  if (isMfem(input)) return MfemFormat::readTets(input, stage);
-  return readWith<MeditReader<MeditText, 4>>(input, stage, input.counts());
-}
-
-TetCells readMeshbTets(const Input& input, Stage& stage) {
-  return readWith<MeditReader<MeditBytes, 4>>(input, stage, input.counts());
-}
-
-bool holdsQuadraticMedit(const Input& input, Stage& stage) {
-  if (isMfem(input)) return MfemFormat::holdsCurved(input, stage);
-  return readWith<FirstHexahedra<MeditText>>(input, stage);
-}
-
-bool holdsQuadraticMeshb(const Input& input, Stage& stage) {
-  return readWith<FirstHexahedra<MeditBytes>>(input, stage);
-}
-
-LagrangeMesh readQuadraticMedit(const Input& input, Stage& stage) {
-  if (isMfem(input)) return MfemFormat::readCurved(input, stage);
-  return readWith<QuadraticMeditReader<MeditText>>(input, stage, input.counts());
-}
-
-LagrangeMesh readQuadraticMeshb(const Input& input, Stage& stage) {
-  return readWith<QuadraticMeditReader<MeditBytes>>(input, stage, input.counts());
-}
-
 namespace {
 
 // Streaming.
@@ -801,18 +765,6 @@ std::optional<PlainLayout> lookAtBytes(const ByteFile& file, Context& context) {
   if (!layout.isComplete()) return {};
   return layout;
 }
-
-}  // namespace
-
-void readMeditTo(MeshSink& sink, const Input& input, Context& context) {
-  readPlainMesh({lookAtText, readMedit}, sink, input, context);
-}
-
-void readMeshbTo(MeshSink& sink, const Input& input, Context& context) {
-  readPlainMesh({lookAtBytes, readMeshb}, sink, input, context);
-}
-
-namespace {
 
 // Writing. A mesh in memory is written as a stream of one piece, with groups.
 
@@ -1069,39 +1021,66 @@ void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOpt
              std::span<const Hex27>(cells), groups, 0, stage);
 }
 
+template <bool binary>
+using Reading = std::conditional_t<binary, MeditBytes, MeditText>;
+template <bool binary>
+using Writing = std::conditional_t<binary, MeditRecords, MeditLines>;
+
 }  // namespace
 
-void writeMedit(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                Stage& stage) {
-  writeWhole<MeditLines>(mesh, output, 0, options, stage);
+template <bool binary>
+HexMesh MeditFormat<binary>::readMesh(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::readMesh(input, stage);
+  return readWith<MeditReader<Reading<binary>, 8>>(input, stage, input.counts());
 }
 
-void writeMeshb(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                Stage& stage) {
-  writeWhole<MeditRecords>(mesh, output, 0, options, stage);
+template <bool binary>
+TetCells MeditFormat<binary>::readTets(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::readTets(input, stage);
+  return readWith<MeditReader<Reading<binary>, 4>>(input, stage, input.counts());
 }
 
-void writeQuadraticMedit(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
-                         Stage& stage) {
-  writeQuadratic<MeditLines>(mesh, output, options, stage);
+template <bool binary>
+bool MeditFormat<binary>::holdsCurved(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::holdsCurved(input, stage);
+  return readWith<FirstHexahedra<Reading<binary>>>(input, stage);
 }
 
-void writeQuadraticMeshb(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
-                         Stage& stage) {
-  writeQuadratic<MeditRecords>(mesh, output, options, stage);
+template <bool binary>
+LagrangeMesh MeditFormat<binary>::readCurved(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::readCurved(input, stage);
+  return readWith<QuadraticMeditReader<Reading<binary>>>(input, stage, input.counts());
 }
+
+template <bool binary>
+void MeditFormat<binary>::readTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({binary ? lookAtBytes : lookAtText, readMesh}, sink, input, context);
+}
+
+template <bool binary>
+void MeditFormat<binary>::write(const HexMesh& mesh, OutputFile& output,
+                                const WriteOptions& options, Stage& stage) {
+  writeWhole<Writing<binary>>(mesh, output, 0, options, stage);
+}
+
+template <bool binary>
+void MeditFormat<binary>::writeCurved(const LagrangeMesh& mesh, OutputFile& output,
+                                      const WriteOptions& options, Stage& stage) {
+  writeQuadratic<Writing<binary>>(mesh, output, options, stage);
+}
+
+template <bool binary>
+std::unique_ptr<MeshSink> MeditFormat<binary>::openSink(const std::filesystem::path& file,
+                                                        Context& context) {
+  return openWriterSink<MeditWriter<Writing<binary>>>(file, context);
+}
+
+template struct MeditFormat<false>;
+template struct MeditFormat<true>;
 
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                        Stage& stage) {
   writeWhole<MeditRecords>(mesh, output, version, {}, stage);
-}
-
-std::unique_ptr<MeshSink> openMeditSink(const std::filesystem::path& file, Context& context) {
-  return openWriterSink<MeditWriter<MeditLines>>(file, context);
-}
-
-std::unique_ptr<MeshSink> openMeshbSink(const std::filesystem::path& file, Context& context) {
-  return openWriterSink<MeditWriter<MeditRecords>>(file, context);
 }
 
 }  // namespace hexhex::io
