@@ -237,6 +237,21 @@ TEST(ForeignFiles, AbaqusByOtherPrograms) {
   EXPECT_EQ(mesh.features.vertices[0].vertex, 11U);
 }
 
+TEST(ForeignFiles, ShellsOfAbaqusTagQuads) {
+  const HexMesh mesh = abaqus(kInpNodes + kInpCells +
+                              "*Element, type=CPS4, elset=sheet\n91, 11,12,13,14\n92, 5,4,9,1\n"
+                              "*elset, elset=top\n91\n*elset, elset=all\n91, 3\n");
+  ASSERT_EQ(mesh.features.quads.size(), 3U);  // with that of kInpCells
+  std::vector<std::pair<Quad, std::string>> named;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    for (const TagName& name : mesh.features.names) {
+      if (name.dimension == 2 && name.tag == quad.tag) named.emplace_back(quad.vertices, name.name);
+    }
+  }
+  EXPECT_EQ(named, (std::vector<std::pair<Quad, std::string>>{
+                       {{0, 1, 2, 3}, "skin"}, {{8, 9, 10, 11}, "top"}, {{0, 1, 5, 4}, "sheet"}}));
+}
+
 void expectFailureOf(HexMesh (*read)(const std::string&), const std::string& text, ErrorCode code,
                      const std::string& part) {
   const Failure failure = failureOf([&] { static_cast<void>(read(text)); });

@@ -90,15 +90,19 @@ AbaqusType abaqusType(std::string_view name) {
   return type;
 }
 
-/// The number of nodes of a shell or membrane (3) or of a beam or truss (2), as which Gmsh writes
-/// groups of triangles and lines; 0 for other elements.
-std::size_t nodesOfFacet(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kTriangles = {"cps3", "cpe3",  "s3",   "s3r",
-                                                          "ds3",  "stri3", "m3d3", "sfm3d3"};
-  constexpr std::array<std::string_view, 3> kLines = {"t3d2", "b31", "t2d2"};
+/// The number of corners of a shell or membrane (4 or 3) or of a beam or truss (2), as which Gmsh
+/// writes groups of quads, triangles and lines; 0 for other elements. Corners come first.
+std::size_t cornersOfFacet(std::string_view name) {
+  constexpr std::array<std::string_view, 12> kQuads = {"cps4", "cps4r", "cpe4",   "s4",
+                                                       "s4r",  "s4rs",  "m3d4",   "m3d4r",
+                                                       "s8r",  "cps8",  "sfm3d4", "sfm3d4r"};
+  constexpr std::array<std::string_view, 10> kTriangles = {
+      "cps3", "cpe3", "s3", "s3r", "ds3", "stri3", "m3d3", "sfm3d3", "cps6", "stri65"};
+  constexpr std::array<std::string_view, 4> kLines = {"t3d2", "b31", "t2d2", "t3d3"};
   const auto isIn = [name](const auto& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
+  if (isIn(kQuads)) return 4;
   if (isIn(kTriangles)) return 3;
   return isIn(kLines) ? 2 : 0;
 }
@@ -128,8 +132,8 @@ class AbaqusReader {
   /// An element that is not a volume.
   struct Facet {
     std::uint64_t number;
-    std::size_t count;  ///< number of nodes
-    std::array<std::uint64_t, 3> nodes;
+    std::size_t count;  ///< number of corners
+    std::array<std::uint64_t, 4> nodes;
   };
 
   static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
@@ -286,7 +290,7 @@ class AbaqusReader {
       std::string_view rest = line_;
       const std::uint64_t number = integer(takeField(rest), "the number of an element");
       if (type.cells == nullptr && name.find("c3d") == std::string::npos) {
-        readFacet(nodesOfFacet(name), number, rest, set);
+        readFacet(cornersOfFacet(name), number, rest, set);
         continue;
       }
       if (type.cells == nullptr) {
@@ -428,8 +432,7 @@ class AbaqusReader {
     }
     tagRegions();
     tagSurfaces();
-    tagFacets(3, nodes);
-    tagFacets(2, nodes);
+    for (const std::size_t corners : {4U, 3U, 2U}) tagFacets(corners, nodes);
     for (auto& [name, set] : nodeSets_) {
       NodeSet& added = lists_.nodeSets.emplace_back(
           NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
@@ -488,8 +491,8 @@ class AbaqusReader {
     }
   }
 
-  /// A triangle or line gets the tag of the first set that contains nothing else; sets named by
-  /// *ELEMENT come last.
+  /// A quad, triangle or line gets the tag of the first set that contains nothing else; sets named
+  /// by *ELEMENT come last.
   void tagFacets(std::size_t corners, const NodeTags& nodes) {
     std::map<std::uint64_t, std::pair<const Facet*, std::int32_t>> facets;
     for (const Facet& facet : facets_) {
@@ -504,7 +507,7 @@ class AbaqusReader {
           continue;
         }
         const std::int32_t tag = facetTags_.next(name);
-        lists_.addName(static_cast<int>(corners) - 1, tag, name);
+        lists_.addName(corners == 2 ? 1 : 2, tag, name);
         for (const std::uint64_t number : set.items) {
           if (isUntagged(number)) facets[number].second = tag;
         }
@@ -514,11 +517,12 @@ class AbaqusReader {
   }
 
   void addFacet(const Facet& facet, std::int32_t tag, const NodeTags& nodes) {
-    std::array<Index, 3> v{};
+    std::array<Index, 4> v{};
     for (std::size_t k = 0; k < facet.count; ++k) v[k] = nodes.find(facet.nodes[k]);
     const bool isKnown = std::find(v.begin(), v.end(), kNone) == v.end();
     if (tag == 0 || !isKnown) return;
-    if (facet.count == 3) lists_.triangles.push_back({v, tag});
+    if (facet.count == 4) lists_.quads.push_back({v, tag});
+    if (facet.count == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
     if (facet.count == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
   }
 
