@@ -385,6 +385,19 @@ TEST(ForeignFiles, SolversFilesComeBackWithTagsAndRegions) {
   }
 }
 
+TEST(ForeignFiles, CubeOf27NodesOfAbaqus) {
+  std::vector<Vec3> nodes = cubeOf20({kBottom, kTop, kUpright});
+  for (const Vec3& node : {Vec3{1, 1, 1}, Vec3{1, 1, 0}, Vec3{1, 1, 2}, Vec3{1, 0, 1},
+                           Vec3{2, 1, 1}, Vec3{1, 2, 1}, Vec3{0, 1, 1}}) {
+    nodes.push_back(node);  // the middle, and faces S1 to S6
+  }
+  std::string cell = "1";
+  for (int k = 1; k <= 27; ++k) cell += (k % 12 == 0 ? ",\n" : ", ") + std::to_string(10 * k);
+  Context context;
+  expectCubeOfOrder2(readBytes<AbaqusFormat::readCurved>(
+      "*NODE\n" + listed(nodes, true) + "*ELEMENT, TYPE=C3D27\n" + cell + "\n", "m.inp", context));
+}
+
 TEST(ForeignFiles, CubesOf20NodesOfAbaqusAndVtk) {
   const TemporaryFolder folder;
   Context context;
@@ -533,7 +546,7 @@ TEST(ForeignFiles, MeshesOfMfem) {
   expectFailure(replaced(good, "5 6 7\n", "5 6 8\n"), ErrorCode::IndexOutOfRange, "names vertex 8");
   expectFailure(replaced(good, "5 6 7\n", "5 6 -7\n"), ErrorCode::IndexOutOfRange, "vertex -7");
   expectFailure(replaced(good, "5 5 0", "5 9 0"), ErrorCode::FileSyntax,
-                "line 8: there is no geometry 9");
+                "line 9: there is no geometry 9");
   expectFailure(replaced(good, "5 5 0 1 2 3 4 5 6 7", "5 7 0 1 2 3 4"), ErrorCode::FileUnsupported,
                 "it holds 1 pyramid");
   expectFailure(replaced(good, "\n3\n\nelem", "\n2\n\nelem"), ErrorCode::FileUnsupported,

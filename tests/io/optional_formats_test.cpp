@@ -284,7 +284,7 @@ TEST(OpenFoam, FilesOfOtherPrograms) {
   expectFailure(ErrorCode::FileSyntax, "6 faces, but 5 owners");
   put("owner", "6(0 0 0 0 0 0)\n");
   put("faces", replaced(faces, "3 0 4 7", "3 0 4 8"));
-  expectFailure(ErrorCode::IndexOutOfRange, "faces, line 14: a corner of a face is 8");
+  expectFailure(ErrorCode::IndexOutOfRange, "faces, line 17: a corner of a face is 8");
   put("faces", replaced(faces, "4(3 0 4 7)", "3(3 0 4)"));
   expectFailure(ErrorCode::FileUnsupported, "it holds 1 polyhedron");
   std::ofstream(poly / "faces") << replaced(head, "ascii", "binary") << faces;

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -93,9 +94,9 @@ AbaqusType abaqusType(std::string_view name) {
 /// The number of corners of a shell or membrane (4 or 3) or of a beam or truss (2), as which Gmsh
 /// writes groups of quads, triangles and lines; 0 for other elements. Corners come first.
 std::size_t cornersOfFacet(std::string_view name) {
-  constexpr std::array<std::string_view, 12> kQuads = {"cps4", "cps4r", "cpe4",   "s4",
-                                                       "s4r",  "s4rs",  "m3d4",   "m3d4r",
-                                                       "s8r",  "cps8",  "sfm3d4", "sfm3d4r"};
+  constexpr std::array<std::string_view, 13> kQuads = {"cps4",   "cps4r",   "cpe4",  "s4",  "s4r",
+                                                       "s4rs",   "m3d4",    "m3d4r", "s8r", "cps8",
+                                                       "sfm3d4", "sfm3d4r", "m3d9"};
   constexpr std::array<std::string_view, 10> kTriangles = {
       "cps3", "cpe3", "s3", "s3r", "ds3", "stri3", "m3d3", "sfm3d3", "cps6", "stri65"};
   constexpr std::array<std::string_view, 4> kLines = {"t3d2", "b31", "t2d2", "t3d3"};
@@ -307,7 +308,16 @@ class AbaqusReader {
         }
         places.push_back(integer(takeField(rest), "a node of an element"));
       }
+      if (type.nodes == 27) putFacesInOrder(std::span(places).last(7));
     }
+  }
+
+  /// C3D27 lists the node in the middle before those of the faces S1 to S6.
+  static void putFacesInOrder(std::span<std::uint64_t> nodes) {
+    constexpr std::array<std::size_t, 7> kPlaces = {6, 4, 3, 5, 1, 2, 0};  // of VTK's last nodes
+    std::array<std::uint64_t, 7> listed{};
+    std::copy(nodes.begin(), nodes.end(), listed.begin());
+    for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = listed[kPlaces[k]];
   }
 
   void readFacet(std::size_t nodes, std::uint64_t number, std::string_view rest,
