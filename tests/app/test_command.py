@@ -1620,7 +1620,8 @@ class Stream(CommandTest):
         lines = good.splitlines(keepends=True)
         first = lines.index("Vertices\n") + 2
         moved = "".join([*lines[:first], "7 7 7 0\n", *lines[first + 1:]])
-        fewer = good.replace("Hexahedra\n512\n", "Hexahedra\n511\n")
+        last = lines.index("End\n") - 1
+        fewer = "".join([*lines[:last], *lines[last + 1:]]).replace("Hexahedra\n512\n", "Hexahedra\n511\n")
         self.assertNotEqual(good, fewer)
         for change, words in [(good, []), (moved, ["vertices_off_lattice", "vertex_checksum"]),
                               (fewer, ["cells", "cell_checksum"])]:

@@ -245,7 +245,7 @@ class PolyMeshReader {
 
   /// Reads the name of an entry and "{".
   static std::string readBegin(FoamFile& file) {
-    const std::string name(file.scanner().readToken());
+    std::string name(file.scanner().readToken());
     if (file.scanner().readToken() != "{") file.scanner().failToken("\"{\" behind a name");
     return name;
   }
