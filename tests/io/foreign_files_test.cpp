@@ -125,6 +125,23 @@ TEST(ForeignFiles, GmshOfVersion40) {
   if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
 }
 
+TEST(ForeignFiles, PartitionedEntitiesOfGmsh) {
+  const std::string box = "0 0 0 1 1 1 ";
+  const std::string text =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 3 \"surface_7\"\n"
+      "$EndPhysicalNames\n$Entities\n0 0 1 1\n6 " +
+      box + "1 3 0\n1000 " + box +
+      "1 5 0\n$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n0 0 1 1\n16 2 6 2 1 2 " + box +
+      "1 -3 0\n1010 3 1000 1 1 " + box +
+      "2 5 8 1 -16\n$EndPartitionedEntities\n$Nodes\n1 8 11 18\n3 1010 0 8\n11\n12\n13\n14\n15\n"
+      "16\n17\n18\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n$EndNodes\n$Elements\n"
+      "2 2 1 2\n2 16 3 1\n1 11 12 13 14\n3 1010 5 1\n2 11 12 13 14 15 16 17 18\n$EndElements\n";
+  expectTaggedCube(gmsh(text));
+  const Failure failure =
+      failureOf([&] { static_cast<void>(gmsh(replaced(text, "\n1\n9 1", "\n900\n9 1"))); });
+  EXPECT_EQ(failure.code, ErrorCode::FileSyntax);
+}
+
 /// A text in gzip's form without compression: one stored block.
 std::string gzipOf(const std::string& text) {
   std::uint32_t sum = 0xffffffffU;
