@@ -87,9 +87,9 @@ class MfemReader {
         scanner_(input.text(room_, stage, "M"), input.name(), TextScanner::Comments::Hash) {}
 
   ElementLists read() {
-    constexpr std::string_view kHead = "MFEM mesh v1.";
-    if (!scanner_.takeLine().starts_with(kHead)) {
-      input_.fail(ErrorCode::FileUnsupported, "the file does not begin with \"", kHead,
+    constexpr std::string_view kMfemHead = "MFEM mesh v1.";
+    if (!scanner_.takeLine().starts_with(kMfemHead)) {
+      input_.fail(ErrorCode::FileUnsupported, "the file does not begin with \"", kMfemHead,
                   "0\": other files of MFEM, such as NURBS and nonconforming meshes, are not "
                   "read. Save the mesh as .vtk (Mesh::PrintVTK).");
     }
