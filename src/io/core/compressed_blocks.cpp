@@ -8,7 +8,8 @@
 #include <base/missing_library.hpp>
 #include <io/core/compressed_blocks.hpp>
 
-#if __has_include(<dlfcn.h>)
+#if __has_include(<dlfcn.h>) && !defined(__EMSCRIPTEN__)
+#define HEXHEX_LOADS_LZMA 1
 #include <dlfcn.h>
 #endif
 #ifdef HEXHEX_HAS_ZLIB
@@ -60,7 +61,7 @@ using DecodeLzma = int (*)(std::uint64_t* memoryLimit, std::uint32_t flags, cons
                            std::uint8_t* out, std::size_t* outPosition, std::size_t outSize);
 
 DecodeLzma lzma() noexcept {
-#if __has_include(<dlfcn.h>)
+#if defined(HEXHEX_LOADS_LZMA)
   static void* const library = dlopen("liblzma.so.5", RTLD_NOW);
   if (library != nullptr) {
     return reinterpret_cast<DecodeLzma>(dlsym(library, "lzma_stream_buffer_decode"));
