@@ -91,11 +91,12 @@ struct FlagsFile {
                                                                 const TetMesh& tets,
                                                                 Context& context);
 
-/// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
+/// Reads a hexahedral mesh: `.mesh` (MEDIT's text, or MFEM's) and `.meshb`, `.vtu`, `.vtk` (legacy
 /// VTK, ASCII and binary), `.msh` (Gmsh 1 to 4.1, ASCII and binary), `.ovm`, `.ovmb`, `.inp`
-/// (Abaqus), `.unv` (I-deas universal), `.pvtu`, `.vtkhdf`, `.cgns`, `.exo` and `.e` (Exodus II);
-/// each of them also compressed, as in `.msh.gz`. Points, lines, triangles and other sections are
-/// ignored; quads may become features. Generators are restored from `.vtu`, `.ovm` and `.ovmb`.
+/// (Abaqus), `.unv` (I-deas universal), `.pvtu`, `.vtkhdf`, `.cgns`, `.exo` and `.e` (Exodus II),
+/// `.foam` (beside OpenFOAM's constant/polyMesh); each of them also compressed, as in `.msh.gz`.
+/// Points, lines, triangles and other sections are ignored; quads may become features. Generators
+/// are restored from `.vtu`, `.ovm` and `.ovmb`.
 /// @throws Error  as readMap(); FileUnsupported for other volume cells, see ReadOptions::hexesOnly
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);
