@@ -230,7 +230,7 @@ class MeditText {
   /// Refuses sections whose elements have more numbers, such as Gmsh's of order 2.
   void endSection(std::string_view what) {
     const std::string_view next = scanner_.peekToken();
-    if (next.empty() || (next[0] > '9') || next[0] == '#') return;
+    if (next.find_first_of("0123456789+-.") != 0) return;
     static_cast<void>(scanner_.readToken());
     scanner_.fail(ErrorCode::FileSyntax, "the section goes on with ", quoted(next), " after the ",
                   what,
