@@ -192,11 +192,13 @@ WriteOptions OutputChoice::options() const {
   options.format = solver.empty() ? format : solver;
   options.compress = compress;
   options.mapArray = mapArray;
+  options.elementType = elementType;
   return options;
 }
 
 void OutputChoice::requireForCurved(const std::string& output, int order) const {
   refuseIf(compress, "Files of meshes of higher order are not compressed. Leave out --compress.");
+  refuseIf(!elementType.empty(), "--element-type is of straight cells. Leave it out.");
   requireLagrangeFormat(output, options().format, order);
 }
 
@@ -258,6 +260,8 @@ void requireExtension(const SolverFormat& solver, std::string& output) {
 void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output) {
   // Looking up the option by name would make CLI11 terminate when memory runs out.
   CLI::Option* const format = addOutputChoice(parser, choice);
+  addValue(parser, "--element-type", choice.elementType, "TYPE [C3D8]",
+           "The type of elements in .inp files: C3D8, C3D8R or C3D8I");
   addValue(parser, "--for", choice.solver, "SOLVER",
            "Write what this solver reads (calculix, dealii, mfem, ...:\n"
            "`hexhex formats` lists them); gives FILE its extension")

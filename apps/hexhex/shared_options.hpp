@@ -73,6 +73,7 @@ struct OutputChoice {
   std::string format;
   std::string solver;  ///< determines the format, unless empty
   std::string mapArray = "igm";
+  std::string elementType;
   bool compress = false;
 
   [[nodiscard]] WriteOptions options() const;
@@ -87,7 +88,7 @@ struct OutputChoice {
 /// Adds --format and --compress.
 /// @return the former
 CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice);
-/// Adds these, and --for.
+/// Adds these, --element-type and --for.
 /// @param output  gets the extension that the solver expects, if it has none
 void addMeshChoice(CLI::App& parser, OutputChoice& choice, std::string& output);
 

@@ -91,11 +91,12 @@ struct FlagsFile {
                                                                 const TetMesh& tets,
                                                                 Context& context);
 
-/// Reads a hexahedral mesh: `.mesh` and `.meshb` (MEDIT ASCII and binary), `.vtu`, `.vtk` (legacy
+/// Reads a hexahedral mesh: `.mesh` (MEDIT's text, or MFEM's) and `.meshb`, `.vtu`, `.vtk` (legacy
 /// VTK, ASCII and binary), `.msh` (Gmsh 1 to 4.1, ASCII and binary), `.ovm`, `.ovmb`, `.inp`
-/// (Abaqus), `.unv` (I-deas universal), `.pvtu`, `.vtkhdf`, `.cgns`, `.exo` and `.e` (Exodus II);
-/// each of them also compressed, as in `.msh.gz`. Points, lines, triangles and other sections are
-/// ignored; quads may become features. Generators are restored from `.vtu`, `.ovm` and `.ovmb`.
+/// (Abaqus), `.unv` (I-deas universal), `.pvtu`, `.vtkhdf`, `.cgns`, `.exo` and `.e` (Exodus II),
+/// `.foam` (beside OpenFOAM's constant/polyMesh); each of them also compressed, as in `.msh.gz`.
+/// Points, lines, triangles and other sections are ignored; quads may become features. Generators
+/// are restored from `.vtu`, `.ovm` and `.ovmb`.
 /// @throws Error  as readMap(); FileUnsupported for other volume cells, see ReadOptions::hexesOnly
 [[nodiscard]] HexMesh readHexMesh(const std::filesystem::path& file, const ReadOptions& options,
                                   Context& context);
@@ -129,6 +130,10 @@ struct WriteOptions {
 
   /// Name of the cell array that holds a map in `.vtu` and `.vtk` files; must not be empty.
   std::string_view mapArray = "igm";
+
+  /// Type of the elements of straight cells in `.inp` files: C3D8 (if empty), C3D8R or C3D8I.
+  /// Anything but empty is an error for other formats.
+  std::string_view elementType = {};
 };
 
 /// Writes a map: `.hexex`, `.ovm`, `.ovmb`, and as a cell array `.vtu`, `.vtk`. Numbers in text

@@ -147,7 +147,7 @@ class LibrariesTest(unittest.TestCase):
         self.assertGreaterEqual(len(rows), 12)
         self.assertIn("exodus", [name for name, _, _ in rows])
         for name, extension, reads in rows:
-            output = name + (".mfem" if extension == "-" else extension)
+            output = name + (".mesh" if extension == "-" else extension)
             self.run_command("extract", "map.ovm", "-o", output, "--format", name, "--scale", "2", "--quiet")
             self.assertTrue((self.folder / output).exists())
             if reads:

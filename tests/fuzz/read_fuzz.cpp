@@ -20,10 +20,10 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/cell_counts.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/surface/surface.hpp>
 
@@ -44,8 +44,8 @@ constexpr std::size_t kFactor = 64;
 constexpr std::size_t kHdf5Constant = std::size_t{17} << 20;
 /// For the cells that a grid implies: 32 bytes for each point that a file may have without data.
 constexpr std::size_t kGridConstant = std::size_t{32} << 22;
-// A compressed file takes up to this many times as much.
-constexpr std::string_view kCompressed = "vtkZLibDataCompressor";
+// A compressed file takes up to kLargestLzmaRatio times as much.
+constexpr std::string_view kCompressed = "DataCompressor";
 
 std::atomic<std::size_t> allowed{static_cast<std::size_t>(-1)};
 
@@ -159,10 +159,10 @@ struct Reader {
 
 constexpr std::array kReaders = {
     Reader{"hexex", read<parse<readHexex>>},
-    Reader{"mesh", read<parse<readMedit>>},
-    Reader{"mesh-tets", read<parse<readMeditTets>>},
-    Reader{"meshb", read<parse<readMeshb>>, fuzz::changeMeshb},
-    Reader{"meshb-tets", read<parse<readMeshbTets>>, fuzz::changeMeshb},
+    Reader{"mesh", read<parse<Medit::readMesh>>},
+    Reader{"mesh-tets", read<parse<Medit::readTets>>},
+    Reader{"meshb", read<parse<Meshb::readMesh>>, fuzz::changeMeshb},
+    Reader{"meshb-tets", read<parse<Meshb::readTets>>, fuzz::changeMeshb},
     Reader{"msh", read<parse<GmshFormat::readMesh>>},
     Reader{"msh-tets", read<parse<GmshFormat::readTets>>},
     Reader{"msh-curved", read<parse<GmshFormat::readCurved>>},
@@ -178,6 +178,8 @@ constexpr std::array kReaders = {
     Reader{"inp-curved", read<parse<AbaqusFormat::readCurved>>},
     Reader{"exodus", read<parse<ExodusFormat::readMesh>>},
     Reader{"exodus-curved", read<parse<ExodusFormat::readCurved>>},
+    Reader{"mfem", read<parse<MfemFormat::readMesh>>},
+    Reader{"mfem-curved", read<parse<MfemFormat::readCurved>>},
     Reader{"unv", read<parse<UnvFormat::readMesh>>},
     Reader{"unv-curved", read<parse<UnvFormat::readCurved>>},
     Reader{"tetgen", read<parseTetgenFiles>},
@@ -251,7 +253,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   const std::string words = lowerCase(text);
   const bool implied = words.find("dimensions") != words.npos || words.find("extent") != words.npos;
   allowed = (takesHdf5() ? kHdf5Constant : (implied ? kGridConstant : kConstant)) +
-            kFactor * (compressed ? kLargestZlibRatio : 1) * size;
+            kFactor * (compressed ? kLargestLzmaRatio : 1) * size;
   try {
     chosen->read(text);
   } catch (const hexhex::Error&) {

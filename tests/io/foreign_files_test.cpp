@@ -17,8 +17,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/summary.hpp>
 
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf5_library.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/netcdf.hpp>
 #include <io/io_test_support.hpp>
@@ -123,6 +123,23 @@ TEST(ForeignFiles, GmshOfVersion40) {
   file.integers({1, 11, 12, 13, 14, 1000, 3, 5}).sizes({1});
   file.integers({2, 11, 12, 13, 14, 15, 16, 17, 18}).text("\n$EndElements\n");
   if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
+}
+
+TEST(ForeignFiles, PartitionedEntitiesOfGmsh) {
+  const std::string box = "0 0 0 1 1 1 ";
+  const std::string text =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 3 \"surface_7\"\n"
+      "$EndPhysicalNames\n$Entities\n0 0 1 1\n6 " +
+      box + "1 3 0\n1000 " + box +
+      "1 5 0\n$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n0 0 1 1\n16 2 6 2 1 2 " + box +
+      "1 -3 0\n1010 3 1000 1 1 " + box +
+      "2 5 8 1 -16\n$EndPartitionedEntities\n$Nodes\n1 8 11 18\n3 1010 0 8\n11\n12\n13\n14\n15\n"
+      "16\n17\n18\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n$EndNodes\n$Elements\n"
+      "2 2 1 2\n2 16 3 1\n1 11 12 13 14\n3 1010 5 1\n2 11 12 13 14 15 16 17 18\n$EndElements\n";
+  expectTaggedCube(gmsh(text));
+  const Failure failure =
+      failureOf([&] { static_cast<void>(gmsh(replaced(text, "\n1\n9 1", "\n900\n9 1"))); });
+  EXPECT_EQ(failure.code, ErrorCode::FileSyntax);
 }
 
 /// A text in gzip's form without compression: one stored block.
@@ -235,6 +252,21 @@ TEST(ForeignFiles, AbaqusByOtherPrograms) {
                 {{0, 1, 2, 3}, 1}, {{0, 1, 4, 5}, 2}, {{4, 5, 8, 9}, 2}, {{0, 3, 4, 7}, 2}}));
   ASSERT_EQ(mesh.features.vertices.size(), 1U);  // the set of all nodes tags none
   EXPECT_EQ(mesh.features.vertices[0].vertex, 11U);
+}
+
+TEST(ForeignFiles, ShellsOfAbaqusTagQuads) {
+  const HexMesh mesh = abaqus(kInpNodes + kInpCells +
+                              "*Element, type=CPS4, elset=sheet\n91, 11,12,13,14\n92, 5,4,9,1\n"
+                              "*elset, elset=top\n91\n*elset, elset=all\n91, 3\n");
+  ASSERT_EQ(mesh.features.quads.size(), 3U);  // with that of kInpCells
+  std::vector<std::pair<Quad, std::string>> named;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    for (const TagName& name : mesh.features.names) {
+      if (name.dimension == 2 && name.tag == quad.tag) named.emplace_back(quad.vertices, name.name);
+    }
+  }
+  EXPECT_EQ(named, (std::vector<std::pair<Quad, std::string>>{
+                       {{0, 1, 2, 3}, "skin"}, {{8, 9, 10, 11}, "top"}, {{0, 1, 5, 4}, "sheet"}}));
 }
 
 void expectFailureOf(HexMesh (*read)(const std::string&), const std::string& text, ErrorCode code,
@@ -370,6 +402,19 @@ TEST(ForeignFiles, SolversFilesComeBackWithTagsAndRegions) {
   }
 }
 
+TEST(ForeignFiles, CubeOf27NodesOfAbaqus) {
+  std::vector<Vec3> nodes = cubeOf20({kBottom, kTop, kUpright});
+  for (const Vec3& node : {Vec3{1, 1, 1}, Vec3{1, 1, 0}, Vec3{1, 1, 2}, Vec3{1, 0, 1},
+                           Vec3{2, 1, 1}, Vec3{1, 2, 1}, Vec3{0, 1, 1}}) {
+    nodes.push_back(node);  // the middle, and faces S1 to S6
+  }
+  std::string cell = "1";
+  for (int k = 1; k <= 27; ++k) cell += (k % 12 == 0 ? ",\n" : ", ") + std::to_string(10 * k);
+  Context context;
+  expectCubeOfOrder2(readBytes<AbaqusFormat::readCurved>(
+      "*NODE\n" + listed(nodes, true) + "*ELEMENT, TYPE=C3D27\n" + cell + "\n", "m.inp", context));
+}
+
 TEST(ForeignFiles, CubesOf20NodesOfAbaqusAndVtk) {
   const TemporaryFolder folder;
   Context context;
@@ -478,6 +523,134 @@ TEST(ForeignFiles, CubeOf20NodesInAUniversalFile) {
   writeText(folder / "a.unv", unvOf(nodes, cell + '\n', ""));
   ASSERT_TRUE(holdsLagrangeCells(folder / "a.unv", context));
   expectCubeOfOrder2(readLagrangeMesh(folder / "a.unv", context));
+}
+
+const std::string kMfemHead = "MFEM mesh v1.3\n# by hand\n\ndimension\n3\n\nelements\n";
+const std::string kMfemCube = "5 5 0 1 2 3 4 5 6 7\n";
+const std::string kMfemQuads =
+    "attribute_sets\n2\n\"a solid\" 1 5\n\"all\" 2 5 6\n\nboundary\n2\n7 3 0 1 2 3\n1 2 0 1 5\n"
+    "bdr_attribute_sets\n1\n\"bottom\" 1 7\n";
+const std::string kMfemVertices =
+    "vertices\n8\n3\n" + listed({kCorners.begin(), kCorners.end()}, false);
+
+HexMesh mfem(const std::string& text) {
+  Context context;
+  return readBytes<Medit::readMesh>(text, "m.mesh", context);
+}
+
+TEST(ForeignFiles, MeshesOfMfem) {
+  const std::string good = kMfemHead + "1\n" + kMfemCube + kMfemQuads + kMfemVertices;
+  const HexMesh mesh = mfem(good);
+  EXPECT_EQ(mesh.cells, Array<Hex>{kCell});
+  EXPECT_EQ(mesh.points[6], (Vec3{2, 2, 2}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{5}));
+  ASSERT_EQ(mesh.features.quads.size(), 1U);
+  EXPECT_EQ(mesh.features.quads[0].vertices, (Quad{0, 1, 2, 3}));
+  EXPECT_EQ(mesh.features.quads[0].tag, 7);
+  ASSERT_EQ(mesh.features.names.size(), 2U);
+  EXPECT_EQ(mesh.features.names[0].name, "a solid");
+  EXPECT_EQ(mesh.features.names[0].tag, 5);
+  EXPECT_EQ(mesh.features.names[1].name, "bottom");
+  EXPECT_EQ(mesh.features.names[1].dimension, 2);
+  // Attributes that are all 1 say nothing.
+  const HexMesh plain = mfem(replaced(replaced(replaced(good, "5 5 0", "1 5 0"), "7 3 0", "1 3 0"),
+                                      "dimension", "# x\ndimension"));
+  EXPECT_TRUE(plain.regions.empty());
+  EXPECT_TRUE(plain.features.quads.empty());
+  const auto expectFailure = [](const std::string& text, ErrorCode code, const std::string& part) {
+    expectFailureOf(mfem, text, code, part);
+  };
+  expectFailure(replaced(good, "5 6 7\n", "5 6 8\n"), ErrorCode::IndexOutOfRange, "names vertex 8");
+  expectFailure(replaced(good, "5 6 7\n", "5 6 -7\n"), ErrorCode::IndexOutOfRange, "vertex -7");
+  expectFailure(replaced(good, "5 5 0", "5 9 0"), ErrorCode::FileSyntax,
+                "line 9: there is no geometry 9");
+  expectFailure(replaced(good, "5 5 0 1 2 3 4 5 6 7", "5 7 0 1 2 3 4"), ErrorCode::FileUnsupported,
+                "it holds 1 pyramid");
+  expectFailure(replaced(good, "\n3\n\nelem", "\n2\n\nelem"), ErrorCode::FileUnsupported,
+                "dimension");
+  expectFailure(replaced(good, "mesh v1.3", "NURBS mesh v1.0"), ErrorCode::FileUnsupported,
+                "NURBS");
+  expectFailure(replaced(good, "vertices\n8", "vertices\n800"), ErrorCode::FileSyntax, "800");
+  expectFailure(replaced(good, "vertices", "vortices"), ErrorCode::FileSyntax, "\"vortices\"");
+  expectFailure(good + "boundary\n0\n", ErrorCode::FileSyntax, "out of order");
+  expectFailure(good.substr(0, good.find("vertices")), ErrorCode::FileSyntax, "\"vertices\"");
+}
+
+/// A mesh of MFEM with nodes.
+std::string mfemWithNodes(const std::string& cells, const std::string& space,
+                          const std::vector<Vec3>& nodes, std::size_t vertices) {
+  return kMfemHead + cells + "boundary\n0\nvertices\n" + std::to_string(vertices) +
+         "\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: " + space +
+         "\nVDim: 3\nOrdering: 1\n\n" + listed(nodes, false);
+}
+
+TEST(ForeignFiles, NodesOfMfem) {
+  Context context;
+  std::vector<Vec3> nodes = cubeOf20({kBottom, kTop, kUpright});
+  for (const Vec3& node : {Vec3{1, 1, 0}, Vec3{1, 0, 1}, Vec3{2, 1, 1}, Vec3{1, 2, 1},
+                           Vec3{0, 1, 1}, Vec3{1, 1, 2}, Vec3{1, 1, 1}}) {
+    nodes.push_back(node);
+  }
+  const std::string one = "1\n" + kMfemCube;
+  const std::string curved = mfemWithNodes(one, "H1_3D_P2", nodes, 8);
+  expectCubeOfOrder2(readBytes<MfemFormat::readCurved>(curved, "m.mesh", context));
+  EXPECT_TRUE(readBytes<MfemFormat::holdsCurved>(curved, "m.mesh", context));
+  const std::vector<Vec3> corners(kCorners.begin(), kCorners.end());
+  for (const std::string space : {"Linear", "H1_3D_P1"}) {
+    EXPECT_EQ(mfem(mfemWithNodes(one, space, corners, 8)).points[6], (Vec3{2, 2, 2}));
+  }
+  // Two cells that meet, each with nodes of its own; and two that do not, as in periodic meshes.
+  std::vector<Vec3> rows;
+  for (const double x : {0.0, 1.0}) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      rows.push_back({x + static_cast<double>(i % 2), static_cast<double>(i / 2 % 2),
+                      static_cast<double>(i / 4)});
+    }
+  }
+  const std::string two = "2\n1 5 0 1 2 3 4 5 6 7\n1 5 1 8 9 2 5 10 11 6\n";
+  const HexMesh mesh = mfem(mfemWithNodes(two, "L2_T1_3D_P1", rows, 12));
+  EXPECT_EQ(mesh.points[9], (Vec3{2, 1, 0}));
+  EXPECT_EQ(mesh.points[2], (Vec3{1, 1, 0}));
+  rows[8][0] = 0.5;
+  expectFailureOf(mfem, mfemWithNodes(two, "L2_T1_3D_P1", rows, 12), ErrorCode::FileUnsupported,
+                  "periodic");
+  expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P3", nodes, 8), ErrorCode::FileUnsupported,
+                  "\"H1_3D_P3\"");
+  nodes.pop_back();
+  expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P2", nodes, 8), ErrorCode::FileSyntax, "27");
+  expectFailureOf(mfem, mfemWithNodes("1\n1 6 0 1 2 3 4 5\n", "H1_3D_P2", nodes, 6),
+                  ErrorCode::FileUnsupported, "a file of their own");
+}
+
+TEST(ForeignFiles, SectionsOfMeditThatGoOn) {
+  const std::string nodes =
+      "MeshVersionFormatted 2\nDimension 3\nVertices 8\n0 0 0 0\n1 0 0 0\n1 1 0 0\n"
+      "0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 1 0\n0 1 1 0\n";
+  const std::string cell = "Hexahedra\n1\n1 2 3 4 5 6 7 8 1\n";
+  EXPECT_EQ(mfem(nodes + cell + "End").cells.size(), 1U);
+  EXPECT_EQ(mfem(nodes + cell).cells.size(), 1U);
+  // Gmsh writes cells of order 2 so.
+  expectFailureOf(mfem, nodes + replaced(cell, " 8 1", " 8 2 3 4 1") + "End", ErrorCode::FileSyntax,
+                  "line 14: the section goes on with \"3\" after the hexahedra");
+}
+
+TEST(ForeignFiles, ElementTypesOfAbaqus) {
+  const TemporaryFolder folder;
+  Context context;
+  const HexMesh mesh = gridMesh(2, 1, 1);
+  WriteOptions options;
+  for (const char* const type : {"C3D8", "C3D8R", "C3D8I"}) {
+    options.elementType = type;
+    writeHexMesh(mesh, folder / "a.inp", options, context);
+    EXPECT_NE(contentOf(folder / "a.inp").find(concat("*ELEMENT, TYPE=", type, ", ELSET")),
+              std::string::npos);
+    EXPECT_EQ(readHexMesh(folder / "a.inp").cells, mesh.cells);
+  }
+  EXPECT_EQ(failureOf([&] { writeHexMesh(mesh, folder / "a.vtu", options, context); }).code,
+            ErrorCode::FileUnsupported);
+  options.elementType = "C3D6";
+  EXPECT_EQ(failureOf([&] { writeHexMesh(mesh, folder / "b.inp", options, context); }).code,
+            ErrorCode::FileUnsupported);
 }
 
 TEST(ForeignFiles, TetsOfTetgen) {

@@ -124,7 +124,12 @@ def write_cgns(file, kind):
     cells = [[1, 2, 3, 4, 5, 6, 7, 8], [2, 9, 10, 3, 6, 11, 12, 7]]
     with h5py.File(file, "w", track_order=True) as data:
         base = node(data, "Base", "CGNSBase_t", "I4", numpy.array([3, 3], dtype=numpy.int32))
-        node(base, "inflow", "Family_t")
+        family, faces = "inflow", "FaceCenter"
+        if kind == "cgns-gmsh":  # families of entities belong to those of physical groups
+            family, faces = "S_1", "CellCenter"
+            node(node(base, family, "Family_t"), "inflow", "FamilyName_t", "C1", "inflow")
+        else:
+            node(base, family, "Family_t")
         if kind in ("cgns20", "cgns27"):
             # As the standard (SIDS) numbers the nodes: corners, edges at the bottom, upright and at the
             # top, faces from the bottom on around the cell to the top, and the middle.
@@ -151,8 +156,8 @@ def write_cgns(file, kind):
                 sections = [("All", 20, [[7, *q] for q in quads] + [[17, *c] for c in cells])]
             zone = zone_of(base, "Zone", points, sections)
             conditions = node(zone, "ZoneBC", "ZoneBC_t")
-            condition(conditions, "BC-1", "FaceCenter", points=[1], family="inflow")
-            condition(conditions, "BC-2", "FaceCenter", span=[2, 2])
+            condition(conditions, "BC-1", faces, points=[1], family=family)
+            condition(conditions, "BC-2", faces, span=[2, 2])
             condition(conditions, "BC-3", "Vertex", points=[1, 2, 3])
             put_into_another_file(data, "Base/Zone/GridCoordinates/CoordinateX/ data", kind)
 

@@ -104,7 +104,7 @@ TEST(HdfFiles, CutOffFilesAreRefused) {
 TEST(HdfFiles, CgnsWithConditionsAndFamilies) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "a.cgns";
-  for (const std::string kind : {"cgns", "cgns-mixed"}) {
+  for (const std::string kind : {"cgns", "cgns-mixed", "cgns-gmsh"}) {
     SCOPED_TRACE(kind);
     if (const std::string why = makeFile(kind, file); !why.empty()) GTEST_SKIP() << why;
     const HexMesh mesh = readHexMesh(file);

@@ -10,7 +10,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/samples.hpp>
 
-#include <io/core/zlib_blocks.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
 

@@ -34,15 +34,17 @@ def write_with_vtk(folder, files):
                    lambda grid: grid.GetCellData().GetArray("igm")):
             assert (vtk_to_numpy(of(grids[-1])) == vtk_to_numpy(of(grids[0]))).all(), file
     for mode in ("Ascii", "Binary", "Appended"):
-        for compressor in ("None", "ZLib"):
+        for compressor in ("None", "ZLib", "LZ4", "LZMA"):
             for encoded in (0, 1):
                 writer = vtkXMLUnstructuredGridWriter()
                 writer.SetInputData(grids[0])
                 getattr(writer, "SetDataModeTo" + mode)()
                 getattr(writer, "SetCompressorTypeTo" + compressor)()
                 writer.SetEncodeAppendedData(encoded)
-                writer.SetFileName(str(folder / f"{mode}_{compressor}_{encoded}.vtu"))
-                assert writer.Write()
+                for order in ("Little", "Big"):
+                    getattr(writer, f"SetByteOrderTo{order}Endian")()
+                    writer.SetFileName(str(folder / f"{mode}_{compressor}_{encoded}_{order}.vtu"))
+                    assert writer.Write()
     for version in (42, 51):
         writer = vtkUnstructuredGridWriter()
         writer.SetInputData(grids[0])

@@ -22,7 +22,7 @@ namespace {
 
 HexMesh parse(const std::string& text) {
   Context context;
-  return readBytes<readMeshb>(text, "m.meshb", context);
+  return readBytes<Meshb::readMesh>(text, "m.meshb", context);
 }
 
 template <class... T>
@@ -182,12 +182,12 @@ TEST(Medit, CellsOfOrder2) {
   Places turned = kNodesOfOrder2;
   std::reverse(turned.begin(), turned.end());
   const std::string ordering = "HexahedraQ2Ordering\n27\n" + listed(turned, "\n");
-  expectItsCube(readBytes<readQuadraticMedit>(cubeOfOrder2(turned, ordering), "a.mesh", context));
+  expectItsCube(readBytes<Medit::readCurved>(cubeOfOrder2(turned, ordering), "a.mesh", context));
   for (const auto& [from, to] : {std::pair("2 2 2\n", "2 2 3\n"), std::pair("2 2 2\n", "0 0 0\n"),
                                  std::pair("g\n27\n", "g\n26\n")}) {
     const std::string wrong = cubeOfOrder2(turned, replaced(ordering, from, to));
     const Failure failure = failureOf(
-        [&] { static_cast<void>(readBytes<readQuadraticMedit>(wrong, "a.mesh", context)); });
+        [&] { static_cast<void>(readBytes<Medit::readCurved>(wrong, "a.mesh", context)); });
     EXPECT_EQ(failure.code, ErrorCode::FileSyntax) << failure.sentence;
   }
 }
@@ -196,7 +196,7 @@ TEST(Medit, CellsOfOrder2ComeBack) {
   const TemporaryFolder folder;
   Context context;
   LagrangeMesh mesh =
-      readBytes<readQuadraticMedit>(cubeOfOrder2(kNodesOfOrder2, ""), "a.mesh", context);
+      readBytes<Medit::readCurved>(cubeOfOrder2(kNodesOfOrder2, ""), "a.mesh", context);
   mesh.features.edges = {{{0, 1}, 4}};
   mesh.features.vertices = {{5, 3}};
   for (const char* const name : {"mesh", "meshb"}) {
@@ -218,8 +218,8 @@ TEST(Medit, CellsOfOrder2ComeBack) {
     for (std::size_t size = 0; size + 40 < bytes.size(); size += 31) {
       const std::string part = bytes.substr(0, size);
       const auto readPart = [&, text = std::string(name) == "mesh"] {
-        return text ? readBytes<readQuadraticMedit>(part, "b", context)
-                    : readBytes<readQuadraticMeshb>(part, "b", context);
+        return text ? readBytes<Medit::readCurved>(part, "b", context)
+                    : readBytes<Meshb::readCurved>(part, "b", context);
       };
       EXPECT_THROW(static_cast<void>(readPart()), Error) << size;
     }

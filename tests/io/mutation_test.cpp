@@ -1,16 +1,21 @@
 // Damaged files: truncated at every byte, and with random bytes changed. Whatever happens, a reader
 // returns a consistent mesh or throws an Error, and never asks for memory out of proportion.
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
+#include <span>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
 
-#include <io/core/zlib_blocks.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
 
@@ -63,6 +68,11 @@ bool isConsistent(const HexMesh& mesh) {
     }
   }
   return true;
+}
+
+bool isConsistent(const LagrangeMesh& mesh) {
+  return std::all_of(mesh.nodes.begin(), mesh.nodes.end(),
+                     [&](Index node) { return node < mesh.points.size(); });
 }
 
 template <class Parse>
@@ -126,7 +136,79 @@ TEST(DamagedFiles, Hexex) {
 TEST(DamagedFiles, Medit) {
   const TemporaryFolder folder;
   writeHexMesh(gridMesh(2, 2, 1), folder / "a.mesh");
-  damage(contentOf(folder / "a.mesh"), parse<readMedit>);
+  damage(contentOf(folder / "a.mesh"), parse<Medit::readMesh>);
+}
+
+TEST(DamagedFiles, Mfem) {
+  const TemporaryFolder folder;
+  Context context;
+  HexMesh mesh = gridMesh(2, 1, 1);
+  mesh.regions = {4, 5};
+  WriteOptions options;
+  options.format = "mfem";
+  writeHexMesh(mesh, folder / "a.mesh", options, context);
+  damage(contentOf(folder / "a.mesh"), parse<MfemFormat::readMesh>);
+  for (const std::string space : {"H1_3D_P2", "L2_T1_3D_P2"}) {
+    std::string text =
+        "MFEM mesh v1.3\ndimension\n3\nelements\n1\n1 5 0 1 2 3 4 5 6 7\nattribute_sets\n1\n"
+        "\"a\" 1 1\nboundary\n0\nvertices\n8\nnodes\nFiniteElementSpace\n"
+        "FiniteElementCollection: " +
+        space + "\nVDim: 3\nOrdering: 0\n";
+    for (int i = 0; i < 81; ++i) text += std::to_string(i) + '\n';
+    damage(text, parse<MfemFormat::readCurved>);
+  }
+}
+
+TEST(DamagedFiles, OpenFoam) {
+  const TemporaryFolder folder;
+  HexMesh mesh = gridMesh(2, 1, 1);
+  mesh.regions = {4, 5};
+  writeHexMesh(mesh, folder / "a.foam");
+  const std::filesystem::path poly = folder / "constant" / "polyMesh";
+  Random random(7);
+  for (const char* const name :
+       {"points", "faces", "owner", "neighbour", "boundary", "cellZones"}) {
+    SCOPED_TRACE(name);
+    const std::string good = contentOf(poly / name);
+    largestAllocation = 0;
+    for (int i = 0; i < 100; ++i) {
+      writeText(poly / name,
+                i % 3 == 0 ? good.substr(0, random.below(good.size())) : mutated(good, random));
+      expectNoCrash("", [&](const std::string&, const std::string&, Context& context) {
+        return readHexMesh(folder / "a.foam", context);
+      });
+    }
+    EXPECT_LT(largestAllocation.load(), kReasonableAllocation);
+    writeText(poly / name, good);
+  }
+  EXPECT_EQ(readHexMesh(folder / "a.foam").cells.size(), 2U);
+}
+
+TEST(DamagedFiles, BlocksOfLz4) {
+  // Three letters, then nine more from three places before; a length of 15 goes on.
+  const std::string block(
+      "\x35"
+      "abc\x03\0",
+      6);
+  std::array<char, 12> bytes{};
+  ASSERT_TRUE(decodeLz4Block(block, bytes));
+  EXPECT_EQ(std::string(bytes.data(), bytes.size()), "abcabcabcabc");
+  EXPECT_FALSE(decodeLz4Block(block, std::span(bytes).first(11)));
+  std::array<char, 600> many{};
+  const std::string run(
+      "\x1f"
+      "a\x01\0\xff\xff\x46",
+      7);  // 1 + 15 + 4 + 255 + 255 + 70
+  ASSERT_TRUE(decodeLz4Block(run, many));
+  EXPECT_EQ(std::count(many.begin(), many.end(), 'a'), 600);
+  std::size_t complete = 0;
+  Random random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const std::string changed = mutated(i % 2 == 0 ? block : run, random);
+    complete += decodeLz4Block(changed, many) ? 1U : 0U;
+    complete += decodeLz4Block(changed, bytes) ? 1U : 0U;
+  }
+  EXPECT_LT(complete, 20000U);
 }
 
 TEST(DamagedFiles, Vtu) {
@@ -156,7 +238,7 @@ TEST(DamagedFiles, Meshb) {
     writeBy(folder / "a.meshb", context, [&](OutputFile& output, Stage& stage) {
       writeMeshbVersion(gridMesh(2, 2, 1), output, version, stage);
     });
-    damage(contentOf(folder / "a.meshb"), parse<readMeshb>);
+    damage(contentOf(folder / "a.meshb"), parse<Meshb::readMesh>);
   }
 }
 

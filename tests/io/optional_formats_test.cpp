@@ -221,6 +221,78 @@ TEST(OpenFoam, FacesKeepTheRules) {
   EXPECT_NE(contentOf(folder / "polyMesh" / "cellZones").find("\n0\n(\n)\n"), std::string::npos);
 }
 
+TEST(OpenFoam, MeshesComeBackWithPatchesAndZones) {
+  const TemporaryFolder folder;
+  HexMesh mesh = meshWithTags();
+  mesh.regions.assign(mesh.cells.size(), 4);
+  mesh.regions[1] = 9;
+  write(mesh, folder / "a.foam");
+  const HexMesh read = readHexMesh(folder / "a.foam");
+  expectSameBits(read.points, mesh.points);
+  EXPECT_EQ(read.regions, mesh.regions);
+  ASSERT_EQ(read.cells.size(), mesh.cells.size());
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    Hex here = read.cells[c];
+    Hex there = mesh.cells[c];
+    std::sort(here.begin(), here.end());
+    std::sort(there.begin(), there.end());
+    EXPECT_EQ(here, there);
+  }
+  Context context;
+  for (const double measure : scaledJacobians(read, context)) EXPECT_GT(measure, 0);
+}
+
+TEST(OpenFoam, FilesOfOtherPrograms) {
+  const TemporaryFolder folder;
+  const std::filesystem::path poly = folder / "constant" / "polyMesh";
+  std::filesystem::create_directories(poly);
+  const std::string head =
+      "/*--- C++ ---*\\\n\\*----*/\nFoamFile\n{\n    version 2.0;\n    format ascii;\n}\n// * * "
+      "//\n\n";
+  const auto put = [&](const char* name, const std::string& text) {
+    std::ofstream(poly / name) << head << text;
+  };
+  put("points", "8((0 0 0)(1 0 0)(1 1 0)(0 1 0)\n(0 0 1) (1 0 1) (1 1 1) (0 1 1))\n");
+  const std::string faces =
+      "6\n(\n4(0 3 2 1)\n4(4 5 6 7)\n4(0 1 5 4) // a wall\n4(1 2 6 5)\n4(2 3 7 6)\n4(3 0 4 7)\n)\n";
+  put("faces", faces);
+  put("owner", "6{0}\n");
+  put("neighbour", "0()\n");
+  put("boundary",
+      "2\n(\n  inlet { type patch; nFaces 1; startFace 0; }\n"
+      "  rest\n  {\n    type wall;\n    inGroups 1(wall);\n    nFaces 5;\n"
+      "    startFace 1;\n  }\n)\n");
+  const auto readIt = [&] { return readHexMesh(folder / "a.foam"); };
+  const HexMesh mesh = readIt();
+  ASSERT_EQ(mesh.cells.size(), 1U);
+  Context context;
+  EXPECT_EQ(scaledJacobians(mesh, context)[0], 1);
+  ASSERT_EQ(mesh.features.quads.size(), 6U);
+  EXPECT_EQ(mesh.features.quads[0].tag, 1);
+  EXPECT_EQ(mesh.features.quads[5].tag, 2);
+  ASSERT_EQ(mesh.features.names.size(), 2U);
+  EXPECT_EQ(mesh.features.names[0].name, "inlet");
+  EXPECT_TRUE(mesh.regions.empty());
+  const auto expectFailure = [&](ErrorCode code, const std::string& words) {
+    const Failure failure = failureOf([&] { static_cast<void>(readIt()); });
+    EXPECT_EQ(failure.code, code) << failure.sentence;
+    EXPECT_NE(failure.sentence.find(words), std::string::npos) << failure.sentence;
+  };
+  put("owner", "6(0 0 0 0 0 7)\n");
+  expectFailure(ErrorCode::IndexOutOfRange, "cell 7");
+  put("owner", "5(0 0 0 0 0)\n");
+  expectFailure(ErrorCode::FileSyntax, "6 faces, but 5 owners");
+  put("owner", "6(0 0 0 0 0 0)\n");
+  put("faces", replaced(faces, "3 0 4 7", "3 0 4 8"));
+  expectFailure(ErrorCode::IndexOutOfRange, "faces, line 17: a corner of a face is 8");
+  put("faces", replaced(faces, "4(3 0 4 7)", "3(3 0 4)"));
+  expectFailure(ErrorCode::FileUnsupported, "it holds 1 polyhedron");
+  std::ofstream(poly / "faces") << replaced(head, "ascii", "binary") << faces;
+  expectFailure(ErrorCode::FileUnsupported, "foamFormatConvert");
+  std::filesystem::remove(poly / "faces");
+  expectFailure(ErrorCode::FileNotFound, "polyMesh/faces");
+}
+
 TEST(OpenFoam, CheckMeshIsContent) {
   const char* const configured = std::getenv("WM_PROJECT_DIR");
   const std::filesystem::path project =

@@ -122,7 +122,7 @@ TEST(ParallelText, MeditErrorsAreThoseOfOneThread) {
   writeHexMesh(gridMesh(20, 20, 20), folder / "a.mesh");
   expectSameErrors(contentOf(folder / "a.mesh"),
                    [](const std::string& text, const std::string& name, Context& context) {
-                     return readBytes<readMedit>(text, name, context);
+                     return readBytes<Medit::readMesh>(text, name, context);
                    });
 }
 
@@ -148,8 +148,8 @@ TEST(ParallelText, CommentsDoNotMatter) {
   writeHexMesh(grid, folder / "a.mesh");
   Context context(3);
   const std::string text = contentOf(folder / "a.mesh");
-  const HexMesh plain = readBytes<readMedit>(text, "m", context);
-  const HexMesh commented = readBytes<readMedit>("# 1 2 3\n" + text, "m", context);
+  const HexMesh plain = readBytes<Medit::readMesh>(text, "m", context);
+  const HexMesh commented = readBytes<Medit::readMesh>("# 1 2 3\n" + text, "m", context);
   expectSameBits(grid.points, plain.points);
   expectSameBits(grid.points, commented.points);
   EXPECT_EQ(grid.cells, plain.cells);

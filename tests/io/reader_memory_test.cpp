@@ -22,7 +22,7 @@
 #include <hexhex/samples.hpp>
 #include <hexhex/summary.hpp>
 
-#include <io/core/zlib_blocks.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

@@ -49,8 +49,10 @@ std::vector<Way> mapWays() {
 
 std::vector<Way> meshWays() {
   return waysOf([](const FileFormat& format) {
-    // Abaqus reads 20 characters of a number: not all come back to the bit.
-    return format.readsHexMeshes && format.writesHexMeshes && format.name != "inp";
+    // Abaqus reads 20 characters of a number: not all come back to the bit. OpenFOAM's folders hold
+    // faces, without an order of a cell's corners.
+    return format.readsHexMeshes && format.writesHexMeshes && format.name != "inp" &&
+           format.name != "openfoam";
   });
 }
 

@@ -47,7 +47,7 @@ std::string gridText(const std::function<int(const Vec3&)>& referenceOf,
 
 std::vector<FeatureVertex> tagsOf(const std::string& text) {
   Context context(2);
-  return readBytes<readMedit>(text, "m.mesh", context).features.vertices;
+  return readBytes<Medit::readMesh>(text, "m.mesh", context).features.vertices;
 }
 
 TEST(VertexTags, AReferenceThatAllShareSaysNothing) {
@@ -110,7 +110,7 @@ TEST(VertexTags, BinaryFilesListCornersToo) {
   const auto next = static_cast<std::int32_t>(bytes.size() + 20);
   for (const std::int32_t value : {13, next, 2, 125, 1, 54, 0}) append(value);
   Context context(1);
-  const HexMesh read = readBytes<readMeshb>(bytes, "a.meshb", context);
+  const HexMesh read = readBytes<Meshb::readMesh>(bytes, "a.meshb", context);
   EXPECT_EQ(read.features.vertices, (std::vector<FeatureVertex>{{0, 1}, {124, 1}}));
 }
 

@@ -9,8 +9,8 @@
 #include <hexhex/io.hpp>
 #include <hexhex/mesh.hpp>
 
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/registry.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>

@@ -187,7 +187,7 @@ def test_every_format_of_this_build(sphere, tmp_path):
         file = tmp_path / (f.name + (f.extension or ".mfem"))
         hexhex.write(mesh, file, format=f.name)
         assert file.exists()
-        if f.reads_meshes:
+        if f.reads_meshes and f.name != "openfoam":  # which has no order of corners
             np.testing.assert_array_equal(hexhex.read(file, format=f.name).cells, mesh.cells)
 
 

@@ -33,19 +33,20 @@ template <class T>
   return std::bit_cast<T>(bytes);
 }
 
-/// Reads a big-endian number of 4 or 8 bytes. Swaps bytes by halves: a byte-by-byte loop makes
+/// Reads a big-endian number of 2, 4 or 8 bytes. Swaps bytes by halves: a byte-by-byte loop makes
 /// converting a whole binary `.vtk` file 10 % slower.
 template <class T>
 [[nodiscard]] T loadBig(const char* place) {
-  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t,
+                                  std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint16_t>>;
   static_assert(sizeof(T) == sizeof(Bits));
   Bits bits;
   std::memcpy(&bits, place, sizeof(bits));
   if constexpr (std::endian::native == std::endian::little) {
     constexpr Bits kOddBytes = static_cast<Bits>(0xff00ff00ff00ff00U);
     constexpr Bits kOddPairs = static_cast<Bits>(0xffff0000ffff0000U);
-    bits = (bits & kOddBytes) >> 8U | (bits << 8U & kOddBytes);
-    bits = (bits & kOddPairs) >> 16U | (bits << 16U & kOddPairs);
+    bits = static_cast<Bits>((bits & kOddBytes) >> 8U | (bits << 8U & kOddBytes));
+    if constexpr (sizeof(T) >= 4) bits = (bits & kOddPairs) >> 16U | (bits << 16U & kOddPairs);
     if constexpr (sizeof(T) == 8) bits = bits >> 32U | bits << 32U;
   }
   return std::bit_cast<T>(bits);

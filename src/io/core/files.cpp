@@ -1,5 +1,6 @@
 // Entry points that read and write files of any format: checks that the format supports the
 // request, then dispatches. Implements <hexhex/io.hpp> and the file functions of other headers.
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -18,11 +19,11 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/repeated_features.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/surface/surface.hpp>
 #include <mesh/lagrange_check.hpp>
 
@@ -65,6 +66,20 @@ void refuseGzip(const std::filesystem::path& file) {
          "\".gz\", and compress it then.");
 }
 
+constexpr std::array<std::string_view, 3> kElementTypes = {"C3D8", "C3D8R", "C3D8I"};
+
+void requireElementType(const std::filesystem::path& file, const Format& format,
+                        const WriteOptions& options) {
+  const std::string_view type = options.elementType;
+  if (type.empty()) return;
+  if (format.label.name == "inp" &&
+      std::find(kElementTypes.begin(), kElementTypes.end(), type) != kElementTypes.end()) {
+    return;
+  }
+  refuse(file, concat("elements of the type \"", type, "\" cannot be written: straight cells ",
+                      "in .inp files are of the type C3D8, C3D8R or C3D8I, others have none."));
+}
+
 /// The format of a file to write with these options.
 const Format& writableFormat(const std::filesystem::path& file, const WriteOptions& options,
                              FileContent content) {
@@ -83,6 +98,7 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
            concat("the format \"", format.label.name, "\" knows no compression; only .vtu does."));
   }
   if (options.compress) requireZlib(file, "compress files", "write the file without compression");
+  requireElementType(file, format, options);
   if (format.overHdf5) requireHdf5(file);
   return format;
 }
@@ -386,6 +402,7 @@ std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
   io::refuseGzip(file);
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::HexMesh);
   if (options.compress) io::refuse(file, "a mesh in pieces cannot be written with compression.");
+  io::requireElementType(file, format, options);
   if (format.pieces.openSink == nullptr) {
     io::refuse(file, "a mesh in pieces cannot be written in this format. Formats that can: " +
                          io::streamingFormats() + ".");
@@ -436,6 +453,9 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
   const io::Format& format = io::curvedFormatToWrite(file, options.format, mesh.order);
+  if (!options.elementType.empty()) {
+    io::refuse(file, "only straight cells can be given a type of elements.");
+  }
   mesh::requireConsistent(mesh);
   if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {
     throw Error(ErrorCode::InvalidArgument,
@@ -495,6 +515,7 @@ std::unique_ptr<PartSink> openPartSink(const std::filesystem::path& file,
 void requirePartFormat(const std::filesystem::path& file, const WriteOptions& options,
                        bool byTeam) {
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::Parts);
+  io::requireElementType(file, format, options);
   if (byTeam) io::requireForTeams(file, format);
 }
 

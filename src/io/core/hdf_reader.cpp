@@ -5,9 +5,9 @@
 #include <hexhex/error.hpp>
 
 #include <base/concat.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf_file.hpp>
 #include <io/core/hdf_reader.hpp>
-#include <io/core/zlib_blocks.hpp>
 
 namespace hexhex::io {
 

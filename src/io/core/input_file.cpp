@@ -7,10 +7,10 @@
 #include <hexhex/error.hpp>
 
 #include <base/parallel.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/system_call.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/zlib_blocks.hpp>
 
 namespace hexhex::io {
 namespace {

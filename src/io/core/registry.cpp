@@ -11,9 +11,9 @@
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/surface/surface.hpp>
 
 namespace hexhex::io {
@@ -49,6 +49,20 @@ constexpr Format exodusFormat(std::string_view name, std::string_view extension,
           .parts = {openExodusPartSink, parts}};
 }
 
+template <bool binary>
+constexpr Format meditFormat(std::string_view name, std::string_view extension,
+                             std::string_view description) {
+  using Medit = MeditFormat<binary>;
+  return {.label = {name, extension, description},
+          .readTets = Medit::readTets,
+          .meshes = {Medit::readMesh, Medit::write},
+          .curved = {.isIn = Medit::holdsCurved,
+                     .read = Medit::readCurved,
+                     .write = Medit::writeCurved,
+                     .onlyOrder = 2},
+          .pieces = {Medit::openSink, Medit::readTo}};
+}
+
 constexpr Format vtkGridFormat(std::string_view name, std::string_view extension,
                                std::string_view description) {
   return {.label = {name, extension, description},
@@ -62,25 +76,15 @@ constexpr std::array kFormatTable = {
            .readTets = readHexexTets},
     // Before "mesh": .mesh files of higher order are MFEM's.
     Format{.label = {"mfem", "", "MFEM mesh v1.0, text"},
-           .meshes = {.write = writeMfem},
-           .curved = {.write = writeLagrangeMfem, .extension = ".mesh"},
+           .readTets = MfemFormat::readTets,
+           .meshes = {MfemFormat::readMesh, writeMfem},
+           .curved = {.isIn = MfemFormat::holdsCurved,
+                      .read = MfemFormat::readCurved,
+                      .write = writeLagrangeMfem,
+                      .extension = ".mesh"},
            .parts = {openMfemPartSink, "MFEM parallel mesh v1.2: NAME.000000 ..."}},
-    Format{.label = {"mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"},
-           .readTets = readMeditTets,
-           .meshes = {readMedit, writeMedit},
-           .curved = {.isIn = holdsQuadraticMedit,
-                      .read = readQuadraticMedit,
-                      .write = writeQuadraticMedit,
-                      .onlyOrder = 2},
-           .pieces = {openMeditSink, readMeditTo}},
-    Format{.label = {"meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"},
-           .readTets = readMeshbTets,
-           .meshes = {readMeshb, writeMeshb},
-           .curved = {.isIn = holdsQuadraticMeshb,
-                      .read = readQuadraticMeshb,
-                      .write = writeQuadraticMeshb,
-                      .onlyOrder = 2},
-           .pieces = {openMeshbSink, readMeshbTo}},
+    meditFormat<false>("mesh", ".mesh", "MEDIT (Gamma Mesh Format), text"),
+    meditFormat<true>("meshb", ".meshb", "MEDIT (Gamma Mesh Format), binary"),
     Format{.label = {"vtu", ".vtu", "VTK XML unstructured grid, binary"},
            .maps = {readVtuMap, writeVtuMap},
            .readTets = readVtuTets,
@@ -158,7 +162,7 @@ constexpr std::array kFormatTable = {
            .readTets = readTetgen},
     Format{
         .label = {"openfoam", ".foam", "OpenFOAM polyMesh, a folder"},
-        .meshes = {.writeFolder = writeOpenFoam},
+        .meshes = {.read = readOpenFoam, .writeFolder = writeOpenFoam},
         .parts = {openOpenFoamPartSink, "OpenFOAM: processorK/constant/polyMesh beside NAME.foam"}},
     Format{.label = {"vtkhdf", ".vtkhdf", "VTKHDF"},
            .readTets = kOverHdf5<readVtkHdfTets>,

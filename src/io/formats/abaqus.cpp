@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -90,15 +91,19 @@ AbaqusType abaqusType(std::string_view name) {
   return type;
 }
 
-/// The number of nodes of a shell or membrane (3) or of a beam or truss (2), as which Gmsh writes
-/// groups of triangles and lines; 0 for other elements.
-std::size_t nodesOfFacet(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kTriangles = {"cps3", "cpe3",  "s3",   "s3r",
-                                                          "ds3",  "stri3", "m3d3", "sfm3d3"};
-  constexpr std::array<std::string_view, 3> kLines = {"t3d2", "b31", "t2d2"};
+/// The number of corners of a shell or membrane (4 or 3) or of a beam or truss (2), as which Gmsh
+/// writes groups of quads, triangles and lines; 0 for other elements. Corners come first.
+std::size_t cornersOfFacet(std::string_view name) {
+  constexpr std::array<std::string_view, 13> kQuads = {"cps4",   "cps4r",   "cpe4",  "s4",  "s4r",
+                                                       "s4rs",   "m3d4",    "m3d4r", "s8r", "cps8",
+                                                       "sfm3d4", "sfm3d4r", "m3d9"};
+  constexpr std::array<std::string_view, 10> kTriangles = {
+      "cps3", "cpe3", "s3", "s3r", "ds3", "stri3", "m3d3", "sfm3d3", "cps6", "stri65"};
+  constexpr std::array<std::string_view, 4> kLines = {"t3d2", "b31", "t2d2", "t3d3"};
   const auto isIn = [name](const auto& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
+  if (isIn(kQuads)) return 4;
   if (isIn(kTriangles)) return 3;
   return isIn(kLines) ? 2 : 0;
 }
@@ -128,8 +133,8 @@ class AbaqusReader {
   /// An element that is not a volume.
   struct Facet {
     std::uint64_t number;
-    std::size_t count;  ///< number of nodes
-    std::array<std::uint64_t, 3> nodes;
+    std::size_t count;  ///< number of corners
+    std::array<std::uint64_t, 4> nodes;
   };
 
   static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
@@ -286,7 +291,7 @@ class AbaqusReader {
       std::string_view rest = line_;
       const std::uint64_t number = integer(takeField(rest), "the number of an element");
       if (type.cells == nullptr && name.find("c3d") == std::string::npos) {
-        readFacet(nodesOfFacet(name), number, rest, set);
+        readFacet(cornersOfFacet(name), number, rest, set);
         continue;
       }
       if (type.cells == nullptr) {
@@ -303,7 +308,16 @@ class AbaqusReader {
         }
         places.push_back(integer(takeField(rest), "a node of an element"));
       }
+      if (type.nodes == 27) putFacesInOrder(std::span(places).last(7));
     }
+  }
+
+  /// C3D27 lists the node in the middle before those of the faces S1 to S6.
+  static void putFacesInOrder(std::span<std::uint64_t> nodes) {
+    constexpr std::array<std::size_t, 7> kPlaces = {6, 4, 3, 5, 1, 2, 0};  // of VTK's last nodes
+    std::array<std::uint64_t, 7> listed{};
+    std::copy(nodes.begin(), nodes.end(), listed.begin());
+    for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = listed[kPlaces[k]];
   }
 
   void readFacet(std::size_t nodes, std::uint64_t number, std::string_view rest,
@@ -428,8 +442,7 @@ class AbaqusReader {
     }
     tagRegions();
     tagSurfaces();
-    tagFacets(3, nodes);
-    tagFacets(2, nodes);
+    for (const std::size_t corners : {4U, 3U, 2U}) tagFacets(corners, nodes);
     for (auto& [name, set] : nodeSets_) {
       NodeSet& added = lists_.nodeSets.emplace_back(
           NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
@@ -488,8 +501,8 @@ class AbaqusReader {
     }
   }
 
-  /// A triangle or line gets the tag of the first set that contains nothing else; sets named by
-  /// *ELEMENT come last.
+  /// A quad, triangle or line gets the tag of the first set that contains nothing else; sets named
+  /// by *ELEMENT come last.
   void tagFacets(std::size_t corners, const NodeTags& nodes) {
     std::map<std::uint64_t, std::pair<const Facet*, std::int32_t>> facets;
     for (const Facet& facet : facets_) {
@@ -504,7 +517,7 @@ class AbaqusReader {
           continue;
         }
         const std::int32_t tag = facetTags_.next(name);
-        lists_.addName(static_cast<int>(corners) - 1, tag, name);
+        lists_.addName(corners == 2 ? 1 : 2, tag, name);
         for (const std::uint64_t number : set.items) {
           if (isUntagged(number)) facets[number].second = tag;
         }
@@ -514,11 +527,12 @@ class AbaqusReader {
   }
 
   void addFacet(const Facet& facet, std::int32_t tag, const NodeTags& nodes) {
-    std::array<Index, 3> v{};
+    std::array<Index, 4> v{};
     for (std::size_t k = 0; k < facet.count; ++k) v[k] = nodes.find(facet.nodes[k]);
     const bool isKnown = std::find(v.begin(), v.end(), kNone) == v.end();
     if (tag == 0 || !isKnown) return;
-    if (facet.count == 3) lists_.triangles.push_back({v, tag});
+    if (facet.count == 4) lists_.quads.push_back({v, tag});
+    if (facet.count == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
     if (facet.count == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
   }
 
@@ -646,8 +660,12 @@ struct QuadraticCells {
 
 class AbaqusWriter {
  public:
-  AbaqusWriter(OutputFile& output, Stage& stage)
-      : output_(output), lines_(output, stage.context().threads()), stage_(stage) {}
+  /// @param elementType  "C3D8R"
+  AbaqusWriter(std::string_view elementType, OutputFile& output, Stage& stage)
+      : elementType_(elementType),
+        output_(output),
+        lines_(output, stage.context().threads()),
+        stage_(stage) {}
 
   /// @param middles  midpoint nodes of edges, ascending; empty for straight cells
   template <class Cells>
@@ -684,7 +702,7 @@ class AbaqusWriter {
   void writeElements(const Cells& cells) {
     constexpr std::size_t kNodes = std::tuple_size_v<typename Cells::value_type>;
     LoopProgress progress(stage_, cells.size());
-    output_.write("*ELEMENT, TYPE=C3D").write(kNodes).write(", ELSET=HEXAHEDRA\n");
+    output_.write("*ELEMENT, TYPE=").write(elementType_).write(", ELSET=HEXAHEDRA\n");
     const auto cell = [&cells](char* place, std::size_t i) {
       place = put(place, std::uint64_t{i} + 1);
       for (std::size_t k = 0; k < kNodes; ++k) {
@@ -745,6 +763,7 @@ class AbaqusWriter {
     lines_.write(count, kNumberRoom + 5, face, nullptr);
   }
 
+  std::string_view elementType_;
   OutputFile& output_;
   LineWriter lines_;
   Stage& stage_;
@@ -755,14 +774,15 @@ class AbaqusWriter {
 void writeAbaqus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                  Stage& stage) {
   const MeshGroups groups(mesh, options.patchAngle, stage);
-  AbaqusWriter(output, stage).write(mesh.points, mesh.cells, groups, {});
+  const std::string_view type = options.elementType.empty() ? "C3D8" : options.elementType;
+  AbaqusWriter(type, output, stage).write(mesh.points, mesh.cells, groups, {});
 }
 
 void writeQuadraticAbaqus(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                           Stage& stage) {
   const MeshGroups groups(straightMesh(mesh), options.patchAngle, stage);
   const QuadraticCells cells(mesh);
-  AbaqusWriter(output, stage).write(cells.points, cells.cells, groups, cells.middles);
+  AbaqusWriter("C3D20", output, stage).write(cells.points, cells.cells, groups, cells.middles);
 }
 
 }  // namespace hexhex::io

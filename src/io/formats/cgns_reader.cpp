@@ -253,9 +253,8 @@ class CgnsReader {
   void readConditions(const Zone& zone) {
     for (const std::string& all : nodes(zone.path, "ZoneBC_t")) {
       for (const std::string& condition : nodes(all, "BC_t")) {
-        const std::string family = textIn(condition, "FamilyName_t");
         const std::string location = textIn(condition, "GridLocation_t");
-        Group group{family.empty() ? nameOf(condition) : family, {}};
+        Group group{nameOfCondition(zone, condition), {}};
         const bool ofVertices = location.empty() || location == "Vertex";
         readRanges(condition, "Point", ofVertices ? zone.points : zone.last, group);
         if (ofVertices && !group.ranges.empty()) {
@@ -266,10 +265,27 @@ class CgnsReader {
             first += zone.before;
             last += zone.before;
           }
-          (location == "CellCenter" ? volumeGroups_ : flatGroups_).push_back(std::move(group));
+          // Gmsh says so of faces, too.
+          const bool ofCells = location == "CellCenter" && !beginsFlat(group);
+          (ofCells ? volumeGroups_ : flatGroups_).push_back(std::move(group));
         }
       }
     }
+  }
+
+  /// The name of its family, or of the one that this belongs to, as do Gmsh's, or its own.
+  [[nodiscard]] std::string nameOfCondition(const Zone& zone, const std::string& condition) const {
+    const std::string family = textIn(condition, "FamilyName_t");
+    if (family.empty()) return nameOf(condition);
+    const std::string base = zone.path.substr(0, zone.path.rfind('/'));
+    const std::vector<std::string> found = nodes(base, "Family_t", family);
+    const std::string above = found.empty() ? std::string() : textIn(found[0], "FamilyName_t");
+    return above.empty() ? family : above;
+  }
+  [[nodiscard]] bool beginsFlat(const Group& group) const {
+    return !group.ranges.empty() &&
+           std::any_of(flats_.begin(), flats_.end(),
+                       [&](const Flat& flat) { return flat.number == group.ranges[0].first; });
   }
 
   void readRanges(const std::string& condition, const std::string& what, std::uint64_t most,

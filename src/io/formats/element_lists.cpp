@@ -15,6 +15,7 @@
 #include <base/concat.hpp>
 #include <base/sorted.hpp>
 #include <io/core/mesh_groups.hpp>
+#include <io/core/repeated_features.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
 
@@ -92,12 +93,12 @@ std::vector<FeatureFace> trianglesOf(const ElementLists& lists, const Array<std:
   return triangles;
 }
 
-/// Tagged quads.
+/// Tagged quads. Sides win over elements with the same vertices.
 /// @param cellAt  returns the corners of a cell
 template <class CellAt>
 std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
                                  const CellAt& cellAt) {
-  std::vector<FeatureQuad> quads = lists.quads;
+  std::vector<FeatureQuad> quads;
   const NodeTags cells(numbers);
   for (const ElementSide& side : lists.sides) {
     const Index cell = cells.find(side.element);
@@ -108,6 +109,9 @@ std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uin
     }
     quad.tag = side.tag;
   }
+  const bool both = !quads.empty() && !lists.quads.empty();
+  quads.insert(quads.end(), lists.quads.begin(), lists.quads.end());
+  if (both) removeRepeated(quads);
   return quads;
 }
 

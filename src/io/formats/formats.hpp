@@ -86,33 +86,35 @@ WriteMap writeHexex;
 // tagged, 1 for all boundary quads and cells. Other programs do likewise, so references become tags
 // and regions on reading unless all are 0 or all are 1; vertices are tagged where the file lists
 // them as corners.
-ReadMesh readMedit;
-ReadTets readMeditTets;
-/// Writes sections Vertices, Quadrilaterals (the boundary, facing outwards, and tagged quads) and
-/// Hexahedra. Tagged edges are left out: viewers that read only what they display fail on the
-/// section.
-WriteMesh writeMedit;
-/// Versions 1 to 4, in native byte order. Buffers only a few kilobytes of the file.
-ReadMesh readMeshb;
-ReadTets readMeshbTets;
-/// The same sections, and tagged edges. Writes the lowest version that can hold the file: 2 below
-/// 2^31 bytes, 3 (64-bit positions) above, 4 (all integers 64-bit) from 2^31 vertices or elements
-/// on.
-WriteMesh writeMeshb;
+//
+// Writes sections Vertices, Quadrilaterals (the boundary, facing outwards, and tagged quads) and
+// Hexahedra, and in binary files tagged edges: viewers that read only what they display fail on
+// this section of text. Binary files have the lowest version that can hold the mesh: 2 below 2^31
+// bytes, 3 (64-bit positions) above, 4 (all integers 64-bit) from 2^31 vertices or elements on; 1
+// to 4 are read, in native byte order.
+//
+// Of order 2 only: HexahedraQ2, in the order of HexahedraQ2Ordering, else in that of libMeshb, with
+// QuadrilateralsQ2 and, in binary files, EdgesP2; if they come before straight hexahedra.
+template <bool binary>
+struct MeditFormat {
+  static ReadMesh readMesh;
+  static ReadTets readTets;
+  static HoldsCurved holdsCurved;
+  static ReadCurved readCurved;
+  /// Streams regular files with one section of vertices before one of hexahedra, without comments;
+  /// loads others as a whole.
+  static ReadPieces readTo;
+  static WriteMesh write;
+  static WriteCurved writeCurved;
+  /// Without a boundary.
+  static OpenSink openSink;
+};
+using Medit = MeditFormat<false>;
+using Meshb = MeditFormat<true>;
 /// Writes a given version, 2 to 4, which must be able to hold the mesh. For tests: meshes that
 /// require a higher version are too large for them.
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                        Stage& stage);
-/// Order 2 only: HexahedraQ2, in the order of HexahedraQ2Ordering, else in that of libMeshb, with
-/// QuadrilateralsQ2 and, in `.meshb`, EdgesP2; if they come before straight hexahedra.
-HoldsCurved holdsQuadraticMedit, holdsQuadraticMeshb;
-ReadCurved readQuadraticMedit, readQuadraticMeshb;
-WriteCurved writeQuadraticMedit, writeQuadraticMeshb;
-/// Streams files with one section Vertices followed by one section Hexahedra, without comments;
-/// loads others as a whole.
-ReadPieces readMeditTo, readMeshbTo;
-/// Vertices and hexahedra only: the boundary is not known before the last cell.
-OpenSink openMeditSink, openMeshbSink;
 
 // `.vtu`: VTK's XML format for unstructured grids. Reads appended data (raw or base64), inline
 // base64 or ascii, and zlib compression if built with zlib. Writes appended raw data, which
@@ -350,9 +352,17 @@ using CgnsFormat = ElementFormat<readCgns>;
 /// from 1 on, as solutions. No ghosts.
 OpenPartSink openCgnsPartSink;
 
-// MFEM mesh v1.0, text; selected by format name only, since MFEM's files have the extension of
-// MEDIT's. Writes cells (attribute: their region, or 1), boundary quads and tagged interior quads
-// (attribute: the number of their group), and vertices.
+// MFEM mesh v1.0, text. Its files have the extension of MEDIT's, whose readers recognize them; to
+// be written, the format is selected by name. Writes cells (attribute: their region, or 1),
+// boundary quads and tagged interior quads (attribute: the number of their group), and vertices.
+//
+// Reads conforming meshes, v1.0 to 1.3. Attributes are regions and tags unless all are 1; those
+// with a set of their own have its name. Nodes of order 1 are vertices; with nodes of order 2,
+// cells are curved. Other orders, periodic meshes, and nodes of other cells are refused.
+[[nodiscard]] ElementLists readMfem(const Input& input, ElementParts parts, Stage& stage);
+using MfemFormat = ElementFormat<readMfem>;
+/// Whether a regular file, or bytes, begin as MFEM's meshes do.
+[[nodiscard]] bool isMfem(const Input& input);
 WriteMesh writeMfem;
 /// Nodes as a grid function in L2 with closed equidistant nodes, listed cell by cell.
 WriteCurved writeLagrangeMfem;
@@ -368,6 +378,10 @@ OpenPartSink openMfemPartSink;
 // The file is `CASE/X.foam`, written empty for ParaView, next to `CASE/constant/polyMesh`; or the
 // folder `polyMesh` itself. Folders are created. `polyMesh` is replaced atomically; its other
 // contents are kept.
+//
+// Reads text files, plain or compressed. Patches are tags and cell zones regions, numbered as they
+// come unless this library named them.
+ReadMesh readOpenFoam;
 WriteFolder writeOpenFoam;
 /// A decomposed case, beside NAME.foam or in the named folder: for each part
 /// `processorK/constant/polyMesh`, with processor patches and the addresses of points, cells, faces

@@ -20,6 +20,7 @@
 #include <hexhex/parts.hpp>
 #include <hexhex/team.hpp>
 
+#include <base/box.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -63,13 +64,8 @@ struct PartitionEntity {
   std::uint32_t tag;
   std::uint32_t parent;  ///< also the physical group
   std::uint32_t part;    ///< from 1 on
-  Vec3 low;
-  Vec3 high;
+  Box box;
 };
-
-/// Numbers in GmshSums::packed(): per entity, and others.
-constexpr std::size_t kOfEntity = 10;
-constexpr std::size_t kOthers = 6;
 
 /// The contents of a file, or of one part, in numbers.
 struct GmshSums {
@@ -91,34 +87,28 @@ struct GmshSums {
     largestElement = std::max(largestElement, part.largestElement);
     entities.insert(entities.end(), part.entities.begin(), part.entities.end());
   }
-  /// Conversion to numbers, and back.
+  /// Conversion to numbers, and back, in processes of one team.
   [[nodiscard]] std::vector<std::uint64_t> packed() const {
     std::vector<std::uint64_t> numbers = {nodeBlocks, nodes,  elementBlocks,
                                           elements,   ghosts, largestElement};
     for (const PartitionEntity& entity : entities) {
-      numbers.insert(numbers.end(), {entity.dimension, entity.tag, entity.parent, entity.part});
-      for (const Vec3& point : {entity.low, entity.high}) {
-        for (const double x : point) numbers.push_back(std::bit_cast<std::uint64_t>(x));
-      }
+      const auto words = std::bit_cast<EntityWords>(entity);
+      numbers.insert(numbers.end(), words.begin(), words.end());
     }
     return numbers;
   }
   static GmshSums unpacked(std::span<const std::uint64_t> numbers) {
     GmshSums sums{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], {}};
-    for (std::size_t i = kOthers; i < numbers.size(); i += kOfEntity) {
-      const auto integer = [&](std::size_t k) {
-        return static_cast<std::uint32_t>(numbers[i + k]);
-      };
-      const auto pointAt = [&](std::size_t k) {
-        return Vec3{std::bit_cast<double>(numbers[i + k]),
-                    std::bit_cast<double>(numbers[i + k + 1]),
-                    std::bit_cast<double>(numbers[i + k + 2])};
-      };
-      sums.entities.push_back(
-          {integer(0), integer(1), integer(2), integer(3), pointAt(4), pointAt(7)});
+    EntityWords words{};
+    for (numbers = numbers.subspan(6); !numbers.empty(); numbers = numbers.subspan(words.size())) {
+      std::copy_n(numbers.begin(), words.size(), words.begin());
+      sums.entities.push_back(std::bit_cast<PartitionEntity>(words));
     }
     return sums;
   }
+
+ private:
+  using EntityWords = std::array<std::uint64_t, sizeof(PartitionEntity) / sizeof(std::uint64_t)>;
 };
 
 /// The contribution of one part to a file.
@@ -176,7 +166,7 @@ class SectionMaker {
       : part_(part), groups_(groups), numbers_(numbers), onlyOwned_(onlyOwned) {}
 
   [[nodiscard]] PartSections make() {
-    measure();
+    for (const Vec3& point : part_.mesh.points) box_.add(point);
     addQuads();
     addCells();
     addNodes();
@@ -187,21 +177,11 @@ class SectionMaker {
   }
 
  private:
-  void measure() {
-    if (part_.mesh.points.empty()) return;
-    low_ = high_ = part_.mesh.points[0];
-    for (const Vec3& point : part_.mesh.points) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        low_[k] = std::min(low_[k], point[k]);
-        high_[k] = std::max(high_[k], point[k]);
-      }
-    }
-  }
   /// Opens the block of a group.
   void open(std::uint32_t dimension, std::size_t group, std::uint32_t part, std::uint64_t count) {
     const std::uint32_t tag = numbers_.entityOf(dimension, group, part);
     const std::uint32_t parent = numbers_.groups(dimension)[group].number;
-    sections_.sums.entities.push_back({dimension, tag, parent, part + 1, low_, high_});
+    sections_.sums.entities.push_back({dimension, tag, parent, part + 1, box_});
     ++sections_.sums.elementBlocks;
     sections_.sums.elements += count;
     sections_.elements.integers({dimension, tag, dimension == 2 ? kGmshQuad : kGmshHexahedron});
@@ -287,8 +267,7 @@ class SectionMaker {
   const MeshGroups& groups_;
   GmshNumbers& numbers_;
   bool onlyOwned_;
-  Vec3 low_{};
-  Vec3 high_{};
+  Box box_;
   PartSections sections_;
 };
 
@@ -306,20 +285,18 @@ std::string gmshHead(const GmshNumbers& numbers, const PartsInfo& info, const Gm
     }
   }
   bytes.add("$EndPhysicalNames\n$Entities\n");
-  Vec3 low{};
-  Vec3 high{};
-  for (std::size_t i = 0; i < sums.entities.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = i == 0 ? sums.entities[i].low[k] : std::min(low[k], sums.entities[i].low[k]);
-      high[k] = i == 0 ? sums.entities[i].high[k] : std::max(high[k], sums.entities[i].high[k]);
-    }
+  Box all;
+  for (const PartitionEntity& entity : sums.entities) {
+    all.add(entity.box.low);
+    all.add(entity.box.high);
   }
+  if (sums.entities.empty()) all = {{}, {}};
   bytes.sizes({0, 0, numbers.groups(2).size(), numbers.groups(3).size()});
   for (const unsigned dimension : {2U, 3U}) {
     for (const ElementGroup& group : numbers.groups(dimension)) {
       bytes.integers({group.number});
-      bytes.add(low);
-      bytes.add(high);
+      bytes.add(all.low);
+      bytes.add(all.high);
       bytes.sizes({1});
       bytes.integers({group.number});
       bytes.sizes({0});
@@ -335,8 +312,8 @@ std::string gmshHead(const GmshNumbers& numbers, const PartsInfo& info, const Gm
       bytes.integers({entity.tag, dimension, entity.parent});
       bytes.sizes({1});
       bytes.integers({entity.part});
-      bytes.add(entity.low);
-      bytes.add(entity.high);
+      bytes.add(entity.box.low);
+      bytes.add(entity.box.high);
       bytes.sizes({1});
       bytes.integers({entity.parent});
       bytes.sizes({0});

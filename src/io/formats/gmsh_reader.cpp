@@ -325,13 +325,19 @@ std::int64_t firstOfGmshList(Source& source, const char* what) {
 }
 
 /// Reads entities of one dimension: tags, bounding boxes, groups and bounding entities.
+/// @param partitioned  whether they tell the entity that they are of, and their parts
 template <class Source>
 void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, std::uint64_t count,
-                    GmshTags& tags) {
+                    bool partitioned, GmshTags& tags) {
   const std::size_t reals = dimension == 0 && version == GmshVersion::V41 ? 3 : 6;
   requireRoom(source, count, {.integers = 1, .reals = reals}, "entities");
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::int64_t entity = source.integer("the tag of an entity");
+    if (partitioned) {
+      static_cast<void>(source.integer("the dimension of a parent"));
+      static_cast<void>(source.integer("the tag of a parent"));
+      firstOfGmshList(source, "a part");
+    }
     for (std::size_t k = 0; k < reals; ++k) {
       static_cast<void>(source.real("a coordinate of an entity"));
     }
@@ -341,13 +347,20 @@ void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, 
   }
 }
 
-/// Reads the groups of entities from the section $Entities of version 4.
+/// Reads the groups of entities from the section $Entities of version 4, or from
+/// $PartitionedEntities of 4.1.
 template <class Source>
-void readEntities(Source& source, GmshVersion version, GmshTags& tags) {
+void readEntities(Source& source, GmshVersion version, bool partitioned, GmshTags& tags) {
+  if (partitioned) {
+    static_cast<void>(source.size("the number of parts"));
+    const std::uint64_t ghosts = source.size("the number of ghost entities");
+    requireRoom(source, ghosts, {.integers = 2}, "ghost entities");
+    source.skip(static_cast<std::size_t>(ghosts), {.integers = 2});
+  }
   std::array<std::uint64_t, 4> counts{};
   for (std::uint64_t& count : counts) count = source.size("the number of entities");
   for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
-    readEntitiesOf(source, version, dimension, counts[dimension], tags);
+    readEntitiesOf(source, version, dimension, counts[dimension], partitioned, tags);
   }
 }
 
@@ -589,7 +602,11 @@ class GmshReader {
     } else if (all && name == "PhysicalNames") {
       return readNames(file_.skipSection(name), tags_);
     } else if (all && name == "Entities" && hasEntities(file_.version())) {
-      file_.withSource([this](auto& source) { readEntities(source, file_.version(), tags_); });
+      file_.withSource(
+          [this](auto& source) { readEntities(source, file_.version(), false, tags_); });
+    } else if (all && name == "PartitionedEntities" && file_.version() == GmshVersion::V41) {
+      file_.withSource(
+          [this](auto& source) { readEntities(source, file_.version(), true, tags_); });
     } else if (all && name == (version1 ? "NOD" : "Nodes")) {
       readNodes(name);
     } else {
@@ -826,7 +843,8 @@ class GmshPieces {
       } else if (word == "$Entities") {
         // Entities only assign groups to whole blocks, which pieces do not carry.
         GmshTags ignored;
-        if (!lookInside([&] { return readEntities(source_, GmshVersion::V41, ignored), true; })) {
+        if (!lookInside(
+                [&] { return readEntities(source_, GmshVersion::V41, false, ignored), true; })) {
           return false;
         }
       } else if (word != "$PhysicalNames") {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/box.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
@@ -161,25 +161,11 @@ class Msh41Writer {
   }
 
  protected:
-  /// The bounding box of points; all 0 if there are none.
-  class Box {
-   public:
-    void add(const Vec3& point) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        lower_[axis] = std::min(lower_[axis], point[axis]);
-        upper_[axis] = std::max(upper_[axis], point[axis]);
-      }
-    }
-    [[nodiscard]] std::array<Vec3, 2> corners() const {
-      if (lower_[0] > upper_[0]) return {};
-      return {lower_, upper_};
-    }
-
-   private:
-    static constexpr double kFar = std::numeric_limits<double>::infinity();
-    Vec3 lower_ = {kFar, kFar, kFar};
-    Vec3 upper_ = {-kFar, -kFar, -kFar};
-  };
+  /// The corners of a box; all 0 if it is empty.
+  [[nodiscard]] static std::array<Vec3, 2> cornersOf(const Box& box) {
+    if (box.low[0] > box.high[0]) return {};
+    return {box.low, box.high};
+  }
 
   // The sections of a file, in order. Each function ends the section before it.
 
@@ -200,7 +186,7 @@ class Msh41Writer {
   void writeEntity(unsigned dimension, const GmshEntity& entity, const Box& box) {
     integers({entity.tag});
     boxPosition_ = output_.position();
-    const std::array<Vec3, 2> corners = box.corners();
+    const std::array<Vec3, 2> corners = cornersOf(box);
     // A point has a position instead of a box.
     for (std::size_t corner = 0; corner < (dimension == 0 ? 1U : 2U); ++corner) {
       for (const double coordinate : corners[corner]) Numbers::write(output_, coordinate);
@@ -216,7 +202,7 @@ class Msh41Writer {
     output_.flush();
     std::array<char, sizeof(Vec3) * 2> bytes;  // NOLINT(*-member-init): filled at once
     char* place = bytes.data();
-    for (const Vec3& corner : box.corners()) place = putBytes(place, corner);
+    for (const Vec3& corner : cornersOf(box)) place = putBytes(place, corner);
     output_.writeBytesAt(boxPosition_, bytes.data(), bytes.size());
   }
 

@@ -22,6 +22,7 @@
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
@@ -188,8 +189,7 @@ class MeditText {
     if (scanner_.readToken() != "MeshVersionFormatted") {
       if (scanner_.currentToken() == "MFEM") {
         scanner_.fail(ErrorCode::FileUnsupported,
-                      "this is a mesh of MFEM, which is written, but not read. Save it as .vtk "
-                      "(Mesh::PrintVTK).");
+                      "this is a mesh of MFEM, which is read from files only, not from pipes.");
       }
       scanner_.fail(ErrorCode::FileSyntax,
                     "a MEDIT file begins with \"MeshVersionFormatted\", found ",
@@ -226,6 +226,15 @@ class MeditText {
   static void beginElement(TextSource& record, std::size_t i, std::size_t count,
                            std::string_view what) {
     record.failIfAtEnd(i, count, what);
+  }
+  /// Refuses sections whose elements have more numbers, such as Gmsh's of order 2.
+  void endSection(std::string_view what) {
+    const std::string_view next = scanner_.peekToken();
+    if (next.find_first_of("0123456789+-.") != 0) return;
+    static_cast<void>(scanner_.readToken());
+    scanner_.fail(ErrorCode::FileSyntax, "the section goes on with ", quoted(next), " after the ",
+                  what,
+                  " that it announces. If these have more nodes, save them in another format.");
   }
   [[nodiscard]] static double coordinate(TextSource& record, std::size_t i) {
     return record.real({"a coordinate of ", "vertex", i + 1});
@@ -327,6 +336,7 @@ class MeditBytes {
 
   static void beginElement(BinaryRecord& /*record*/, std::size_t /*i*/, std::size_t /*count*/,
                            std::string_view /*what*/) {}
+  void endSection(std::string_view /*what*/) const {}
   [[nodiscard]] double coordinate(BinaryRecord& record, std::size_t /*i*/) const {
     const char* const what = "a coordinate of a vertex";
     return version_ == 1 ? record.shortReal(what) : record.real(what);
@@ -440,6 +450,7 @@ class MeditReader {
       for (double& coordinate : mesh_.points[i]) coordinate = encoding_.coordinate(record, i);
     };
     references_ = readReferenced(mesh_.points.size(), 0, 3, "the reference of a vertex", read);
+    encoding_.endSection("vertices");
   }
 
   void readCorners() {
@@ -494,6 +505,7 @@ class MeditReader {
       for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kKind, i, 0);
     };
     mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, "the reference of a cell", read);
+    encoding_.endSection(kKind.plural);
   }
 
   /// Reads edges or quads with their references as tags; drops those with reference 0.
@@ -515,6 +527,7 @@ class MeditReader {
       features[i].tag = static_cast<std::int32_t>(reference);
       seen.add(reference);
     });
+    encoding_.endSection(elements.plural);
     std::erase_if(features, [](const Feature& feature) { return feature.tag == 0; });
     return seen.saySomething();
   }
@@ -683,37 +696,7 @@ class FirstHexahedra {
 
 }  // namespace
 
-HexMesh readMedit(const Input& input, Stage& stage) {
-  return readWith<MeditReader<MeditText, 8>>(input, stage, input.counts());
-}
-
-HexMesh readMeshb(const Input& input, Stage& stage) {
-  return readWith<MeditReader<MeditBytes, 8>>(input, stage, input.counts());
-}
-
-TetCells readMeditTets(const Input& input, Stage& stage) {
-  return readWith<MeditReader<MeditText, 4>>(input, stage, input.counts());
-}
-
-TetCells readMeshbTets(const Input& input, Stage& stage) {
-  return readWith<MeditReader<MeditBytes, 4>>(input, stage, input.counts());
-}
-
-bool holdsQuadraticMedit(const Input& input, Stage& stage) {
-  return readWith<FirstHexahedra<MeditText>>(input, stage);
-}
-
-bool holdsQuadraticMeshb(const Input& input, Stage& stage) {
-  return readWith<FirstHexahedra<MeditBytes>>(input, stage);
-}
-
-LagrangeMesh readQuadraticMedit(const Input& input, Stage& stage) {
-  return readWith<QuadraticMeditReader<MeditText>>(input, stage, input.counts());
-}
-
-LagrangeMesh readQuadraticMeshb(const Input& input, Stage& stage) {
-  return readWith<QuadraticMeditReader<MeditBytes>>(input, stage, input.counts());
-}
+bool isMfem(const Input& input) { return firstBytes(input).starts_with("MFEM "); }
 
 namespace {
 
@@ -782,18 +765,6 @@ std::optional<PlainLayout> lookAtBytes(const ByteFile& file, Context& context) {
   if (!layout.isComplete()) return {};
   return layout;
 }
-
-}  // namespace
-
-void readMeditTo(MeshSink& sink, const Input& input, Context& context) {
-  readPlainMesh({lookAtText, readMedit}, sink, input, context);
-}
-
-void readMeshbTo(MeshSink& sink, const Input& input, Context& context) {
-  readPlainMesh({lookAtBytes, readMeshb}, sink, input, context);
-}
-
-namespace {
 
 // Writing. A mesh in memory is written as a stream of one piece, with groups.
 
@@ -1050,39 +1021,66 @@ void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOpt
              std::span<const Hex27>(cells), groups, 0, stage);
 }
 
+template <bool binary>
+using Reading = std::conditional_t<binary, MeditBytes, MeditText>;
+template <bool binary>
+using Writing = std::conditional_t<binary, MeditRecords, MeditLines>;
+
 }  // namespace
 
-void writeMedit(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                Stage& stage) {
-  writeWhole<MeditLines>(mesh, output, 0, options, stage);
+template <bool binary>
+HexMesh MeditFormat<binary>::readMesh(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::readMesh(input, stage);
+  return readWith<MeditReader<Reading<binary>, 8>>(input, stage, input.counts());
 }
 
-void writeMeshb(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                Stage& stage) {
-  writeWhole<MeditRecords>(mesh, output, 0, options, stage);
+template <bool binary>
+TetCells MeditFormat<binary>::readTets(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::readTets(input, stage);
+  return readWith<MeditReader<Reading<binary>, 4>>(input, stage, input.counts());
 }
 
-void writeQuadraticMedit(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
-                         Stage& stage) {
-  writeQuadratic<MeditLines>(mesh, output, options, stage);
+template <bool binary>
+bool MeditFormat<binary>::holdsCurved(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::holdsCurved(input, stage);
+  return readWith<FirstHexahedra<Reading<binary>>>(input, stage);
 }
 
-void writeQuadraticMeshb(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
-                         Stage& stage) {
-  writeQuadratic<MeditRecords>(mesh, output, options, stage);
+template <bool binary>
+LagrangeMesh MeditFormat<binary>::readCurved(const Input& input, Stage& stage) {
+  if (!binary && isMfem(input)) return MfemFormat::readCurved(input, stage);
+  return readWith<QuadraticMeditReader<Reading<binary>>>(input, stage, input.counts());
 }
+
+template <bool binary>
+void MeditFormat<binary>::readTo(MeshSink& sink, const Input& input, Context& context) {
+  readPlainMesh({binary ? lookAtBytes : lookAtText, readMesh}, sink, input, context);
+}
+
+template <bool binary>
+void MeditFormat<binary>::write(const HexMesh& mesh, OutputFile& output,
+                                const WriteOptions& options, Stage& stage) {
+  writeWhole<Writing<binary>>(mesh, output, 0, options, stage);
+}
+
+template <bool binary>
+void MeditFormat<binary>::writeCurved(const LagrangeMesh& mesh, OutputFile& output,
+                                      const WriteOptions& options, Stage& stage) {
+  writeQuadratic<Writing<binary>>(mesh, output, options, stage);
+}
+
+template <bool binary>
+std::unique_ptr<MeshSink> MeditFormat<binary>::openSink(const std::filesystem::path& file,
+                                                        Context& context) {
+  return openWriterSink<MeditWriter<Writing<binary>>>(file, context);
+}
+
+template struct MeditFormat<false>;
+template struct MeditFormat<true>;
 
 void writeMeshbVersion(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                        Stage& stage) {
   writeWhole<MeditRecords>(mesh, output, version, {}, stage);
-}
-
-std::unique_ptr<MeshSink> openMeditSink(const std::filesystem::path& file, Context& context) {
-  return openWriterSink<MeditWriter<MeditLines>>(file, context);
-}
-
-std::unique_ptr<MeshSink> openMeshbSink(const std::filesystem::path& file, Context& context) {
-  return openWriterSink<MeditWriter<MeditRecords>>(file, context);
 }
 
 }  // namespace hexhex::io

@@ -1,7 +1,9 @@
-// Writes MFEM meshes (see formats.hpp): straight cells, Lagrange cells, and parts.
+// Reads and writes MFEM meshes (see formats.hpp): straight cells, Lagrange cells, and parts.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -16,15 +18,341 @@
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
+#include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 
 namespace hexhex::io {
 
 namespace {
+
+// Reading.
+
+/// The number of vertices of an element, and what volume it is, by MFEM's number of its geometry.
+struct MfemGeometry {
+  std::size_t vertices;
+  std::string_view volume = {};
+};
+constexpr std::array<MfemGeometry, 8> kMfemGeometries = {
+    {{1}, {2}, {3}, {4}, {4, "tetrahedra"}, {8, "hexahedra"}, {6, "prisms"}, {5, "pyramids"}}};
+
+/// A space of nodes: of vertices, edges, faces and cells; or of each cell, x fastest.
+struct MfemSpace {
+  std::string_view name;
+  int order;
+  bool perCell = false;
+};
+constexpr std::array<MfemSpace, 8> kMfemSpaces = {{{"Linear", 1},
+                                                   {"H1_3D_P1", 1},
+                                                   {"Quadratic", 2},
+                                                   {"H1_3D_P2", 2},
+                                                   {"L2_T1_3D_P1", 1, true},
+                                                   {"L2_T4_3D_P1", 1, true},
+                                                   {"L2_T1_3D_P2", 2, true},
+                                                   {"L2_T4_3D_P2", 2, true}}};
+
+const MfemSpace* mfemSpace(std::string_view name) {
+  const auto* const found = std::find_if(kMfemSpaces.begin(), kMfemSpaces.end(),
+                                         [&](const auto& space) { return space.name == name; });
+  return found == kMfemSpaces.end() ? nullptr : found;
+}
+
+constexpr std::string_view kMfemCollection = "FiniteElementCollection:";
+constexpr std::size_t kFewestBytesOfNode = 6;  // "0 0 0" and the line's end
+
+/// Numbers elements in the order in which they are first met.
+template <class Element>
+class FirstMet {
+ public:
+  [[nodiscard]] Index number(Element element) {
+    std::sort(element.begin(), element.end());
+    return numbers_.try_emplace(element, static_cast<Index>(numbers_.size())).first->second;
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return numbers_.size(); }
+
+ private:
+  std::map<Element, Index> numbers_;
+};
+
+class MfemReader {
+ public:
+  MfemReader(const Input& input, Stage& stage)
+      : input_(input),
+        scanner_(input.text(room_, stage, "M"), input.name(), TextScanner::Comments::Hash) {}
+
+  ElementLists read() {
+    constexpr std::string_view kMfemHead = "MFEM mesh v1.";
+    if (!scanner_.takeLine().starts_with(kMfemHead)) {
+      input_.fail(ErrorCode::FileUnsupported, "the file does not begin with \"", kMfemHead,
+                  "0\": other files of MFEM, such as NURBS and nonconforming meshes, are not "
+                  "read. Save the mesh as .vtk (Mesh::PrintVTK).");
+    }
+    for (std::string_view word = scanner_.readToken(); !word.empty(); word = scanner_.readToken()) {
+      if (word.starts_with("mfem_")) break;  // mfem_mesh_end, mfem_serial_mesh_end
+      readSection(word);
+    }
+    if (!hasVertices_) scanner_.failToken("the section \"vertices\"");
+    lists_.mayBeEmpty = lists_.blocks.empty() && !hasFaces_;
+    return std::move(lists_);
+  }
+
+  /// The types of the cells alone.
+  ElementLists readTypes() {
+    const std::string_view text = scanner_.text();
+    const std::size_t at = text.find(kMfemCollection);
+    if (at < text.size()) scanner_.moveTo(at + kMfemCollection.size());
+    const MfemSpace* const space = at < text.size() ? mfemSpace(scanner_.readToken()) : nullptr;
+    const bool quadratic = space != nullptr && space->order == 2;
+    ElementBlock& block = lists_.blocks.emplace_back();
+    block.nodesEach = quadratic ? 27 : 8;
+    block.type = volumeCells("hexahedra", block.nodesEach);
+    block.numbers = {0};
+    return std::move(lists_);
+  }
+
+ private:
+  void readSection(std::string_view word) {
+    if ((word == "nodes") != hasVertices_) {
+      scanner_.fail(ErrorCode::FileSyntax, "the section ", quoted(word), " is out of order: only ",
+                    "nodes follow the vertices.");
+    }
+    if (word == "dimension") {
+      if (scanner_.integer("the dimension") == 3) return;
+      scanner_.fail(ErrorCode::FileUnsupported, "the dimension must be 3.");
+    }
+    if (word == "elements" || word == "boundary") return readElements();
+    if (word == "attribute_sets") return readNames(3);
+    if (word == "bdr_attribute_sets") return readNames(2);
+    if (word == "vertices") return readVertices();
+    if (word == "nodes") return readNodes();
+    scanner_.failToken("a section of an MFEM mesh");
+  }
+
+  void readElements() {
+    const std::size_t count = scanner_.readCount("elements", 6);  // bytes of "1 0 0" and a line end
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto attribute = static_cast<std::int32_t>(
+          std::clamp<std::int64_t>(scanner_.integer({"the attribute of ", "element", i}), 0,
+                                   std::numeric_limits<std::int32_t>::max()));
+      const std::int64_t type = scanner_.integer({"the geometry of ", "element", i});
+      if (type < 0 || type >= std::int64_t{kMfemGeometries.size()}) {
+        scanner_.fail(ErrorCode::FileSyntax, "there is no geometry ", type, " in MFEM.");
+      }
+      const auto& [size, volume] = kMfemGeometries[static_cast<std::size_t>(type)];
+      std::array<Index, 8> vertices{};
+      for (std::size_t k = 0; k < size; ++k) {
+        const std::int64_t vertex = scanner_.integer({"a vertex of ", "element", i});
+        if (vertex < 0 || vertex >= kNone) failVertex(vertex);
+        vertices[k] = static_cast<Index>(vertex);
+        vertexEnd_ = std::max(vertexEnd_, std::size_t{vertices[k]} + 1);
+      }
+      if (!volume.empty()) {
+        ElementBlock& block = blockOf(volume, size);
+        block.nodes.insert(block.nodes.end(), vertices.begin(), vertices.begin() + size);
+        block.numbers.push_back(i);
+        block.regions.push_back(attribute);
+      } else if (size == 3) {
+        lists_.triangles.push_back({{vertices[0], vertices[1], vertices[2]}, attribute});
+      } else if (size == 4) {
+        lists_.quads.push_back({{vertices[0], vertices[1], vertices[2], vertices[3]}, attribute});
+      }
+    }
+  }
+
+  ElementBlock& blockOf(std::string_view volume, std::size_t size) {
+    for (ElementBlock& block : lists_.blocks) {
+      if (block.type->plural == volume) return block;
+    }
+    ElementBlock& block = lists_.blocks.emplace_back();
+    block.type = volumeCells(volume);
+    block.nodesEach = size;
+    return block;
+  }
+
+  /// Sets of attributes have names; a set of one names it.
+  void readNames(int dimension) {
+    const std::size_t count = scanner_.readCount("sets of attributes", 4);
+    for (std::size_t i = 0; i < count; ++i) {
+      static_cast<void>(scanner_.peekToken());
+      const std::string_view line = scanner_.takeLine();
+      const std::size_t end = line.rfind('"');
+      if (!line.starts_with('"') || end == 0) scanner_.failToken("a name in quotes");
+      TextScanner rest(line.substr(end + 1), input_.name());
+      const bool isOne = rest.integer("the size of a set of attributes") == 1;
+      if (!isOne) continue;
+      const std::int64_t tag = rest.integer("an attribute");
+      if (!std::in_range<std::int32_t>(tag)) continue;
+      lists_.addName(dimension, static_cast<std::int32_t>(tag), line.substr(1, end - 1));
+    }
+  }
+
+  void readVertices() {
+    hasVertices_ = true;
+    lists_.points.resize(scanner_.readCount("vertices", kFewestBytesOfNode));
+    if (vertexEnd_ > lists_.points.size()) failVertex(static_cast<std::int64_t>(vertexEnd_) - 1);
+    hasFaces_ = !lists_.quads.empty() || !lists_.triangles.empty();
+    clearIfAllOnes();
+    if (scanner_.peekToken() == "nodes") return;
+    if (scanner_.integer("the number of coordinates") != 3) {
+      scanner_.fail(ErrorCode::FileUnsupported, "vertices must have 3 coordinates.");
+    }
+    for (std::size_t i = 0; i < lists_.points.size(); ++i) {
+      for (double& x : lists_.points[i]) x = scanner_.number({"a coordinate of ", "vertex", i});
+    }
+  }
+
+  [[noreturn]] void failVertex(std::int64_t vertex) const {
+    scanner_.fail(ErrorCode::IndexOutOfRange, "an element names vertex ", vertex,
+                  ", which does not exist; they are numbered from 0.");
+  }
+
+  void readNodes() {
+    const auto take = [&](std::string_view word) {
+      if (scanner_.readToken() != word) scanner_.failToken(concat("\"", word, "\""));
+    };
+    take("FiniteElementSpace");
+    take(kMfemCollection);
+    const MfemSpace* const space = mfemSpace(scanner_.readToken());
+    if (space == nullptr) {
+      scanner_.fail(ErrorCode::FileUnsupported, "nodes of the space ",
+                    quoted(scanner_.currentToken()),
+                    " are not read, only those of order 1 and 2 in H1 and, with closed bases, in "
+                    "L2: use Mesh::SetCurvature(2).");
+    }
+    take("VDim:");
+    take("3");
+    take("Ordering:");
+    const bool byNode = scanner_.integer("the ordering") == 1;
+    placeNodes(*space, byNode);
+  }
+
+  /// Reads the nodes, and makes the cells list them.
+  void placeNodes(const MfemSpace& space, bool byNode) {
+    const std::size_t each = space.order == 1 ? 8 : 27;
+    if (space.order == 2 || space.perCell) requireHexahedraOnly();
+    ElementBlock none;
+    ElementBlock& cells = lists_.blocks.empty() ? none : lists_.blocks[0];
+    if (space.order == 2) addNodes(cells);
+    const std::size_t dofs = space.perCell ? each * cells.count() : lists_.points.size();
+    const std::size_t room = (scanner_.text().size() - scanner_.position()) / kFewestBytesOfNode;
+    if (dofs > room) {
+      scanner_.fail(ErrorCode::FileSyntax, lacksRoom(std::to_string(dofs), "nodes", room));
+    }
+    std::vector<double> numbers(3 * dofs);
+    for (double& x : numbers) x = scanner_.number("a coordinate of a node");
+    const auto nodeAt = [&](std::size_t i) {
+      if (byNode) return Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+      return Vec3{numbers[i], numbers[dofs + i], numbers[2 * dofs + i]};
+    };
+    if (!space.perCell) {
+      for (std::size_t i = 0; i < dofs; ++i) lists_.points[i] = nodeAt(i);
+      return;
+    }
+    const std::vector<std::uint32_t> order = vtkNodeOrder(space.order);
+    std::vector<bool> known(lists_.points.size(), false);
+    for (std::size_t i = 0; i < cells.nodes.size(); ++i) {
+      const Vec3 place = nodeAt(i - i % each + order[i % each]);
+      Vec3& point = lists_.points[cells.nodes[i]];
+      if (!known[cells.nodes[i]]) point = place;
+      known[cells.nodes[i]] = true;
+      requireSame(point, place);
+    }
+  }
+
+  void requireHexahedraOnly() const {
+    const bool others = std::any_of(lists_.blocks.begin(), lists_.blocks.end(),
+                                    [](const auto& block) { return block.nodesEach != 8; });
+    if (!others) return;
+    scanner_.fail(ErrorCode::FileUnsupported,
+                  "nodes of cells other than hexahedra are not read. Give these a file of their "
+                  "own.");
+  }
+
+  /// Cells of a periodic mesh have common vertices at different places.
+  void requireSame(const Vec3& a, const Vec3& b) const {
+    constexpr double kRounding = 1e-9;  // of nodes computed cell by cell
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (std::abs(a[k] - b[k]) <= kRounding * std::max(1.0, std::abs(a[k]))) continue;
+      scanner_.fail(ErrorCode::FileUnsupported,
+                    "cells have a common node at different places, as in a periodic mesh.");
+    }
+  }
+
+  /// Adds nodes of edges, faces and cells, in this order, as MFEM numbers them.
+  void addNodes(ElementBlock& cells) {
+    constexpr std::array<std::array<std::uint8_t, 4>, 6> kFaces = {
+        {{3, 2, 1, 0}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}};
+    constexpr std::array<std::size_t, 6> kVtkFaces = {24, 22, 21, 23, 20, 25};
+    constexpr std::size_t kEach = 27;
+    const Array<Index> corners = std::exchange(cells.nodes, {});
+    const std::size_t count = cells.count();
+    cells.nodes.resize(kEach * count);
+    FirstMet<std::array<Index, 2>> edges;
+    FirstMet<Quad> faces;
+    for (std::size_t c = 0; c < count; ++c) {
+      const Index* const cell = corners.data() + 8 * c;
+      Index* const row = cells.nodes.data() + kEach * c;
+      std::copy_n(cell, 8, row);
+      for (std::size_t e = 0; e < 12; ++e) {  // around the bottom, around the top, upright
+        const std::size_t from = e % 4 + (e / 4 == 1 ? 4 : 0);
+        const std::size_t to = e < 8 ? (e % 4 + 1) % 4 + (e < 4 ? 0 : 4) : from + 4;
+        row[8 + e] = edges.number({cell[from], cell[to]});
+      }
+      for (std::size_t f = 0; f < 6; ++f) {
+        const auto& [a, b, d, e] = kFaces[f];
+        row[kVtkFaces[f]] = faces.number({cell[a], cell[b], cell[d], cell[e]});
+      }
+    }
+    const std::size_t firstEdge = lists_.points.size();
+    const std::size_t firstFace = firstEdge + edges.size();
+    const std::size_t firstCell = firstFace + faces.size();
+    for (std::size_t c = 0; c < count; ++c) {
+      Index* const row = cells.nodes.data() + kEach * c;
+      for (std::size_t k = 8; k < 20; ++k) row[k] += static_cast<Index>(firstEdge);
+      for (std::size_t k = 20; k < 26; ++k) row[k] += static_cast<Index>(firstFace);
+      row[26] = static_cast<Index>(firstCell + c);
+    }
+    cells.type = volumeCells("hexahedra", kEach);
+    cells.nodesEach = kEach;
+    lists_.points.resize(firstCell + count);
+  }
+
+  /// Clears attributes that are all 1, as of meshes without regions or tags.
+  void clearIfAllOnes() {
+    const auto isOne = [](std::int32_t attribute) { return attribute == 1; };
+    const auto hasTagOne = [](const auto& feature) { return feature.tag == 1; };
+    auto& quads = lists_.quads;
+    auto& triangles = lists_.triangles;
+    if (std::all_of(quads.begin(), quads.end(), hasTagOne) &&
+        std::all_of(triangles.begin(), triangles.end(), hasTagOne)) {
+      quads.clear();
+      triangles.clear();
+    }
+    const bool saysNothing =
+        std::all_of(lists_.blocks.begin(), lists_.blocks.end(), [&](const ElementBlock& block) {
+          return std::all_of(block.regions.begin(), block.regions.end(), isOne);
+        });
+    for (ElementBlock& block : lists_.blocks) {
+      if (saysNothing) std::fill(block.regions.begin(), block.regions.end(), 0);
+    }
+  }
+
+  const Input& input_;
+  Array<char> room_;
+  TextScanner scanner_;
+  ElementLists lists_;
+  std::size_t vertexEnd_ = 0;  ///< behind the largest vertex of an element
+  bool hasFaces_ = false;
+  bool hasVertices_ = false;
+};
+
+// Writing.
 
 /// Writes the sections common to all files.
 class MfemWriter {
@@ -237,6 +565,11 @@ class MfemSink final : public PartSink {
 };
 
 }  // namespace
+
+ElementLists readMfem(const Input& input, ElementParts parts, Stage& stage) {
+  MfemReader reader(input, stage);
+  return parts == ElementParts::All ? reader.read() : reader.readTypes();
+}
 
 void writeMfem(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
   MfemWriter writer(output, stage.context().threads());

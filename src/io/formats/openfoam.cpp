@@ -1,4 +1,4 @@
-// Writes OpenFOAM's polyMesh (see formats.hpp): for a whole mesh, and as a decomposed case.
+// Reads and writes OpenFOAM's polyMesh (see formats.hpp); writes it as a decomposed case, too.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -25,16 +25,279 @@
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
+#include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/text_scanner.hpp>
+#include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/ovm_cells.hpp>
 
 namespace hexhex::io {
 
 namespace {
+
+// Reading.
+
+/// A file of a polyMesh, plain or compressed: its text without comments, punctuation and head.
+class FoamFile {
+ public:
+  /// @param punctuation  further characters that mean nothing
+  FoamFile(const std::filesystem::path& file, std::string_view punctuation, Stage& stage)
+      : input_(openInput(existing(file), stage.context())) {
+    const std::string_view text = input_.text(room_, stage, {});
+    text_.assign(text.begin(), text.end());
+    const std::size_t head = std::min(text.find("FoamFile"), text.size());
+    const std::size_t headEnd = std::min(text.find('}', head), text.size());
+    if (text.substr(head, headEnd - head).find("binary") != std::string_view::npos) {
+      input_.fail(ErrorCode::FileUnsupported,
+                  "binary files are not read. Run `foamFormatConvert` with writeFormat ascii.");
+    }
+    clear(headEnd == text.size() ? 0 : head, headEnd == text.size() ? 0 : headEnd + 1);
+    clearBetween("/*", "*/");
+    clearBetween("//", "\n");
+    for (char& c : text_) {
+      if (punctuation.find(c) != std::string_view::npos) c = ' ';
+    }
+    scanner_.emplace(text_, input_.name());
+  }
+
+  [[nodiscard]] TextScanner& scanner() noexcept { return *scanner_; }
+  /// Reads the number of entries of a list.
+  [[nodiscard]] std::size_t readCount(std::string_view what, std::size_t bytesEach) {
+    const std::size_t count = scanner_->readCount(what, bytesEach);
+    if (count > kNone) scanner_->fail(ErrorCode::TooLarge, exceedsLimit(count, what, kNone));
+    return count;
+  }
+  /// Reads a number below `end`.
+  [[nodiscard]] Index readIndex(std::string_view what, std::size_t end) {
+    const std::int64_t number = scanner_->integer({what, ""});
+    if (number >= 0 && static_cast<std::uint64_t>(number) < end) return static_cast<Index>(number);
+    scanner_->fail(ErrorCode::IndexOutOfRange, what, " is ", number, ", but it must be below ", end,
+                   ".");
+  }
+  /// Reads a list of at most `most` numbers; "9{0}" is short for nine that are equal.
+  [[nodiscard]] Array<Index> readLabels(std::string_view what, std::size_t most) {
+    Array<Index> labels(readIndex("the number of entries", most + 1));
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (i == 1 && scanner_->peekToken().empty()) {
+        std::fill(labels.begin(), labels.end(), labels[0]);
+        break;
+      }
+      labels[i] = readIndex(what, kNone);
+    }
+    return labels;
+  }
+
+ private:
+  static std::filesystem::path existing(const std::filesystem::path& file) {
+    std::filesystem::path packed = file;
+    packed += ".gz";
+    std::error_code unknown;
+    return !std::filesystem::exists(file, unknown) && std::filesystem::exists(packed, unknown)
+               ? packed
+               : file;
+  }
+  void clear(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) text_[i] = text_[i] == '\n' ? '\n' : ' ';
+  }
+  void clearBetween(std::string_view open, std::string_view close) {
+    for (std::size_t at = text_.find(open); at != std::string::npos; at = text_.find(open, at)) {
+      const std::size_t end = text_.find(close, at + open.size());
+      clear(at, end == std::string::npos ? text_.size() : end + close.size());
+    }
+  }
+
+  Input input_;
+  Array<char> room_;
+  std::string text_;
+  std::optional<TextScanner> scanner_;
+};
+
+/// Reads a polyMesh into lists: cells by their faces.
+class PolyMeshReader {
+ public:
+  PolyMeshReader(const Input& input, Stage& stage)
+      : input_(input), folder_(polyMeshOf(input.path())), stage_(stage) {}
+
+  ElementLists read() {
+    readPoints();
+    readFaces();
+    readCells();
+    readPatches();
+    readZones();
+    return std::move(lists_);
+  }
+
+ private:
+  static std::filesystem::path polyMeshOf(const std::filesystem::path& file) {
+    std::error_code unknown;
+    if (std::filesystem::is_directory(file, unknown)) return file;
+    return file.parent_path() / "constant" / "polyMesh";
+  }
+
+  void readPoints() {
+    FoamFile file(folder_ / "points", "()", stage_);
+    lists_.points.resize(file.readCount("points", 6));
+    for (std::size_t i = 0; i < lists_.points.size(); ++i) {
+      for (double& x : lists_.points[i])
+        x = file.scanner().number({"a coordinate of ", "point", i});
+    }
+  }
+
+  void readFaces() {
+    FoamFile file(folder_ / "faces", "()", stage_);
+    faces_.resize(file.readCount("faces", 8));  // bytes of "3(0 1 2)"
+    corners_.resize(faces_.size());
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      corners_[f] = file.readCount("corners of a face", 2);
+      for (std::size_t k = 0; k < corners_[f]; ++k) {
+        const Index vertex = file.readIndex("a corner of a face", lists_.points.size());
+        if (k < 4) faces_[f][k] = vertex;
+      }
+    }
+  }
+
+  /// Cells have their faces in order: first those that they own, which face out of them.
+  void readCells() {
+    const auto labels = [&](const char* name) {
+      return FoamFile(folder_ / name, "(){}", stage_).readLabels("a cell of a face", faces_.size());
+    };
+    const Array<Index> owners = labels("owner");
+    const Array<Index> neighbours = labels("neighbour");
+    if (owners.size() != faces_.size() || neighbours.size() > owners.size()) {
+      input_.fail(ErrorCode::FileSyntax, "the polyMesh has ", faces_.size(), " faces, but ",
+                  owners.size(), " owners and ", neighbours.size(), " neighbours.");
+    }
+    for (const Array<Index>* const cells : {&owners, &neighbours}) {
+      for (std::size_t f = 0; f < cells->size(); ++f) addFace((*cells)[f], f, cells == &owners);
+    }
+    for (std::size_t c = 0; c < cells_.size(); ++c) addCell(c);
+  }
+
+  void addFace(Index cell, std::size_t face, bool isOwn) {
+    // Each cell has a face, so there are no more of them.
+    if (cell >= faces_.size()) {
+      input_.fail(ErrorCode::IndexOutOfRange, "a face belongs to cell ", cell, " of at most ",
+                  faces_.size(), ".");
+    }
+    if (cell >= cells_.size()) cells_.resize(cell + std::size_t{1});
+    Cell& its = cells_[cell];
+    if (corners_[face] == 3) ++its.triangles;
+    if (corners_[face] > 4) ++its.polygons;
+    if (corners_[face] != 4) return;
+    Quad loop = faces_[face];
+    if (isOwn) std::reverse(loop.begin(), loop.end());  // to be seen from inside
+    if (its.quads < its.loops.size()) its.loops[its.quads] = loop;
+    ++its.quads;
+  }
+
+  void addCell(std::size_t c) {
+    const auto& [loops, quads, triangles, polygons] = cells_[c];
+    Hex hex{};
+    const bool isHex = quads == 6 && triangles + polygons == 0;
+    std::string_view type = "polyhedra";
+    if (isHex && assembleHex(loops, hex)) type = "hexahedra";
+    if (polygons == 0 && quads == 0 && triangles == 4) type = "tetrahedra";
+    if (polygons == 0 && quads == 3 && triangles == 2) type = "prisms";
+    if (polygons == 0 && quads == 1 && triangles == 4) type = "pyramids";
+    ElementBlock* block = nullptr;
+    for (ElementBlock& known : lists_.blocks) {
+      if (known.type->plural == type) block = &known;
+    }
+    if (block == nullptr) block = &lists_.blocks.emplace_back();
+    block->type = volumeCells(type);
+    block->nodesEach = 8;
+    if (type == "hexahedra") block->nodes.insert(block->nodes.end(), hex.begin(), hex.end());
+    block->numbers.push_back(c);
+    block->regions.push_back(0);
+  }
+
+  void readPatches() {
+    struct Patch {
+      std::string name;
+      std::size_t faces = 0;
+      std::size_t first = 0;
+    };
+    FoamFile file(folder_ / "boundary", "();", stage_);
+    std::vector<Patch> patches(file.readCount("patches", 4));
+    GroupTags tags;
+    for (Patch& patch : patches) {
+      patch.name = readBegin(file);
+      for (std::string_view word; (word = file.scanner().readToken()) != "}";) {
+        if (word.empty()) file.scanner().failToken("\"}\"");
+        if (word == "nFaces") patch.faces = file.readIndex("nFaces", faces_.size() + 1);
+        if (word == "startFace") patch.first = file.readIndex("startFace", faces_.size() + 1);
+      }
+      tags.reserve(patch.name);
+    }
+    for (const Patch& patch : patches) {
+      const std::int32_t tag = tags.next(patch.name);
+      lists_.addName(2, tag, patch.name);
+      for (std::size_t f = patch.first; f < std::min(patch.first + patch.faces, faces_.size());
+           ++f) {
+        if (tag != 0 && corners_[f] == 4) lists_.quads.push_back({faces_[f], tag});
+      }
+    }
+  }
+
+  /// Reads the name of an entry and "{".
+  static std::string readBegin(FoamFile& file) {
+    std::string name(file.scanner().readToken());
+    if (file.scanner().readToken() != "{") file.scanner().failToken("\"{\" behind a name");
+    return name;
+  }
+
+  void readZones() {
+    std::error_code unknown;
+    const std::filesystem::path path = folder_ / "cellZones";
+    if (!std::filesystem::exists(path, unknown)) return;
+    FoamFile file(path, "();", stage_);
+    std::vector<std::pair<std::string, Array<Index>>> zones(file.readCount("zones", 4));
+    GroupTags tags;
+    for (auto& [name, cells] : zones) {
+      name = readBegin(file);
+      for (std::string_view word; (word = file.scanner().readToken()) != "}";) {
+        if (word.empty()) file.scanner().failToken("\"}\"");
+        if (!word.starts_with("List<")) continue;
+        cells.resize(file.readCount("cells of a zone", 2));
+        for (Index& cell : cells) cell = file.readIndex("a cell of a zone", cells_.size());
+      }
+      tags.reserve(name);
+    }
+    ElementTags regions;
+    for (const auto& [name, cells] : zones) {
+      const std::int32_t tag = tags.next(name);
+      lists_.addName(3, tag, name);
+      for (const Index cell : cells) regions.add(cell, tag);
+    }
+    regions.sort();
+    for (ElementBlock& block : lists_.blocks) {
+      for (std::size_t i = 0; i < block.count(); ++i) {
+        block.regions[i] = regions.find(block.numbers[i]);
+      }
+    }
+  }
+
+  struct Cell {
+    QuadLoops loops{};  ///< seen from inside
+    std::uint32_t quads = 0;
+    std::uint32_t triangles = 0;
+    std::uint32_t polygons = 0;
+  };
+
+  const Input& input_;
+  std::filesystem::path folder_;
+  Stage& stage_;
+  ElementLists lists_;
+  Array<Quad> faces_;           ///< the first corners of each
+  Array<std::size_t> corners_;  ///< per face
+  std::vector<Cell> cells_;
+};
+
+// Writing.
 
 /// Faces in OpenFOAM's order; quads face out of their owners.
 struct PolyMesh {
@@ -282,6 +545,10 @@ void addPatches(const QuadGroups& quads, PolyMesh& poly) {
 bool isMarker(const std::filesystem::path& file) { return lowerCaseExtension(file) == ".foam"; }
 
 }  // namespace
+
+HexMesh readOpenFoam(const Input& input, Stage& stage) {
+  return hexMeshOf(PolyMeshReader(input, stage).read(), input);
+}
 
 void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
                    const WriteOptions& options, Context& context) {

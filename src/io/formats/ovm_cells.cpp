@@ -305,8 +305,6 @@ void setOvmFeatures(OvmProperties& properties, const OvmTopology& topology,
 
 constexpr std::size_t kReversed = 4;  // added for the reverse order from the same corner
 
-using QuadLoops = std::array<std::array<Index, 4>, 6>;
-
 /// The position of a vertex in a loop; 4 if it is not there.
 std::size_t placeIn(const std::array<Index, 4>& loop, Index vertex) {
   return static_cast<std::size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
@@ -322,10 +320,8 @@ std::size_t sideOfBase(const std::array<Index, 4>& base, const std::array<Index,
   return 4;
 }
 
-/// Assembles the hexahedron with these six half-faces in VTK order: the loop of the first one, then
-/// the vertices joined to it by edges. Its volume is positive if loops are counter-clockwise seen
-/// from inside.
-/// @return false if they do not bound a hexahedron
+}  // namespace
+
 bool assembleHex(const QuadLoops& loops, Hex& hex) {
   const std::array<Index, 4>& base = loops[0];
   std::array<Index, 4> top = {kNone, kNone, kNone, kNone};
@@ -358,6 +354,8 @@ bool assembleHex(const QuadLoops& loops, Hex& hex) {
   }
   return true;
 }
+
+namespace {
 
 /// Whether most hexahedra have a negative volume, computed from their mean edge vectors. Large
 /// meshes are sampled at some ten thousand cells, since positions are scattered in memory.

@@ -55,6 +55,13 @@ template <std::size_t corners>
   return alike > corners;
 }
 
+/// Assembles the hexahedron with these six faces in VTK order: the loop of the first one, then the
+/// vertices joined to it by edges. Its volume is positive if loops are counter-clockwise seen from
+/// inside.
+/// @return false if they do not bound a hexahedron
+using QuadLoops = std::array<std::array<Index, 4>, 6>;
+[[nodiscard]] bool assembleHex(const QuadLoops& loops, Hex& hex);
+
 /// Corner orders of a hexahedron, as numbered by the property CornerOrder. The first face is always
 /// the same: orders 0 to 3 start at that corner of it, 4 to 7 run in the other direction.
 inline constexpr std::size_t kHexOrders = 8;

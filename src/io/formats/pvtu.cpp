@@ -1,6 +1,7 @@
 // Writes `.pvtu` files with their pieces; and joins pieces of data sets by the global numbers of
 // their vertices and cells, or by positions.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
 #include <string>
@@ -22,26 +23,17 @@ namespace hexhex::io {
 
 namespace {
 
-/// Escapes a text for use in an attribute.
-std::string escaped(const std::string& text) {
+/// What stands for characters in an attribute.
+constexpr std::array<std::pair<std::string_view, char>, 5> kXmlNames = {
+    {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
+
+std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
+    const auto name = std::find_if(kXmlNames.begin(), kXmlNames.end(),
+                                   [c](const auto& each) { return each.second == c; });
+    const bool isNamed = name != kXmlNames.end() && c != '\'';
+    isNamed ? result.append(name->first) : result.append(1, c);
   }
   return result;
 }
@@ -148,14 +140,12 @@ namespace {
 // Joining pieces.
 
 std::string unescaped(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, char>, 5> kNames = {
-      {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
   std::string result;
   while (!text.empty()) {
-    const auto name = std::find_if(kNames.begin(), kNames.end(),
+    const auto name = std::find_if(kXmlNames.begin(), kXmlNames.end(),
                                    [&](const auto& each) { return text.starts_with(each.first); });
-    result += name != kNames.end() ? name->second : text.front();
-    text.remove_prefix(name != kNames.end() ? name->first.size() : 1);
+    result += name != kXmlNames.end() ? name->second : text.front();
+    text.remove_prefix(name != kXmlNames.end() ? name->first.size() : 1);
   }
   return result;
 }

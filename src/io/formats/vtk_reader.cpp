@@ -20,11 +20,10 @@ namespace hexhex::io {
 
 namespace {
 
-/// Reads a number from an address of any alignment. Only numbers of 4 and 8 bytes may be
-/// big-endian.
+/// Reads a number from an address of any alignment.
 template <class T, bool bigEndian>
 T loadNumber(const char* place) {
-  if constexpr (bigEndian && sizeof(T) >= sizeof(std::uint32_t)) {
+  if constexpr (bigEndian && sizeof(T) > 1) {
     return loadBig<T>(place);
   } else {
     T number;

@@ -21,9 +21,9 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/formats/vtk_source.hpp>
 #include <io/formats/xml_tags.hpp>
 
@@ -31,11 +31,23 @@ namespace hexhex::io {
 
 namespace {
 
+/// A way in which blocks are compressed.
+struct VtuCompressor {
+  std::string_view name;
+  std::size_t largestRatio;
+  bool (*decode)(std::string_view compressed, std::span<char> bytes) noexcept;
+};
+constexpr std::array<VtuCompressor, 3> kCompressors = {
+    {{"vtkZLibDataCompressor", kLargestZlibRatio, inflateBlock},
+     {"vtkLZ4DataCompressor", kLargestLz4Ratio, decodeLz4Block},
+     {"vtkLZMADataCompressor", kLargestLzmaRatio, decodeLzmaBlock}}};
+
 /// The encoding of an array.
 struct VtuEncoding {
   bool base64 = false;
-  bool compressed = false;      ///< in zlib blocks; only if hasZlib()
+  bool bigEndian = false;       ///< as in VtkColumn
   std::size_t lengthBytes = 4;  ///< of the numbers before the data
+  const VtuCompressor* compressor = nullptr;
 };
 
 constexpr std::uint8_t kNoDigit = 255;
@@ -121,34 +133,33 @@ struct Blocks {
   std::vector<std::uint64_t> begins;  ///< of the compressed blocks, and the end of the last
 };
 
-/// Reads a number before the data. The file has native byte order, which was checked.
-bool readLength(EncodedBytes& source, std::size_t lengthBytes, std::uint64_t& length) {
+/// Reads a number before the data.
+bool readLength(EncodedBytes& source, const VtuEncoding& encoding, std::uint64_t& length) {
   std::array<char, sizeof(length)> bytes{};
-  if (!source.read(bytes.data(), lengthBytes)) return false;
-  if (lengthBytes == sizeof(std::uint32_t)) {
-    std::uint32_t shortLength = 0;
-    std::memcpy(&shortLength, bytes.data(), sizeof(shortLength));
-    length = shortLength;
-  } else {
-    std::memcpy(&length, bytes.data(), sizeof(length));
-  }
+  if (!source.read(bytes.data(), encoding.lengthBytes)) return false;
+  const auto load = [&]<class Length>(Length number) {
+    std::memcpy(&number, bytes.data(), sizeof(number));
+    return encoding.bigEndian ? loadBig<Length>(bytes.data()) : number;
+  };
+  length = encoding.lengthBytes == 4 ? load(std::uint32_t{}) : load(std::uint64_t{});
   return true;
 }
 
 /// Reads the header of compressed data: number of blocks, their size, size of a shorter last block
 /// or 0, and the compressed sizes.
-bool readBlocks(EncodedBytes& source, std::size_t lengthBytes, Blocks& blocks) {
+bool readBlocks(EncodedBytes& source, const VtuEncoding& encoding, Blocks& blocks) {
   std::uint64_t count = 0;
-  if (!readLength(source, lengthBytes, count) || !readLength(source, lengthBytes, blocks.size) ||
-      !readLength(source, lengthBytes, blocks.lastSize) || count > source.room() / lengthBytes) {
+  if (!readLength(source, encoding, count) || !readLength(source, encoding, blocks.size) ||
+      !readLength(source, encoding, blocks.lastSize) ||
+      count > source.room() / encoding.lengthBytes) {
     return false;
   }
   if (blocks.lastSize == 0) blocks.lastSize = blocks.size;
   blocks.begins = {0};
   for (std::uint64_t i = 0; i < count; ++i) {
     std::uint64_t size = 0;
-    if (!readLength(source, lengthBytes, size) || size > source.room()) return false;
-    const std::uint64_t limit = size * kLargestZlibRatio;
+    if (!readLength(source, encoding, size) || size > source.room()) return false;
+    const std::uint64_t limit = size * encoding.compressor->largestRatio;
     if ((i + 1 < count ? blocks.size : blocks.lastSize) > limit) return false;
     blocks.begins.push_back(blocks.begins.back() + size);
   }
@@ -165,9 +176,9 @@ constexpr const char* kIncompleteOrNoBase64 =
 Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, Stage& stage,
                            const std::function<void(const char* sentence)>& fail) {
   EncodedBytes source(text, encoding.base64);
-  if (!encoding.compressed) {
+  if (encoding.compressor == nullptr) {
     std::uint64_t length = 0;
-    if (!readLength(source, encoding.lengthBytes, length) || length > source.room()) {
+    if (!readLength(source, encoding, length) || length > source.room()) {
       fail(kIncomplete);
     }
     Array<char> bytes(static_cast<std::size_t>(length));
@@ -175,29 +186,28 @@ Array<char> decodeVtuArray(std::string_view text, const VtuEncoding& encoding, S
     return bytes;
   }
   Blocks blocks;
-  if (!readBlocks(source, encoding.lengthBytes, blocks)) fail(kIncomplete);
+  if (!readBlocks(source, encoding, blocks)) fail(kIncomplete);
   const std::size_t count = blocks.begins.size() - 1;
   if (count == 0) return {};
   Array<char> compressed(memorySize(blocks.begins.back()));
   if (!source.read(compressed.data(), compressed.size())) fail(kIncompleteOrNoBase64);
   Array<char> bytes(memorySize((count - 1) * blocks.size + blocks.lastSize));
   constexpr std::size_t kGrain = 8;  // blocks of a few tens of kilobytes
-  const auto inflate = [&](std::size_t i) {
+  const auto decode = [&](std::size_t i) {
     const auto begin = static_cast<std::size_t>(blocks.begins[i]);
     const auto end = static_cast<std::size_t>(blocks.begins[i + 1]);
     const auto place = static_cast<std::size_t>(i * blocks.size);
     const auto size = static_cast<std::size_t>(i + 1 < count ? blocks.size : blocks.lastSize);
-    return inflateBlock({compressed.data() + begin, end - begin}, {bytes.data() + place, size});
+    return encoding.compressor->decode({compressed.data() + begin, end - begin},
+                                       {bytes.data() + place, size});
   };
-  if (firstFault(stage, count, inflate, kGrain) < count) {
+  if (firstFault(stage, count, decode, kGrain) < count) {
     fail("the compressed data of this array are damaged.");
   }
   return bytes;
 }
 
 // Files.
-
-constexpr std::string_view kZlibCompressor = "vtkZLibDataCompressor";
 
 constexpr std::array<std::pair<std::string_view, VtkSection>, 7> kSections = {
     {{"FieldData", VtkSection::FieldData},
@@ -327,20 +337,24 @@ class VtuFile final : public VtkSource {
                  ", only grids and surfaces in one file are supported.");
     }
     const std::string_view compressor = tag.attribute("compressor");
-    compressed_ = !compressor.empty();
-    if (compressed_ && compressor != kZlibCompressor) {
-      tags_.fail(ErrorCode::FileUnsupported, tag, "the file is compressed with ",
-                 quoted(compressor),
-                 ". Save it uncompressed or with zlib (vtkZLibDataCompressor).");
+    if (!compressor.empty()) {
+      const auto known = std::find_if(kCompressors.begin(), kCompressors.end(),
+                                      [&](const auto& each) { return each.name == compressor; });
+      if (known == kCompressors.end()) {
+        tags_.fail(ErrorCode::FileUnsupported, tag, "the file is compressed with ",
+                   quoted(compressor), ", which is none of VTK's compressors.");
+      }
+      encoding_.compressor = &*known;
     }
-    const bool little = std::endian::native == std::endian::little;
     const std::string_view order = tag.attribute("byte_order");
-    if (!order.empty() && order != (little ? "LittleEndian" : "BigEndian")) {
+    const bool bigHere = std::endian::native == std::endian::big;
+    encoding_.bigEndian = order == "BigEndian" && !bigHere;
+    if (!order.empty() && order != "BigEndian" && (bigHere || order != "LittleEndian")) {
       tags_.fail(ErrorCode::FileUnsupported, tag, "the byte order ", quoted(order),
-                 " is not that of this machine.");
+                 " is not supported.");
     }
     const std::string_view header = tag.attribute("header_type");
-    lengthBytes_ = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+    encoding_.lengthBytes = header == "UInt64" ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
     const std::string_view version = tag.attribute("version");
     const bool isOld = version.empty() || version == "2.0" || version[0] < '2';
     uprightEdges = isOld ? VtkEdges::RowByRow : VtkEdges::Around;
@@ -388,7 +402,7 @@ class VtuFile final : public VtkSource {
       size[i] =
           static_cast<std::uint64_t>(std::clamp(extent[2 * i + 1] - extent[2 * i] + 1, 0.0, kFar));
     }
-    const std::uint64_t dataSize = (compressed_ ? kLargestZlibRatio : 1) * fileSize();
+    const std::uint64_t dataSize = largestRatio() * fileSize();
     if (type_ == "ImageData") {
       const auto origin = readNumbers(image_, "Origin", Vec3{});
       const auto spacing = readNumbers(image_, "Spacing", Vec3{1, 1, 1});
@@ -442,10 +456,14 @@ class VtuFile final : public VtkSource {
     return count;
   }
 
-  /// Each point, cell or number takes at least a byte, which zlib compresses at most by its ratio.
+  [[nodiscard]] std::size_t largestRatio() const {
+    return encoding_.compressor == nullptr ? 1 : encoding_.compressor->largestRatio;
+  }
+
+  /// Each point, cell or number takes at least a byte, which is compressed at most by the ratio.
   /// The bound also keeps products of the count from overflowing.
   void requireRoom(std::uint64_t count, const XmlTag& tag, const std::string& what) const {
-    if (count / (compressed_ ? kLargestZlibRatio : 1) <= fileSize()) return;
+    if (count / largestRatio() <= fileSize()) return;
     tags_.fail(ErrorCode::FileSyntax, tag, what, " ", count,
                ", more than the file has room for: it is wrong or the file is incomplete.");
   }
@@ -474,8 +492,8 @@ class VtuFile final : public VtkSource {
 
   void readAppendedTag(const XmlTag& tag) {
     const std::string_view encoding = tag.attribute("encoding");
-    appendedBase64_ = encoding == "base64";
-    if (!appendedBase64_ && encoding != "raw") {
+    encoding_.base64 = encoding == "base64";
+    if (!encoding_.base64 && encoding != "raw") {
       tags_.fail(ErrorCode::FileUnsupported, tag, "the appended data are encoded as ",
                  quoted(encoding), ", which is neither raw nor base64.");
     }
@@ -668,8 +686,9 @@ class VtuFile final : public VtkSource {
     }
     VtkColumn column;
     column.scalar = *scalar;
+    column.bigEndian = encoding_.bigEndian;
     std::uint64_t bytes = 0;
-    if (format == "appended" && !appendedBase64_ && !compressed_) {
+    if (format == "appended" && !encoding_.base64 && encoding_.compressor == nullptr) {
       bytes = findAppended(tag, column);
     } else {
       column.decoded = decode(tag);
@@ -688,15 +707,17 @@ class VtuFile final : public VtkSource {
   std::uint64_t findAppended(const XmlTag& tag, VtkColumn& column) const {
     const std::uint64_t offset = readCount(tag, "offset");
     const std::uint64_t room = appended_ ? fileSize() - *appended_ : 0;
-    if (offset <= room && room - offset >= lengthBytes_) {
+    const std::size_t lengthBytes = encoding_.lengthBytes;
+    if (offset <= room && room - offset >= lengthBytes) {
       VtkColumn length;
-      length.scalar = lengthBytes_ == sizeof(std::uint64_t) ? VtkScalar(std::uint64_t{})
-                                                            : VtkScalar(std::uint32_t{});
+      length.scalar = lengthBytes == sizeof(std::uint64_t) ? VtkScalar(std::uint64_t{})
+                                                           : VtkScalar(std::uint32_t{});
+      length.bigEndian = encoding_.bigEndian;
       length.position = *appended_ + offset;
       std::int64_t bytes = 0;
       copy(length, 0, 1, &bytes);
-      column.position = length.position + lengthBytes_;
-      if (static_cast<std::uint64_t>(bytes) <= room - offset - lengthBytes_) {
+      column.position = length.position + lengthBytes;
+      if (static_cast<std::uint64_t>(bytes) <= room - offset - lengthBytes) {
         return static_cast<std::uint64_t>(bytes);
       }
     }
@@ -707,7 +728,8 @@ class VtuFile final : public VtkSource {
   /// The bytes of an array that is compressed, or base64, inline or appended.
   Array<char> decode(const XmlTag& tag) const {
     std::string_view encoded = contentOf(tag);
-    bool base64 = true;
+    VtuEncoding encoding = encoding_;
+    encoding.base64 = true;
     if (tag.attribute("format") == "appended") {
       const std::uint64_t offset = readCount(tag, "offset");
       const std::uint64_t room = appended_ ? text().size() - *appended_ : 0;
@@ -716,14 +738,15 @@ class VtuFile final : public VtkSource {
                    "the data of this array lie beyond the end of the file: it is incomplete.");
       }
       encoded = text().substr(appended_ ? *appended_ + offset : text().size());
-      base64 = appendedBase64_;
+      encoding.base64 = encoding_.base64;
     }
-    if (compressed_) {
+    if (encoding.compressor == &kCompressors[0]) {
       requireZlib(name(), "read compressed arrays", "save the file without compression");
     }
-    return decodeVtuArray(
-        encoded, {base64, compressed_, lengthBytes_}, stage_,
-        [&](const char* sentence) { tags_.fail(ErrorCode::FileSyntax, tag, sentence); });
+    if (encoding.compressor == &kCompressors[2]) requireLzma(name());
+    return decodeVtuArray(encoded, encoding, stage_, [&](const char* sentence) {
+      tags_.fail(ErrorCode::FileSyntax, tag, sentence);
+    });
   }
 
   /// Parses the numbers of a text; without a count, all there are.
@@ -760,10 +783,8 @@ class VtuFile final : public VtkSource {
   std::vector<VtuPiece> pieces_;
   Array<std::size_t> kept_;  ///< of several pieces: points without an earlier duplicate
   std::vector<std::uint64_t> pointsBefore_;  ///< per piece: points before it
-  std::size_t lengthBytes_ = 4;              ///< of the numbers before encoded arrays
-  bool compressed_ = false;
-  bool appendedBase64_ = false;
-  std::optional<std::uint64_t> appended_;  ///< position after the '_' of AppendedData
+  VtuEncoding encoding_;                     ///< of appended arrays
+  std::optional<std::uint64_t> appended_;    ///< position after the '_' of AppendedData
 };
 
 /// Whether a text, possibly incomplete, begins with a complete header followed by raw appended

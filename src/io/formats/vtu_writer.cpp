@@ -16,9 +16,9 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/compressed_blocks.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/core/zlib_blocks.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/vtk_data_set.hpp>
 

@@ -1,4 +1,4 @@
-// zlib-compressed blocks and gzip files; available only if built with zlib.
+// Blocks compressed with zlib, LZ4 and LZMA, and gzip files.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,17 @@
 
 namespace hexhex::io {
 
+// All readers of blocks: @return whether the block is complete and fills `bytes`.
+
+/// Decompresses a block of LZ4 (github.com/lz4/lz4, doc/lz4_Block_format.md).
+[[nodiscard]] bool decodeLz4Block(std::string_view compressed, std::span<char> bytes) noexcept;
+
+/// Loads liblzma.
+/// @throws Error FileUnsupported if it is not installed
+void requireLzma(const std::filesystem::path& file);
+/// Decompresses a stream of the `.xz` format. @pre requireLzma() was called
+[[nodiscard]] bool decodeLzmaBlock(std::string_view compressed, std::span<char> bytes) noexcept;
+
 /// Whether this build has zlib, without which the functions below fail.
 [[nodiscard]] bool hasZlib() noexcept;
 /// @param work, instead  as for failWithoutLibrary()
@@ -18,10 +29,12 @@ namespace hexhex::io {
 void requireZlib(const std::filesystem::path& file, std::string_view work,
                  std::string_view instead);
 
-/// Maximum compression ratio of zlib: a file that claims more is invalid.
+// Maximum compression ratios: a file that claims more is invalid.
 inline constexpr std::size_t kLargestZlibRatio = 1032;
+inline constexpr std::size_t kLargestLz4Ratio = 255;
+inline constexpr std::size_t kLargestLzmaRatio = 8192;  // zeros reach 7,000
 
-/// Decompresses a block into `bytes`. @return whether it is complete and has exactly this size
+/// Decompresses a block of zlib.
 [[nodiscard]] bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept;
 
 /// The bytes of a gzip file of one or more members.

@@ -1,16 +1,96 @@
+#include <algorithm>
+#include <cstdint>
 #include <string>
 
 #include <hexhex/error.hpp>
 
-#include <io/core/zlib_blocks.hpp>
+#include <base/concat.hpp>
+#include <base/missing_library.hpp>
+#include <io/core/compressed_blocks.hpp>
 
+#if __has_include(<dlfcn.h>) && !defined(__EMSCRIPTEN__)
+#define HEXHEX_LOADS_LZMA 1
+#include <dlfcn.h>
+#endif
 #ifdef HEXHEX_HAS_ZLIB
-#include <algorithm>
 #include <limits>
 #include <new>
 #include <zlib.h>
+#endif
 
 namespace hexhex::io {
+
+bool decodeLz4Block(std::string_view compressed, std::span<char> bytes) noexcept {
+  std::size_t at = 0;
+  std::size_t size = 0;
+  const auto byte = [&] { return std::size_t{static_cast<unsigned char>(compressed[at++])}; };
+  // A length of 15 goes on in further bytes, up to one below 255.
+  const auto wholeLength = [&](std::size_t length) {
+    bool goesOn = length == 15;
+    while (goesOn && at < compressed.size()) {
+      const std::size_t more = byte();
+      length += more;
+      goesOn = more == 255;
+    }
+    return length;
+  };
+  while (at < compressed.size()) {
+    const std::size_t token = byte();
+    const std::size_t literals = wholeLength(token >> 4U);
+    if (literals > compressed.size() - at || literals > bytes.size() - size) return false;
+    std::copy_n(compressed.data() + at, literals, bytes.data() + size);
+    at += literals;
+    size += literals;
+    if (at == compressed.size()) break;  // the last sequence has literals only
+    if (compressed.size() - at < 2) return false;
+    const std::size_t low = byte();
+    const std::size_t distance = low | byte() << 8U;
+    constexpr std::size_t kShortestMatch = 4;
+    std::size_t match = wholeLength(token & 15U) + kShortestMatch;
+    if (distance == 0 || distance > size || match > bytes.size() - size) return false;
+    for (; match > 0; --match, ++size) bytes[size] = bytes[size - distance];  // may overlap
+  }
+  return size == bytes.size();
+}
+
+namespace {
+
+/// lzma_stream_buffer_decode() of liblzma 5, which few files need: it is not linked.
+using DecodeLzma = int (*)(std::uint64_t* memoryLimit, std::uint32_t flags, const void* allocator,
+                           const std::uint8_t* in, std::size_t* inPosition, std::size_t inSize,
+                           std::uint8_t* out, std::size_t* outPosition, std::size_t outSize);
+
+DecodeLzma lzma() noexcept {
+#if defined(HEXHEX_LOADS_LZMA)
+  static void* const library = dlopen("liblzma.so.5", RTLD_NOW);
+  if (library != nullptr) {
+    return reinterpret_cast<DecodeLzma>(dlsym(library, "lzma_stream_buffer_decode"));
+  }
+#endif
+  return nullptr;
+}
+
+}  // namespace
+
+void requireLzma(const std::filesystem::path& file) {
+  if (lzma() != nullptr) return;
+  throw Error(ErrorCode::FileUnsupported,
+              concat(file,
+                     ": arrays compressed with LZMA take the library liblzma, which cannot be "
+                     "loaded. Install liblzma5, or save the file without compression."));
+}
+
+bool decodeLzmaBlock(std::string_view compressed, std::span<char> bytes) noexcept {
+  std::uint64_t memoryLimit = std::uint64_t{1} << 30U;  // the strongest setting takes 65 MB
+  std::size_t used = 0;
+  std::size_t size = 0;
+  const int status = lzma()(
+      &memoryLimit, 0, nullptr, reinterpret_cast<const std::uint8_t*>(compressed.data()), &used,
+      compressed.size(), reinterpret_cast<std::uint8_t*>(bytes.data()), &size, bytes.size());
+  return status == 0 && size == bytes.size();
+}
+
+#ifdef HEXHEX_HAS_ZLIB
 
 bool hasZlib() noexcept { return true; }
 void requireZlib(const std::filesystem::path& /*file*/, std::string_view /*work*/,
@@ -97,12 +177,7 @@ void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
   compressed.resize(before + size);
 }
 
-}  // namespace hexhex::io
-
 #else
-#include <base/missing_library.hpp>
-
-namespace hexhex::io {
 
 bool hasZlib() noexcept { return false; }
 void requireZlib(const std::filesystem::path& file, std::string_view work,
@@ -123,6 +198,6 @@ void deflateBlock(std::span<const char> /*bytes*/, Array<char>& /*compressed*/) 
   throw Error(ErrorCode::Internal, "This library was built without zlib.");
 }
 
-}  // namespace hexhex::io
-
 #endif
+
+}  // namespace hexhex::io
