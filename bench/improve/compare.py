@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """hexhex improve beside other programs that move vertices: MFEM's TMOP, VTK's constrained smoothing, PyVista's, Gmsh.
 
-    bench/improve/compare.py HEXHEX MAP.hexex:SCALE...
+    bench/improve/compare.py HEXHEX MAP.hexex:SCALE... MESH.mesh...
 
 Prints a table in Markdown. Needs mfem, gmsh, vtk, pyvista and meshio of PyPI. All start from the same mesh, each in a process of its own with
-one thread; time is processor time without reading and writing, of hexhex that of the command. Certificates are hexhex's; the distance is the largest
-one of boundary vertices to the boundary of the map, in diagonals.
+one thread; a mesh without a map is its own surface; time is processor time without reading and writing, of hexhex that of the command. Certificates are hexhex's; the distance is the largest
+one of boundary vertices to the boundary of the map or the mesh, in diagonals.
 
 TMOP: the untangling metric 352 if a corner is not positive, then the shape metric 303, at Gauss-Lobatto points; boundary vertices stay,
 50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of the boundary stay. PyVista has
@@ -181,18 +181,20 @@ def limited(tool, *arguments):
         process.join()
 
 
-def surface_of(map_file, folder, hexhex):
-    """Of the boundary of a map: a locator of its triangles."""
-    subprocess.run([hexhex, "convert", map_file, folder / "map.vtu", "--quiet"], check=True)
+def surface_of(file, folder, hexhex):
+    """Of the boundary of a map or a mesh: a locator of its triangles."""
+    subprocess.run([hexhex, "convert", file, folder / "map.vtu", "--quiet"], check=True)
     reader = vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(folder / "map.vtu"))
     surface = vtk.vtkDataSetSurfaceFilter()
     surface.SetInputConnection(reader.GetOutputPort())
-    surface.Update()
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputConnection(surface.GetOutputPort())
+    triangles.Update()
     locator = vtk.vtkStaticCellLocator()
-    locator.SetDataSet(surface.GetOutput())
+    locator.SetDataSet(triangles.GetOutput())
     locator.BuildLocator()
-    return locator, surface.GetOutput().GetLength()
+    return locator, triangles.GetOutput().GetLength()
 
 
 def distance_to(surface, points):
@@ -211,25 +213,23 @@ def facts_of(points, cells, folder, hexhex):
     return json.loads(run.stdout)
 
 
-def tool_rows(map_file, scale, folder, hexhex):
-    """(tool, facts, distance, seconds) of each."""
-    def extract(name, *options):
-        subprocess.run([hexhex, "extract", map_file, "--scale", scale, "--quiet", "--threads", "1", "-o", folder / name,
-                        *options], check=True)
-
-    extract("base.vtu")
-    extract("mfem.mesh", "--format", "mfem")
+def tool_rows(file, scale, folder, hexhex):
+    """(tool, facts, distance, seconds) of each. Without a scale, the file is a mesh."""
+    start = ["extract", file, "--scale", scale, "--threads", "1", "-o"] if scale else ["convert", file]
+    of_map = ["--map", file] if scale else []
+    for output in (["base.vtu"], ["mfem.mesh", "--format", "mfem"]):
+        subprocess.run([hexhex, *start, *output, "--quiet"], check=True, cwd=folder)
     base = meshio.read(folder / "base.vtu")
     points, cells = base.points, base.cells_dict["hexahedron"].astype(np.int64)
     border = np.unique(boundary_quads(cells))
-    surface = surface_of(map_file, folder, hexhex)
+    surface = surface_of(file, folder, hexhex)
 
     def row(name, places, seconds):
         return name, facts_of(places, cells, folder, hexhex), distance_to(surface, places[border]), seconds
 
     yield row("as extracted", points, 0)
     before = os.times().children_user
-    subprocess.run([hexhex, "improve", folder / "base.vtu", "--map", map_file, "-o", folder / "better.vtu", "--quiet",
+    subprocess.run([hexhex, "improve", folder / "base.vtu", *of_map, "-o", folder / "better.vtu", "--quiet",
                     "--threads", "1"], check=True)
     seconds = os.times().children_user - before
     yield row("hexhex improve", meshio.read(folder / "better.vtu").points, seconds)
@@ -247,13 +247,14 @@ def tool_rows(map_file, scale, folder, hexhex):
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    hexhex = sys.argv[1]
+    hexhex = Path(sys.argv[1]).resolve()
     print("| mesh | tool | cells not positive | minimum | mean | distance | time |\n|---|---|---|---|---|---|---|")
     for argument in sys.argv[2:]:
-        map_file, scale = argument.rsplit(":", 1)
+        name, _, scale = argument.partition(":")
+        file = Path(name).resolve()
         with tempfile.TemporaryDirectory() as folder:
-            for name, facts, distance, seconds in tool_rows(map_file, scale, Path(folder), hexhex):
-                label = f"{Path(map_file).stem} x{scale}"
+            for name, facts, distance, seconds in tool_rows(file, scale, Path(folder), hexhex):
+                label = f"{file.stem} x{scale}" if scale else file.stem
                 if isinstance(facts, str):
                     print(f"| {label} | {name} | {facts} | | | | |", flush=True)
                     continue

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <span>
 #include <type_traits>
 
 #if defined(__SSE2__)
@@ -35,17 +34,6 @@
 #endif
 
 namespace hexhex {
-
-/// Of entry points for all widths, the plain one first: those that run on this machine.
-template <class Entry, std::size_t n>
-[[nodiscard]] std::span<const Entry> runnable(const std::array<Entry, n>& all) noexcept {
-#if defined(HEXHEX_WIDE)
-  return std::span(all).first(__builtin_cpu_supports("avx2") ? n : 1);
-#else
-  static_assert(n == 1);
-  return all;
-#endif
-}
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push

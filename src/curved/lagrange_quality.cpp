@@ -7,8 +7,8 @@
 
 #include <hexhex/curved.hpp>
 
-#include <base/lanes.hpp>
 #include <base/parallel.hpp>
+#include <base/register_widths.hpp>
 #include <curved/lagrange.hpp>
 #include <curved/lagrange_quality.hpp>
 #include <mesh/certificates.hpp>
@@ -70,23 +70,12 @@ using Smallest = std::array<double, kCellLanes>;
       });
 }
 
-#if defined(HEXHEX_WIDE)
-HEXHEX_WIDE void lowerWide(const LagrangeColumns& grid, const LagrangeCells& cells,
-                           LagrangeScratch& scratch, Smallest& smallest) {
-  lower(grid, cells, scratch, smallest);
-}
-#endif
-
 using Lower = void (*)(const LagrangeColumns&, const LagrangeCells&, LagrangeScratch&, Smallest&);
 
 /// lower() for the widest registers.
 Lower widestLower() noexcept {
-#if defined(HEXHEX_WIDE)
-  static constexpr std::array<Lower, 2> kAll = {lower, lowerWide};
-#else
-  static constexpr std::array<Lower, 1> kAll = {lower};
-#endif
-  return runnable(kAll).back();
+  static constexpr std::array<Lower, 2> kBoth = {lower, kWide<lower>};
+  return runnable(kBoth).back();
 }
 
 /// Calls use(cell, its scaled Jacobian, block) for all cells.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <base/register_widths.hpp>
 #include <improve/energy_kernels.hpp>
 #include <mesh/jacobian_lanes.hpp>
 
@@ -346,35 +347,13 @@ HEXHEX_INLINE void bezierTermsOf(std::span<const MovingCell> list, TermLanes* te
   }
 }
 
-constexpr EnergyKernels kPlain = {cornerTermsOf, bezierTermsOf, energyOf, slopeOfAll};
-
-#if defined(HEXHEX_WIDE)
-HEXHEX_WIDE void wideCornerTerms(std::span<const MovingCell> cells, TermLanes* terms) noexcept {
-  cornerTermsOf(cells, terms);
-}
-HEXHEX_WIDE void wideBezierTerms(std::span<const MovingCell> cells, TermLanes* terms) noexcept {
-  bezierTermsOf(cells, terms);
-}
-HEXHEX_WIDE double wideEnergy(std::span<const TermLanes> terms, const EnergyKind& kind,
-                              const Vec3& step) noexcept {
-  return energyOf(terms, kind, step);
-}
-HEXHEX_WIDE void wideSlope(std::span<const TermLanes> terms, const EnergyKind& kind,
-                           EnergySlope& slope) noexcept {
-  slopeOfAll(terms, kind, slope);
-}
-constexpr EnergyKernels kWide = {wideCornerTerms, wideBezierTerms, wideEnergy, wideSlope};
-#endif
-
 }  // namespace
 
 std::span<const EnergyKernels> energyKernels() noexcept {
-#if defined(HEXHEX_WIDE)
-  static constexpr std::array<EnergyKernels, 2> kAll = {kPlain, kWide};
-#else
-  static constexpr std::array<EnergyKernels, 1> kAll = {kPlain};
-#endif
-  return runnable(kAll);
+  static constexpr std::array<EnergyKernels, 2> kBoth = {
+      {{cornerTermsOf, bezierTermsOf, energyOf, slopeOfAll},
+       {kWide<cornerTermsOf>, kWide<bezierTermsOf>, kWide<energyOf>, kWide<slopeOfAll>}}};
+  return runnable(kBoth);
 }
 
 }  // namespace hexhex::improvement

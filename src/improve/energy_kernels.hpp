@@ -12,12 +12,10 @@ namespace hexhex::improvement {
 
 struct EnergyKernels {
   /// Compute the 4 terms of corners, or the 20 of Bezier coefficients, of one to four cells.
-  void (*cornerTerms)(std::span<const MovingCell> cells, TermLanes* terms) noexcept;
-  void (*bezierTerms)(std::span<const MovingCell> cells, TermLanes* terms) noexcept;
-  double (*energy)(std::span<const TermLanes> terms, const EnergyKind& kind,
-                   const Vec3& step) noexcept;
-  void (*slope)(std::span<const TermLanes> terms, const EnergyKind& kind,
-                EnergySlope& slope) noexcept;
+  void (*cornerTerms)(std::span<const MovingCell> cells, TermLanes* terms);
+  void (*bezierTerms)(std::span<const MovingCell> cells, TermLanes* terms);
+  double (*energy)(std::span<const TermLanes> terms, const EnergyKind& kind, const Vec3& step);
+  void (*slope)(std::span<const TermLanes> terms, const EnergyKind& kind, EnergySlope& slope);
 };
 
 inline constexpr std::size_t kCornerTerms = 4;

@@ -20,6 +20,7 @@
 #include <improve/curved_cells.hpp>
 #include <improve/followed_curves.hpp>
 #include <improve/given_surface.hpp>
+#include <improve/merit.hpp>
 #include <improve/moving.hpp>
 #include <improve/pillowed.hpp>
 #include <improve/snapping.hpp>

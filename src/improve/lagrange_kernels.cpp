@@ -1,6 +1,7 @@
 // Compiled for several register widths, like energy_kernels.cpp.
 #include <limits>
 
+#include <base/register_widths.hpp>
 #include <improve/lagrange_kernels.hpp>
 
 #if defined(__GNUC__)
@@ -120,30 +121,12 @@ HEXHEX_INLINE std::array<double, kCellLanes> leastSharesOf(const LagrangeGrid& g
   return shares;
 }
 
-constexpr LagrangeKernels kPlainLagrange = {termsOf, leastSharesOf};
-
-#if defined(HEXHEX_WIDE)
-HEXHEX_WIDE void wideTerms(const LagrangeGrid& grid, const MovingNode& moving,
-                           LagrangeScratch& scratch, TermLanes* terms) {
-  termsOf(grid, moving, scratch, terms);
-}
-HEXHEX_WIDE std::array<double, kCellLanes> wideLeastShares(const LagrangeGrid& grid,
-                                                           const LagrangeCells& cells,
-                                                           LagrangeScratch& scratch) {
-  return leastSharesOf(grid, cells, scratch);
-}
-constexpr LagrangeKernels kWideLagrange = {wideTerms, wideLeastShares};
-#endif
-
 }  // namespace
 
 std::span<const LagrangeKernels> lagrangeKernels() noexcept {
-#if defined(HEXHEX_WIDE)
-  static constexpr std::array<LagrangeKernels, 2> kAll = {kPlainLagrange, kWideLagrange};
-#else
-  static constexpr std::array<LagrangeKernels, 1> kAll = {kPlainLagrange};
-#endif
-  return runnable(kAll);
+  static constexpr std::array<LagrangeKernels, 2> kBoth = {
+      {{termsOf, leastSharesOf}, {kWide<termsOf>, kWide<leastSharesOf>}}};
+  return runnable(kBoth);
 }
 
 }  // namespace hexhex::improvement

@@ -53,10 +53,6 @@ struct Boundary {
   return certificate.refuted + certificate.undecided;
 }
 
-/// The merit of an improved mesh: negative if a cell is not positive, 1 if nothing is left to
-/// improve. A product, so that no criterion compensates for another.
-[[nodiscard]] double meritOf(const ImproveReport& report);
-
 /// Moves points and certifies the result. Restores the points around cells that became worse.
 /// @param[in,out] before  the initial positions; simplices change where vertices left creases
 /// @param[in,out] report  with `before`, `diagonal` and `distanceBefore`; gets `after` and

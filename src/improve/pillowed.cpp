@@ -5,6 +5,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/concat.hpp>
+#include <improve/merit.hpp>
 #include <improve/pillowed.hpp>
 #include <mesh/pillow.hpp>
 

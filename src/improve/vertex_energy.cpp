@@ -32,7 +32,7 @@ TermLanes* EnergyTerms::add(std::size_t blocks) {
 }
 
 void EnergyTerms::addCells(std::span<const MovingCell> cells, std::size_t perCell,
-                           void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept) {
+                           void (*termsOf)(std::span<const MovingCell>, TermLanes*)) {
   for (std::size_t first = 0; first < cells.size(); first += TermLanes::kCount) {
     termsOf(cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first)), add(perCell));
   }

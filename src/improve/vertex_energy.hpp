@@ -69,7 +69,7 @@ class EnergyTerms {
 
  private:
   void addCells(std::span<const MovingCell> cells, std::size_t perCell,
-                void (*termsOf)(std::span<const MovingCell>, TermLanes*) noexcept);
+                void (*termsOf)(std::span<const MovingCell>, TermLanes*));
 
   std::vector<TermLanes> blocks_;  ///< those beyond size_ are kept for reuse
   std::size_t size_ = 0;

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include <base/lanes.hpp>
+#include <base/register_widths.hpp>
 #include <mesh/cell_measures.hpp>
 #include <mesh/jacobian_lanes.hpp>
 
@@ -105,7 +105,7 @@ template <class V, std::size_t... lane>
 }
 
 template <class V>
-void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& measures) noexcept {
+void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& measures) {
   constexpr std::size_t kLanes = sizeof(V) / sizeof(double);
   for (std::size_t first = 0; first < cells.size(); first += kLanes) {
     std::array<LaneVector<V>, 8> at;
@@ -128,22 +128,11 @@ void measureAll(const Vec3* points, std::span<const Hex> cells, CellMeasures& me
   }
 }
 
-#if defined(HEXHEX_WIDE)
-HEXHEX_WIDE void measureFour(const Vec3* points, std::span<const Hex> cells,
-                             CellMeasures& measures) noexcept {
-  measureAll<Four>(points, cells, measures);
-}
-#endif
-
 }  // namespace
 
 std::span<const MeasureCells> measuresOfCells() noexcept {
-#if defined(HEXHEX_WIDE)
-  static constexpr std::array<MeasureCells, 2> kAll = {measureAll<Two>, measureFour};
-#else
-  static constexpr std::array<MeasureCells, 1> kAll = {measureAll<Two>};
-#endif
-  return runnable(kAll);
+  static constexpr std::array<MeasureCells, 2> kBoth = {measureAll<Two>, kWide<measureAll<Four>>};
+  return runnable(kBoth);
 }
 
 }  // namespace hexhex::mesh

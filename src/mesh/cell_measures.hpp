@@ -35,7 +35,7 @@ struct CellMeasures {
 
 /// Measures up to kMost cells.
 using MeasureCells = void (*)(const Vec3* points, std::span<const Hex> cells,
-                              CellMeasures& measures) noexcept;
+                              CellMeasures& measures);
 
 /// One function per register width that the processor supports, the widest last. All give the same
 /// results, bit for bit. (With two cells at once instead of four, quality takes 1.5 times as long.)

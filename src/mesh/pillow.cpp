@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPillowGrain = 2048;
 
 /// Fraction of the way to the other end of an edge: the layer takes a quarter of the cells beneath.
-constexpr double kDepth = 0.25;
+constexpr double kPillowDepth = 0.25;
 
 using Edge = std::array<Index, 2>;
 
@@ -224,7 +224,8 @@ class PillowMaker {
         }
       }
     }
-    return {point[0] + kDepth * step[0], point[1] + kDepth * step[1], point[2] + kDepth * step[2]};
+    return {point[0] + kPillowDepth * step[0], point[1] + kPillowDepth * step[1],
+            point[2] + kPillowDepth * step[2]};
   }
 
   void addPoints(Pillow& pillow) const {

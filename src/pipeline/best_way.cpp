@@ -13,7 +13,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <improve/moving.hpp>
+#include <improve/merit.hpp>
 
 namespace hexhex::pipeline {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <untangle/energy_lanes.hpp>
 
+#include <base/register_widths.hpp>
+
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
@@ -77,26 +79,11 @@ HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double
   }
 }
 
-void plainEnergy(const ElementLanes& elements, double epsilon, double pull,
-                 ForceLanes& result) noexcept {
-  energyOf(elements, epsilon, pull, result);
-}
-#if defined(HEXHEX_WIDE)
-HEXHEX_WIDE void wideEnergy(const ElementLanes& elements, double epsilon, double pull,
-                            ForceLanes& result) noexcept {
-  energyOf(elements, epsilon, pull, result);
-}
-#endif
-
 }  // namespace
 
 std::span<const EnergyKernel> energyKernels() noexcept {
-#if defined(HEXHEX_WIDE)
-  static constexpr std::array<EnergyKernel, 2> kAll = {plainEnergy, wideEnergy};
-#else
-  static constexpr std::array<EnergyKernel, 1> kAll = {plainEnergy};
-#endif
-  return runnable(kAll);
+  static constexpr std::array<EnergyKernel, 2> kBoth = {energyOf, kWide<energyOf>};
+  return runnable(kBoth);
 }
 
 }  // namespace hexhex::untangle

@@ -28,7 +28,7 @@ struct alignas(sizeof(Number)) ForceLanes {
 };
 
 using EnergyKernel = void (*)(const ElementLanes& elements, double epsilon, double pull,
-                              ForceLanes& result) noexcept;
+                              ForceLanes& result);
 
 /// For each register width that the processor supports, the widest last. Results are bitwise
 /// identical.

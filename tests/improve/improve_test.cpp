@@ -21,6 +21,7 @@
 
 #include <base/vector3.hpp>
 #include <improve/all_at_once.hpp>
+#include <improve/merit.hpp>
 #include <improve/moving.hpp>
 
 #include "improve/improved.hpp"
