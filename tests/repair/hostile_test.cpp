@@ -16,8 +16,6 @@
 
 namespace hexhex::test {
 
-using namespace repairs;
-
 namespace {
 
 TetMap sphere(int refine, int defects = 0, std::uint64_t seed = 1) {
