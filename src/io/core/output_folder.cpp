@@ -44,7 +44,8 @@ std::error_code copyAs(const fs::path& from, const fs::path& to, fs::copy_option
 OutputFolder::OutputFolder(const fs::path& target) : target_(realTarget(target)) {
   std::error_code error;
   replaces_ = fs::is_directory(target_, error);
-  if (!replaces_ && fs::exists(target_, error)) failToWrite(target_, "it is a file", ENOTDIR);
+  if (!replaces_ && fs::exists(target_, error))
+    failToWrite(target_, "it has to be a folder, and a file of that name is there", ENOTDIR);
   takeName();
   makeParents();
   while (system_call::makeFolder(temporary_) != 0) {
