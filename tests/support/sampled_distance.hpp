@@ -135,8 +135,8 @@ inline Vec3 pointOf(const std::array<Vec3, 4>& quad, double s, double t) {
 
 }  // namespace sampled
 
-/// The reported distance looks at the points of quads at four steps; and at vertices, middles of
-/// edges and centres of triangles, which are among those at six.
+/// The reported distance looks at the points of quads at four steps; at vertices and centres of
+/// triangles, which are among those at six; and at points on their edges, which lie between these.
 /// @param steps  sides of quads and triangles are divided into so many
 inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, int steps = 4) {
   using namespace sampled;
@@ -188,7 +188,8 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
 inline void expectSampled(const SurfaceDistance& reported, const HexMesh& mesh, const TetMap& map) {
   EXPECT_NEAR(reported.fromMesh, sampledDistance(mesh, map, 4).fromMesh, 1e-9);
   const double fromObject = sampledDistance(mesh, map, 6).fromObject;
-  EXPECT_LE(reported.fromSurface, fromObject + 1e-9);
+  constexpr double kBetween = 1.02;  // of samples on edges that are closer than at six steps
+  EXPECT_LE(reported.fromSurface, kBetween * fromObject + 1e-9);
   EXPECT_GE(reported.fromSurface, 0.5 * fromObject - 1e-9);
 }
 
