@@ -266,6 +266,17 @@ const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes) {
   return straight ? volumeCells(noun) : volumeCells(concat(noun, " with ", nodes, " nodes"));
 }
 
+std::size_t ElementLists::blockOf(const VolumeCells* type, std::size_t nodesEach) {
+  std::size_t i = 0;
+  while (i < blocks.size() && blocks[i].type != type) ++i;
+  if (i == blocks.size()) {
+    ElementBlock& added = blocks.emplace_back();
+    added.type = type;
+    added.nodesEach = nodesEach;
+  }
+  return i;
+}
+
 void ElementLists::addName(int dimension, std::int32_t tag, std::string_view name) {
   if (tag == 0 || name.empty() || tagInGroupName(name)) return;
   names.push_back({dimension, tag, std::string(name)});

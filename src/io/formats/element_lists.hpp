@@ -103,6 +103,8 @@ struct ElementLists {
   std::vector<TagName> names;
   bool mayBeEmpty = false;  ///< whether the file is a mesh without elements
 
+  /// The index of the block of this type, which is added if there is none.
+  [[nodiscard]] std::size_t blockOf(const VolumeCells* type, std::size_t nodesEach);
   /// Stores the name of a group given by another program.
   void addName(int dimension, std::int32_t tag, std::string_view name);
   /// Stores those names whose tag is used by an element of their dimension, 1 to 3.

@@ -109,10 +109,9 @@ class MfemReader {
     if (at < text.size()) scanner_.moveTo(at + kMfemCollection.size());
     const MfemSpace* const space = at < text.size() ? mfemSpace(scanner_.readToken()) : nullptr;
     const bool quadratic = space != nullptr && space->order == 2;
-    ElementBlock& block = lists_.blocks.emplace_back();
-    block.nodesEach = quadratic ? 27 : 8;
-    block.type = volumeCells("hexahedra", block.nodesEach);
-    block.numbers = {0};
+    const std::size_t nodesEach = quadratic ? 27 : 8;
+    const std::size_t block = lists_.blockOf(volumeCells("hexahedra", nodesEach), nodesEach);
+    lists_.blocks[block].numbers = {0};
     return std::move(lists_);
   }
 
@@ -153,7 +152,7 @@ class MfemReader {
         vertexEnd_ = std::max(vertexEnd_, std::size_t{vertices[k]} + 1);
       }
       if (!volume.empty()) {
-        ElementBlock& block = blockOf(volume, size);
+        ElementBlock& block = lists_.blocks[lists_.blockOf(volumeCells(volume), size)];
         block.nodes.insert(block.nodes.end(), vertices.begin(), vertices.begin() + size);
         block.numbers.push_back(i);
         block.regions.push_back(attribute);
@@ -163,16 +162,6 @@ class MfemReader {
         lists_.quads.push_back({{vertices[0], vertices[1], vertices[2], vertices[3]}, attribute});
       }
     }
-  }
-
-  ElementBlock& blockOf(std::string_view volume, std::size_t size) {
-    for (ElementBlock& block : lists_.blocks) {
-      if (block.type->plural == volume) return block;
-    }
-    ElementBlock& block = lists_.blocks.emplace_back();
-    block.type = volumeCells(volume);
-    block.nodesEach = size;
-    return block;
   }
 
   /// Sets of attributes have names; a set of one names it.

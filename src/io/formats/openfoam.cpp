@@ -203,16 +203,10 @@ class PolyMeshReader {
     if (polygons == 0 && quads == 0 && triangles == 4) type = "tetrahedra";
     if (polygons == 0 && quads == 3 && triangles == 2) type = "prisms";
     if (polygons == 0 && quads == 1 && triangles == 4) type = "pyramids";
-    ElementBlock* block = nullptr;
-    for (ElementBlock& known : lists_.blocks) {
-      if (known.type->plural == type) block = &known;
-    }
-    if (block == nullptr) block = &lists_.blocks.emplace_back();
-    block->type = volumeCells(type);
-    block->nodesEach = 8;
-    if (type == "hexahedra") block->nodes.insert(block->nodes.end(), hex.begin(), hex.end());
-    block->numbers.push_back(c);
-    block->regions.push_back(0);
+    ElementBlock& block = lists_.blocks[lists_.blockOf(volumeCells(type), 8)];
+    if (type == "hexahedra") block.nodes.insert(block.nodes.end(), hex.begin(), hex.end());
+    block.numbers.push_back(c);
+    block.regions.push_back(0);
   }
 
   void readPatches() {

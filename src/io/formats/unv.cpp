@@ -175,26 +175,14 @@ class UnvReader {
       const std::size_t step = nodes.size() / 4;
       quads_.push_back({element, {nodes[0], nodes[step], nodes[2 * step], nodes[3 * step]}});
     } else if (type.kind == UnvKind::Volume) {
-      const std::size_t b = blockOf(*type.cells, nodes.size());
+      const std::size_t b = lists_.blockOf(type.cells, nodes.size());
+      blockNodes_.resize(lists_.blocks.size());
       lists_.blocks[b].numbers.push_back(element);
       const bool quadratic = lists_.blocks[b].nodesEach == 20;
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         blockNodes_[b].push_back(nodes[quadratic ? kNodesInVtkOrder[k] : k]);
       }
     }
-  }
-
-  /// The index of the block for such elements.
-  std::size_t blockOf(const VolumeCells& cells, std::size_t nodes) {
-    std::size_t b = 0;
-    while (b < lists_.blocks.size() && lists_.blocks[b].type != &cells) ++b;
-    if (b == lists_.blocks.size()) {
-      ElementBlock& added = lists_.blocks.emplace_back();
-      added.type = &cells;
-      added.nodesEach = nodes;
-      blockNodes_.emplace_back();
-    }
-    return b;
   }
 
   void readGroup() {
