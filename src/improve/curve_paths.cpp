@@ -98,18 +98,11 @@ class PathFinder {
       : points_(points),
         surface_(surface),
         beside_(adjacency::verticesBeside(quads, points.size(), stage)),
+        edgeLength_(meanEdge(points, quads)),
         owner_(points.size(), kNone) {
-    double sum = 0;
-    std::size_t count = 0;
     for (Index v = 0; v < points.size(); ++v) {
       if (!beside_(v).empty()) boundary_.push_back(v);
-      for (const Index other : beside_(v)) {
-        if (other < v) continue;
-        sum += length(minus(points[v], points[other]));
-        ++count;
-      }
     }
-    edgeLength_ = sum / static_cast<double>(std::max<std::size_t>(1, count));
   }
 
   /// Finds paths along short curves first, which have the least choice; then again, starting with
@@ -296,8 +289,8 @@ class PathFinder {
   const Array<Vec3>& points_;
   const ReferenceSurface& surface_;
   adjacency::VertexLists<Index> beside_;  ///< per vertex: its neighbours on the boundary
+  double edgeLength_;                     ///< mean length of boundary edges
   std::vector<Index> boundary_;
-  double edgeLength_ = 0;            ///< mean length of boundary edges
   std::vector<Index> owner_;         ///< per vertex: an end of the chain that uses it, or kNone
   std::map<Index, Index> vertexOf_;  ///< per end of a chain: its vertex
   std::set<std::array<Index, 2>> isUsed_;

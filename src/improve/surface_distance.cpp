@@ -100,6 +100,8 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, std::size_t begin
 namespace {
 
 constexpr std::size_t kSurfaceDistanceGrain = 256;
+/// Samples are for quads with at least such edges, in diagonals.
+constexpr double kShortestQuadEdge = 1e-3;
 
 std::array<Vec3, 4> cornersOf(const Array<Vec3>& points, const Quad& quad) {
   return {points[quad[0]], points[quad[1]], points[quad[2]], points[quad[3]]};
@@ -166,19 +168,9 @@ void forSamples(const Quad& quad, const Visit& visit) {
   }
 }
 
-/// The mean length of the edges of quads.
-double meanEdge(const Array<Vec3>& points, std::span<const Quad> quads) {
-  double sum = 0;
-  for (const Quad& quad : quads) {
-    for (std::size_t i = 0; i < 4; ++i)
-      sum += length(minus(points[quad[i]], points[quad[(i + 1) % 4]]));
-  }
-  return sum / static_cast<double>(std::max<std::size_t>(1, 4 * quads.size()));
-}
-
-/// Vertices, points on edges, at most a quarter of a quad's edge apart, and centres of boundary
-/// triangles: each once. What the mesh misses of the surface, it misses most at vertices or edges.
-std::vector<Vec3> samplesOf(const ReferenceSurface& surface, double quadEdge) {
+/// Vertices, points on edges, at most so far apart, and centres of boundary triangles: each once.
+/// What the mesh misses of the surface, it misses most at vertices or edges.
+std::vector<Vec3> samplesOf(const ReferenceSurface& surface, double spacing) {
   std::vector<std::array<Index, 2>> edges;  // with equal vertices: that vertex
   std::vector<Vec3> samples;
   for (Index t = 0; t < surface.boundaryCount(); ++t) {
@@ -194,7 +186,7 @@ std::vector<Vec3> samplesOf(const ReferenceSurface& surface, double quadEdge) {
     const Vec3& start = surface.points()[a];
     const Vec3& end = surface.points()[b];
     if (a == b) samples.push_back(start);
-    const double parts = std::max(2.0, std::ceil(4 * length(minus(end, start)) / quadEdge));
+    const double parts = std::max(2.0, std::ceil(length(minus(end, start)) / spacing));
     for (double i = 1; i < parts && a != b; ++i) samples.push_back(between(start, end, i / parts));
   }
   return samples;
@@ -268,6 +260,15 @@ double largestOf(std::span<const double> distances) {
 
 }  // namespace
 
+double meanEdge(const Array<Vec3>& points, std::span<const Quad> quads) {
+  double sum = 0;
+  for (const Quad& quad : quads) {
+    for (std::size_t i = 0; i < 4; ++i)
+      sum += length(minus(points[quad[i]], points[quad[(i + 1) % 4]]));
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, 4 * quads.size()));
+}
+
 double diagonalOf(const ReferenceSurface& surface) {
   Box box;
   for (Index t = 0; t < surface.triangleCount(); ++t) {
@@ -297,7 +298,9 @@ BoundaryDistance distanceBetween(const Array<Vec3>& points, std::span<const Quad
   distance.largest.fromMesh = largestOf(distance.ofQuads);
 
   const TriangleTree ofMesh = treeOf(points, quads);
-  const std::vector<Vec3> samples = samplesOf(surface, meanEdge(points, quads));
+  // Closer ones would be too many if the mesh has another unit, or no size.
+  const double spacing = std::max(meanEdge(points, quads), kShortestQuadEdge * diagonal) / 4;
+  const std::vector<Vec3> samples = samplesOf(surface, spacing);
   std::vector<TriangleTree::Nearest> found(samples.size());
   parallelBlocks(stage, samples.size(), kSurfaceDistanceGrain,
                  [&, enough = enough](std::size_t begin, std::size_t end, std::size_t /*block*/) {

@@ -40,6 +40,9 @@ class TriangleTree {
   std::vector<Box> boxes_;           ///< of a complete binary tree: children 2 i + 1, 2 i + 2
 };
 
+/// The mean length of the edges of quads; 0 without any.
+[[nodiscard]] double meanEdge(const Array<Vec3>& points, std::span<const Quad> quads);
+
 /// The diagonal of the bounding box.
 [[nodiscard]] double diagonalOf(const ReferenceSurface& surface);
 

@@ -138,6 +138,24 @@ TEST(Surface, DistancesSeeADentBelowTheEdgeOfALongTriangle) {
   EXPECT_NEAR(found.fromMesh, kDepth, 1e-12);
 }
 
+/// A surface in metres, and a mesh in thousandths of millimetres, or without any size.
+TEST(Surface, DistancesToATinyMeshEnd) {
+  for (const double size : {1e-6, 0.0}) {
+    SurfaceParts parts;
+    parts.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+    parts.triangles = {{{0, 1, 2}, 0}};
+    parts.boundaryTriangles = parts.triangles.size();
+    Context context(1);
+    Stage stage(context, "test");
+    const ReferenceSurface surface(std::move(parts), stage);
+    const Array<Vec3> points = {{0, 0, 0}, {size, 0, 0}, {size, size, 0}, {0, size, 0}};
+    const std::vector<Quad> quads = {{0, 1, 2, 3}};
+    const SurfaceDistance found =
+        distanceBetween(points, quads, surface, treeOf(surface), std::sqrt(2), stage).largest;
+    EXPECT_NEAR(found.fromSurface, 1, 1e-5);
+  }
+}
+
 /// Short chains are what bad cells make, unless they end at vertices with tags.
 TEST(Surface, AVertexThatSticksOutIsNoCornerAtABadCell) {
   HexMesh mesh = hexhex::testing::gridMesh(6);

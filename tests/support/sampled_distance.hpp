@@ -136,7 +136,8 @@ inline Vec3 pointOf(const std::array<Vec3, 4>& quad, double s, double t) {
 }  // namespace sampled
 
 /// The reported distance looks at the points of quads at four steps; at vertices and centres of
-/// triangles, which are among those at six; and at points on their edges, which lie between these.
+/// triangles, which are among those at six; and on their edges at points that are at most a quarter
+/// of a quad's edge apart, which are added.
 /// @param steps  sides of quads and triangles are divided into so many
 inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, int steps = 4) {
   using namespace sampled;
@@ -157,11 +158,17 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
   }
   SampledDistance found;
   Surface quads;
+  double quadEdges = 0;
+  double quadEdgeCount = 0;
   for (const Quad& quad : boundaryOf(mesh)) {
     std::array<Vec3, 4> corners{};
     for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.points[quad[k]];
     const Vec3 centre = pointOf(corners, 0.5, 0.5);
-    for (std::size_t k = 0; k < 4; ++k) quads.add({corners[k], corners[(k + 1) % 4], centre});
+    for (std::size_t k = 0; k < 4; ++k) {
+      quads.add({corners[k], corners[(k + 1) % 4], centre});
+      quadEdges += distance(corners[k], corners[(k + 1) % 4]);
+      ++quadEdgeCount;
+    }
     for (int i = 0; i <= steps; ++i) {
       for (int j = 0; j <= steps; ++j) {
         const Vec3 point =
@@ -179,6 +186,14 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
         found.fromObject = std::max(found.fromObject, quads.from(point));
       }
     }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& end = t[(k + 1) % 3];
+      const double parts = std::ceil(4 * distance(t[k], end) * quadEdgeCount / quadEdges);
+      for (double i = 1; i < parts; ++i) {
+        const Vec3 point = blend(1 - i / parts, t[k], i / parts, end);
+        found.fromObject = std::max(found.fromObject, quads.from(point));
+      }
+    }
   }
   const double diagonal = distance(low, high);
   return {found.fromMesh / diagonal, found.fromObject / diagonal};
@@ -188,8 +203,7 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
 inline void expectSampled(const SurfaceDistance& reported, const HexMesh& mesh, const TetMap& map) {
   EXPECT_NEAR(reported.fromMesh, sampledDistance(mesh, map, 4).fromMesh, 1e-9);
   const double fromObject = sampledDistance(mesh, map, 6).fromObject;
-  constexpr double kBetween = 1.02;  // of samples on edges that are closer than at six steps
-  EXPECT_LE(reported.fromSurface, kBetween * fromObject + 1e-9);
+  EXPECT_LE(reported.fromSurface, fromObject + 1e-9);
   EXPECT_GE(reported.fromSurface, 0.5 * fromObject - 1e-9);
 }
 
