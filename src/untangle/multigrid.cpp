@@ -14,6 +14,11 @@ constexpr double kStrong = 0.08;
 /// A level that does not reduce the number of unknowns by this factor is useless.
 constexpr double kCoarser = 1.5;
 
+/// An unknown with more connections is one of many vertices, like a plane. Its interpolation is not
+/// smoothed: it would connect each of its neighbours with all others, and take the square of their
+/// number in memory.
+constexpr int kWide = 1000;
+
 /// Maximum number of rows of the coarsest level of a matrix that is not itself factored: coarse
 /// rows have many entries.
 constexpr Eigen::Index kCoarsest = 500;
@@ -110,8 +115,12 @@ SparseMatrix prolongationOf(const SparseMatrix& matrix, double share) {
   tentative.setFromTriplets(entries.begin(), entries.end());
   const Vector diagonal = matrix.diagonal();
   const double damping = 4.0 / 3 / largestEigenvalue(matrix, diagonal);
+  Vector steps = damping * diagonal.cwiseInverse();
+  for (int i = 0; i < n; ++i) {
+    if (matrix.col(i).nonZeros() > kWide) steps[i] = 0;
+  }
   const SparseMatrix moved = matrix * tentative;
-  return tentative - SparseMatrix(damping * diagonal.cwiseInverse().asDiagonal() * moved);
+  return tentative - SparseMatrix(steps.asDiagonal() * moved).pruned();
 }
 
 /// An unknown that moves nothing, as where the surface has no area, has no diagonal entry: it
