@@ -150,6 +150,7 @@ class Moving {
       floor = std::max(floor, raiseFurther(sweeps));
     }
     sweeps.smooth(options_.passes, floor);
+    raiseAgain(sweeps, floor);
     Array<Quad> far = quadsTooFar();
     for (const double kept : {floor, lowest}) {
       for (int i = 0; i < Sweeps::kReturns && !far.empty(); ++i) {
@@ -308,6 +309,23 @@ class Moving {
         isMended || (now < standing && sweeps.fallenSince(qualities, target).empty());
     if (!isBetter) sweeps.putBackAll(before);
     noteLoose(loose.holdUnmoved(subject_.mesh.points));
+  }
+
+  /// Raises the worst cells and smooths in turns until progress gets small: once their neighbours
+  /// are smooth, they have room. Not in curved cells, where it would double the time.
+  void raiseAgain(Sweeps& sweeps, double floor) const {
+    if (curved_ != nullptr || options_.passes == 0) return;
+    constexpr int kMost = 6;
+    constexpr double kStall = 0.005;
+    const double target = options_.target;
+    Sweeps::Standing now = sweeps.standing(target);
+    for (int i = 0; i < kMost && now.bad + now.below > 0; ++i) {
+      const Sweeps::Standing was = now;
+      sweeps.raiseWorst(target, 0);
+      sweeps.smooth(1, floor);
+      now = sweeps.standing(target);
+      if (now.depth > was.depth - kStall) break;
+    }
   }
 
   /// Improves the worst cells until progress gets small.
