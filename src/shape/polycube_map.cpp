@@ -2,6 +2,7 @@
 // Computer Graphics Forum 30 (2011); M. Livesu et al., "PolyCut: Monotone graph-cuts for polycube
 // base-complex construction", ACM Transactions on Graphics 32 (2013).
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@
 namespace hexhex::shape {
 namespace {
 
+/// Rounds of smoothing per attempt. Labels of a smoothed part have fewer and larger charts: more of
+/// its features cross them, but where those of the part itself have no map, they often do.
+constexpr std::array<int, kMostAttempts> kSmoothing = {0, 0, 0, 10, 0, 20, 0, 5};
 /// Budget for all attempts together, about thirty seconds.
 constexpr double kMostWork = 6e7;
 /// Minimum budget in solver steps, for large meshes.
@@ -68,7 +72,7 @@ class PolycubeSearch {
   TetMap run(std::uint64_t seed, double workLeft) {
     std::optional<CheckedLabels> invalid;  // the best of them
     for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
-      CheckedLabels found = label(seed + attempt, workLeft);
+      CheckedLabels found = label(kSmoothing[attempt], seed + attempt, workLeft);
       if (found.verdict.report.isValid()) {
         if (std::optional<TetMap> map = mapOf(found, workLeft)) return std::move(*map);
       } else if (!invalid || found.verdict.energy < invalid->verdict.energy) {
@@ -83,9 +87,13 @@ class PolycubeSearch {
   }
 
  private:
-  CheckedLabels label(std::uint64_t seed, double& workLeft) {
+  CheckedLabels label(int smoothing, std::uint64_t seed, double& workLeft) {
     Stage stage(context_, "labelling");
-    return labelsOf(surface_, costs_, seed, workLeft, stage);
+    if (smoothing == 0) return labelsOf(surface_, costs_, seed, workLeft, stage);
+    const Surface smooth = smoothed(surface_, tets_.mesh().points, smoothing);
+    CheckedLabels found = labelsOf(smooth, LabelCosts(smooth), seed, workLeft, stage);
+    found.verdict.report.deviation = LabelCheck(surface_, costs_)(found.labels).report.deviation;
+    return found;
   }
 
   std::optional<TetMap> mapOf(const CheckedLabels& found, double& workLeft) {

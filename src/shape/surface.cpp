@@ -64,6 +64,28 @@ Surface surfaceOf(const adjacency::TetTopology& topology, const std::vector<Vec3
   return surface;
 }
 
+Surface smoothed(const Surface& surface, std::vector<Vec3> points, int rounds) {
+  std::vector<double> neighbours(surface.pointCount);
+  for (const Index v : surface.tails) ++neighbours[v];
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Vec3> sums(surface.pointCount);
+    for (Side side = 0; side < surface.tails.size(); ++side) {
+      Vec3& sum = sums[surface.tails[side]];
+      sum = plus(sum, points[surface.head(side)]);
+    }
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+      if (neighbours[v] > 0) points[v] = times(1 / neighbours[v], sums[v]);
+    }
+  }
+  Surface result;
+  result.tails = surface.tails;
+  result.twins = surface.twins;
+  result.faces = surface.faces;
+  result.pointCount = surface.pointCount;
+  measure(result, points);
+  return result;
+}
+
 bool isManifold(const Surface& surface) {
   // Counts the sides around each vertex by walking from a side to the next one with the same tail.
   std::vector<Index> sidesAt(surface.pointCount);

@@ -63,6 +63,10 @@ struct Surface {
 [[nodiscard]] Surface surfaceOf(const adjacency::TetTopology& topology,
                                 const std::vector<Vec3>& points);
 
+/// The same triangles after each vertex has moved to the mean of its neighbours so many times.
+/// @param points  of the tet mesh, turned as the surface is
+[[nodiscard]] Surface smoothed(const Surface& surface, std::vector<Vec3> points, int rounds);
+
 /// Whether each edge has two triangles and each vertex a single fan of them.
 [[nodiscard]] bool isManifold(const Surface& surface);
 

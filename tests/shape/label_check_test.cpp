@@ -1,4 +1,5 @@
 // Labels that are those of a polycube, and some that are not, for one reason each.
+#include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -115,6 +116,28 @@ TEST(LabelCheck, TakesCornersAwayFromWhereNoMapWasFound) {
     const bool isNear = length(surface.centres[t]) < 4 * surface.meanEdge;
     EXPECT_EQ(costs.ofCorner(t) > 0, isNear);
   }
+}
+
+TEST(Smoothed, NormalsOfARoughCubeAreThoseOfItsFaces) {
+  const CubeBody cube = {{1, 1, 1}, [](const Cell&) { return true; }};
+  const test::Labelled input = cube.labelled(12, [](const Vec3& p) {
+    const double bump = 0.04 * std::sin(70 * p[0] + 110 * p[1] + 90 * p[2]);
+    return Vec3{p[0] + bump, p[1] + bump, p[2] + bump};
+  });
+  Context context;
+  const PositiveTets tets(input.tets);
+  const Surface rough = readSurface(tets, context);
+  const auto meanDeviation = [&](const Surface& surface) {
+    double sum = 0;
+    for (std::size_t t = 0; t < surface.triangleCount(); ++t) {
+      const adjacency::HalfFace h = surface.faces[t];
+      const int label = input.flags[adjacency::tetOf(h)][h % 4];
+      sum += 1 - cosine(surface.normals[t], static_cast<lattice::Direction>(label));
+    }
+    return sum / static_cast<double>(surface.triangleCount());
+  };
+  EXPECT_GT(meanDeviation(rough), 0.12);
+  EXPECT_LT(meanDeviation(smoothed(rough, tets.mesh().points, 5)), 0.06);
 }
 
 }  // namespace
