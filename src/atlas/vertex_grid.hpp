@@ -141,7 +141,7 @@ class VertexGrid {
   Charts& charts_;
   const sweep::VertexNumbers& numbers_;
   sweep::VertexNumbers* swept_ = nullptr;  ///< the same if sweep() fills them
-  const GridRegion* region_ = nullptr;  ///< null: all tets
+  const GridRegion* region_ = nullptr;     ///< null: all tets
   std::optional<sweep::TetLines> stored_;
   std::vector<std::vector<BrickKey>> keys_;  ///< bricks with points of each block of tets
   BrickGrid<Id> grid_;
