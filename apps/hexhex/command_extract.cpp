@@ -2,34 +2,22 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
+#include <vector>
 
-#include <fmt/core.h>
-
-#include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
-#include <hexhex/extract.hpp>
-#include <hexhex/extractor.hpp>
-#include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
 #include <hexhex/partial.hpp>
-#include <hexhex/patches.hpp>
-#include <hexhex/quality.hpp>
+#include <hexhex/parts.hpp>
 #include <hexhex/quantize.hpp>
-#include <hexhex/verify.hpp>
 
 #include "command.hpp"
 #include "extract_arguments.hpp"
-#include "extract_parts.hpp"
 #include "extract_report.hpp"
-#include "extract_stream.hpp"
-#include "improve_options.hpp"
+#include "extract_run.hpp"
 #include "json.hpp"
 #include "long_run.hpp"
 #include "map_text.hpp"
@@ -37,189 +25,9 @@
 #include "quantize_options.hpp"
 #include "shared_options.hpp"
 #include "started_team.hpp"
-#include "view_page.hpp"
 
 namespace hexhex::command {
 namespace {
-
-/// The options; the record receives the repaired map.
-ExtractOptions optionsOf(const ExtractArguments& arguments, ExtractionRecord& record) {
-  ExtractOptions options = arguments.options;
-  if (arguments.repair) options.repair = &record.repaired;
-  return options;
-}
-
-/// Creates the extractor, which repairs the map if requested.
-Extractor prepareExtractor(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
-                           ExtractionRecord& record) {
-  const ExtractOptions options = optionsOf(arguments, record);
-  // If the product overflows, the extraction reports it.
-  const bool fits = options.scale <= std::numeric_limits<int>::max() / arguments.order;
-  const int maxScale = fits ? options.scale * arguments.order : options.scale;
-  return longRun.part("extraction", [&] {
-    return Extractor(map, {options.tolerance, maxScale, options.repair, options.round},
-                     longRun.context());
-  });
-}
-
-void verifyMesh(const ExtractArguments& arguments, Extractor& extractor, const HexMesh& mesh,
-                LongRun& longRun, ExtractionRecord& record) {
-  if (arguments.noVerify) return;
-  record.verification = longRun.part("verification", [&] {
-    return extractor.verify(mesh, {.scale = arguments.options.scale}, longRun.context());
-  });
-  requirePassed(*record.verification, "The mesh does not agree with the map and was not written",
-                "Please report this with the map.");
-}
-
-/// Extracts the mesh with the requested arcs and patches.
-PiecewiseLinearMesh extractWithCurves(const ExtractArguments& arguments, Extractor& extractor,
-                                      Context& context, ExtractionRecord& record) {
-  if (arguments.arcs.empty() && arguments.patches.empty()) {
-    return {extractor.extract(arguments.options, context, &record.statistics), {}, {}};
-  }
-  const auto parts =
-      arguments.patches.empty() ? PiecewiseLinearParts::Arcs : PiecewiseLinearParts::ArcsAndPatches;
-  return extractor.extractPiecewiseLinear(parts, arguments.options, context, &record.statistics);
-}
-
-/// Improves the mesh if requested; otherwise only certifies its quality.
-/// @param mesh  straight or curved
-/// @return the points before improvement, if a page shows them; otherwise empty
-Array<Vec3> improveOrCertify(const ExtractArguments& arguments, const TetMap& map, auto& mesh,
-                             LongRun& longRun, ExtractionRecord& record) {
-  Context& context = longRun.context();
-  if (!arguments.improve) {
-    record.certificate = longRun.part("quality", [&] { return certify(mesh, context); });
-    return {};
-  }
-  Array<Vec3> before = arguments.page.empty() ? Array<Vec3>() : mesh.points;
-  record.improved = longRun.part("improvement", [&] {
-    return improve(mesh, extractedMap(map, &record.repaired), arguments.improveOptions, context);
-  });
-  record.certificate = record.improved->after;
-  return pointsBefore(std::move(before), *record.improved);
-}
-
-/// @param mesh  straight or curved  @param before  the result of improveOrCertify()
-void writeMeshPage(const ExtractArguments& arguments, const auto& mesh, const Array<Vec3>& before,
-                   LongRun& longRun, const ExtractionRecord& record) {
-  if (arguments.page.empty()) return;
-  ViewOptions options;
-  if (record.verification) options.verification = &*record.verification;
-  options.mapName = std::filesystem::path(arguments.input.description()).filename().string();
-  options.scaledJacobians = record.certificate->scaledJacobians;
-  options.pointsBefore = before;
-  longRun.part("page", [&] {
-    writePage(mesh, arguments.page, arguments.output, options, longRun.context());
-  });
-}
-
-/// Lists the boundary if the mesh is small or this was requested: it takes 0.7 of 6 s for six
-/// million cells.
-/// @param mesh  straight or curved
-void noteBoundary(const ExtractArguments& arguments, const auto& mesh, LongRun& longRun,
-                  ExtractionRecord& record) {
-  constexpr std::size_t kFew = 100'000;
-  if (record.certificate->validity.size() > kFew && !arguments.patchAngle.isGiven) return;
-  if (arguments.run.quiet && arguments.report.empty()) return;
-  record.boundary = longRun.part("quality", [&] {
-    const double angle = arguments.patchAngle.degrees;
-    if constexpr (std::is_same_v<std::decay_t<decltype(mesh)>, LagrangeMesh>) {
-      return namedPatches(straightMesh(mesh), angle, longRun.context());
-    } else {
-      return namedPatches(mesh, angle, longRun.context());
-    }
-  });
-}
-
-/// Improves, examines and writes a verified mesh, straight or curved.
-void finishMesh(const ExtractArguments& arguments, const TetMap& map, auto& mesh, LongRun& longRun,
-                ExtractionRecord& record) {
-  Context& context = longRun.context();
-  const Array<Vec3> before = improveOrCertify(arguments, map, mesh, longRun, record);
-  WriteOptions writing = arguments.choice.options();
-  writing.scaledJacobians = record.certificate->scaledJacobians;
-  writing.patchAngle = arguments.patchAngle.degrees;
-  longRun.part("writing",
-               [&] { writeNamed(arguments.names, mesh, arguments.output, writing, context); });
-  noteBoundary(arguments, mesh, longRun, record);
-  writeMeshPage(arguments, mesh, before, longRun, record);
-  record.tags = {mesh.features.vertices.size(), mesh.features.edges.size(),
-                 mesh.features.quads.size()};
-}
-
-/// Extracts, verifies and writes a mesh in memory.
-void extractWhole(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
-                  ExtractionRecord& record) {
-  Context& context = longRun.context();
-  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun, record);
-  PiecewiseLinearMesh all = longRun.part(
-      "extraction", [&] { return extractWithCurves(arguments, *extractor, context, record); });
-  HexMesh& mesh = all.mesh;
-  verifyMesh(arguments, *extractor, mesh, longRun, record);
-  extractor.reset();  // frees its memory for the next steps
-  if (!arguments.arcs.empty()) {
-    longRun.part("writing", [&] {
-      writeArcs(all, extractedMap(map, &record.repaired), arguments.arcs, context);
-    });
-    record.arcs = {arguments.arcs, all.arcs.count(), all.arcs.points.size()};
-  }
-  if (!arguments.patches.empty()) {
-    longRun.part("writing", [&] {
-      writePatches(all, extractedMap(map, &record.repaired), arguments.patches, context);
-    });
-    record.patches = {arguments.patches, all.patches.count(), all.patches.polygonTet.size()};
-  }
-  finishMesh(arguments, map, mesh, longRun, record);
-  record.vertices = mesh.points.size();
-  record.cells = mesh.cells.size();
-}
-
-/// The same for cells of higher order.
-void extractCurved(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
-                   ExtractionRecord& record) {
-  Context& context = longRun.context();
-  std::optional<Extractor> extractor = prepareExtractor(arguments, map, longRun, record);
-  LagrangeMesh mesh = longRun.part("extraction", [&] {
-    return extractor->extractLagrange(arguments.order, arguments.options, context,
-                                      &record.statistics);
-  });
-  record.straightenedCells = mesh.straightenedCells;
-  verifyMesh(arguments, *extractor, straightMesh(mesh), longRun, record);
-  extractor.reset();
-  finishMesh(arguments, map, mesh, longRun, record);
-  record.vertices = mesh.vertexCount;
-  record.cells = mesh.cellCount();
-  record.nodes = mesh.points.size();
-}
-
-/// Extracts and writes a mesh in pieces, and verifies the file.
-void extractInPieces(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
-                     ExtractionRecord& record) {
-  StreamedMesh mesh = extractStreamed(map, arguments.output, arguments.choice.options(),
-                                      optionsOf(arguments, record), !arguments.noVerify, longRun,
-                                      record.statistics);
-  record.verification = std::move(mesh.verification);
-  record.vertices = mesh.written.points;
-  record.cells = mesh.written.cells;
-  record.streamed = mesh.written;
-}
-
-/// Extracts and writes a mesh in parts.
-void extractAllParts(const ExtractArguments& arguments, const TetMap& map, LongRun& longRun,
-                     ExtractionRecord& record) {
-  WriteOptions options = arguments.choice.options();
-  options.patchAngle = arguments.patchAngle.degrees;
-  PartOptions parts = arguments.parts.chosen();
-  parts.verify = !arguments.noVerify;
-  record.meshParts = longRun.part("extraction", [&] {
-    return extractInParts(map, arguments.output, options, optionsOf(arguments, record), parts,
-                          arguments.team, longRun.context(), record.statistics);
-  });
-  record.vertices = record.meshParts->summary.vertices;
-  record.cells = record.meshParts->summary.cells;
-}
 
 /// Extracts the valid part of a map beyond repair. The exit code is always that of an invalid map.
 int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, const Error& problem,
@@ -241,34 +49,6 @@ int extractWhatIsValid(const ExtractArguments& arguments, const TetMap& map, con
   printFiles(arguments.input.description(), arguments.output);
   printPartial(partial);
   return kInvalidMap;
-}
-
-/// The library functions that a run calls; weights are their seconds for a mesh of seven million
-/// cells.
-std::vector<WorkStep> stepsOf(const ExtractArguments& arguments) {
-  std::vector<WorkStep> steps = {{"readMap", 0.05}, {"readMapPair", 0.05}};
-  if (arguments.quantize) steps.push_back({"quantize", 20});
-  if (arguments.parts.parts) {
-    steps.push_back({"extractParts", 4});
-    return steps;
-  }
-  const std::vector<WorkStep> rest =
-      arguments.stream
-          ? std::vector<WorkStep>{{"extractTo", 4}, {"VerifySink", 0.5}, {"readHexMeshTo", 3}}
-          : std::vector<WorkStep>{
-                {"Extractor", 0.3},
-                {arguments.order > 1 ? "Extractor::extractLagrange" : "Extractor::extract", 4},
-                {"Extractor::extractPiecewiseLinear", 20},
-                {"Extractor::verify", 2.5},
-                {"writeArcs", 2},
-                {"writePatches", 5},
-                {"certify", 0.5},
-                {"namedPatches", 0.2},
-                {"writeHexMesh", 1},
-                {"writeLagrangeMesh", 4},
-                {"writeViewPage", 10}};
-  steps.insert(steps.end(), rest.begin(), rest.end());
-  return steps;
 }
 
 TetMap readAndQuantize(const ExtractArguments& arguments, LongRun& longRun,
@@ -314,18 +94,18 @@ void fillRecord(const ExtractArguments& arguments, const TetMap& map, LongRun& l
 }
 
 int extractMesh(const ExtractArguments& arguments) {
-  LongRun longRun(arguments.run, stepsOf(arguments));
+  std::vector<WorkStep> steps = {{"readMap", 0.05}, {"readMapPair", 0.05}};
+  if (arguments.quantize) steps.push_back({"quantize", 20});
+  const std::vector<WorkStep> others = extractionSteps(arguments);
+  steps.insert(steps.end(), others.begin(), others.end());
+  LongRun longRun(arguments.run, std::move(steps));
   requireOutputs(arguments);
   Report report(arguments.report);
   ExtractionRecord record;
+  Extraction extraction(arguments, longRun, record);
   const TetMap map = readForTeam(arguments, longRun, record);
-  const auto make = [&arguments] {
-    if (arguments.parts.parts) return extractAllParts;
-    if (arguments.stream) return extractInPieces;
-    return arguments.order > 1 ? extractCurved : extractWhole;
-  }();
   try {
-    make(arguments, map, longRun, record);
+    extraction.run(map);
   } catch (const Error& error) {
     if (!arguments.partial || exitCodeOf(error.code()) != kInvalidMap) {
       if (arguments.quantize) throw;

@@ -1,14 +1,15 @@
 #include "extract_arguments.hpp"
 
-#include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/error.hpp>
 
 #include "expected_words.hpp"
-#include "extract_stream.hpp"
 #include "improve_options.hpp"
 #include "output.hpp"
 #include "quantize_options.hpp"
@@ -17,15 +18,32 @@
 namespace hexhex::command {
 namespace {
 
+/// Refuses what needs a whole mesh in memory if there will be none.
+void requireWhole(const ExtractArguments& arguments) {
+  const bool inPieces = arguments.stream || arguments.parts.parts;
+  const auto refuse = [](bool isRefused, const char* option, const char* instead) {
+    refuseIf(isRefused, fmt::format("{} needs a whole mesh in memory. Leave it out, or --stream, "
+                                    "--parts and --partial{}.",
+                                    option, instead));
+  };
+  refuse(inPieces && arguments.partial, "--partial", "");
+  refuse(inPieces && arguments.options.engine != Engine::Atlas, "--engine propeller", "");
+  const bool missing = inPieces || arguments.partial;
+  refuse(missing && arguments.order > 1, "--order", "");
+  refuse(missing && !arguments.arcs.empty(), "--arcs", "");
+  refuse(missing && !arguments.patches.empty(), "--patches", "");
+  refuse(missing && arguments.improve, "--improve", "; `hexhex improve` takes a file");
+  refuse(missing && !arguments.page.empty(), "--view", "; `hexhex view` takes a file");
+  refuse(missing && arguments.names.isGiven(), "--names or --split-tags",
+         "; `hexhex convert` takes a file");
+}
+
 void requireCurvedOutputs(const ExtractArguments& arguments) {
   const bool piecewise = !arguments.arcs.empty() || !arguments.patches.empty();
-  refuseIf(arguments.stream && (piecewise || arguments.order > 1),
-           "Curved meshes are made as a whole. Leave out --stream, or --arcs, --patches and "
-           "--order.");
   refuseIf(piecewise && arguments.order > 1,
            "Arcs and patches belong to meshes of order 1. Leave out --order, or --arcs and "
            "--patches.");
-  if (arguments.order > 1 && !arguments.parts.parts) {
+  if (arguments.order > 1) {
     arguments.choice.requireForCurved(arguments.output, arguments.order);
   }
   if (!arguments.arcs.empty()) {
@@ -36,53 +54,12 @@ void requireCurvedOutputs(const ExtractArguments& arguments) {
     requirePatchFormat(arguments.patches);
     requireWritable(arguments.patches);
   }
-}
-
-/// Only straight cells of a valid map can be written in parts.
-void requirePartsOutputs(const ExtractArguments& arguments) {
-  refuseIf(arguments.options.engine != Engine::Atlas || arguments.order > 1 || arguments.partial ||
-               !arguments.arcs.empty() || !arguments.patches.empty(),
-           "--parts makes straight cells with the engine atlas, of valid maps. Leave out "
-           "--parts, or --engine, --order, --arcs, --patches and --partial.");
-  refuseIf(arguments.choice.compress,
-           "Files of parts are not compressed. Leave out --parts or --compress.");
-  requirePartFormat(arguments.output, arguments.choice.options(), arguments.team != nullptr);
-}
-
-/// Only a complete mesh in memory can be improved.
-void requireImprovable(const ExtractArguments& arguments) {
-  if (!arguments.improve) return;
-  if (arguments.stream || arguments.partial || arguments.parts.parts) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--improve needs the whole mesh in memory. Leave it out, or --stream, "
-                "--parts and --partial; `hexhex improve` takes a file.");
-  }
-  refuseIf(arguments.order > 3 || !arguments.arcs.empty() || !arguments.patches.empty(),
+  refuseIf(arguments.improve && (arguments.order > 3 || piecewise),
            "--improve moves nodes of cells up to order 3, away from the map that arcs and "
            "patches follow. Leave out --improve, or --arcs and --patches, or lower --order.");
-  refuseIf(arguments.order > 1 && arguments.improveOptions.pillow != PillowMode::Never,
+  refuseIf(arguments.improve && arguments.order > 1 &&
+               arguments.improveOptions.pillow != PillowMode::Never,
            "--pillow adds straight cells. Leave out --pillow or --order.");
-}
-
-/// Only a complete and valid mesh can be shown on a page.
-void requirePageOutput(const ExtractArguments& arguments) {
-  if (arguments.page.empty()) return;
-  if (arguments.stream || arguments.partial || arguments.parts.parts) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--view needs the whole mesh in memory. Leave it out, or --stream, --parts "
-                "and --partial; `hexhex view` takes a file.");
-  }
-  requirePage(arguments.page);
-}
-
-/// A partial extraction needs a straight mesh in memory.
-void requirePartialOutputs(const ExtractArguments& arguments) {
-  if (!arguments.partial) return;
-  refuseIf(arguments.stream,
-           "--partial needs the whole mesh in memory. Leave out one of --stream and --partial.");
-  refuseIf(arguments.order > 1 || !arguments.arcs.empty() || !arguments.patches.empty(),
-           "--partial writes straight cells only: beside holes, there is no map for curved "
-           "ones to follow. Leave out --partial, or --order, --arcs and --patches.");
 }
 
 /// Options for invalid maps.
@@ -108,6 +85,33 @@ void addImprovement(CLI::App& parser, ExtractArguments& arguments) {
   }
 }
 
+/// Adds --parts, --ghosts, --partition and --mpi.
+void addPartsOptions(CLI::App& parser, PartsChoice& choice) {
+  std::string extensions;
+  for (const PartFormat& format : partFormats()) {
+    if (format.extension.empty()) continue;
+    extensions += (extensions.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  addValue(parser, "--parts", choice.parts, "N",
+           "Write the mesh in this many parts, for distributed solvers,\none file each or all in "
+           "one: " +
+               extensions)
+      ->check(CLI::Range(1U, kMaxParts));
+  addValue(parser, "--ghosts", choice.options.ghostLayers, "LAYERS [0]",
+           "Layers of cells of other parts around each part")
+      ->check(CLI::Range(0U, kMaxGhostLayers));
+  addChoice<PartitionMethod>(
+      parser, "--partition", choice.options.method, "METHOD [curve]",
+      {{"curve", PartitionMethod::Curve},
+       {"scotch", PartitionMethod::Scotch},
+       {"metis", PartitionMethod::Metis}},
+      "How to divide the mesh: curve (recursive bisection);\nscotch or metis, if that library "
+      "is installed");
+  parser.add_flag(
+      "--mpi", choice.mpi,
+      "Make one part in each MPI process, as several processes\nstarted by mpirun do anyway");
+}
+
 /// Options that affect how a mesh is computed, but not the result.
 void addMethod(CLI::App& parser, ExtractArguments& arguments) {
   addChoice<Engine>(parser, "--engine", arguments.options.engine, "ENGINE [atlas]",
@@ -119,7 +123,7 @@ void addMethod(CLI::App& parser, ExtractArguments& arguments) {
                   "Write the mesh piece by piece, for meshes larger than the\nmemory, as " +
                       extensionsThat(&FileFormat::streams) +
                       ".\nWithout what needs the whole mesh: scaled Jacobians and\n"
-                      "boundary quads; verified by reading the file back");
+                      "boundary quads");
   addPartsOptions(parser, arguments.parts);
 }
 
@@ -162,41 +166,34 @@ void addExtractOptions(CLI::App& parser, ExtractArguments& arguments) {
       "Also write a page that shows the mesh in any browser; with\n--improve, before and after");
   addRunOptions(parser, arguments.run);
   parser.footer(
-      "The mesh is verified against the map before it is written; with --stream, the file is read\n"
-      "back before it gets its name: it must hold what was extracted, and as many cells and\n"
-      "vertices as follow from the map. Parts are verified one by one. The same input gives the\n"
-      "same bytes with any number of threads.\n\nExample:\n"
+      "The mesh is verified against the map before it is written; with --stream and --parts, on "
+      "its\n"
+      "way to files that get their names only if all of it is right. The same input gives the "
+      "same\n"
+      "bytes with any number of threads.\n\nExample:\n"
       "  hexhex extract sphere.hexex -o sphere.vtu --scale 2 --report sphere.json");
 }
 
 void requireOutputs(const ExtractArguments& arguments) {
-  if (arguments.names.isGiven() &&
-      (arguments.stream || arguments.partial || arguments.parts.parts)) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--names and --split-tags need the whole mesh in memory. Leave them out, or --stream, "
-        "--parts and --partial; `hexhex convert` takes a file.");
-  }
   std::vector<std::filesystem::path> inputs = arguments.input.files();
   inputs.emplace_back(arguments.names.file());
   requireAllDifferent(inputs, {arguments.output, arguments.report, arguments.arcs,
                                arguments.patches, arguments.page});
+  requireWhole(arguments);
   requireCurvedOutputs(arguments);
-  requirePartialOutputs(arguments);
-  requireImprovable(arguments);
-  requirePageOutput(arguments);
+  if (!arguments.page.empty()) requirePage(arguments.page);
   refuseIf(!arguments.parts.parts && arguments.parts.isOfParts(),
            "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
+  const WriteOptions writing = arguments.choice.options();
   if (arguments.parts.parts) {
-    requirePartsOutputs(arguments);
+    refuseIf(writing.compress,
+             "Files of parts are not compressed. Leave out --parts or --compress.");
+    requirePartFormat(arguments.output, writing, arguments.team != nullptr);
   } else if (arguments.order == 1) {
-    requireHexMeshFormat(arguments.output, arguments.choice.options());
+    requireHexMeshFormat(arguments.output, writing);
   }
   // In a team, each process would create its own folder.
   requireWritable(arguments.output, !arguments.parts.parts);
-  if (arguments.stream && !arguments.parts.parts) {
-    requireStreamable(arguments.output, arguments.choice.options(), arguments.options);
-  }
 }
 
 }  // namespace hexhex::command

@@ -1,6 +1,8 @@
 // The command line of `hexhex extract`.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -8,15 +10,32 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/io.hpp>
+#include <hexhex/parts.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/team.hpp>
 
-#include "extract_parts.hpp"
 #include "long_run.hpp"
 #include "patch_names.hpp"
 #include "shared_options.hpp"
 
 namespace hexhex::command {
+
+/// The options for parts.
+struct PartsChoice {
+  std::optional<std::uint32_t> parts;  ///< empty: one mesh
+  PartOptions options;
+  bool mpi = false;  ///< join a team even if no other processes are detected
+
+  /// Whether options that require --parts were given.
+  [[nodiscard]] bool isOfParts() const noexcept {
+    return options.ghostLayers > 0 || options.method != PartitionMethod::Curve;
+  }
+  [[nodiscard]] PartOptions chosen() const {
+    PartOptions result = options;
+    result.parts = parts.value_or(1);
+    return result;
+  }
+};
 
 struct ExtractArguments {
   MapSource input;

@@ -153,10 +153,16 @@ namespace {
 std::string verificationAsText(const ExtractionRecord& record) {
   if (record.meshParts) return "passed: parts agree on what they share, and make up one mesh";
   if (!record.verification) return "skipped";
-  std::string passed =
-      fmt::format("passed, {}", counted(record.verification->items.size(), "check"));
-  if (!record.streamed) return passed;
-  return passed + ", of the file as it was read back";
+  return fmt::format("passed, {}", counted(record.verification->items.size(), "check"));
+}
+
+void printParts(const PartsRecord& record) {
+  const PartsSummary& summary = record.summary;
+  printLine("parts", fmt::format("{}, of {} to {} cells", record.options.parts, summary.smallest,
+                                 summary.largest));
+  printLine("shared", fmt::format("{} vertices, {}, at most {} of a part", summary.sharedVertices,
+                                  counted(summary.sharedFaces, "face"),
+                                  counted(summary.mostNeighbours, "neighbour")));
 }
 
 }  // namespace

@@ -12,14 +12,13 @@
 #include <hexhex/extract.hpp>
 #include <hexhex/improve.hpp>
 #include <hexhex/partial.hpp>
+#include <hexhex/parts.hpp>
 #include <hexhex/patches.hpp>
 #include <hexhex/quality.hpp>
 #include <hexhex/quantize.hpp>
 #include <hexhex/summary.hpp>
 #include <hexhex/types.hpp>
 #include <hexhex/verify.hpp>
-
-#include "extract_parts.hpp"
 
 namespace hexhex::command {
 
@@ -36,6 +35,12 @@ struct CurvesRecord {
   std::filesystem::path file;  ///< empty if there are none
   std::uint64_t count = 0;     ///< arcs or patches
   std::uint64_t pieces = 0;    ///< inner points or polygons
+};
+
+/// Results of writing a mesh in parts.
+struct PartsRecord {
+  PartOptions options;
+  PartsSummary summary;
 };
 
 /// The results of an extraction.

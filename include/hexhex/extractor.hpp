@@ -84,6 +84,7 @@ class Extractor {
   [[nodiscard]] std::uint64_t cellsAtScaleOne() const noexcept;
 
  private:
+  friend class VerifySink;
   class HEXHEX_HIDDEN Prepared;
   std::unique_ptr<Prepared> prepared_;
 };

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <hexhex/context.hpp>
@@ -107,6 +108,11 @@ class PartSink {
   virtual void begin(const PartsInfo& info) = 0;
   /// Called for each part in order, including empty ones.
   virtual void part(MeshPart&& part) = 0;
+  /// The same for parts that were made side by side, for sinks that can take them side by side; by
+  /// default, calls part() for each.
+  virtual void parts(std::span<MeshPart> parts) {
+    for (MeshPart& each : parts) part(std::move(each));
+  }
   /// Called after the last part.
   virtual void end() = 0;
   /// Number of ghost layers that the sink needs: parts have at least as many, whatever was
@@ -115,7 +121,8 @@ class PartSink {
 };
 
 /// Extracts the mesh of extract(), bit for bit, in parts; always uses the atlas engine. Memory
-/// holds the map and one part; nothing grows with the whole mesh.
+/// holds the map and one part, or as many as there are threads if all of them fit in a gigabyte;
+/// nothing grows with the whole mesh.
 /// @throws Error  as extract(); InvalidArgument for options out of range, and for a method whose
 ///         library is not installed; TooLarge for a part with 2^32 vertices or cells
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
@@ -150,6 +157,7 @@ class PartSummarySink final : public PartSink {
       : sink_(sink), team_(team) {}
   void begin(const PartsInfo& info) override;
   void part(MeshPart&& part) override;
+  void parts(std::span<MeshPart> parts) override;
   /// @throws Error VerificationFailed if parts are inconsistent; the other sink's end() is not
   ///         called then
   void end() override;
@@ -160,6 +168,7 @@ class PartSummarySink final : public PartSink {
   [[nodiscard]] const PartsSummary& result() const noexcept { return summary_; }
 
  private:
+  void add(const MeshPart& part);
   void addUp();
 
   PartSink& sink_;

@@ -34,7 +34,8 @@ struct MeshSummary {
 class SummarySink : public MeshSink {
  public:
   /// @param context  must outlive the sink
-  explicit SummarySink(Context& context);
+  /// @param next     receives the mesh, too; null: nobody
+  explicit SummarySink(Context& context, MeshSink* next = nullptr);
   ~SummarySink() override;
   void begin(std::uint64_t pointCount, std::uint64_t cellCount) override;
   void points(const PointPiece& piece) override;
@@ -48,6 +49,7 @@ class SummarySink : public MeshSink {
  private:
   class HEXHEX_HIDDEN Adder;
   std::unique_ptr<Adder> adder_;
+  MeshSink* next_;
 };
 
 /// Summarizes a mesh in memory.

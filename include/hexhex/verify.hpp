@@ -14,6 +14,8 @@
 
 namespace hexhex HEXHEX_API_NAMESPACE {
 
+class Extractor;  // <hexhex/extractor.hpp>
+
 /// One comparison, e.g. {"cells", "4320", "4319", false}.
 struct VerifyItem {
   std::string name;      ///< stable key
@@ -58,12 +60,22 @@ struct VerifyOptions {
 
 /// Verifies a mesh that arrives in pieces, with the same proof. Passes if and only if the mesh is
 /// that of the map in canonical order, as produced by extractTo(). Takes as much memory as a map of
-/// this many tets, plus a few bytes per vertex.
+/// this many tets.
+///
+/// With another sink behind it, it verifies a mesh on its way there: that sink receives each piece
+/// once it was compared, and end() only if the whole mesh passed.
 class VerifySink : public MeshSink {
  public:
   /// @param map      must outlive the sink, as must the context
   /// @param options  scale and tolerance; coordinates are taken to have full precision
-  VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context);
+  /// @param next     receives the mesh, too; null: nobody
+  VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context,
+             MeshSink* next = nullptr);
+  /// The same without preparing the map again, for Extractor::extractTo() at options.scale. Ignores
+  /// options.tolerance.
+  /// @param extractor  must outlive the sink, and serve no other call until it is done
+  VerifySink(Extractor& extractor, const VerifyOptions& options, Context& context,
+             MeshSink* next = nullptr);
   ~VerifySink() override;
   void begin(std::uint64_t pointCount, std::uint64_t cellCount) override;
   void points(const PointPiece& piece) override;
@@ -77,6 +89,7 @@ class VerifySink : public MeshSink {
  private:
   class HEXHEX_HIDDEN Checker;
   std::unique_ptr<Checker> checker_;
+  MeshSink* next_;
 };
 
 }  // namespace HEXHEX_API_NAMESPACE

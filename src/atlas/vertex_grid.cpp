@@ -49,7 +49,7 @@ template <class Id>
 void VertexGrid<Id>::sweep(sweep::CellCenters& cells, Stage& stage, sweep::SweepObserver* observer,
                            bool fewPoints) {
   const std::size_t tets = map_.topology.tetCount();
-  sweep::VertexCounter counter(map_, numbers_);
+  sweep::VertexCounter counter(map_, *swept_);
   keys_.resize(blockCount(tets, sweep::kSweepBlock));
   const auto makeLines = [&] {
     return SweptLines{sweep::BlockLines(stored_.has_value()),

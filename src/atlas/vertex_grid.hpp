@@ -58,12 +58,12 @@ class VertexGrid {
   /// @param keepLines  whether to store lines between the steps or to sweep again
   VertexGrid(const igm::PreparedMap& map, Charts& charts, sweep::VertexNumbers& numbers,
              bool keepLines)
-      : map_(map), charts_(charts), numbers_(numbers) {
+      : map_(map), charts_(charts), numbers_(numbers), swept_(&numbers) {
     if (keepLines) stored_.emplace(map.topology.tetCount());
   }
   /// For a part of the map, instead of sweep().
   /// @param charts  a chart for each tet of the region, and none for others
-  VertexGrid(const igm::PreparedMap& map, Charts& charts, sweep::VertexNumbers& numbers,
+  VertexGrid(const igm::PreparedMap& map, Charts& charts, const sweep::VertexNumbers& numbers,
              const GridRegion& region, Stage& stage)
       : map_(map), charts_(charts), numbers_(numbers), region_(&region) {
     collectRegion(stage);
@@ -84,7 +84,7 @@ class VertexGrid {
   /// Moves out what is known of vertices besides the grid, if lines were kept.
   [[nodiscard]] sweep::SweptVertices takeVertices() noexcept {
     assert(stored_);
-    return {std::move(*stored_), std::move(numbers_)};
+    return {std::move(*stored_), std::move(*swept_)};
   }
 
   /// Writes the vertices that a tet owns.
@@ -139,8 +139,9 @@ class VertexGrid {
 
   const igm::PreparedMap& map_;
   Charts& charts_;
-  sweep::VertexNumbers& numbers_;
-  const GridRegion* region_ = nullptr;  ///< null: all tets
+  const sweep::VertexNumbers& numbers_;
+  sweep::VertexNumbers* swept_ = nullptr;  ///< the same if sweep() fills them
+  const GridRegion* region_ = nullptr;     ///< null: all tets
   std::optional<sweep::TetLines> stored_;
   std::vector<std::vector<BrickKey>> keys_;  ///< bricks with points of each block of tets
   BrickGrid<Id> grid_;

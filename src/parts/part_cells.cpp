@@ -18,15 +18,10 @@ constexpr std::size_t kFewTets = 8;
 }  // namespace
 
 template <class Id>
-PartGrid<Id>::PartGrid(const igm::PreparedMap& map, sweep::ElementCounts counts,
-                       const Partition& partition, atlas::Charts charts)
-    : map_(map),
-      counts_(std::move(counts)),
-      partition_(partition),
-      charts_(std::move(charts)),
-      chartCount_(charts_.count),
-      chartOf_(std::move(charts_.chart)) {
-  charts_.chart.assign(chartOf_.size(), atlas::Charts::kNoChart);
+PartGrid<Id>::PartGrid(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
+                       const Partition& partition, const atlas::Charts& charts)
+    : map_(map), counts_(counts), partition_(partition), all_(charts), charts_(charts) {
+  std::fill(charts_.chart.begin(), charts_.chart.end(), atlas::Charts::kNoChart);
 }
 
 template <class Id>
@@ -35,7 +30,7 @@ void PartGrid<Id>::enter(atlas::GridRegion region, Stage& stage) {
   assert(std::ranges::all_of(charts_.chart,
                              [](Index chart) { return chart == atlas::Charts::kNoChart; }));
   region_ = std::move(region);
-  for (const Index tet : region_.tets) charts_.chart[tet] = chartOf_[tet];
+  for (const Index tet : region_.tets) charts_.chart[tet] = all_.chart[tet];
   vertices_.emplace(map_, charts_, counts_.vertices, region_, stage);
   vertices_->fill({}, stage);
   vertices_->resolveOverlaps(stage);
@@ -46,7 +41,7 @@ template <class Id>
 void PartGrid<Id>::clear() noexcept {
   vertices_.reset();
   for (const Index tet : region_.tets) charts_.chart[tet] = atlas::Charts::kNoChart;
-  charts_.count = chartCount_;
+  charts_.count = all_.count;
   region_ = {};
 }
 

@@ -66,14 +66,12 @@ void forEachRun(const igm::PreparedMap& map, const Partition& partition, std::ui
 template <class Id>
 class PartGrid {
  public:
-  /// @param map     with the partition, outlives this
+  /// @param map     with everything else, outlives this
   /// @param charts  of the whole map
-  PartGrid(const igm::PreparedMap& map, sweep::ElementCounts counts, const Partition& partition,
-           atlas::Charts charts);
+  PartGrid(const igm::PreparedMap& map, const sweep::ElementCounts& counts,
+           const Partition& partition, const atlas::Charts& charts);
   PartGrid(const PartGrid&) = delete;
   PartGrid& operator=(const PartGrid&) = delete;
-
-  [[nodiscard]] const sweep::ElementCounts& counts() const noexcept { return counts_; }
 
   /// Builds the grid of a region, replacing the previous one.
   void enter(atlas::GridRegion region, Stage& stage);
@@ -96,11 +94,10 @@ class PartGrid {
   void addNearby(std::size_t i, Surroundings& around, std::vector<NearbyCell<Id>>& list) const;
 
   const igm::PreparedMap& map_;
-  sweep::ElementCounts counts_;
+  const sweep::ElementCounts& counts_;
   const Partition& partition_;
-  atlas::Charts charts_;  ///< contain only tets of the region
-  Index chartCount_;      ///< of the whole map
-  Array<Index> chartOf_;  ///< per tet, inside or outside the region
+  const atlas::Charts& all_;  ///< of the whole map
+  atlas::Charts charts_;      ///< contain only tets of the region
   atlas::GridRegion region_;
   std::optional<atlas::VertexGrid<Id>> vertices_;
   atlas::CutTransitions transitions_;

@@ -10,6 +10,7 @@
 #include <parts/vertex_set.hpp>
 
 #include <base/sorted.hpp>
+#include <base/workspaces.hpp>
 #include <extract/mesh_tags.hpp>
 
 namespace hexhex::parts {
@@ -94,14 +95,12 @@ template <class Id>
 class Maker final : public PartMaker {
  public:
   Maker(const PartsOfMap& map, const PartOptions& options, sweep::ElementCounts counts,
-        Partition partition, atlas::Charts charts, Context& context)
+        Partition partition, atlas::Charts charts)
       : map_(map),
         options_(options),
         partition_(std::move(partition)),
-        grid_(map.map, std::move(counts), partition_, std::move(charts)),
-        counts_(grid_.counts()),
-        regions_(map.map, partition_, counts_.cells.back()),
-        context_(context) {}
+        counts_(std::move(counts)),
+        charts_(std::move(charts)) {}
 
   PartsInfo info() const override {
     const TetMapView& source = map_.source;
@@ -119,8 +118,7 @@ class Maker final : public PartMaker {
 
   const sweep::ElementCounts& counts() const noexcept override { return counts_; }
 
-  MeshPart make(std::uint32_t number) override {
-    Stage stage(context_, "parts");
+  MeshPart make(std::uint32_t number, Stage& stage) override {
     MeshPart part;
     part.part = number;
     part.parts = options_.parts;
@@ -128,17 +126,22 @@ class Maker final : public PartMaker {
     std::vector<std::vector<NearbyCell<Id>>> layers;
     GlobalCells<Id> own;
     VertexSet vertices;
-    {
+    const auto makeWorkspace = [this] {
+      return Workspace{PartGrid<Id>(map_.map, counts_, partition_, charts_),
+                       RegionFinder(map_.map, partition_, counts_.cells.back())};
+    };
+    workspaces_.with(makeWorkspace, [&](Workspace& workspace) {
       // One extra layer, which knows the owners of the vertices of the last one.
       const std::uint32_t around = options_.ghostLayers + 1;
-      grid_.enter(regions_.find(number, around), stage);
-      own = grid_.ownCells(number, stage);
+      PartGrid<Id>& grid = workspace.grid;
+      grid.enter(workspace.regions.find(number, around), stage);
+      own = grid.ownCells(number, stage);
       vertices = VertexSet(std::span<const std::array<Id, 8>>(own.corners), stage);
-      GhostLayers<Id> ghosts(grid_.nearbyCells(number, around == 1 ? &vertices : nullptr, stage),
+      GhostLayers<Id> ghosts(grid.nearbyCells(number, around == 1 ? &vertices : nullptr, stage),
                              vertices, stage);
       for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
-      grid_.clear();  // frees memory for what follows
-    }
+      grid.clear();  // frees memory for what follows
+    });
     Assembly assembly{part, layers, vertices, stage};
     takeOwn(assembly, std::move(own));
     takeGhosts(assembly);
@@ -147,6 +150,10 @@ class Maker final : public PartMaker {
   }
 
  private:
+  struct Workspace {
+    PartGrid<Id> grid;
+    RegionFinder regions;
+  };
   struct Assembly {
     MeshPart& part;
     const std::vector<std::vector<NearbyCell<Id>>>& layers;
@@ -320,10 +327,9 @@ class Maker final : public PartMaker {
   PartsOfMap map_;
   PartOptions options_;
   Partition partition_;
-  PartGrid<Id> grid_;
-  const sweep::ElementCounts& counts_;  ///< of the grid
-  RegionFinder regions_;
-  Context& context_;
+  sweep::ElementCounts counts_;
+  atlas::Charts charts_;
+  Workspaces<Workspace> workspaces_;
 };
 
 }  // namespace
@@ -347,7 +353,7 @@ std::unique_ptr<PartMaker> makePartMaker(const PartsOfMap& map, const PartOption
       makePartition({map.map, counts, map.team}, options.parts, options.method, context);
   const auto make = [&]<class Id>(Id /*type*/) -> std::unique_ptr<PartMaker> {
     return std::make_unique<Maker<Id>>(map, options, std::move(counts), std::move(partition),
-                                       std::move(charts), context);
+                                       std::move(charts));
   };
   if (counts.vertices.count() > kMaxNarrowVertices) return make(std::uint64_t{});
   return make(Index{});

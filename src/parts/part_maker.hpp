@@ -1,5 +1,5 @@
-// Makes the parts of a mesh independently, one after another: from cell counts per tet and a sweep
-// of the part's own tets and those that its cells touch.
+// Makes the parts of a mesh independently: from cell counts per tet and a sweep of the part's own
+// tets and those that its cells touch.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ class PartMaker {
 
   [[nodiscard]] virtual PartsInfo info() const = 0;
   [[nodiscard]] virtual const sweep::ElementCounts& counts() const noexcept = 0;
-  /// Makes any part, in any order.
-  [[nodiscard]] virtual MeshPart make(std::uint32_t part) = 0;
+  /// Makes any part, in any order. Thread-safe.
+  [[nodiscard]] virtual MeshPart make(std::uint32_t part, Stage& stage) = 0;
 };
 
 /// Counts what all tets own, and assigns cells to parts.

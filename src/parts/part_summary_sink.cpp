@@ -48,6 +48,16 @@ void PartSummarySink::begin(const PartsInfo& info) {
 }
 
 void PartSummarySink::part(MeshPart&& part) {
+  add(part);
+  sink_.part(std::move(part));
+}
+
+void PartSummarySink::parts(std::span<MeshPart> parts) {
+  for (const MeshPart& part : parts) add(part);
+  sink_.parts(parts);
+}
+
+void PartSummarySink::add(const MeshPart& part) {
   summary_.cells += part.ownCells;
   summary_.largest = std::max(summary_.largest, part.ownCells);
   summary_.smallest = std::min(summary_.smallest, part.ownCells);
@@ -68,7 +78,6 @@ void PartSummarySink::part(MeshPart&& part) {
       static_cast<std::uint64_t>(std::count(shared.begin(), shared.end(), true));
   summary_.mostNeighbours =
       std::max<std::uint64_t>(summary_.mostNeighbours, part.neighbours.size());
-  sink_.part(std::move(part));
 }
 
 /// Combines the results of all processes.

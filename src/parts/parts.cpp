@@ -18,6 +18,7 @@
 #include <hexhex/parts.hpp>
 #include <hexhex/team.hpp>
 
+#include <base/workspaces.hpp>
 #include <extract/steps.hpp>
 
 namespace hexhex::parts {
@@ -109,35 +110,55 @@ class Collector final : public PartSink {
   std::vector<MeshPart>& parts_;
 };
 
+/// The most parts to make side by side: as many as there are threads, but no more than fit in a
+/// gigabyte, one at least. Making a part takes 145 bytes per cell (docs/results/scaling.md), and
+/// tables of some 40 bytes per tet that each needs for itself.
+std::uint32_t partsAtOnce(const PartsInfo& info, std::size_t tets) {
+  constexpr std::uint64_t kBytes = std::uint64_t{1} << 30;
+  const std::uint64_t ofOne = 145 * (info.cellCount / info.parts + 1) + 40 * tets;
+  const auto threads = static_cast<std::uint64_t>(currentThreads());
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kBytes / ofOne, 1, threads));
+}
+
 /// Makes parts, and proves them if requested.
 class ProvenParts {
  public:
   ProvenParts(ProcessTeam* team, extraction::ScaledMap& scaled, const PartOptions& options,
               Context& context, ExtractStatistics& statistics)
-      : context_(context) {
-    Expectation expected;
+      : map_(scaled.map), context_(context) {
     if (options.verify) {
       Stage stage(context, "verification");
-      expected = verification::expectationOf(scaled.map, stage);
+      expected_ = verification::expectationOf(scaled.map, stage);
     }
     maker_ = makePartMaker({scaled.map, scaled.source, scaled.expectedCells, team}, options,
                            context, statistics);
-    if (options.verify) proof_.emplace(scaled.map, expected, maker_->counts());
   }
 
   [[nodiscard]] PartsInfo info() const { return maker_->info(); }
-  [[nodiscard]] MeshPart make(std::uint32_t number) {
-    MeshPart part = maker_->make(number);
-    if (!proof_) return part;
+  /// Makes consecutive parts side by side.
+  [[nodiscard]] std::vector<MeshPart> make(std::uint32_t first, std::uint32_t count) {
+    std::vector<MeshPart> parts(count);
+    {
+      Stage stage(context_, "parts");
+      parallelFor(stage, count, 1, [&](std::size_t i) {
+        parts[i] = maker_->make(first + static_cast<std::uint32_t>(i), stage);
+      });
+    }
+    if (!expected_) return parts;
     Stage stage(context_, "verification");
-    proof_->compare(part, stage);
-    return part;
+    parallelFor(stage, count, 1, [&](std::size_t i) {
+      proofs_.with([&] { return verification::PartProof(map_, *expected_, maker_->counts()); },
+                   [&](verification::PartProof& proof) { proof.compare(parts[i], stage); });
+    });
+    return parts;
   }
 
  private:
+  const igm::PreparedMap& map_;
   Context& context_;
   std::unique_ptr<PartMaker> maker_;
-  std::optional<verification::PartProof> proof_;
+  std::optional<Expectation> expected_;  ///< if parts are proven
+  Workspaces<verification::PartProof> proofs_;
 };
 
 /// Prepares a map and calls make(maker), which decides which parts to make.
@@ -213,7 +234,11 @@ void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& o
   parts::runParts(nullptr, sink.neededGhostLayers(), map, options, parts, context, statistics,
                   [&](parts::ProvenParts& maker, const PartsInfo& info) {
                     sink.begin(info);
-                    for (std::uint32_t p = 0; p < parts.parts; ++p) sink.part(maker.make(p));
+                    const std::uint32_t most = parts::partsAtOnce(info, map.tets.size());
+                    for (std::uint32_t p = 0; p < parts.parts; p += most) {
+                      std::vector<MeshPart> made = maker.make(p, std::min(most, parts.parts - p));
+                      sink.parts(made);
+                    }
                     sink.end();
                   });
 }
@@ -244,7 +269,7 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     parts::runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
                     [&](parts::ProvenParts& maker, const PartsInfo& info) {
                       checked.begin(info);
-                      checked.part(maker.make(team.rank()));
+                      checked.part(std::move(maker.make(team.rank(), 1).front()));
                       checked.end();
                     });
     if (summary != nullptr) *summary = checked.result();

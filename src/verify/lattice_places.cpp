@@ -127,16 +127,11 @@ std::pair<std::size_t, std::size_t> tetsWith(const Array<std::uint64_t>& begin, 
           static_cast<std::size_t>(high - begin.begin())};
 }
 
-LatticePlaces::LatticePlaces(const igm::PreparedMap& map, bool indexed, Stage& stage)
-    : map_(map),
-      indexed_(indexed),
-      swept_(sweep::sweepVertices(map, stage)),
-      begin_(swept_.numbers.begin),
-      runs_(0) {}
+LatticePlaces::LatticePlaces(const igm::PreparedMap& map, Stage& stage)
+    : map_(map), swept_(sweep::sweepVertices(map, stage)), begin_(swept_.numbers.begin), runs_(0) {}
 
 LatticePlaces::LatticePlaces(const igm::PreparedMap& map, const sweep::VertexNumbers& numbers)
     : map_(map),
-      indexed_(false),
       swept_{sweep::TetLines(0), {}},
       given_(&numbers),
       begin_(numbers.begin),
@@ -179,12 +174,12 @@ void LatticePlaces::proveTet(Index tet, const sweep::VertexNumbers& numbers,
   }
   right = right && next == begin_[tet + 1] - begin_[tet];
   if (!right) wrong.add(tet);
-  if (right && indexed_) enterInIndex(tet, runs.last());
+  if (right && given_ == nullptr) enterInIndex(tet, runs.last());
 }
 
 void LatticePlaces::prove(Stage& stage, Faults& wrong) {
   assert(given_ == nullptr);  // or there were no lines
-  if (indexed_) runOf_.resize(count());
+  runOf_.resize(count());
   runs_ = sweep::TetLists<PlaceRun>(map_.topology.tetCount());
   parallelBlocksWith(
       stage, map_.topology.tetCount(), sweep::kSweepBlock,
@@ -289,7 +284,7 @@ Index LatticePlaces::ownerOf(std::uint64_t number) const {
 const PlaceRun& LatticePlaces::runWith(Index owner, std::uint64_t number) const {
   assert(owns(owner, number));
   const std::span<const PlaceRun> runs = runsOf(owner);
-  const std::uint16_t known = indexed_ ? runOf_[number] : kUnknownRun;
+  const std::uint16_t known = runOf_.empty() ? kUnknownRun : runOf_[number];
   if (known != kUnknownRun) return runs[known];
   const auto isBefore = [](Index value, const PlaceRun& run) { return value < run.first; };
   const auto offset = static_cast<Index>(number - begin_[owner]);

@@ -217,9 +217,9 @@ struct PlaceRun {
 
 class LatticePlaces {
  public:
-  /// @param indexed  whether to keep two bytes per lattice point, so that each is found immediately
-  LatticePlaces(const igm::PreparedMap& map, bool indexed, Stage& stage);
-  /// For parts of a mesh: only the lattice points of the tets proven last are known.
+  /// Keeps two bytes per lattice point, so that each is found immediately.
+  LatticePlaces(const igm::PreparedMap& map, Stage& stage);
+  /// For parts and pieces of a mesh: only the lattice points of the tets proven last are known.
   /// @param numbers  hints; outlives this
   LatticePlaces(const igm::PreparedMap& map, const sweep::VertexNumbers& numbers);
 
@@ -265,7 +265,6 @@ class LatticePlaces {
   void enterInIndex(Index tet, std::span<const PlaceRun> runs);
 
   const igm::PreparedMap& map_;
-  bool indexed_;
   sweep::SweptVertices swept_;  ///< until proven
   const sweep::VertexNumbers* given_ = nullptr;
   Array<std::uint64_t> begin_;  ///< per tet (+1): the first lattice point it owns

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <numeric>
 #include <string>
 
 #include <verify/cell_checker.hpp>
@@ -46,18 +48,67 @@ ExpectedElements expectedElements(const Expectation& expected) noexcept {
   return counts;
 }
 
-Proof::Proof(const igm::PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage)
-    : map_(map), places_(map, indexed, stage), centers_(sweep::findCells(map, stage)) {
+Proof::Proof(const igm::PreparedMap& map, const Expectation& expected, Stage& stage)
+    : map_(map), places_(map, stage), centers_(sweep::findCells(map, stage)), inPieces_(false) {
+  requireCounts(expected);
+  if (hints_.count() == 0) places_.prove(stage, hints_);
+}
+
+Proof::Proof(const igm::PreparedMap& map, const Expectation& expected,
+             const sweep::ElementCounts& counts)
+    : map_(map),
+      places_(map, counts.vertices),
+      centers_(map.topology.tetCount(), false),
+      inPieces_(true) {
+  centers_.begin = counts.cells;
+  requireCounts(expected);
+}
+
+void Proof::requireCounts(const Expectation& expected) {
   if (places_.count() == expectedElements(expected).vertices &&
       centers_.count() == expected.cells) {
-    places_.prove(stage, hints_);
-  } else {
-    hints_.add(0);
+    return;
   }
+  hints_.add(0);
+}
+
+/// The tets that own a corner of the cells, ascending.
+template <class Cell>
+std::vector<Index> Proof::ownersOf(std::span<const Cell> cells, Stage& stage) const {
+  constexpr std::size_t kGrain = 4096;
+  const auto addOwners = [&](std::size_t first, std::size_t end, std::vector<Index>& owners) {
+    // Each corner mostly has the owner of that corner of the cell before.
+    std::array<Index, 8> latest;
+    latest.fill(kNone);
+    for (std::size_t c = first; c < end; ++c) {
+      for (std::size_t k = 0; k < 8; ++k) {
+        const std::uint64_t vertex = cells[c][k];
+        if (vertex >= places_.count()) continue;
+        if (latest[k] != kNone && places_.owns(latest[k], vertex)) continue;
+        latest[k] = places_.ownerOf(vertex);
+        owners.push_back(latest[k]);
+      }
+    }
+    sortUnique(owners);
+  };
+  std::vector<Index> owners = collectFromBlocks<Index>(stage, cells.size(), kGrain, addOwners);
+  sortUnique(owners);
+  return owners;
+}
+
+void Proof::compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
+  if (inPieces_) {
+    const auto [begin, end] = tetsWith(places_.begin(), first, first + points.size());
+    std::vector<Index> owners(end - begin);
+    std::iota(owners.begin(), owners.end(), static_cast<Index>(begin));
+    places_.proveOnly(owners, stage, hints_);
+  }
+  places_.compare(first, points, stage, positions_);
 }
 
 template <class Cell>
 void Proof::compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage) {
+  if (inPieces_) places_.proveOnly(ownersOf(cells, stage), stage, hints_);
   const auto [begin, end] = tetsWith(centers_.begin, first, first + cells.size());
   parallelForWith(
       stage, end - begin, sweep::kSweepBlock / 8,
@@ -75,7 +126,7 @@ bool isProven(const igm::PreparedMap& map, const Expectation& expected, const He
       mesh.points.size() != expectedElements(expected).vertices) {
     return false;
   }
-  Proof proof(map, expected, true, stage);
+  Proof proof(map, expected, stage);
   if (!proof.passed()) return false;
   proof.compare(0, mesh.points, stage);
   proof.compare(0, std::span<const Hex>(mesh.cells), stage);

@@ -41,15 +41,17 @@ struct ExpectedElements {
 /// Checks a mesh, as a whole or piece by piece. It has as many points and cells as expected.
 class Proof {
  public:
+  /// For a whole mesh.
   /// @param map       scaled; must outlive this
   /// @param expected  of the scaled map
-  /// @param indexed   see LatticePlaces
-  Proof(const igm::PreparedMap& map, const Expectation& expected, bool indexed, Stage& stage);
+  Proof(const igm::PreparedMap& map, const Expectation& expected, Stage& stage);
+  /// For pieces: each proves anew what it needs, so that only this is in memory.
+  /// @param counts  hints; outlive this
+  Proof(const igm::PreparedMap& map, const Expectation& expected,
+        const sweep::ElementCounts& counts);
 
   /// Points from number `first` on. Call only while the hints hold.
-  void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage) {
-    places_.compare(first, points, stage, positions_);
-  }
+  void compare(std::uint64_t first, std::span<const Vec3> points, Stage& stage);
   /// Cells from number `first` on; likewise.
   template <class Cell>
   void compare(std::uint64_t first, std::span<const Cell> cells, Stage& stage);
@@ -63,9 +65,14 @@ class Proof {
   }
 
  private:
+  void requireCounts(const Expectation& expected);
+  template <class Cell>
+  [[nodiscard]] std::vector<Index> ownersOf(std::span<const Cell> cells, Stage& stage) const;
+
   const igm::PreparedMap& map_;
   LatticePlaces places_;
   sweep::CellCenters centers_;
+  bool inPieces_;
   Faults hints_;
   Faults positions_;
   Faults cells_;

@@ -237,25 +237,34 @@ class VerifySink::Checker {
       reference_ = verification::referenceOf(map, options, context, comparisons_);
       if (!reference_) return;
       Stage stage(context, "verification");
-      proof_.emplace(reference_->map, reference_->expected, false, stage);
+      begin(reference_->map, reference_->expected, stage);
     });
     steps.finish();
   }
 
+  Checker(Extractor::Prepared& prepared, const VerifyOptions& options, Context& context)
+      : quiet_(context.threads()) {
+    ExtractOptions scaling;
+    scaling.scale = options.scale;
+    prepared.run({"VerifySink", verification::kCompareSteps}, scaling, {1, igm::kMaxCountedCells},
+                 context, nullptr, [&](std::uint64_t /*cells*/, ExtractStatistics& /*filled*/) {
+                   comparisons_.add("map_valid", "yes", "yes", true);
+                   Stage stage(context, "verification");
+                   begin(prepared.map(), verification::expectationOf(prepared.map(), stage), stage);
+                 });
+  }
+
   void points(const PointPiece& piece) {
-    if (!reference_) return;
-    compare(piece.first, piece.points,
-            verification::expectedElements(reference_->expected).vertices, points_);
+    if (!proof_) return;
+    compare(piece.first, piece.points, verification::expectedElements(expected_).vertices, points_);
   }
   template <class Cell>
   void cells(std::uint64_t first, std::span<const Cell> cells) {
-    if (reference_) compare(first, cells, reference_->expected.cells, cells_);
+    if (proof_) compare(first, cells, expected_.cells, cells_);
   }
 
   void end() {
-    if (!reference_ ||
-        !verification::compareCounts(reference_->expected, cells_, points_, comparisons_))
-      return;
+    if (!proof_ || !verification::compareCounts(expected_, cells_, points_, comparisons_)) return;
     if (proof_->hints().count() > 0) verification::addWrongExtraction(comparisons_);
     const verification::Faults& positions = proof_->positions();
     const verification::Faults& cells = proof_->cells();
@@ -267,6 +276,12 @@ class VerifySink::Checker {
   [[nodiscard]] const VerifyReport& report() const noexcept { return comparisons_.report(); }
 
  private:
+  void begin(const igm::PreparedMap& map, const Expectation& expected, Stage& stage) {
+    expected_ = expected;
+    counts_ = sweep::countElements(map, expected.cells, nullptr, stage);
+    proof_.emplace(map, expected, counts_);
+  }
+
   /// @param come  how many came before, in order
   template <class T>
   void compare(std::uint64_t first, std::span<const T> items, std::uint64_t expected,
@@ -281,25 +296,41 @@ class VerifySink::Checker {
 
   Context quiet_;  ///< pieces arrive while somebody else reports progress
   verification::Comparisons comparisons_;
-  std::optional<verification::Reference> reference_;
-  std::optional<verification::Proof> proof_;
+  std::optional<verification::Reference> reference_;  ///< unless an extractor has one
+  Expectation expected_;
+  sweep::ElementCounts counts_;
+  std::optional<verification::Proof> proof_;  ///< empty if the map is not valid
   std::uint64_t points_ = 0;
   std::uint64_t cells_ = 0;
 };
 
-VerifySink::VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context)
-    : checker_(std::make_unique<Checker>(map, options, context)) {}
+VerifySink::VerifySink(const TetMapView& map, const VerifyOptions& options, Context& context,
+                       MeshSink* next)
+    : checker_(std::make_unique<Checker>(map, options, context)), next_(next) {}
+VerifySink::VerifySink(Extractor& extractor, const VerifyOptions& options, Context& context,
+                       MeshSink* next)
+    : checker_(std::make_unique<Checker>(*extractor.prepared_, options, context)), next_(next) {}
 VerifySink::~VerifySink() = default;
 
-void VerifySink::begin(std::uint64_t /*pointCount*/, std::uint64_t /*cellCount*/) {}
-void VerifySink::points(const PointPiece& piece) { checker_->points(piece); }
+void VerifySink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
+  if (next_ != nullptr) next_->begin(pointCount, cellCount);
+}
+void VerifySink::points(const PointPiece& piece) {
+  checker_->points(piece);
+  if (next_ != nullptr) next_->points(piece);
+}
 void VerifySink::cells(std::uint64_t first, std::span<const Hex> cells) {
   checker_->cells(first, cells);
+  if (next_ != nullptr) next_->cells(first, cells);
 }
 void VerifySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
   checker_->cells(first, cells);
+  if (next_ != nullptr) next_->cells(first, cells);
 }
-void VerifySink::end() { checker_->end(); }
+void VerifySink::end() {
+  checker_->end();
+  if (next_ != nullptr && report().passed()) next_->end();
+}
 const VerifyReport& VerifySink::report() const noexcept { return checker_->report(); }
 
 }  // namespace hexhex

@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +18,7 @@
 #include <mesh/grid_meshes.hpp>
 
 #include "extract/support.hpp"
+#include "support/collecting_sink.hpp"
 
 namespace hexhex::test {
 
@@ -309,12 +312,18 @@ inline const std::vector<Mutation>& mutations() {
   return all;
 }
 
-/// Hands over a mesh in pieces of random sizes.
+/// Hands over a mesh in pieces of random sizes: to a sink with a map of its own, or that of an
+/// extractor, with another sink behind it that must not see the end of a wrong mesh.
 template <class Cell>
 VerifyReport verifiedInPieces(const TetMap& map, const HexMesh& mesh, Random& random,
                               const VerifyOptions& options = {}) {
   Context context(1 + static_cast<int>(random.below(3)));
-  VerifySink sink(map, options, context);
+  CollectingSink behind;
+  std::optional<Extractor> extractor;
+  if (check(map, {options.tolerance}).valid() && random.below(2) == 0) extractor.emplace(map);
+  const auto made = extractor ? std::make_unique<VerifySink>(*extractor, options, context, &behind)
+                              : std::make_unique<VerifySink>(map, options, context, &behind);
+  VerifySink& sink = *made;
   std::vector<Cell> cells;
   for (const Hex& cell : mesh.cells) {
     std::copy(cell.begin(), cell.end(), cells.emplace_back().begin());
@@ -334,6 +343,9 @@ VerifyReport verifiedInPieces(const TetMap& map, const HexMesh& mesh, Random& ra
     sink.cells(first, std::span<const Cell>(cells).subspan(first, size));
   });
   sink.end();
+  EXPECT_EQ(behind.mesh.points.size(), mesh.points.size());
+  EXPECT_EQ(behind.mesh.cells.size(), mesh.cells.size());
+  EXPECT_EQ(behind.ended, sink.report().passed());
   return sink.report();
 }
 

@@ -5,12 +5,15 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <hexhex/error.hpp>
+#include <hexhex/parts.hpp>
 #include <hexhex/team.hpp>
 
+#include <base/parallel.hpp>
 #include <io/core/output_file.hpp>
 
 namespace hexhex::io {
@@ -84,6 +87,19 @@ class FileSet {
   }
   /// Suspends the last file.
   void finishLast() { files_.back().output->suspend(); }
+  /// Writes the files of the next parts side by side: write(i, file).
+  /// @param nameOf  returns the path of a part's file
+  template <class NameOf, class Write>
+  void writeAll(std::span<const MeshPart> parts, Stage& stage, const NameOf& nameOf,
+                const Write& write) {
+    const std::size_t first = files_.size();
+    for (const MeshPart& part : parts) static_cast<void>(add(nameOf(part.part)));
+    parallelFor(stage, parts.size(), 1, [&](std::size_t i) {
+      OutputFile& output = *files_[first + i].output;
+      write(i, output);
+      output.suspend();
+    });
+  }
 
   [[nodiscard]] std::size_t size() const noexcept { return files_.size(); }
 

@@ -97,21 +97,31 @@ class SummarySink::Adder final : public io::CheckedSink<io::SummaryWriter> {
   using CheckedSink::CheckedSink;
 };
 
-SummarySink::SummarySink(Context& context)
-    : adder_(std::make_unique<Adder>("summary", "summary", context, context.threads())) {}
+SummarySink::SummarySink(Context& context, MeshSink* next)
+    : adder_(std::make_unique<Adder>("summary", "summary", context, context.threads())),
+      next_(next) {}
 SummarySink::~SummarySink() = default;
 
 void SummarySink::begin(std::uint64_t pointCount, std::uint64_t cellCount) {
   adder_->begin(pointCount, cellCount);
+  if (next_ != nullptr) next_->begin(pointCount, cellCount);
 }
-void SummarySink::points(const PointPiece& piece) { adder_->points(piece); }
+void SummarySink::points(const PointPiece& piece) {
+  adder_->points(piece);
+  if (next_ != nullptr) next_->points(piece);
+}
 void SummarySink::cells(std::uint64_t first, std::span<const Hex> cells) {
   adder_->cells(first, cells);
+  if (next_ != nullptr) next_->cells(first, cells);
 }
 void SummarySink::cells(std::uint64_t first, std::span<const Hex64> cells) {
   adder_->cells(first, cells);
+  if (next_ != nullptr) next_->cells(first, cells);
 }
-void SummarySink::end() { adder_->end(); }
+void SummarySink::end() {
+  adder_->end();
+  if (next_ != nullptr) next_->end();
+}
 const MeshSummary& SummarySink::result() const noexcept { return adder_->writer().result(); }
 
 MeshSummary summarize(const HexMesh& mesh, Context& context) {

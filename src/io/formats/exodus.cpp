@@ -683,17 +683,25 @@ class ExodusSink final : public PartSink {
     requireInt32(info.cellCount, "Exodus numbers cells");
   }
 
-  void part(MeshPart&& part) override {
+  void part(MeshPart&& part) override { parts({&part, 1}); }
+
+  void parts(std::span<MeshPart> parts) override {
     Stage stage(context_, "write mesh");
-    const MeshGroups groups = groupPart(part, info_, stage);
-    const NemesisFile file(part, info_, groups, stage);
-    file.write(files_.add(fileOf(part.part)), context_.threads(), kMostExodusBytes);
-    files_.finishLast();
-    counts_.push_back(file.globalCounts(kMostExodusBytes));
-    for (std::size_t i = 0; i < counts_.back().size(); ++i) {
-      const std::vector<std::uint64_t>& ofPart = counts_.back()[i].ofPart;
-      if (sums_.size() <= i) sums_.emplace_back(ofPart.size(), 0);
-      for (std::size_t k = 0; k < ofPart.size(); ++k) sums_[i][k] += ofPart[k];
+    const std::size_t first = counts_.size();
+    counts_.resize(first + parts.size());
+    const auto nameOf = [this](std::uint32_t part) { return fileOf(part); };
+    files_.writeAll(parts, stage, nameOf, [&](std::size_t p, OutputFile& output) {
+      const MeshGroups groups = groupPart(parts[p], info_, stage);
+      const NemesisFile file(parts[p], info_, groups, stage);
+      file.write(output, context_.threads(), kMostExodusBytes);
+      counts_[first + p] = file.globalCounts(kMostExodusBytes);
+    });
+    for (const std::vector<GlobalCounts>& counts : std::span(counts_).subspan(first)) {
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        const std::vector<std::uint64_t>& ofPart = counts[i].ofPart;
+        if (sums_.size() <= i) sums_.emplace_back(ofPart.size(), 0);
+        for (std::size_t k = 0; k < ofPart.size(); ++k) sums_[i][k] += ofPart[k];
+      }
     }
   }
 

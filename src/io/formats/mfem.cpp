@@ -484,15 +484,20 @@ class MfemSink final : public PartSink {
     refuseGhosts(info.ghostLayers, "MFEM's files");
   }
 
-  void part(MeshPart&& part) override {
+  void part(MeshPart&& part) override { parts({&part, 1}); }
+
+  void parts(std::span<MeshPart> parts) override {
     Stage stage(context_, "write mesh");
-    constexpr std::size_t kDigits = 6;
-    std::string number = std::to_string(part.part);
-    number.insert(0, kDigits - std::min(kDigits, number.size()), '0');
-    OutputFile& output = files_.add(file_.string() + '.' + number);
-    writeSerial(output, part, stage);
-    writeShared(output, SharedByGroup(part).groups(), part.part);
-    files_.finishLast();
+    const auto nameOf = [this](std::uint32_t part) {
+      constexpr std::size_t kDigits = 6;
+      std::string number = std::to_string(part);
+      number.insert(0, kDigits - std::min(kDigits, number.size()), '0');
+      return file_.string() + '.' + number;
+    };
+    files_.writeAll(parts, stage, nameOf, [&](std::size_t i, OutputFile& output) {
+      writeSerial(output, parts[i], stage);
+      writeShared(output, SharedByGroup(parts[i]).groups(), parts[i].part);
+    });
   }
   void end() override { files_.commit(); }
 

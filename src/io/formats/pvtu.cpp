@@ -10,6 +10,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/output_file.hpp>
@@ -52,15 +53,19 @@ class PvtuSink final : public PartSink {
 
   void begin(const PartsInfo& info) override { info_ = info; }
 
-  void part(MeshPart&& part) override {
+  void part(MeshPart&& part) override { parts({&part, 1}); }
+
+  void parts(std::span<MeshPart> parts) override {
     Stage stage(context_, "write mesh");
-    VtkPiece piece;
-    const VtkDataSet data = partDataSet(part, info_, piece);
-    if (head_.empty()) head_ = headOf(data);
-    folder_.run([&] {
-      OutputFile output(folder_.fileOf(part.part));
-      writeVtkXml(output, data, false, stage);
-      output.commit();
+    parallelFor(stage, parts.size(), 1, [&](std::size_t i) {
+      VtkPiece piece;
+      const VtkDataSet data = partDataSet(parts[i], info_, piece);
+      if (i == 0 && head_.empty()) head_ = headOf(data);
+      folder_.run([&] {
+        OutputFile output(folder_.fileOf(parts[i].part));
+        writeVtkXml(output, data, false, stage);
+        output.commit();
+      });
     });
   }
 
