@@ -3,14 +3,15 @@
 
     bench/improve/compare.py HEXHEX MAP.hexex:SCALE... MESH.mesh...
 
-Prints a table in Markdown. Needs mfem, gmsh, vtk, pyvista and meshio of PyPI. All start from the same mesh, each in a process of its own with
-one thread; a mesh without a map is its own surface; time is processor time without reading and writing, of hexhex that of the command. Certificates are hexhex's; the distance is the largest
-one of boundary vertices to the boundary of the map or the mesh, in diagonals.
+Prints a table in Markdown. Needs mfem, gmsh, vtk, pyvista and meshio of PyPI. All start from the same mesh, each in a
+process of its own with one thread; a mesh without a map is its own surface. Time is processor time without reading and
+writing, of hexhex that of the command. Certificates are those of hexhex; the distance is the largest one of boundary
+vertices to the boundary of the map or the mesh, in diagonals.
 
-TMOP: the untangling metric 352 if a corner is not positive, then the shape metric 303, at Gauss-Lobatto points; boundary vertices stay,
-50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of the boundary stay. PyVista has
-no smoothing of cells, only of surfaces: smooth_taubin() of the mesh's boundary, 20 iterations, vertices inside stay. Gmsh:
-UntangleMeshGeometry, and Relocate3D, of a discrete volume without geometry."""
+TMOP: the untangling metric 352 if a corner is not positive, then the shape metric 303, at Gauss-Lobatto points; boundary
+vertices stay, 50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of the boundary
+stay. PyVista has no smoothing of cells, only of surfaces: smooth_taubin() of the mesh's boundary, 20 iterations,
+vertices inside stay. Gmsh: UntangleMeshGeometry, and Relocate3D, of a discrete volume without geometry."""
 import json
 import multiprocessing
 import os
