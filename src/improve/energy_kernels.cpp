@@ -1,5 +1,9 @@
 // Compiled for several register widths, like cell_measures.cpp: the entry points for each width
 // inline everything that they call.
+//
+// The terms of straight cells are those of lagrange_kernels.cpp for order 1. With these, balls of
+// which a tenth of the cells is not positive would take 5 % longer for terms of Bezier
+// coefficients, and 40 % for terms of corners.
 #include <algorithm>
 #include <limits>
 

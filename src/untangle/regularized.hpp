@@ -8,12 +8,11 @@
 // which is close to det if that is positive, and close to 0 if it is negative. Its derivative is
 // chi / root.
 //
-// There are two energies with it, for two kinds of steps. Their shape terms are powers of each
-// other: |J|^2 / chi^(2/3) of the solver for all unknowns (foldover_energy.hpp), as in the paper,
-// with derivatives by four corners, and |J|^3 / chi for one vertex (improve/vertex_energy.hpp),
-// which takes no cube root, is convex in the vertex, has second derivatives, and bounds the worst
-// cells better. The solver with |J|^3 / chi would make other maps, and the vertex with the solver's
-// elements would compute edges of a cell once per corner.
+// Two energies use it, whose shape terms are powers of each other. |J|^2 / chi^(2/3), as in the
+// paper, is that of the solver for all unknowns (foldover_energy.hpp), with derivatives by four
+// corners. |J|^3 / chi is that of steps of one vertex (improve/vertex_energy.hpp): it takes no cube
+// root, and is convex in the vertex. In place of the other, either would change all results, and
+// elements of four corners would be measured for one that moves.
 #pragma once
 
 #include <base/lanes.hpp>
