@@ -232,7 +232,7 @@ def tool_rows(file, scale, folder, hexhex):
     def row(name, places, seconds):
         return name, facts_of(places, cells, folder, hexhex), distance_to(surface, places[border]), seconds
 
-    yield row("as extracted", points, 0)
+    yield row("as extracted" if scale else "as given", points, 0)
     before = os.times().children_user
     subprocess.run([hexhex, "improve", folder / "base.vtu", *of_map, "-o", folder / "better.vtu", "--quiet",
                     "--threads", "1"], check=True)
