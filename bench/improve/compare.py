@@ -3,17 +3,20 @@
 
     bench/improve/compare.py HEXHEX MAP.hexex:SCALE... MESH.mesh...
 
-Prints a table in Markdown. Needs mfem, gmsh, vtk, pyvista and meshio of PyPI. All start from the same mesh, each in a process of its own with
-one thread; a mesh without a map is its own surface; time is processor time without reading and writing, of hexhex that of the command. Certificates are hexhex's; the distance is the largest
-one of boundary vertices to the boundary of the map or the mesh, in diagonals.
+Prints a table in Markdown. Needs mfem, gmsh, vtk, pyvista and meshio of PyPI. All start from the same mesh, each in a
+process of its own with one thread; a mesh without a map is its own surface. Time is processor time without reading and
+writing, of hexhex that of the command. Certificates are those of hexhex; the distance is the largest one of boundary
+vertices to the boundary of the map or the mesh, in diagonals.
 
-TMOP: the untangling metric 352 if a corner is not positive, then the shape metric 303, at Gauss-Lobatto points; boundary vertices stay,
-50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of the boundary stay. PyVista has
-no smoothing of cells, only of surfaces: smooth_taubin() of the mesh's boundary, 20 iterations, vertices inside stay. Gmsh:
-UntangleMeshGeometry, and Relocate3D, of a discrete volume without geometry."""
+TMOP: the untangling metric 352 if a corner is not positive, then the shape metric 303, at Gauss-Lobatto points;
+boundary vertices stay, 50 steps of Newton's method. VTK: vtkConstrainedSmoothingFilter, 20 iterations, vertices of
+the boundary stay. PyVista has no smoothing of cells, only of surfaces: smooth_taubin() of the mesh's boundary, 20
+iterations, vertices inside stay. Gmsh: UntangleMeshGeometry, and Relocate3D, of a discrete volume without geometry."""
 import json
 import multiprocessing
 import os
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -27,7 +30,7 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 FACES = np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
 
-LIMIT = 60  # seconds
+LIMIT = 60  # seconds of processor time
 
 
 def boundary_quads(cells):
@@ -160,8 +163,10 @@ def optimized_by_gmsh(method):
 
 
 def limited(tool, *arguments):
-    """In a process of its own, which may crash, for LIMIT seconds at most."""
+    """In a process of its own, which may crash or print, for LIMIT seconds at most."""
     def work(pipe):
+        resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 1))
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         try:
             pipe.send(tool(*arguments))
         except Exception as error:  # what a tool says of itself belongs into the table
@@ -173,11 +178,11 @@ def limited(tool, *arguments):
     process.start()
     theirs.close()
     try:
-        return ours.recv() if ours.poll(LIMIT) else f"not finished after {LIMIT} s"
+        return ours.recv()
     except EOFError:
-        return "crashed"
+        process.join()
+        return f"not finished after {LIMIT} s" if process.exitcode == -signal.SIGXCPU else "crashed"
     finally:
-        process.kill()
         process.join()
 
 
@@ -227,7 +232,7 @@ def tool_rows(file, scale, folder, hexhex):
     def row(name, places, seconds):
         return name, facts_of(places, cells, folder, hexhex), distance_to(surface, places[border]), seconds
 
-    yield row("as extracted", points, 0)
+    yield row("as extracted" if scale else "as given", points, 0)
     before = os.times().children_user
     subprocess.run([hexhex, "improve", folder / "base.vtu", *of_map, "-o", folder / "better.vtu", "--quiet",
                     "--threads", "1"], check=True)

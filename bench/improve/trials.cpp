@@ -20,7 +20,7 @@ namespace {
 struct Count {
   int all = 0;
   int bad = 0;
-  int mended = 0;
+  int untangled = 0;
   int cellsLost = 0;  ///< whose certificate went
   int lower = 0;      ///< with a lower minimum
   int offSurface = 0;
@@ -41,7 +41,7 @@ void add(const ImproveReport& report, Count& count) {
   count.farther += static_cast<int>(report.distanceAfter.hausdorff() > 1.00001 * before);
   if (report.before.allPositive()) return;
   ++count.bad;
-  if (report.after.allPositive()) ++count.mended;
+  if (report.after.allPositive()) ++count.untangled;
 }
 
 void print(const std::string& name, int scale, const ImproveReport& report) {
@@ -87,8 +87,8 @@ int main(int argc, char** argv) {
   Count count;
   for (int f = 3; f < argc; ++f) tryMap(argv[f], std::stoi(argv[1]), std::stod(argv[2]), count);
   std::printf(
-      "%d meshes; %d of %d mended; %d with a lower minimum, %d cells without their certificate, "
+      "%d meshes; %d of %d untangled; %d with a lower minimum, %d cells without their certificate, "
       "%d with vertices off the surface, %d farther from it; %.1f s\n",
-      count.all, count.mended, count.bad, count.lower, count.cellsLost, count.offSurface,
+      count.all, count.untangled, count.bad, count.lower, count.cellsLost, count.offSurface,
       count.farther, count.seconds);
 }

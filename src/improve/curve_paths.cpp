@@ -32,6 +32,16 @@ constexpr int kOrders = 8;
 /// Consecutive points of a curve.
 using Chain = std::vector<Index>;
 
+/// Per point of a chain: the length of the chain up to there.
+std::vector<double> lengthsAlong(const Chain& chain, const ReferenceSurface& surface) {
+  std::vector<double> along(chain.size(), 0);
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    along[i] =
+        along[i - 1] + length(minus(surface.points()[chain[i]], surface.points()[chain[i - 1]]));
+  }
+  return along;
+}
+
 class ChainFinder {
  public:
   explicit ChainFinder(const ReferenceSurface& surface)
@@ -73,11 +83,7 @@ class ChainFinder {
       chains.push_back(chain);
       return;
     }
-    std::vector<double> along(chain.size(), 0);
-    for (std::size_t i = 1; i < chain.size(); ++i) {
-      along[i] = along[i - 1] +
-                 length(minus(surface_.points()[chain[i]], surface_.points()[chain[i - 1]]));
-    }
+    const std::vector<double> along = lengthsAlong(chain, surface_);
     auto begin = chain.begin();
     for (int third = 1; third <= 3; ++third) {
       const auto cut = std::lower_bound(along.begin(), along.end(), along.back() * third / 3);
@@ -136,11 +142,7 @@ class PathFinder {
 
  private:
   [[nodiscard]] double lengthOf(const Chain& chain) const {
-    double sum = 0;
-    for (std::size_t i = 1; i < chain.size(); ++i) {
-      sum += length(minus(surface_.points()[chain[i]], surface_.points()[chain[i - 1]]));
-    }
-    return sum;
+    return lengthsAlong(chain, surface_).back();
   }
 
   /// Matches ends of chains with vertices, nearest pairs first: each end gets the nearest vertex
@@ -246,11 +248,7 @@ class PathFinder {
 
   /// Places vertices at the nearest points of the curve, but in order and apart from each other.
   void place(const Chain& chain, const TriangleTree& tree, CurvePath& path) const {
-    std::vector<double> starts = {0};
-    for (std::size_t i = 1; i < chain.size(); ++i) {
-      starts.push_back(starts.back() +
-                       length(minus(surface_.points()[chain[i]], surface_.points()[chain[i - 1]])));
-    }
+    const std::vector<double> starts = lengthsAlong(chain, surface_);
     const std::size_t n = path.vertices.size();
     std::vector<double> at(n, 0);
     std::vector<double> steps(n, 0);

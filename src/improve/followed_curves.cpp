@@ -57,9 +57,7 @@ FollowedCurves followedCurves(const HexMesh& mesh, const VertexPlaces& places,
     const Vec3 step = minus(end, begin);
     for (const double share : kSamples) {
       if (edges.empty()) break;
-      const Vec3 point = {begin[0] + share * step[0], begin[1] + share * step[1],
-                          begin[2] + share * step[2]};
-      const TriangleTree::Nearest nearest = tree.nearest(point);
+      const TriangleTree::Nearest nearest = tree.nearest(plus(begin, times(share, step)));
       const Vec3 edge = minus(ends[nearest.triangle][1], ends[nearest.triangle][0]);
       if (nearest.distance > std::max(tolerance, kChordHeight * length(edge))) continue;
       if (std::abs(cosineBetween(edge, step)) >= kAlong) followed[s] += length(step) / 3;

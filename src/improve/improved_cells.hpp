@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -83,9 +82,5 @@ class ImprovedCells {
  private:
   std::size_t atOnce_;
 };
-
-/// @param mesh, around  and the cells around its vertices; both must outlive the result
-[[nodiscard]] std::unique_ptr<ImprovedCells> straightCells(const HexMesh& mesh,
-                                                           const adjacency::VertexCells& around);
 
 }  // namespace hexhex::improvement

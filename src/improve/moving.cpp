@@ -59,23 +59,6 @@ std::vector<Index> worsened(const ImproveReport& report, double least) {
 
 }  // namespace
 
-std::size_t Subject::parts() const {
-  if (curved == nullptr) return 1;
-  const auto order = static_cast<std::size_t>(curved->order);
-  return order * order * order;
-}
-
-Certificate Subject::certifyNow(Context& context) const {
-  if (curved == nullptr) return certify(mesh, context);
-  std::copy(mesh.points.begin(), mesh.points.end(), curved->points.begin());
-  return certify(*curved, context);
-}
-
-void Subject::putBack(const Array<Vec3>& points) const {
-  std::copy(points.begin(), points.end(), mesh.points.begin());
-  if (curved != nullptr) std::copy(points.begin(), points.end(), curved->points.begin());
-}
-
 Boundary::Boundary(const HexMesh& mesh, TriangleTree surface_, Stage& stage)
     : faces(adjacency::boundaryPlaces(mesh, stage)),
       quads(adjacency::quadsAt(mesh, faces)),
@@ -119,7 +102,6 @@ class Moving {
         options_(options),
         report_(report),
         stage_(stage),
-        curved_(subject.curved),
         before_(before),
         limit_(farthestAllowed(report.distanceBefore)),
         slack_(options.slack * report.diagonal) {}
@@ -134,7 +116,8 @@ class Moving {
     const double target = options_.target;
     const std::vector<Index> wereBad = verticesAtBad(sweeps);
     // Near cells that cannot become positive, others would get worse.
-    const bool canAtOnce = !curved_ && report_.cannotBePositive.empty() && canMoveAtOnce();
+    const bool canAtOnce =
+        !subject_.isCurved() && report_.cannotBePositive.empty() && canMoveAtOnce();
     const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
     if (isFolded) sweeps.moveAtOnce(target, slack_, true, [&] { return quadsTooFar(); });
     pull(sweeps);
@@ -177,12 +160,10 @@ class Moving {
 
  private:
   [[nodiscard]] bool canMoveBoundary() const {
-    return curved_ == nullptr && options_.passes > 0 && !options_.fixBoundary;
+    return !subject_.isCurved() && options_.passes > 0 && !options_.fixBoundary;
   }
 
-  [[nodiscard]] Sweeps newSweeps() {
-    return {subject_.mesh, curved_, places_, report_.diagonal, stage_};
-  }
+  [[nodiscard]] Sweeps newSweeps() { return {subject_, places_, report_.diagonal, stage_}; }
 
   [[nodiscard]] Array<Quad> quadsTooFar() const {
     Array<Quad> far;
@@ -304,9 +285,9 @@ class Moving {
     oneByOne(sweeps);
     if (!wereBad.empty()) sweeps.raiseWorst(target, slack_);
     const Sweeps::Standing now = sweeps.standing(target);
-    const bool isMended = now.bad == 0 && standing.bad > 0;
+    const bool isUntangled = now.bad == 0 && standing.bad > 0;
     const bool isBetter =
-        isMended || (now < standing && sweeps.fallenSince(qualities, target).empty());
+        isUntangled || (now < standing && sweeps.fallenSince(qualities, target).empty());
     if (!isBetter) sweeps.putBackAll(before);
     noteLoose(loose.holdUnmoved(subject_.mesh.points));
   }
@@ -351,7 +332,6 @@ class Moving {
   const ImproveOptions& options_;
   ImproveReport& report_;
   Stage& stage_;
-  const LagrangeMesh* curved_;
   Positions& before_;
   double limit_;  ///< of distances, in diagonals
   double slack_;

@@ -6,27 +6,15 @@
 #include <optional>
 #include <vector>
 
-#include <hexhex/curved.hpp>
 #include <hexhex/improve.hpp>
 
 #include <base/stage.hpp>
 #include <improve/neighbourhoods.hpp>
+#include <improve/subject.hpp>
 #include <improve/surface_distance.hpp>
 #include <improve/vertex_places.hpp>
 
 namespace hexhex::improvement {
-
-/// The mesh to improve, whose points move. If there are curved cells with the same points, these
-/// are improved, and the mesh is their refinedMesh().
-struct Subject {
-  HexMesh& mesh;
-  LagrangeMesh* curved = nullptr;
-
-  /// Number of cells of the mesh per improved cell: order^3 if these are curved, else 1.
-  [[nodiscard]] std::size_t parts() const;
-  [[nodiscard]] Certificate certifyNow(Context& context) const;
-  void putBack(const Array<Vec3>& points) const;
-};
 
 /// The boundary of a mesh, and the surface that it must stay near.
 struct Boundary {

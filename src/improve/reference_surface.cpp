@@ -34,10 +34,6 @@ adjacency::VertexLists<Index> listAt(std::size_t points,
           }};
 }
 
-Vec3 along(const Vec3& from, const Vec3& step, double share) {
-  return {from[0] + share * step[0], from[1] + share * step[1], from[2] + share * step[2]};
-}
-
 double squaredDistance(const Vec3& a, const Vec3& b) {
   const Vec3 d = minus(a, b);
   return dot(d, d);
@@ -79,7 +75,7 @@ Vec3 nearestOf(const std::array<Vec3, 2>& segment, const Vec3& point) noexcept {
   const double share = square > 0 ? dot(minus(point, segment[0]), step) / square : 0;
   if (share <= 0) return segment[0];
   if (share >= 1) return segment[1];
-  return along(segment[0], step, share);
+  return plus(segment[0], times(share, step));
 }
 
 Vec3 nearestOf(const std::array<Vec3, 3>& t, const Vec3& point) noexcept {
@@ -89,7 +85,7 @@ Vec3 nearestOf(const std::array<Vec3, 3>& t, const Vec3& point) noexcept {
   for (std::size_t i = 0; i < 3 && inside; ++i) {
     inside = tripleProduct(normal, minus(t[(i + 1) % 3], t[i]), minus(point, t[i])) >= 0;
   }
-  if (inside) return along(point, normal, -dot(minus(point, t[0]), normal) / square);
+  if (inside) return plus(point, times(-dot(minus(point, t[0]), normal) / square, normal));
   Vec3 best = t[0];
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 nearest = nearestOf(std::array<Vec3, 2>{t[i], t[(i + 1) % 3]}, point);

@@ -8,7 +8,6 @@
 #include <base/vector3.hpp>
 #include <base/workspaces.hpp>
 #include <improve/all_at_once.hpp>
-#include <improve/curved_cells.hpp>
 #include <improve/sweeps.hpp>
 
 namespace hexhex::improvement {
@@ -161,15 +160,13 @@ constexpr auto kIsBad = [](double quality) { return !isCertified(quality); };
 
 }  // namespace
 
-Sweeps::Sweeps(HexMesh& mesh, const LagrangeMesh* curved, VertexPlaces& places, double diagonal,
-               Stage& stage)
-    : mesh_(mesh),
+Sweeps::Sweeps(const Subject& subject, VertexPlaces& places, double diagonal, Stage& stage)
+    : mesh_(subject.mesh),
       places_(places),
       stage_(stage),
-      meshAround_(adjacency::cellsAroundVertices(mesh, stage)),
-      cells_(curved != nullptr ? std::make_unique<CurvedCells>(*curved, stage)
-                               : straightCells(mesh, meshAround_)),
-      boundary_(adjacency::findFaces(mesh, meshAround_, stage).boundary),
+      meshAround_(adjacency::cellsAroundVertices(mesh_, stage)),
+      cells_(subject.cells(meshAround_, stage)),
+      boundary_(adjacency::findFaces(mesh_, meshAround_, stage).boundary),
       chord_(kChord * diagonal) {
   boxes_.resize(cellPoints().cellCount());
   takeBoxes();

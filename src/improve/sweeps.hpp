@@ -12,12 +12,12 @@
 
 #include <adjacency/hex_topology.hpp>
 
-#include <hexhex/curved.hpp>
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
 #include <improve/improved_cells.hpp>
 #include <improve/neighbourhoods.hpp>
+#include <improve/subject.hpp>
 #include <improve/vertex_energy.hpp>
 #include <improve/vertex_mover.hpp>
 #include <improve/vertex_places.hpp>
@@ -88,11 +88,8 @@ class Sweeps {
   /// Cells that met the target at given earlier qualities, but no longer do.
   [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
   /// All references must outlive this.
-  /// @param mesh      its points move; the refined mesh if there are curved cells
-  /// @param curved    cells with the same points, improved instead of those of the mesh, or null
   /// @param diagonal  of the bounding box of the surface
-  Sweeps(HexMesh& mesh, const LagrangeMesh* curved, VertexPlaces& places, double diagonal,
-         Stage& stage);
+  Sweeps(const Subject& subject, VertexPlaces& places, double diagonal, Stage& stage);
 
   /// Moves vertices around cells that are not certified until all are or nothing helps any more.
   /// Restores vertices around cells that are still not certified.

@@ -194,12 +194,11 @@ void requireFeatures(const HexFeatures& features, std::size_t points) {
                      "). Correct the features, or leave them out."));
 }
 
-/// @param features     of the map or the mesh, whose vertices generators refer to
 /// @param generatorOf  called with (vertex, list): lists the points whose simplex held the vertex
 ///         originally, and returns their number
-template <class Features, class GeneratorOf>
-void place(const Array<Vec3>& points, const Features& features, const GeneratorOf& generatorOf,
-           VertexPlaces& places, Stage& stage) {
+template <class GeneratorOf>
+void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlaces& places,
+           Stage& stage) {
   const std::size_t n = points.size();
   places.freedom.resize(n);
   places.simplex.resize(n);
@@ -214,15 +213,9 @@ void place(const Array<Vec3>& points, const Features& features, const GeneratorO
     const auto vertex = static_cast<Index>(v);
     places.simplex[v] = places.nearest(vertex, points[v]).simplex;
   });
-  std::vector<Index> tagged;
-  for (const FeatureVertex& vertex : features.vertices) {
-    if (vertex.tag != 0) tagged.push_back(vertex.vertex);
-  }
-  std::sort(tagged.begin(), tagged.end());
-  for (std::size_t v = 0; v < n && !tagged.empty(); ++v) {
-    std::array<Index, 4> corners{};
-    if (places.freedom[v] != Freedom::Fixed || generatorOf(v, corners) != 1) continue;
-    if (std::binary_search(tagged.begin(), tagged.end(), corners[0])) ++places.tagged;
+  for (std::size_t v = 0; v < n; ++v) {
+    const bool isCorner = places.freedom[v] == Freedom::Fixed;
+    if (isCorner && places.surface.isTagged(Freedom::Fixed, places.simplex[v])) ++places.tagged;
   }
 }
 
@@ -242,7 +235,7 @@ VertexPlaces placesOnMap(const HexMesh& mesh, const TetMapView& map, double angl
   VertexPlaces places;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
-      mesh.points, map.features,
+      mesh.points,
       [&](std::size_t v, std::array<Index, 4>& corners) {
         std::size_t count = 0;
         for (std::size_t i = 0; i < 4; ++i) {
@@ -271,7 +264,7 @@ VertexPlaces placesOnMesh(const HexMesh& mesh, std::span<const std::uint8_t> isA
   places.isOwn = true;
   places.surface = ReferenceSurface(std::move(parts), stage);
   place(
-      mesh.points, mesh.features,
+      mesh.points,
       [](std::size_t v, std::array<Index, 4>& corners) {
         corners[0] = static_cast<Index>(v);
         return std::size_t{1};

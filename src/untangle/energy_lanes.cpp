@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include <untangle/energy_lanes.hpp>
+#include <untangle/regularized.hpp>
 
 #include <base/register_widths.hpp>
 
@@ -47,11 +48,9 @@ HEXHEX_INLINE void energyOf(const ElementLanes& elements, double epsilon, double
   const LaneMatrix j = jacobianOf(elements);
   const LaneMatrix cofactors = {cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])};
   const Number det = dot(j[0], cofactors[0]);
-  const auto root = rootOf<Number>(epsilon * epsilon + det * det);
-  // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
-  const Number chi = wherePositive(det, 0.5 * (det + root), Number{} + 0.5 * epsilon * epsilon) /
-                     wherePositive(det, Number{} + 1, root - det);
-  const Number slope = 0.5 * (1 + det / root);
+  const Regularized<Number> regularized(epsilon, det);
+  const Number chi = regularized.chi();
+  const Number slope = 0.5 * (1 + det / regularized.root);  // of chi
   const Number share = inverseCubeRoot(chi * chi);
   const Number shape = (dot(j[0], j[0]) + dot(j[1], j[1]) + dot(j[2], j[2])) * share;
   const Number volume = (det * det + 1) / chi;

@@ -4,6 +4,7 @@
 
 #include <untangle/energy_lanes.hpp>
 #include <untangle/foldover_energy.hpp>
+#include <untangle/regularized.hpp>
 
 #include <base/parallel.hpp>
 
@@ -51,9 +52,7 @@ void load(const Problem& problem, const Element& element, const double* x, std::
 
 double regularized(double epsilon, double det) noexcept {
   assert(epsilon > 0 || det > 0);
-  const double root = std::sqrt(epsilon * epsilon + det * det);
-  // (root + det) (root - det) = epsilon^2: use the factor without cancellation.
-  return det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
+  return Regularized<Pair>(epsilon, Pair{det, det}).chi()[0];
 }
 
 Vector coordinatesOf(const Problem& problem, const Vector& unknowns) {

@@ -20,8 +20,7 @@ namespace hexhex::untangle {
 
 using Vector = Eigen::VectorXd;
 
-/// A positive substitute for a determinant: close to it if it is positive, close to 0 if it is
-/// negative.
+/// Regularized::chi of one determinant.
 [[nodiscard]] double regularized(double epsilon, double det) noexcept;
 
 /// The energy at one point, with the number of flips and the least determinant there.

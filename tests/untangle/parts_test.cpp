@@ -140,9 +140,19 @@ TEST_F(UntangleParts, EnergyIsInfiniteAtFlippedElementsWithoutRegularization) {
   Vector gradient;
   EXPECT_TRUE(std::isinf(energy.at(x, 0).energy));
   EXPECT_TRUE(std::isinf(energy.at(x, 0, gradient).energy));
-  EXPECT_GT(untangle::regularized(0.1, -1), 0);
-  EXPECT_LT(untangle::regularized(0.1, -1), untangle::regularized(0.1, 0));
   EXPECT_DOUBLE_EQ(untangle::regularized(0, 2), 2);
+}
+
+/// chi(det) and chi(-det) differ by det, and their product is epsilon^2 / 4.
+TEST_F(UntangleParts, RegularizedDeterminantsAreTheRootsOfTheirEquation) {
+  for (const double epsilon : {1.0, 1e-3, 1e-7}) {
+    for (const double det : {0.0, 1e-5, 1.0, 1e3}) {
+      const double above = untangle::regularized(epsilon, det);
+      const double below = untangle::regularized(epsilon, -det);
+      EXPECT_NEAR(above - below, det, 1e-15 * (epsilon + det));
+      EXPECT_NEAR(4 * above * below / (epsilon * epsilon), 1, 1e-14);
+    }
+  }
 }
 
 /// The energy without all but its pull is quadratic: weight / 2 |J - target|^2.

@@ -1,4 +1,8 @@
-#include <improve/improved_cells.hpp>
+#include <algorithm>
+#include <array>
+
+#include <improve/curved_cells.hpp>
+#include <improve/subject.hpp>
 #include <mesh/cell_measures.hpp>
 
 namespace hexhex::improvement {
@@ -63,9 +67,27 @@ class StraightCells final : public ImprovedCells {
 
 }  // namespace
 
-std::unique_ptr<ImprovedCells> straightCells(const HexMesh& mesh,
-                                             const adjacency::VertexCells& around) {
+std::size_t Subject::parts() const {
+  if (!isCurved()) return 1;
+  const auto order = static_cast<std::size_t>(curved->order);
+  return order * order * order;
+}
+
+std::unique_ptr<const ImprovedCells> Subject::cells(const adjacency::VertexCells& around,
+                                                    Stage& stage) const {
+  if (isCurved()) return std::make_unique<CurvedCells>(*curved, stage);
   return std::make_unique<StraightCells>(mesh, around);
+}
+
+Certificate Subject::certifyNow(Context& context) const {
+  if (!isCurved()) return certify(mesh, context);
+  std::copy(mesh.points.begin(), mesh.points.end(), curved->points.begin());
+  return certify(*curved, context);
+}
+
+void Subject::putBack(const Array<Vec3>& points) const {
+  std::copy(points.begin(), points.end(), mesh.points.begin());
+  if (isCurved()) std::copy(points.begin(), points.end(), curved->points.begin());
 }
 
 }  // namespace hexhex::improvement
