@@ -122,6 +122,13 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Fil
     printLine("tagged curves",
               "no edges of the mesh follow " + counted(part.missingCurves, "piece"));
   }
+  for (const TagName& group : part.missingGroups) {
+    const std::string kind = group.dimension == 3 ? "region" : "surface";
+    printWarning(fmt::format(
+        "No {} of the mesh has the {} {}: it is too small for this number of cells. Ask for more.",
+        group.dimension == 3 ? "cell" : "quad", kind,
+        group.name.empty() ? std::to_string(group.tag) : "'" + group.name + "'"));
+  }
   printLine("time", run.partsAsText());
 }
 

@@ -192,6 +192,10 @@ Json shapeAsJson(const ShapeReport& report) {
 }
 
 Json partAsJson(const MeshedPart& part) {
+  Json groups = Json::array();
+  for (const TagName& group : part.missingGroups) {
+    groups.push_back({{"dimension", group.dimension}, {"tag", group.tag}, {"name", group.name}});
+  }
   return {{"ways", waysAsJson(part)},
           {"why", part.whyThisWay},
           {"map", shapeAsJson(part.shape)},
@@ -199,7 +203,8 @@ Json partAsJson(const MeshedPart& part) {
           {"verification", verificationAsJson(part.verification)},
           {"improvement", improvementAsJson(part.improvement)},
           {"tags_released", part.tagsReleased},
-          {"missing_curves", part.missingCurves}};
+          {"missing_curves", part.missingCurves},
+          {"missing_groups", std::move(groups)}};
 }
 
 Json secondsAsJson(std::span<const StageTime> stages) {

@@ -138,6 +138,7 @@ hexhex_status hexhex_mesh_from_tets(const hexhex_map_arrays* tets,
     writeReport(made.improvement, wanted.improvement);
     wanted.tags_released = made.tagsReleased ? 1 : 0;
     wanted.missing_curves = made.missingCurves;
+    wanted.missing_groups = made.missingGroups.size();
     wanted.why[made.whyThisWay.copy(wanted.why, sizeof wanted.why - 1)] = 0;
     if (reports != nullptr) writeStruct(wanted, *reports, "reports");
     hexhex_map* madeMap = nullptr;

@@ -44,6 +44,8 @@ struct MeshedPart {
   bool tagsReleased = false;
   /// Segments of tagged curves for which no mesh edges were found.
   std::uint64_t missingCurves = 0;
+  /// Regions and tagged surfaces of the part that no cell or quad has: they are too small for it.
+  std::vector<TagName> missingGroups;
   std::vector<WayReport> ways;  ///< with ShapeMethod::Auto: both methods
   std::string whyThisWay;  ///< with ShapeMethod::Auto: why this mesh was chosen, as half a sentence
 };

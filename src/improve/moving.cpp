@@ -295,7 +295,7 @@ class Moving {
   /// Raises the worst cells and smooths in turns until progress gets small: once their neighbours
   /// are smooth, they have room. Not in curved cells, where it would double the time.
   void raiseAgain(Sweeps& sweeps, double floor) const {
-    if (curved_ != nullptr || options_.passes == 0) return;
+    if (subject_.isCurved() || options_.passes == 0) return;
     constexpr int kMost = 6;
     constexpr double kStall = 0.005;
     const double target = options_.target;

@@ -2,6 +2,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -308,6 +309,23 @@ std::uint64_t tagBoundary(const TetMap& map, const Features& held, HexMesh& mesh
   const std::uint64_t missing = tagger.tagEdges(held);
   tagger.tagVertices();
   return missing;
+}
+
+std::vector<TagName> missingGroups(const TetMap& map, const HexMesh& mesh) {
+  std::map<std::pair<int, std::int32_t>, std::string> missing;
+  for (const std::int32_t region : map.regions) missing.emplace(std::pair(3, region), "");
+  for (const FeatureFace& face : map.features.faces) missing.emplace(std::pair(2, face.tag), "");
+  for (const std::int32_t region : mesh.regions) missing.erase({3, region});
+  for (const FeatureQuad& quad : mesh.features.quads) missing.erase({2, quad.tag});
+  missing.erase({2, 0});
+  missing.erase({3, 0});
+  for (const TagName& each : map.features.names) {
+    const auto found = missing.find({each.dimension, each.tag});
+    if (found != missing.end()) found->second = each.name;
+  }
+  std::vector<TagName> list;
+  for (const auto& [group, name] : missing) list.push_back({group.first, group.second, name});
+  return list;
 }
 
 }  // namespace hexhex::pipeline

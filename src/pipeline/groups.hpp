@@ -3,6 +3,8 @@
 // vertices move along the surface.
 #pragma once
 
+#include <vector>
+
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
@@ -21,5 +23,8 @@ namespace hexhex::pipeline {
 /// @return number of pieces of tagged curves without edges of the mesh
 [[nodiscard]] std::uint64_t tagBoundary(const TetMap& map, const Features& held, HexMesh& mesh,
                                         Stage& stage);
+
+/// Regions of the map without cells, and tags of its triangles without quads, with their names.
+[[nodiscard]] std::vector<TagName> missingGroups(const TetMap& map, const HexMesh& mesh);
 
 }  // namespace hexhex::pipeline

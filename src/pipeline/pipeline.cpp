@@ -85,6 +85,7 @@ void meshOf(MeshedPart& part, const TetMap& seamless, const MeshOptions& options
   withThreads(context.threads(), [&] {
     Stage stage(context, "groups");
     part.missingCurves = tagBoundary(part.map, held, part.mesh, stage);
+    part.missingGroups = missingGroups(part.map, part.mesh);
   });
 }
 

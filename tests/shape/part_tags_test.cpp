@@ -471,6 +471,7 @@ TEST(PartTags, OfPatchesAcrossTheGridAreThoseOfQuadsCentres) {
   EXPECT_NEAR(area, 3.14159 * 0.36, 0.25);
   // The circle is beside a closed path of edges.
   EXPECT_EQ(part.missingCurves, 0U);
+  EXPECT_TRUE(part.missingGroups.empty());
   std::map<Index, int> ends;
   for (const FeatureEdge& edge : part.mesh.features.edges) {
     if (edge.tag != 9) continue;
@@ -482,6 +483,24 @@ TEST(PartTags, OfPatchesAcrossTheGridAreThoseOfQuadsCentres) {
   }
   EXPECT_GT(ends.size(), 8U);
   for (const auto& [vertex, count] : ends) EXPECT_EQ(count, 2);
+}
+
+TEST(PartTags, OfSurfacesAndRegionsTooSmallForCellsAreReported) {
+  TetMesh box = CubeBody{
+      {1, 1, 1}, [](const Cell&) {
+        return true;
+      }}.labelled(8, [](const Vec3& p) {
+          return p;
+        }).tets;
+  const auto isSmall = [](const Vec3& p) { return p[0] + p[1] < 0.26 && p[2] > 0.74; };
+  tag(
+      box, [&](const Vec3& p) { return p[2] < 1 - 1e-9 ? 0
+                                       : isSmall(p)    ? 3
+                                                       : 4; },
+      [&](const Vec3& p) { return isSmall(p) ? 5 : 6; });
+  box.features.names = {{2, 3, "inlet"}, {3, 5, "sensor"}};
+  const std::vector<TagName> missing = meshed(box, 8).missingGroups;
+  EXPECT_EQ(missing, (std::vector<TagName>{{2, 3, "inlet"}, {3, 5, "sensor"}}));
 }
 
 TEST(PartTags, AreInTheMapOfTheCommandMap) {

@@ -1392,9 +1392,10 @@ typedef struct hexhex_mesh_reports {
   int tags_released; /**< 1: vertices were allowed to leave tagged edges to make cells positive */
   char why[512];     /**< with HEXHEX_METHOD_AUTO: why this mesh; UTF-8, truncated if longer */
   uint64_t missing_curves; /**< segments of tagged curves for which no mesh edges were found */
+  uint64_t missing_groups; /**< regions and tagged surfaces that no cell or quad has */
 } hexhex_mesh_reports;
 #define HEXHEX_MESH_REPORTS_INIT \
-  { sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, {0}, 0 }
+  { sizeof(hexhex_mesh_reports), NULL, NULL, NULL, 0, {0}, 0, 0 }
 
 /** Computes a hexahedral mesh from tets without a map: hexhex_map_from_tets(), hexhex_quantize(),
  * hexhex_extract(), hexhex_verify() and hexhex_mesh_improve(). Some cells may not be positive even

@@ -271,6 +271,8 @@ export interface MeshReport {
   improvement: ImproveReport;
   tags_released: boolean;
   missing_curves: number;
+  /** Regions and surfaces of the part that no cell or quad has. */
+  missing_groups: { dimension: number; tag: number; name: string }[];
 }
 
 export interface VerifyReport {

@@ -759,11 +759,11 @@ def mesh(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = None, *,
     workers = _threads(threads)
     part, filled = _part_of(points, tets, mesher, tet_size, many, feature_angle, workers, progress)
     (made, integer_map, values, quantization, rows, improved, ways, why, released, missing,
-     stages) = _hexhex.mesh_from_tets(part, shape, many, length, improvement, workers, progress)
+     lost, stages) = _hexhex.mesh_from_tets(part, shape, many, length, improvement, workers, progress)
     return MeshedPart(Mesh._from_handle(made), Map._from_handle(integer_map), ShapeReport(**values),
                       QuantizeReport(**quantization), _verification_of(rows),
                       _improvement_of(improved), [WayReport(*way) for way in ways], why,
-                      released, missing, stages, filled)
+                      released, missing, lost, stages, filled)
 
 
 def extract_partial(map: Map, *, scale: int = 1, tolerance: float = 1e-2,

@@ -1119,6 +1119,8 @@ class MeshedPart:
     why: str  #: with the method "auto": why this mesh was chosen
     tags_released: bool  #: vertices could leave tagged edges to make cells positive
     missing_curves: int  #: segments of tagged curves for which no mesh edges were found
+    #: dimension, tag and name of regions and surfaces of the part that no cell or quad has
+    missing_groups: list[tuple[int, int, str]]
     stages: list[tuple[str, float]]  #: name and seconds
     filled: FillReport | None  #: how a surface or STEP file was filled with tets
 
