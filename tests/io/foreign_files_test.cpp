@@ -142,6 +142,15 @@ TEST(ForeignFiles, PartitionedEntitiesOfGmsh) {
   EXPECT_EQ(failure.code, ErrorCode::FileSyntax);
 }
 
+TEST(ForeignFiles, PartitionedEntitiesOfGmsh40) {
+  std::string text = replaced(kText40, "$EndEntities\n",
+                              "$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n0 0 1 1\n"
+                              "16 2 6 2 1 2 0 0 0 1 1 0 1 3 0\n1010 3 1000 1 1 0 0 0 1 1 1 1 5 0\n"
+                              "$EndPartitionedEntities\n");
+  text = replaced(replaced(text, "\n6 2 3 1", "\n16 2 3 1"), "\n1000 3 5 1", "\n1010 3 5 1");
+  expectTaggedCube(gmsh(text));
+}
+
 /// A text in gzip's form without compression: one stored block.
 std::string gzipOf(const std::string& text) {
   std::uint32_t sum = 0xffffffffU;
