@@ -23,7 +23,7 @@ struct TriangleMesh {
 };
 
 /// Reads a surface: `.stl`, `.ply` (text and binary), `.obj`, `.off`, `.vtp`, `.vtk`. Polygons are
-/// split into triangles around their first corner. Vertices at the same position are merged, and
+/// split into triangles, convex ones around their first corner. Equal vertices are merged, and
 /// triangles left without three distinct corners are dropped.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported, NotFinite
 [[nodiscard]] TriangleMesh readTriangleMesh(const std::filesystem::path& file, Context& context);

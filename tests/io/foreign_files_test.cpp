@@ -17,6 +17,7 @@
 #include <hexhex/io.hpp>
 #include <hexhex/summary.hpp>
 
+#include <base/vector3.hpp>
 #include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/formats/formats.hpp>
@@ -142,6 +143,15 @@ TEST(ForeignFiles, PartitionedEntitiesOfGmsh) {
   EXPECT_EQ(failure.code, ErrorCode::FileSyntax);
 }
 
+TEST(ForeignFiles, PartitionedEntitiesOfGmsh40) {
+  std::string text = replaced(kText40, "$EndEntities\n",
+                              "$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n0 0 1 1\n"
+                              "16 2 6 2 1 2 0 0 0 1 1 0 1 3 0\n1010 3 1000 1 1 0 0 0 1 1 1 1 5 0\n"
+                              "$EndPartitionedEntities\n");
+  text = replaced(replaced(text, "\n6 2 3 1", "\n16 2 3 1"), "\n1000 3 5 1", "\n1010 3 5 1");
+  expectTaggedCube(gmsh(text));
+}
+
 /// A text in gzip's form without compression: one stored block.
 std::string gzipOf(const std::string& text) {
   std::uint32_t sum = 0xffffffffU;
@@ -227,6 +237,13 @@ const std::string kInpCells =
     "*ELEMENT,\nTYPE = C3D8R, ELSET=\"Left\"\n3, 5,4,3,2,\n1,9,8,7\n"
     "*Element, type=S4, elset=skin\n90, 5,4,3,2\n*Element, type=c3d8i\n4, 1,9,8,7,11,12,13,14\n";
 
+void expectFailureOf(HexMesh (*read)(const std::string&), const std::string& text, ErrorCode code,
+                     const std::string& part) {
+  const Failure failure = failureOf([&] { static_cast<void>(read(text)); });
+  EXPECT_EQ(failure.code, code) << failure.sentence;
+  EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
+}
+
 TEST(ForeignFiles, AbaqusByOtherPrograms) {
   const HexMesh mesh =
       abaqus(kInpNodes + kInpCells +
@@ -254,6 +271,45 @@ TEST(ForeignFiles, AbaqusByOtherPrograms) {
   EXPECT_EQ(mesh.features.vertices[0].vertex, 11U);
 }
 
+TEST(ForeignFiles, InstancesOfAbaqusAreWhereTheyArePut) {
+  const std::string part = "*Part, name=P\n" + kInpNodes + kInpCells + "*End Part\n*Assembly\n";
+  const std::string end = "*End Instance\n*Node\n30, 5., 5., 5.\n*End Assembly\n";
+  const HexMesh moved = abaqus(part + "*Instance, name=P-1, part=P\n10., , 1.\n" + end);
+  EXPECT_EQ(moved.points[6], (Vec3{11, 1, 2}));
+  EXPECT_EQ(moved.points[13], (Vec3{5, 5, 5}));  // a node of the assembly
+  // A quarter turn about the line x = 10, y = 0, upwards, which leaves the first node where it is.
+  const std::string turn = "*Instance, name=P-1, part=P\n10.\n10., 0., 0., 10., 0., 3., 90.\n";
+  const HexMesh turned = abaqus(part + turn + end);
+  const std::array<std::pair<std::size_t, Vec3>, 3> expected = {
+      {{0, {10, 0, 0}}, {1, {10, 1, 0}}, {6, {9, 1, 1}}}};
+  for (const auto& [i, place] : expected) {
+    EXPECT_LT(length(minus(turned.points[i], place)), 1e-12) << i;
+  }
+  expectFailureOf(abaqus, part + replaced(turn, "10., 0., 3.", "10., 0., 0.") + end,
+                  ErrorCode::FileSyntax, "no direction");
+}
+
+TEST(ForeignFiles, SetsOfAbaqusWithoutSectionsAreRegions) {
+  const auto regions = [](const std::string& sets) {
+    const HexMesh mesh = abaqus(kInpNodes + kInpCells + sets);
+    std::vector<std::string> names;
+    for (const std::int32_t region : mesh.regions) {
+      for (const TagName& name : mesh.features.names) {
+        if (name.dimension == 3 && name.tag == region) names.push_back(name.name);
+      }
+    }
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(regions("*elset, elset=steel\n3\n*elset, elset=rubber\n4\n"),
+            (Names{"steel", "rubber"}));
+  EXPECT_EQ(regions("*elset, elset=rubber\n4\n*elset, elset=all\n3, 4\n"),
+            (Names{"all", "rubber"}));  // the smaller one
+  EXPECT_EQ(regions("*elset, elset=skins\n4, 90\n*elset, elset=s, internal\n4\n"), Names{"left"});
+  EXPECT_EQ(regions("*elset, elset=load\n3\n*elset, elset=up\n4\n*solid section, elset=up\n"),
+            (Names{"left", "up"}));
+}
+
 TEST(ForeignFiles, ShellsOfAbaqusTagQuads) {
   const HexMesh mesh = abaqus(kInpNodes + kInpCells +
                               "*Element, type=CPS4, elset=sheet\n91, 11,12,13,14\n92, 5,4,9,1\n"
@@ -267,13 +323,6 @@ TEST(ForeignFiles, ShellsOfAbaqusTagQuads) {
   }
   EXPECT_EQ(named, (std::vector<std::pair<Quad, std::string>>{
                        {{0, 1, 2, 3}, "skin"}, {{8, 9, 10, 11}, "top"}, {{0, 1, 5, 4}, "sheet"}}));
-}
-
-void expectFailureOf(HexMesh (*read)(const std::string&), const std::string& text, ErrorCode code,
-                     const std::string& part) {
-  const Failure failure = failureOf([&] { static_cast<void>(read(text)); });
-  EXPECT_EQ(failure.code, code) << failure.sentence;
-  EXPECT_NE(failure.sentence.find(part), std::string::npos) << failure.sentence;
 }
 
 TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
@@ -292,6 +341,7 @@ TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
   expectFailure(replaced(good, ",13,14\n", "\n"), ErrorCode::FileSyntax, "nodes of element 4");
   expectFailure(good + "*ngen\n1, 2, 1\n", ErrorCode::FileUnsupported, "line 28: the keyword");
   expectFailure(good + "*include, input=a.inp\n", ErrorCode::FileUnsupported, "cannot include");
+  expectFailure(good + "*node, input=a.inp\n", ErrorCode::FileUnsupported, "INPUT=...");
   expectFailure(good + "*nset,nset=a,generate\n1,900000000000\n", ErrorCode::TooLarge, "line 29");
   expectFailure(good + "*elset,elset=a\nnone\n", ErrorCode::FileSyntax, "\"none\", which is no");
   expectFailure(replaced(replaced(good, "c3d8i", "c3d6"), "C3D8R", "C3D6"),
@@ -552,6 +602,10 @@ TEST(ForeignFiles, MeshesOfMfem) {
   EXPECT_EQ(mesh.features.names[0].tag, 5);
   EXPECT_EQ(mesh.features.names[1].name, "bottom");
   EXPECT_EQ(mesh.features.names[1].dimension, 2);
+  // Version 4.10 of MFEM writes the numbers on lines of their own.
+  const HexMesh lines = mfem(replaced(replaced(good, "solid\" 1 5\n", "solid\"\n1\n5\n"),
+                                      "\"all\" 2 5 6", "\"all\"\n2\n5 6"));
+  EXPECT_EQ(lines.features.names, mesh.features.names);
   // Attributes that are all 1 say nothing.
   const HexMesh plain = mfem(replaced(replaced(replaced(good, "5 5 0", "1 5 0"), "7 3 0", "1 3 0"),
                                       "dimension", "# x\ndimension"));

@@ -100,6 +100,55 @@ TEST(Gmsh, NamesOfGroupsHaveOneSign) {
   }
 }
 
+/// The tags and names of the bottom and the top of a cube, groups 21 and 22 with these names.
+std::vector<std::pair<std::int32_t, std::string>> groupsNamed(const std::string& bottom,
+                                                              const std::string& top) {
+  const HexMesh mesh =
+      parse(kHead22 + "$PhysicalNames\n2\n2 21 \"" + bottom + "\"\n2 22 \"" + top +
+            "\"\n$EndPhysicalNames\n" + kNodes22 +
+            "$Elements\n3\n1 3 2 21 1 1 2 3 4\n2 3 2 22 2 5 6 7 8\n3 5 2 1 1 1 2 3 4 5 6 7 8\n"
+            "$EndElements\n");
+  std::vector<std::pair<std::int32_t, std::string>> groups;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    std::string& name = groups.emplace_back(quad.tag, "").second;
+    for (const TagName& each : mesh.features.names) {
+      if (each.dimension == 2 && each.tag == quad.tag) name = each.name;
+    }
+  }
+  return groups;
+}
+
+TEST(Gmsh, NamesDoNotMergeGroups) {
+  using Groups = std::vector<std::pair<std::int32_t, std::string>>;
+  EXPECT_EQ(groupsNamed("surface_7", "outlet"), (Groups{{7, ""}, {22, "outlet"}}));
+  EXPECT_EQ(groupsNamed("surface_22", "surface_21"), (Groups{{22, ""}, {21, ""}}));
+  EXPECT_EQ(groupsNamed("surface_22", "outlet"), (Groups{{21, ""}, {22, "outlet"}}));
+  EXPECT_EQ(groupsNamed("surface_7", "surface_7"), (Groups{{21, ""}, {22, ""}}));
+  // Only hexhex's own names of quads say a tag, or that there is none.
+  EXPECT_EQ(groupsNamed("surface_0", "region_22"), (Groups{{21, "surface_0"}, {22, "region_22"}}));
+  EXPECT_EQ(groupsNamed("patch_antenna", "point_21"),
+            (Groups{{21, "patch_antenna"}, {22, "point_21"}}));
+  EXPECT_EQ(groupsNamed("patch_3", "boundary"), Groups{});
+}
+
+TEST(Gmsh, ElementsOfTwoGroupsAreReadOnce) {
+  std::string nodes = replaced(kNodes22, "$Nodes\n8", "$Nodes\n12");
+  nodes = replaced(nodes, "$EndNodes", "9 0 0 2\n10 1 0 2\n11 1 1 2\n12 0 1 2\n$EndNodes");
+  const HexMesh mesh =
+      parse(kHead22 + nodes +
+            "$Elements\n9\n1 15 2 4 1 1\n2 15 2 3 1 1\n3 1 2 9 1 1 2\n4 1 2 8 1 1 2\n"
+            "5 3 2 21 1 1 2 3 4\n6 3 2 2 1 1 2 3 4\n7 5 2 11 1 1 2 3 4 5 6 7 8\n"
+            "8 5 2 1 1 1 2 3 4 5 6 7 8\n9 5 2 1 1 5 6 7 8 9 10 11 12\n$EndElements\n");
+  EXPECT_EQ(mesh.cells, (Array<Hex>{kCubeCell, {4, 5, 6, 7, 8, 9, 10, 11}}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{11, 1}));
+  ASSERT_EQ(mesh.features.quads.size(), 1U);
+  EXPECT_EQ(mesh.features.quads[0].tag, 21);
+  ASSERT_EQ(mesh.features.edges.size(), 1U);
+  EXPECT_EQ(mesh.features.edges[0].tag, 9);
+  ASSERT_EQ(mesh.features.vertices.size(), 1U);
+  EXPECT_EQ(mesh.features.vertices[0].tag, 4);
+}
+
 TEST(Gmsh, TagsOfNodesAreFree) {
   std::string nodes = kNodes22;
   nodes = replaced(nodes, "\n1 0 0 0", "\n900000000 0 0 0");
@@ -388,13 +437,13 @@ TEST(Gmsh, BinaryOfVersion22HasTheTagsOfTheText) {
   const std::string names =
       "$PhysicalNames\n3\n0 2 \"point_m4\"\n2 9 \"inlet\"\n3 8 \"region_70\"\n"
       "$EndPhysicalNames\n";
-  const std::string cube = " 1 2 3 4 5 6 7 8\n";
   // Numbers with a sign, without a tag, with three of them, with the group 0, without a name.
-  const std::string text = kHead22 + names + kNodes22 +
-                           "$Elements\n10\n1 15 2 2 1 4\n2 15 0 5\n3 1 1 -6 1 2\n"
-                           "4 3 3 9 1 1 5 6 7 8\n5 3 2 0 1 1 2 6 5\n6 4 2 8 8 1 2 3 5\n7 5 0" +
-                           cube + "8 5 1 -8" + cube + "9 5 3 8 1 1" + cube + "10 5 2 5 5" + cube +
-                           "$EndElements\n";
+  const std::string text =
+      kHead22 + names + kNodes22 +
+      "$Elements\n10\n1 15 2 2 1 4\n2 15 0 5\n3 1 1 -6 1 2\n"
+      "4 3 3 9 1 1 5 6 7 8\n5 3 2 0 1 1 2 6 5\n6 4 2 8 8 1 2 3 5\n7 5 0 1 2 3 4 5 6 7 8\n"
+      "8 5 1 -8 2 3 4 1 6 7 8 5\n9 5 3 8 1 1 3 4 1 2 7 8 5 6\n"
+      "10 5 2 5 5 4 1 2 3 8 5 6 7\n$EndElements\n";
   for (const std::string& file : {text, inBytes22(text)}) {
     const HexMesh mesh = parse(file);
     EXPECT_EQ(mesh.cells.size(), 4U);

@@ -13,6 +13,7 @@
 #include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/vector3.hpp>
 #include <io/core/registry.hpp>
 
 #include "io_test_support.hpp"
@@ -183,6 +184,11 @@ TEST(SurfaceFiles, AreReadAsOthersWriteThem) {
   expectPyramid(kVtk5, "b.vtk");
   expectPyramid(kVtp, "a.vtp");
   expectPyramid(stlText(), "text.stl");
+  std::string upper = " \n" + stlText();
+  std::transform(upper.begin(), upper.end(), upper.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
+  expectPyramid(upper, "upper.stl");
   expectPyramid(stlBytes("made by hand"), "bytes.STL");
   expectPyramid(stlBytes("solid as some programs begin"), "solid.stl");
   expectPyramid(kObj, "a.obj");
@@ -191,6 +197,32 @@ TEST(SurfaceFiles, AreReadAsOthersWriteThem) {
   expectPyramid(plyText(), "text.ply");
   expectPyramid(plyBytes(false), "little.ply");
   expectPyramid(plyBytes(true), "big.ply");
+}
+
+TEST(SurfaceFiles, PolygonsThatAreNotConvexAreCutIntoEars) {
+  // A U of area 5, facing up, and far from the origin: triangles around a corner would overlap.
+  const std::vector<Vec3> u = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {2, 2, 0},
+                               {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+  std::string points;
+  for (const Vec3& p : u) {
+    points += "v " + std::to_string(p[0] + 1e6) + " " + std::to_string(p[1]) + " 0\n";
+  }
+  for (std::size_t first = 0; first < u.size(); ++first) {
+    std::string face = "f";
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      face += " " + std::to_string((first + i) % u.size() + 1);
+    }
+    const TriangleMesh mesh = readSurface(points + face + "\n", "u.obj");
+    ASSERT_EQ(mesh.triangles.size(), 6U);
+    double area = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 twice =
+          cross(minus(mesh.points[b], mesh.points[a]), minus(mesh.points[c], mesh.points[a]));
+      EXPECT_GE(twice[2], 0) << first;
+      area += twice[2] / 2;
+    }
+    EXPECT_DOUBLE_EQ(area, 5) << first;
+  }
 }
 
 TEST(SurfaceFiles, AreWeldedExactly) {

@@ -182,8 +182,12 @@ TEST(GmshNames, SayTheTag) {
   EXPECT_EQ(tagInGroupName("curve_m2147483648"), -2147483647 - 1);
   EXPECT_EQ(tagInGroupName("boundary"), 0);
   EXPECT_EQ(tagInGroupName("patch_3"), 0);
-  for (const char* other : {"", "inlet", "surface_", "surface_x", "surface_7 ", "region_2147483648",
-                            "curve_m", "point_99999999999999999999"}) {
+  EXPECT_EQ(tagInGroupName("surface_7", 2), 7);
+  EXPECT_EQ(tagInGroupName("surface_7", 3), std::nullopt);
+  EXPECT_EQ(tagInGroupName("boundary", 3), std::nullopt);
+  for (const char* other :
+       {"", "inlet", "surface_", "surface_x", "surface_7 ", "region_2147483648", "surface_0",
+        "patch_", "patch_antenna", "curve_m", "point_99999999999999999999"}) {
     EXPECT_EQ(tagInGroupName(other), std::nullopt) << other;
   }
 }

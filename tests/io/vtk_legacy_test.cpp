@@ -83,6 +83,23 @@ TEST(VtkLegacyReader, OtherCellsAndArraysAreIgnored) {
             ErrorCode::FileUnsupported);
 }
 
+TEST(VtkLegacyReader, ArraysOfOtherProgramsTagCellsAndQuads) {
+  const std::string cells =
+      "CELLS 3 18\n4 0 1 2 3\n8 0 1 2 3 4 5 6 7\n3 0 1 2\nCELL_TYPES 3\n9 12 5\n";
+  for (const std::string array :
+       {"POINT_DATA 8\nSCALARS t double\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\nCELL_DATA 3\n"
+        "SCALARS region long\nLOOKUP_TABLE default\n5 -3 9\n",
+        "CELL_DATA 3\nFIELD FieldData 1\ngmsh:physical 1 3 vtktypeint32\n5 -3 9\n",
+        "CELL_DATA 3\nSCALARS material int\nLOOKUP_TABLE default\n5 -3 9\n"}) {
+    SCOPED_TRACE(array);
+    const HexMesh mesh = parse(kHead + kPoints + cells + array);
+    EXPECT_EQ(mesh.regions, (Array<std::int32_t>{-3}));
+    ASSERT_EQ(mesh.features.quads.size(), 1U);
+    EXPECT_EQ(mesh.features.quads[0].vertices, (Quad{0, 1, 2, 3}));
+    EXPECT_EQ(mesh.features.quads[0].tag, 5);
+  }
+}
+
 TEST(VtkLegacyReader, OffsetsOfVersionFive) {
   const HexMesh mesh = parse(kHead + kPoints +
                              "CELLS 3 12\nOFFSETS vtktypeint64\n0 4 12\nCONNECTIVITY vtktypeint64\n"

@@ -356,11 +356,13 @@ MeshGroups groupPart(const MeshPart& part, const PartsInfo& info, Stage& stage) 
   return {std::move(vertices), std::move(edges), std::move(quads), groupOwnCells(part, info)};
 }
 
-std::optional<std::int32_t> tagInGroupName(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kTagged = {"point_", "curve_", "surface_", "region_"};
-  if (name == "boundary" || name == "hexahedra" || name.starts_with("patch_")) return 0;
-  for (const std::string_view prefix : kTagged) {
-    if (!name.starts_with(prefix)) continue;
+std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension) {
+  constexpr std::array<std::pair<std::string_view, int>, 5> kTagged = {
+      {{"point_", 0}, {"curve_", 1}, {"surface_", 2}, {"patch_", 2}, {"region_", 3}}};
+  const auto fits = [dimension](int own) { return dimension == -1 || dimension == own; };
+  if ((name == "boundary" && fits(2)) || (name == "hexahedra" && fits(3))) return 0;
+  for (const auto& [prefix, own] : kTagged) {
+    if (!name.starts_with(prefix) || !fits(own)) continue;
     std::string_view digits = name.substr(prefix.size());
     const bool negative = digits.starts_with('m');
     if (negative) digits.remove_prefix(1);
@@ -369,8 +371,8 @@ std::optional<std::int32_t> tagInGroupName(std::string_view name) {
     const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), tag);
     if (result.ec != std::errc{} || result.ptr != digits.data() + digits.size()) return {};
     tag = negative ? -tag : tag;
-    if (!std::in_range<std::int32_t>(tag)) return {};
-    return static_cast<std::int32_t>(tag);
+    if (tag == 0 || !std::in_range<std::int32_t>(tag)) return {};
+    return prefix == "patch_" ? 0 : static_cast<std::int32_t>(tag);
   }
   return {};
 }

@@ -136,7 +136,8 @@ void requireInt32(std::size_t count, const std::string& numbers,
 
 /// The tag in a default name of a group, 0 for "boundary", "hexahedra" and "patch_7"; empty for
 /// other names.
-[[nodiscard]] std::optional<std::int32_t> tagInGroupName(std::string_view name);
+/// @param dimension  of the elements, if only their names count; -1: any
+[[nodiscard]] std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension = -1);
 
 /// Gives groups unique numbers across dimensions, since programs such as meshio and GetFEM merge
 /// groups with equal numbers. Numbers that are tags are kept where possible, earlier kinds first.

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <span>
@@ -21,6 +23,7 @@
 
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
+#include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
@@ -197,6 +200,10 @@ class AbaqusReader {
   }
 
   void readBlock(const AbaqusKeyword& keyword) {
+    if (keyword.has("input") && (keyword.name == "*node" || keyword.name == "*element")) {
+      fail("data lines in a file of their own (INPUT=...) are not read. Put the file's lines here",
+           ErrorCode::FileUnsupported);
+    }
     if (parts_ == ElementParts::Types && keyword.name != "*element") return;
     if (keyword.name == "*node") {
       readNodes(keyword);
@@ -206,6 +213,7 @@ class AbaqusReader {
       readSet(keyword, keyword.value("nset"), nodeSets_);
     } else if (keyword.name == "*elset") {
       readSet(keyword, keyword.value("elset"), elementSets_);
+      if (!keyword.has("internal")) listedSets_.push_back(keyword.value("elset"));
     } else if (keyword.name == "*surface") {
       readSurface(keyword);
     } else if (keyword.name == "*heading") {
@@ -213,7 +221,9 @@ class AbaqusReader {
     } else if (keyword.name == "*solid section") {
       sections_.push_back(keyword.value("elset"));
     } else if (keyword.name == "*instance") {
-      if (++instances_ > 1) failAssembly();
+      readInstance();
+    } else if (keyword.name == "*end instance") {
+      placeInstance();
     } else {
       refuse(keyword.name);
     }
@@ -235,6 +245,39 @@ class AbaqusReader {
         "the file is an assembly of several instances of parts. Export it as one mesh, without "
         "parts",
         ErrorCode::FileUnsupported);
+  }
+
+  /// Reads where an instance is: a translation, and behind it a rotation about the line through two
+  /// points, by an angle in degrees.
+  void readInstance() {
+    if (++instances_ > 1) failAssembly();
+    for (const std::size_t count : {3U, 7U}) {
+      if (!nextData()) return;
+      std::string_view rest = line_;
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::string_view word = takeField(rest);
+        place_.push_back(word.empty() ? 0 : real(word));
+      }
+    }
+  }
+
+  void placeInstance() {
+    const std::vector<double> place = std::exchange(place_, {});
+    if (place.empty()) return;
+    for (Vec3& point : lists_.points) point = plus(point, {place[0], place[1], place[2]});
+    if (place.size() == 3) return;
+    const Vec3 begin{place[3], place[4], place[5]};
+    const Vec3 along = minus(Vec3{place[6], place[7], place[8]}, begin);
+    if (!(length(along) > 0)) fail("the axis of the instance's rotation has no direction");
+    const Vec3 axis = times(1 / length(along), along);
+    const double angle = place[9] * std::numbers::pi / 180;
+    for (Vec3& point : lists_.points) {  // the formula of Rodrigues
+      const Vec3 arm = minus(point, begin);
+      const Vec3 middle = times(dot(axis, arm) * (1 - std::cos(angle)), axis);
+      const Vec3 turned =
+          plus(times(std::cos(angle), arm), times(std::sin(angle), cross(axis, arm)));
+      point = plus(begin, plus(turned, middle));
+    }
   }
 
   void include(const AbaqusKeyword& keyword, const std::filesystem::path& path) {
@@ -461,11 +504,33 @@ class AbaqusReader {
     return prefixed && (isOwn_ || tagInGroupName(name.substr(2))) ? name.substr(2) : name;
   }
 
-  /// Tags regions: the sets named by *ELEMENT and *SOLID SECTION, numbered from 1 in file order,
-  /// and the sets that this library writes.
+  /// Sets of volume elements alone that *ELSET lists, large ones first, so that the smallest set of
+  /// an element is its region. Gmsh and meshio write regions so.
+  [[nodiscard]] std::vector<std::string> volumeSets() const {
+    if (listedSets_.empty()) return {};
+    ElementTags volumes;
+    for (const ElementBlock& block : lists_.blocks) {
+      for (const std::uint64_t number : block.numbers) volumes.add(number, 1);
+    }
+    volumes.sort();
+    std::vector<std::string> names;
+    for (const std::string& name : listedSets_) {
+      const auto& items = elementSets_.at(name).items;
+      const auto isVolume = [&](std::uint64_t element) { return volumes.find(element) != 0; };
+      if (std::all_of(items.begin(), items.end(), isVolume)) names.push_back(name);
+    }
+    std::stable_sort(names.begin(), names.end(), [this](const auto& a, const auto& b) {
+      return elementSets_.at(a).items.size() > elementSets_.at(b).items.size();
+    });
+    return names;
+  }
+
+  /// Tags regions: the sets named by *ELEMENT and, with more weight, *SOLID SECTION or, in files
+  /// without these, *ELSET, numbered from 1 in this order; and the sets that this library writes.
   void tagRegions() {
     std::vector<std::string>& names = blockSets_;
-    names.insert(names.end(), sections_.begin(), sections_.end());
+    const std::vector<std::string> later = sections_.empty() ? volumeSets() : sections_;
+    names.insert(names.end(), later.begin(), later.end());
     for (const auto& [name, set] : elementSets_) {
       if (ownName(name) != name) names.push_back(name);
     }
@@ -574,14 +639,16 @@ class AbaqusReader {
   int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
   int instances_ = 0;
+  std::vector<double> place_;       ///< of the instance, until all its nodes are known
   std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
   std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block: node numbers
   Sets nodeSets_;
   Sets elementSets_;
-  std::vector<std::string> blockSets_;  ///< names of sets that are regions: from *ELEMENT,
-  std::vector<std::string> sections_;   ///< and from *SOLID SECTION
+  std::vector<std::string> blockSets_;   ///< names of sets that are regions: from *ELEMENT,
+  std::vector<std::string> sections_;    ///< and from *SOLID SECTION
+  std::vector<std::string> listedSets_;  ///< names from *ELSET
   std::vector<Surface> surfaces_;
   std::vector<Facet> facets_;
   Sets facetSets_;  ///< named by *ELEMENT

@@ -278,7 +278,7 @@ std::size_t ElementLists::blockOf(const VolumeCells* type, std::size_t nodesEach
 }
 
 void ElementLists::addName(int dimension, std::int32_t tag, std::string_view name) {
-  if (tag == 0 || name.empty() || tagInGroupName(name)) return;
+  if (tag == 0 || name.empty() || tagInGroupName(name, dimension)) return;
   names.push_back({dimension, tag, std::string(name)});
 }
 
@@ -327,6 +327,20 @@ std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {
   const auto tag = tagInGroupName(name);
   if (tag) return *tag;
   return std::in_range<std::int32_t>(number) ? static_cast<std::int32_t>(number) : 0;
+}
+
+std::vector<std::int32_t> tagsOfGroups(const std::vector<NumberedGroup>& groups, int dimension) {
+  std::vector<std::int32_t> named;
+  std::vector<std::int32_t> numbers;
+  std::set<std::int32_t> distinct;
+  bool merges = false;
+  for (const NumberedGroup& group : groups) {
+    const bool isOwn = tagInGroupName(group.name, dimension).has_value();
+    named.push_back(tagOfGroup(isOwn ? group.name : std::string(), group.number));
+    numbers.push_back(named.back() == 0 ? 0 : tagOfGroup({}, group.number));
+    if (named.back() != 0) merges = !distinct.insert(named.back()).second || merges;
+  }
+  return merges ? numbers : named;
 }
 
 NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) {

@@ -126,6 +126,16 @@ void setCoordinates(ElementLists& lists, std::size_t first, std::size_t axis,
 /// The tag of a group of elements: from a name written by this library, otherwise its number.
 [[nodiscard]] std::int32_t tagOfGroup(std::string_view name, std::int64_t number);
 
+/// A group of elements in a file.
+struct NumberedGroup {
+  std::string name;
+  std::int64_t number = 0;
+};
+/// The tags of all groups of elements of a dimension (-1: any), as by tagOfGroup(), unless this
+/// would merge groups: then their numbers.
+[[nodiscard]] std::vector<std::int32_t> tagsOfGroups(const std::vector<NumberedGroup>& groups,
+                                                     int dimension);
+
 /// Assigns tags to groups: from names written by this library, otherwise consecutive numbers that
 /// skip the tags in names.
 class GroupTags {

@@ -325,8 +325,10 @@ class ExodusReader {
     [[nodiscard]] std::string nameOf(std::size_t i) const {
       return i < names.size() ? names[i] : std::string();
     }
-    [[nodiscard]] std::int32_t tagOf(std::size_t i) const {
-      return tagOfGroup(nameOf(i), numberOf(i));
+    [[nodiscard]] std::vector<std::int32_t> tags(int dimension) const {
+      std::vector<NumberedGroup> all;
+      for (std::size_t i = 0; i < size(); ++i) all.push_back({nameOf(i), numberOf(i)});
+      return tagsOfGroups(all, dimension);
     }
     [[nodiscard]] std::size_t size() const { return std::max(numbers.size(), names.size()); }
   };
@@ -347,13 +349,14 @@ class ExodusReader {
 
   void readBlocks() {
     const Groups groups = groupsOf("eb");
+    const std::vector<std::int32_t> tags = groups.tags(3);
     std::uint64_t next = 1;
     for (std::size_t b = 0; b < groups.size(); ++b) {
       // Empty blocks have no variable.
       const NetcdfValues* const values = file_.find(concat("connect", b + 1));
       if (values == nullptr) continue;
-      readBlock(*values, groups.tagOf(b), next);
-      lists_.addName(3, groups.tagOf(b), groups.nameOf(b));
+      readBlock(*values, tags[b], next);
+      lists_.addName(3, tags[b], groups.nameOf(b));
     }
     if (lists_.blocks.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no elements.");
   }
@@ -417,6 +420,7 @@ class ExodusReader {
 
   void readSides() {
     const Groups groups = groupsOf("ss");
+    const std::vector<std::int32_t> tags = groups.tags(2);
     for (std::size_t s = 0; s < groups.size(); ++s) {
       const std::string end = concat("_ss", s + 1);
       const NetcdfValues* const found = file_.find("elem" + end);
@@ -427,7 +431,7 @@ class ExodusReader {
         input_.fail(ErrorCode::FileSyntax, "side set ", s + 1,
                     " has not as many sides as elements.");
       }
-      const std::int32_t tag = groups.tagOf(s);
+      const std::int32_t tag = tags[s];
       lists_.addName(2, tag, groups.nameOf(s));
       for (std::size_t i = 0; i < sides.size(); ++i) {
         const auto* const face = std::find(kExodusSides.begin(), kExodusSides.end(), sides[i]);
@@ -444,7 +448,8 @@ class ExodusReader {
     for (std::size_t s = 0; s < groups.size(); ++s) {
       const NetcdfValues* const found = file_.find(concat("node_ns", s + 1));
       if (found == nullptr) continue;
-      NodeSet& set = lists_.nodeSets.emplace_back(NodeSet{groups.nameOf(s), groups.tagOf(s), {}});
+      const std::int32_t tag = tagOfGroup(groups.nameOf(s), groups.numberOf(s));
+      NodeSet& set = lists_.nodeSets.emplace_back(NodeSet{groups.nameOf(s), tag, {}});
       for (const std::int64_t node : file_.integers(*found)) {
         set.nodes.push_back(nodeOf(node, found->name));
       }

@@ -8,6 +8,8 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,6 +24,7 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/plain_mesh.hpp>
+#include <io/core/repeated_features.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
@@ -112,20 +115,19 @@ class GmshTags {
  public:
   /// Adds the name of a physical group.
   void addName(GmshGroup group, std::string_view name) {
-    if (const std::optional<std::int32_t> tag = tagInGroupName(name)) {
-      named_.emplace(group, *tag);
-    } else if (group.first >= 0 && group.first <= 3 && ofPhysical(group) != 0) {
-      names.push_back({static_cast<int>(group.first), ofPhysical(group), std::string(name)});
-    }
+    if (group.first < 0 || group.first > 3) return;
+    const auto dimension = static_cast<int>(group.first);
+    if (tagInGroupName(name, dimension) == 0) untagged_.insert(group);
+    if (ofPhysical(group) == 0) return;
+    names.push_back({dimension, ofPhysical(group), std::string(name)});
   }
-  std::vector<TagName> names;  ///< given by other programs
+  std::vector<TagName> names;
   /// Sets the first physical group of an MSH 4.1 entity; 0 if it has none.
   void addEntity(GmshGroup entity, std::int64_t physical) { physicals_.emplace(entity, physical); }
 
   /// The tag of a physical group; 0 if there is none.
   [[nodiscard]] std::int32_t ofPhysical(GmshGroup group) const {
-    const auto found = named_.find(group);
-    if (found != named_.end()) return found->second;
+    if (untagged_.contains(group)) return 0;
     return std::in_range<std::int32_t>(group.second) ? static_cast<std::int32_t>(group.second) : 0;
   }
   [[nodiscard]] std::int32_t ofEntity(GmshGroup entity) const {
@@ -135,7 +137,7 @@ class GmshTags {
 
  private:
   // As many as the file has groups and entities, which are few.
-  std::map<GmshGroup, std::int32_t> named_;
+  std::set<GmshGroup> untagged_;  ///< by their names
   std::map<GmshGroup, std::int64_t> physicals_;
 };
 
@@ -347,8 +349,8 @@ void readEntitiesOf(Source& source, GmshVersion version, std::size_t dimension, 
   }
 }
 
-/// Reads the groups of entities from the section $Entities of version 4, or from
-/// $PartitionedEntities of 4.1.
+/// Reads the groups of entities from the section $Entities or
+/// $PartitionedEntities of version 4.
 template <class Source>
 void readEntities(Source& source, GmshVersion version, bool partitioned, GmshTags& tags) {
   if (partitioned) {
@@ -583,7 +585,8 @@ class GmshReader {
       input_.fail(ErrorCode::FileUnsupported,
                   "the file holds no cells: it has no section $Elements.");
     }
-    lists_.names = std::move(tags_.names);
+    for (int dimension = 0; dimension <= 3; ++dimension) useNames(dimension);
+    if (!hasEntities(file_.version())) removeRepeatedElements();
     lists_.mayBeEmpty = lists_.blocks.empty();
     return std::move(lists_);
   }
@@ -604,7 +607,7 @@ class GmshReader {
     } else if (all && name == "Entities" && hasEntities(file_.version())) {
       file_.withSource(
           [this](auto& source) { readEntities(source, file_.version(), false, tags_); });
-    } else if (all && name == "PartitionedEntities" && file_.version() == GmshVersion::V41) {
+    } else if (all && name == "PartitionedEntities" && hasEntities(file_.version())) {
       file_.withSource(
           [this](auto& source) { readEntities(source, file_.version(), true, tags_); });
     } else if (all && name == (version1 ? "NOD" : "Nodes")) {
@@ -614,6 +617,92 @@ class GmshReader {
       return;
     }
     file_.endSection(name);
+  }
+
+  /// Versions 1 and 2 list an element once for each of its groups: keeps the first.
+  void removeRepeatedElements() {
+    removeRepeated(lists_.vertices);
+    removeRepeated(lists_.lines);
+    removeRepeated(lists_.triangles);
+    removeRepeated(lists_.quads);
+    for (ElementBlock& block : lists_.blocks) {
+      const auto isFirst = [&block](std::int32_t region) { return region == block.regions[0]; };
+      if (!std::all_of(block.regions.begin(), block.regions.end(), isFirst))
+        removeRepeatedCells(block);
+    }
+  }
+
+  /// Compares two nodes before the rest, which is fast.
+  static void removeRepeatedCells(ElementBlock& block) {
+    const std::size_t each = block.nodesEach;
+    const auto row = [&block, each](std::size_t i) {
+      return std::span(block.nodes).subspan(i * each, each);
+    };
+    using Entry = std::pair<std::uint64_t, std::size_t>;  // two nodes, and the element
+    const auto isLess = [&row](const Entry& a, const Entry& b) {
+      if (a.first != b.first) return a.first < b.first;
+      const auto [u, v] = std::pair(row(a.second), row(b.second));
+      return std::lexicographical_compare(u.begin(), u.end(), v.begin(), v.end());
+    };
+    std::vector<Entry> order(block.count());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      order[i] = {(std::uint64_t{row(i)[0]} << 32U) | row(i)[1], i};
+    }
+    std::stable_sort(order.begin(), order.end(), isLess);
+    std::vector<bool> repeats(order.size(), false);
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      repeats[order[i].second] = !isLess(order[i - 1], order[i]);
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (repeats[i]) continue;
+      std::copy_n(row(i).begin(), each, row(kept).begin());
+      block.regions[kept++] = block.regions[i];
+    }
+    block.nodes.resize(kept * each);
+    block.regions.resize(kept);
+    block.numbers.resize(kept);
+  }
+
+  /// Calls f with the tag of each element of a dimension.
+  template <class F>
+  void eachTag(int dimension, const F& f) {
+    const auto each = [&f](auto& features) {
+      for (auto& feature : features) f(feature.tag);
+    };
+    if (dimension == 0) each(lists_.vertices);
+    if (dimension == 1) each(lists_.lines);
+    if (dimension == 2) each(lists_.triangles);
+    if (dimension == 2) each(lists_.quads);
+    for (ElementBlock& block : lists_.blocks) {
+      if (dimension == 3) std::for_each(block.regions.begin(), block.regions.end(), f);
+    }
+  }
+
+  /// Replaces numbers of groups by the tags in names of this library; keeps other names.
+  void useNames(int dimension) {
+    std::map<std::int64_t, std::string> known;
+    bool areNumbers = true;  // all tags in names
+    for (const TagName& name : tags_.names) {
+      if (name.dimension != dimension) continue;
+      areNumbers =
+          areNumbers && tagInGroupName(name.name, dimension).value_or(name.tag) == name.tag;
+      known.emplace(name.tag, name.name);
+    }
+    std::set<std::int32_t> used;
+    if (!areNumbers) eachTag(dimension, [&](std::int32_t tag) { used.insert(tag); });
+    std::vector<NumberedGroup> groups;
+    for (const std::int32_t number : used) groups.push_back({known[number], number});
+    const std::vector<std::int32_t> tags = tagsOfGroups(groups, dimension);
+    std::map<std::int32_t, std::int32_t> tagOf;
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      tagOf.emplace(static_cast<std::int32_t>(groups[i].number), tags[i]);
+    }
+    if (!areNumbers) eachTag(dimension, [&](std::int32_t& tag) { tag = tagOf[tag]; });
+    for (const auto& [number, name] : known) {
+      const auto tag = static_cast<std::int32_t>(number);
+      lists_.addName(dimension, areNumbers ? tag : tagOf[tag], name);
+    }
   }
 
   void readNodes(std::string_view name) {

@@ -172,11 +172,12 @@ class MfemReader {
       const std::string_view line = scanner_.takeLine();
       const std::size_t end = line.rfind('"');
       if (!line.starts_with('"') || end == 0) scanner_.failToken("a name in quotes");
-      TextScanner rest(line.substr(end + 1), input_.name());
-      const bool isOne = rest.integer("the size of a set of attributes") == 1;
-      if (!isOne) continue;
-      const std::int64_t tag = rest.integer("an attribute");
-      if (!std::in_range<std::int32_t>(tag)) continue;
+      // Numbers may be on the same line or, as MFEM writes them, on the next ones.
+      scanner_.moveTo(static_cast<std::size_t>(line.data() - scanner_.text().data()) + end + 1);
+      const std::size_t size = scanner_.readCount("attributes of a set", 2);
+      std::int64_t tag = 0;
+      for (std::size_t k = 0; k < size; ++k) tag = scanner_.integer("an attribute");
+      if (size != 1 || !std::in_range<std::int32_t>(tag)) continue;
       lists_.addName(dimension, static_cast<std::int32_t>(tag), line.substr(1, end - 1));
     }
   }

@@ -194,7 +194,6 @@ class UnvReader {
     NodeSet nodes;
     nodes.name = name.readToken();
     nodes.number = std::in_range<std::int32_t>(group) ? static_cast<std::int32_t>(group) : 0;
-    const std::int32_t tag = tagOfGroup(nodes.name, nodes.number);
     std::vector<std::uint64_t> members;
     for (std::uint64_t i = 0; i < count; ++i) {
       constexpr std::int64_t kNodes = 7;
@@ -203,7 +202,7 @@ class UnvReader {
       const std::uint64_t member = number("a member of a group");
       skipNumbers(2);  // part of an assembly
       if (kind == kNodes) members.push_back(member);
-      if (kind == kElements) tags_.add(member, tag);
+      if (kind == kElements) members_.emplace_back(member, lists_.nodeSets.size());
     }
     nodeSets_.push_back(std::move(members));
     lists_.nodeSets.push_back(std::move(nodes));
@@ -215,6 +214,10 @@ class UnvReader {
       input_.fail(ErrorCode::FileUnsupported, "the file has no nodes: no data set 2411 or 781.");
     }
     const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
+    std::vector<NumberedGroup> groups;
+    for (const NodeSet& group : lists_.nodeSets) groups.push_back({group.name, group.number});
+    const std::vector<std::int32_t> tags = tagsOfGroups(groups, -1);
+    for (const auto& [element, group] : members_) tags_.add(element, tags[group]);
     tags_.sort();
     for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
       ElementBlock& block = lists_.blocks[b];
@@ -225,8 +228,8 @@ class UnvReader {
     addFlat(triangles_, nodes, lists_.triangles);
     addFlat(quads_, nodes, lists_.quads);
     std::vector<TagName> names;  // a group may contain elements of several kinds
-    for (const NodeSet& group : lists_.nodeSets) {
-      for (const int dimension : {1, 2, 3}) names.push_back({dimension, group.number, group.name});
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (const int dimension : {1, 2, 3}) names.push_back({dimension, tags[g], groups[g].name});
     }
     lists_.addNamesInUse(names);
     for (std::size_t s = 0; s < nodeSets_.size(); ++s) {
@@ -264,6 +267,7 @@ class UnvReader {
   std::vector<Flat<2>> edges_;
   std::vector<Flat<3>> triangles_;
   std::vector<Flat<4>> quads_;
+  std::vector<std::pair<std::uint64_t, std::size_t>> members_;  ///< elements, with their groups
   ElementTags tags_;
 };
 

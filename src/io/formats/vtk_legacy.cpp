@@ -91,11 +91,16 @@ class VtkLegacyFile final : public VtkSource {
                   " types of cells.");
   }
 
-  /// Reads the regions of cells if they follow as written by this library.
+  /// Reads the regions of cells if they follow as written by this library; otherwise all arrays.
   void readRegions() {
     const std::string begin =
         concat("CELL_DATA ", cells, "\nSCALARS region int 1\nLOOKUP_TABLE default");
-    if (!scanner_.skipSpace() || !text().substr(scanner_.position()).starts_with(begin)) return;
+    if (isSurface || !scanner_.skipSpace()) return;
+    if (!text().substr(scanner_.position()).starts_with(begin)) {
+      while (readOn()) {
+      }
+      return;
+    }
     const std::size_t numbers = scanner_.position() + begin.size();
     arrays.push_back({VtkSection::CellData, std::string(kVtkRegions), VtkNumbers::Integers, 1,
                       false, [this, numbers](VtkNumbers, std::optional<std::uint64_t>) {

@@ -519,17 +519,6 @@ void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {
               (source.isSurface ? " It is a surface: `hexhex mesh` fills it with tets." : ""));
 }
 
-HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
-  HexMesh mesh;
-  Array<std::size_t> numbers;
-  const bool regions = hasVtkRegions(source);
-  readMesh(source, mesh.points, mesh.cells, regions ? &numbers : nullptr, stage);
-  if (regions) mesh.regions = readVtkRegions(source, numbers);
-  mesh.features = readVtkHexFeatures(source);
-  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
-  return mesh;
-}
-
 Array<std::size_t> firstsAtSamePosition(std::span<const double> coordinates,
                                         const std::vector<std::size_t>& firstPoints,
                                         std::size_t* ambiguous) {
@@ -768,12 +757,12 @@ std::vector<TagName> readNames(const VtkSource& source) {
               "from 0 to 3 and a tag. Write the file anew, or remove both.");
 }
 
-/// The array of regions: of this library, of meshio (for files converted from other formats), or of
-/// Gmsh.
+/// The array of regions: of this library, of meshio (for files converted from other formats), of
+/// Gmsh, or of MFEM.
 const VtkSourceArray* findRegions(const VtkSource& source) {
   for (const std::string_view name :
        {kVtkRegions, std::string_view("gmsh:physical"), std::string_view("medit:ref"),
-        std::string_view("CellEntityIds")}) {
+        std::string_view("CellEntityIds"), std::string_view("material")}) {
     const VtkSourceArray* const array =
         source.find(VtkSection::CellData, name, 1, VtkNumbers::Integers);
     if (array != nullptr) return array;
@@ -807,6 +796,10 @@ void addTaggedCells(const VtkSource& source, const CellKind& kind, std::vector<F
   }
 }
 
+constexpr CellKind kLineKind = {
+    .corners = 2, .singular = "line", .plural = "lines", .vtkType = kVtkLine};
+constexpr CellKind kQuadKind = {.corners = 4, .singular = "quad", .plural = "quads", .vtkType = 9};
+
 }  // namespace
 
 VtkGenerators findVtkGenerators(const VtkSource& source) {
@@ -834,8 +827,6 @@ HexFeatures readVtkHexFeatures(const VtkSource& source) {
 }
 
 Features readVtkTetFeatures(const VtkSource& source) {
-  constexpr CellKind kLineKind = {
-      .corners = 2, .singular = "line", .plural = "lines", .vtkType = kVtkLine};
   Features features = {readVertexTags(source), readRows<FeatureEdge>(source, kVtkEdgeTags),
                        readRows<FeatureFace>(source, kVtkTriangleTags), readNames(source)};
   addTaggedCells(source, kLineKind, features.edges);
@@ -855,6 +846,19 @@ Array<std::int32_t> readVtkRegions(const VtkSource& source, std::span<const std:
     if (next < cells.size() && cells[next] == cell) regions[next++] = region;
   });
   return regions;
+}
+
+HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
+  HexMesh mesh;
+  Array<std::size_t> numbers;
+  const bool regions = hasVtkRegions(source);
+  readMesh(source, mesh.points, mesh.cells, regions ? &numbers : nullptr, stage);
+  if (regions) mesh.regions = readVtkRegions(source, numbers);
+  mesh.features = readVtkHexFeatures(source);
+  addTaggedCells(source, kLineKind, mesh.features.edges);
+  addTaggedCells(source, kQuadKind, mesh.features.quads);
+  readVtkGenerators(source, mesh.generatorTet, mesh.generatorCorners);
+  return mesh;
 }
 
 namespace {

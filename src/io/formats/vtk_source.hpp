@@ -176,8 +176,8 @@ class VtkSource {
 
 /// Opens a legacy `.vtk` file and reads up to the first array after the sections of a mesh. Offers
 /// numeric arrays that follow the mesh, and the regions of cells.
-/// @param withRegions  whether to read the regions of cells if they follow as this library writes
-///                     them
+/// @param withRegions  whether to read the regions of cells, with all arrays unless they follow as
+///                     this library writes them
 /// @throws Error FileSyntax, FileUnsupported, NotFinite or TooLarge, with the line
 [[nodiscard]] std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegions,
                                                            Stage& stage);

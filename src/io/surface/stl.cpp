@@ -22,7 +22,8 @@ class StlReader {
 
   /// Some programs begin binary files with "solid" as well; the file size decides.
   TriangleMesh read() {
-    const bool isText = text_.starts_with("solid");
+    TextScanner begin(text_.substr(0, kHead), name_);
+    const bool isText = lowerCase(begin.peekToken()) == "solid";
     const std::uint64_t count =
         text_.size() < kHead ? 0 : loadLittle<std::uint32_t>(text_.data() + kHead - 4);
     const bool fits = text_.size() >= kHead && text_.size() == kHead + count * kEach;
@@ -65,7 +66,7 @@ class StlReader {
     TextScanner scanner(text_, name_);
     std::size_t corners = 0;  // of the current facet
     while (scanner.skipSpace()) {
-      const std::string_view word = scanner.readToken();
+      const std::string word = lowerCase(scanner.readToken());
       if (word == "vertex") {
         ++corners;
         Vec3& point = mesh_.points.emplace_back();
@@ -80,7 +81,7 @@ class StlReader {
         static_cast<void>(scanner.takeLine());
       } else if (word != "outer" && word != "loop" && word != "endfacet") {
         scanner.fail(ErrorCode::FileSyntax, "expected a word of the format STL, found ",
-                     quoted(word), ".");
+                     quoted(std::string_view(word)), ".");
       }
     }
     if (corners != 0) scanner.fail(ErrorCode::FileSyntax, "the file ends within a facet.");

@@ -12,11 +12,9 @@ namespace hexhex::io {
 
 ReadTriangles readStl, readObj, readOff, readPly;
 
-inline void addPolygon(TriangleMesh& mesh, std::span<const Index> corners) {
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
-  }
-}
+/// Adds the triangles of a polygon: those at its first corner if all its angles are convex,
+/// otherwise ears, cut off one by one.
+void addPolygon(TriangleMesh& mesh, std::span<const Index> corners);
 
 /// Merges vertices at the same position, and drops triangles with repeated corners.
 [[nodiscard]] TriangleMesh welded(const TriangleMesh& mesh);
