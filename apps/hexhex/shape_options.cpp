@@ -60,6 +60,7 @@ void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
 }
 
 void printFill(const FilledPart& part) {
+  for (const std::string& warning : part.warnings) printWarning(warning);
   if (!part.report) return;
   const FillReport& report = *part.report;
   std::string text = fmt::format("{} by {}", counted(report.tets, "tet"), report.mesher);
@@ -95,6 +96,7 @@ void printShape(const ShapeReport& report) {
 
 Json filledAsJson(const std::string& file, const FilledPart& part) {
   Json json = {{"file", file}, {"tets", part.tets.tets.size()}};
+  if (!part.warnings.empty()) json["warnings"] = part.warnings;
   if (!part.report) return json;
   json["filled"] = fieldsAsJson(*part.report);
   return json;

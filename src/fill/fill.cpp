@@ -10,11 +10,13 @@
 
 #include <fill/closed_surface.hpp>
 #include <fill/mesher.hpp>
+#include <fill/topology.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/short_number.hpp>
 #include <base/stage.hpp>
@@ -78,14 +80,26 @@ void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   std::erase_if(mesh.tets, [&](const Tet& /*tet*/) { return isInVoid[t++] != 0; });
 }
 
-/// Refuses a mesh whose volume differs too much from the body's.
-void requireFilled(double volume, double filled, const std::string& mesher) {
+/// Refuses tets that are not those of the body: some meshers close gaps narrower than their
+/// tolerance, and lose thin walls and voids.
+void requireFilled(const Body& body, const Meshed& meshed, Context& context) {
   constexpr double kMostMissing = 0.1;
-  if (std::abs(filled - volume) <= kMostMissing * volume) return;
+  const double filled = totalVolume(meshed.tets);
+  if (std::abs(filled - body.volume) > kMostMissing * body.volume) {
+    throw Error(ErrorCode::NotMeshable, "The tets of the mesher " + meshed.mesher +
+                                            " have a volume of " + shortNumber(filled) +
+                                            ", but the surface is around one of " +
+                                            shortNumber(body.volume) + ".");
+  }
+  const Topology wanted = topologyOf(body.surface);
+  const Topology got = topologyOf(boundaryOf(meshed.tets, context));
+  if (got == wanted) return;
   throw Error(ErrorCode::NotMeshable,
-              "The tets of the mesher " + mesher + " have a volume of " + shortNumber(filled) +
-                  ", but the surface is around one of " + shortNumber(volume) +
-                  ". Try another one (--mesher), or a smaller --tet-size.");
+              concat("The mesher ", meshed.mesher,
+                     " changed the shape, as by closing a gap or losing a thin wall or void: the "
+                     "boundary of its tets has ",
+                     got.components, " components and the Euler number ", got.euler,
+                     ", the surface has ", wanted.components, " and ", wanted.euler, "."));
 }
 
 void appendTets(TetMesh& all, const TetMesh& more) {
@@ -109,12 +123,14 @@ FilledPart fillBodies(const Bodies& found, const std::string& name, const FillOp
   for (const Body& body : bodies) {
     Task task{name,           &body.surface,          {},
               report.tetSize, tetsFor(options.cells), options.featureAngle};
-    Meshed meshed = runMesher(task, options.mesher, stage.context());
-    emptyVoids(meshed.tets, body, stage);
-    const double filled = totalVolume(meshed.tets);
-    requireFilled(body.volume, filled, meshed.mesher);
+    const auto check = [&](Meshed& meshed) {
+      emptyVoids(meshed.tets, body, stage);
+      requireFilled(body, meshed, stage.context());
+    };
+    const Meshed meshed = runMesher(task, options.mesher, check, stage.context());
     appendTets(part.tets, meshed.tets);
-    report.filledVolume += filled;
+    part.warnings.insert(part.warnings.end(), meshed.refused.begin(), meshed.refused.end());
+    report.filledVolume += totalVolume(meshed.tets);
     report.mesher = meshed.mesher;
     report.triangles += body.surface.triangles.size();
     report.voids += body.voidCount;
@@ -153,8 +169,9 @@ FilledPart fillStep(const std::filesystem::path& file, const FillOptions& option
     Stage stage(context, "fill");
     const Task task{file.string(),       nullptr, file, options.tetSize, tetsFor(options.cells),
                     options.featureAngle};
-    Meshed meshed = runMesher(task, options.mesher, context);
-    FilledPart part{std::move(meshed.tets), FillReport{}};
+    Meshed meshed = runMesher(
+        task, options.mesher, [](Meshed& /*any*/) {}, context);
+    FilledPart part{std::move(meshed.tets), FillReport{}, std::move(meshed.refused)};
     part.report->mesher = meshed.mesher;
     part.report->tetSize = options.tetSize;
     part.report->tets = part.tets.tets.size();
@@ -173,7 +190,7 @@ FilledPart read(const std::filesystem::path& file, const FillOptions& options, C
                       ": such files hold no surface, so no mesher and no --tet-size can be "
                       "chosen.");
     }
-    return {readTetMesh(file, {}, context), {}};
+    return {readTetMesh(file, {}, context), {}, {}};
   }
   const TriangleMesh surface = readTriangleMesh(file, context);
   try {

@@ -1,7 +1,6 @@
-"""Fills a body with tets: python3 -c SCRIPT MESHERS INPUT SIZE TETS THREADS
+"""Fills a body with tets: python3 -c SCRIPT MESHER INPUT SIZE TETS THREADS
 
-MESHERS are names with commas between them, best first. The first line of the output names the one
-that is there; exit code 3: none is. INPUT is part.stl, as text, or part.step, beside part.geo, which
+The first line of the output names MESHER with its version; exit code 3: it is not installed. INPUT is part.stl, as text, or part.step, beside part.geo, which
 has Gmsh read it. The tets go into part.msh (Gmsh), with named faces of STEP files as groups of
 triangles, and with solids as groups of tets if there are several. SIZE is the length of an edge; 0, for part.step
 alone: so that there are about TETS. THREADS 0: as many as there are cores.
@@ -122,14 +121,12 @@ def end_with_parent():
 
 
 def main():
-    names, source, size, tets, threads = sys.argv[1:]
+    name, source, size, tets, threads = sys.argv[1:]
     threading.Thread(target=end_with_parent, daemon=True).start()
-    for name in names.split(","):
-        if importlib.util.find_spec(MODULES[name]) is None:
-            continue
-        print(PACKAGES[name], version_of(PACKAGES[name]), flush=True)
-        return globals()[name](source, float(size), float(tets), int(threads))
-    return NOT_THERE
+    if importlib.util.find_spec(MODULES[name]) is None:
+        return NOT_THERE
+    print(PACKAGES[name], version_of(PACKAGES[name]), flush=True)
+    return globals()[name](source, float(size), float(tets), int(threads))
 
 
 sys.exit(main())

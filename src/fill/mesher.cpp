@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <locale>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fill/mesher.hpp>
@@ -86,7 +88,7 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
 /// The script's output file, which has names of groups; output of other runners has none.
 constexpr const char* kNamed = "part.msh";
 
-/// A way to run one or more meshers; the first one available does the work.
+/// A way to run a mesher.
 struct Runner {
   std::vector<std::string> words;
   std::string name;  ///< empty: the program reports it
@@ -110,26 +112,22 @@ std::string asWord(double number) {
 /// Runners in order of preference.
 std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const bool isStep = task.surface == nullptr;
-  const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
-  std::string packages;
-  const auto add = [&packages](bool holds, const char* name) {
-    if (holds) packages += concat((packages.empty() ? "" : ","), name);
-  };
-  add(wanted(Mesher::TetWild) && !isStep, "tetwild");
-  add(wanted(Mesher::Netgen), "netgen");
-  add(wanted(Mesher::Gmsh), "gmsh");
   std::vector<Runner> runners;
-  if (!packages.empty()) {
+  const auto isWanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
+  const auto addPackage = [&](const char* name) {
     constexpr int kNotThere = 3;  // exit code of the script
-    runners.push_back({{python(), "-c", kScript, packages, isStep ? "part.step" : "part.stl",
+    runners.push_back({{python(), "-c", kScript, name, isStep ? "part.step" : "part.stl",
                         asWord(task.tetSize), asWord(task.tets), std::to_string(threads)},
                        "",
                        kNotThere});
-  }
-  if (wanted(Mesher::Gmsh)) {
+  };
+  if (isWanted(Mesher::TetWild) && !isStep) addPackage("tetwild");
+  if (isWanted(Mesher::Netgen)) addPackage("netgen");
+  if (isWanted(Mesher::Gmsh)) {
+    addPackage("gmsh");
     runners.push_back({{"gmsh", "-nopopup", "-3", "part.geo", "-o", "part.mesh"}, "gmsh"});
   }
-  if (wanted(Mesher::TetGen) && !isStep) {
+  if (isWanted(Mesher::TetGen) && !isStep) {
     const double volume = std::pow(task.tetSize, 3) / kRegularTet;
     runners.push_back({{"tetgen", "-pqgQa" + asWord(volume), "part.stl"}, "tetgen"});
     runners.back().result = "part.1.mesh";
@@ -171,11 +169,10 @@ std::string lastLines(std::string_view said) {
                   (said.empty() ? "" : " " + lastLines(said)));
 }
 
-[[noreturn]] void failBy(const std::string& mesher, const Task& task, const std::string& problem,
+[[noreturn]] void failBy(const std::string& mesher, const std::string& problem,
                          const std::string& said) {
-  throw Error(ErrorCode::NotMeshable, task.name + ": the mesher " + mesher + " " + problem +
-                                          ". Try another one (--mesher), or another --tet-size. " +
-                                          lastLines(said));
+  throw Error(ErrorCode::NotMeshable,
+              concat("The mesher ", mesher, " ", problem, ". ", lastLines(said)));
 }
 
 /// Gives each tet a positive volume, and removes unused points.
@@ -208,10 +205,10 @@ TetMesh tidied(TetMesh read) {
 
 TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& task,
                    const std::filesystem::path& folder, const ProgramEnd& end, Context& context) {
-  if (end.code != 0) failBy(mesher, task, concat("failed with exit code ", end.code), end.said);
+  if (end.code != 0) failBy(mesher, concat("failed with exit code ", end.code), end.said);
   const bool hasNames = std::filesystem::exists(folder / kNamed);
   const std::filesystem::path result = folder / (hasNames ? kNamed : runner.result);
-  if (!std::filesystem::exists(result)) failBy(mesher, task, "wrote no mesh", end.said);
+  if (!std::filesystem::exists(result)) failBy(mesher, "wrote no mesh", end.said);
   try {
     TetMesh read = readTetMesh(result, {}, context);
     // Names are those of faces and solids of a STEP file; other tags are the mesher's own.
@@ -225,9 +222,9 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
     if (!mesh.tets.empty()) return mesh;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;
-    failBy(mesher, task, concat("wrote a mesh that cannot be read (", error.what(), ")"), end.said);
+    failBy(mesher, concat("wrote a mesh that cannot be read (", error.what(), ")"), end.said);
   }
-  failBy(mesher, task, "made no tets", end.said);
+  failBy(mesher, "made no tets", end.said);
 }
 
 }  // namespace
@@ -240,7 +237,8 @@ double volumeOf(const TetMesh& mesh, const Tet& tet) {
          kSix;
 }
 
-Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
+Meshed runMesher(const Task& task, Mesher mesher, const std::function<void(Meshed&)>& check,
+                 Context& context) {
   const TemporaryFolder temporary;
   const std::filesystem::path& folder = temporary.path();
   if (task.surface != nullptr) {
@@ -255,7 +253,11 @@ Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
   }
   writeGeo(task, folder / "part.geo");
   std::string said;
+  std::vector<std::string> refused;
   for (const Runner& runner : runnersFor(task, mesher, context.threads())) {
+    for (const std::string& old : {std::string(kNamed), runner.result}) {
+      std::filesystem::remove(folder / old);
+    }
     const ProgramEnd end = runProgram(runner.words, folder, context);
     if (end.code == ProgramEnd::kNotFound || end.code == runner.codeIfMissing) {
       said += end.said;
@@ -263,9 +265,21 @@ Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
     }
     const std::string name =
         runner.name.empty() ? end.said.substr(0, end.said.find('\n')) : runner.name;
-    return {readResult(runner, name, task, folder, end, context), name};
+    try {
+      Meshed meshed{readResult(runner, name, task, folder, end, context), name, {}};
+      check(meshed);
+      meshed.refused = std::move(refused);
+      return meshed;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;
+      refused.emplace_back(error.what());
+    }
   }
-  failWithoutMesher(task, mesher, said);
+  if (refused.empty()) failWithoutMesher(task, mesher, said);
+  std::string sentence = task.name + ":";
+  for (const std::string& each : refused) sentence += " " + each;
+  throw Error(ErrorCode::NotMeshable,
+              sentence + " Try another mesher (--mesher netgen or gmsh), or a smaller --tet-size.");
 }
 
 }  // namespace hexhex::fill

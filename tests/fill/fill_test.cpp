@@ -124,6 +124,28 @@ TEST(Fill, TurnsTetsAndLeavesPointsOut) {
   EXPECT_EQ(seen.triangles.size(), 4U);
 }
 
+TEST(Fill, TakesNoTetsOfAnotherShape) {
+  // One mesher adds a body of a thousandth of the volume; the next one does not.
+  const std::string right = replaced(kTwoTets, "\\n2\\n1 2 3 4 0", "\\n1");
+  const std::string wrong =
+      "MeshVersionFormatted 2\\nDimension 3\\nVertices\\n8\\n0 0 0 0\\n1 0 0 0\\n0 1 0 0\\n0 0 1 "
+      "0\\n"
+      "2 0 0 0\\n2.1 0 0 0\\n2 .1 0 0\\n2 0 .1 0\\nTetrahedra\\n2\\n1 2 3 4 0\\n5 6 7 8 0\\nEnd\\n";
+  const FakeMesher mesher("echo Fake $3; case $3 in tetwild) printf '" + wrong + "';; *) printf '" +
+                          right + "';; esac > part.mesh\n");
+  const FilledPart part = fill(tetSurface());
+  EXPECT_EQ(part.tets.tets.size(), 1U);
+  EXPECT_EQ(part.report->mesher, "Fake netgen");
+  ASSERT_EQ(part.warnings.size(), 1U);
+  const std::string reason =
+      "Fake tetwild changed the shape, as by closing a gap or losing a thin wall or void: the "
+      "boundary of its tets has 2 components and the Euler number 4, the surface has 1 and 2.";
+  EXPECT_NE(part.warnings[0].find(reason), std::string::npos) << part.warnings[0];
+  const Error error = errorOf([] { return fill(tetSurface(), {.mesher = Mesher::TetWild}); });
+  EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
+  expectWords(error, {reason, "--mesher netgen or gmsh", "--tet-size"});
+}
+
 TEST(Fill, SaysHowToInstallAMesher) {
   const FakeMesher mesher("exit 3\n");
   const Variable path("PATH", "/nowhere");
@@ -285,6 +307,17 @@ TEST_P(RealMesher, KeepsVoidsHandlesAndBodiesApart) {
   const auto two = filled(joined(boxSurface(), boxSurface({1, 1, 1}, {3, 0, 0})), size);
   EXPECT_EQ(two->report->bodies, 2U);
   expectMesh(shapeOf(two->tets), 2, 4);
+}
+
+TEST_P(RealMesher, KeepsASlitOrRefuses) {
+  try {
+    const auto part = filled(splitRingSurface(0.004), 0.5);
+    if (!part) GTEST_SKIP() << "not installed";
+    expectMesh(shapeOf(part->tets), 8, 2);
+  } catch (const Error& error) {
+    EXPECT_EQ(GetParam().first, Mesher::TetWild);
+    expectWords(error, {"changed the shape", "has 1 components and the Euler number 0"});
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RealMesher,
