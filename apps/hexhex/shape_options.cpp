@@ -64,6 +64,7 @@ void printFill(const FilledPart& part) {
   if (!part.report) return;
   const FillReport& report = *part.report;
   std::string text = fmt::format("{} by {}", counted(report.tets, "tet"), report.mesher);
+  if (report.bodies == 0) text += ", in millimetres";  // as meshers convert the units of STEP
   if (report.bodies > 1) text += fmt::format(", in {} bodies", report.bodies);
   if (report.voids > 0) text += fmt::format(", around {}", counted(report.voids, "void"));
   if (report.flatTriangles > 0) {

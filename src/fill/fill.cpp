@@ -17,6 +17,7 @@
 #include <hexhex/io.hpp>
 
 #include <base/concat.hpp>
+#include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/short_number.hpp>
 #include <base/stage.hpp>
@@ -129,7 +130,7 @@ FilledPart fillBodies(const Bodies& found, const std::string& name, const FillOp
     };
     const Meshed meshed = runMesher(task, options.mesher, check, stage.context());
     appendTets(part.tets, meshed.tets);
-    part.warnings.insert(part.warnings.end(), meshed.refused.begin(), meshed.refused.end());
+    part.warnings.insert(part.warnings.end(), meshed.warnings.begin(), meshed.warnings.end());
     report.filledVolume += totalVolume(meshed.tets);
     report.mesher = meshed.mesher;
     report.triangles += body.surface.triangles.size();
@@ -171,13 +172,43 @@ FilledPart fillStep(const std::filesystem::path& file, const FillOptions& option
                     options.featureAngle};
     Meshed meshed = runMesher(
         task, options.mesher, [](Meshed& /*any*/) {}, context);
-    FilledPart part{std::move(meshed.tets), FillReport{}, std::move(meshed.refused)};
+    FilledPart part{std::move(meshed.tets), FillReport{}, std::move(meshed.warnings)};
     part.report->mesher = meshed.mesher;
     part.report->tetSize = options.tetSize;
     part.report->tets = part.tets.tets.size();
     part.report->filledVolume = totalVolume(part.tets);
     return part;
   });
+}
+
+/// Warns of bodies with vertices in the same places, which fall apart, though they look like one.
+void warnOfTouching(FilledPart& part) {
+  const TetMesh& mesh = part.tets;
+  DisjointSets bodies(mesh.points.size());
+  for (const Tet& tet : mesh.tets) {
+    for (std::size_t i = 1; i < tet.size(); ++i) bodies.unite(tet[0], tet[i]);
+  }
+  std::vector<std::pair<Vec3, Index>> vertices;
+  std::vector<Index> roots;
+  for (const Tet& tet : mesh.tets) {
+    for (const Index v : tet) vertices.emplace_back(mesh.points[v], bodies.find(v));
+    roots.push_back(bodies.find(tet[0]));
+  }
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  if (roots.size() < 2) return;
+  std::sort(vertices.begin(), vertices.end());
+  const auto touch = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second != b.second;
+  };
+  const auto found = std::adjacent_find(vertices.begin(), vertices.end(), touch);
+  if (found == vertices.end()) return;
+  const Vec3& place = found->first;
+  part.warnings.push_back(
+      concat("The tets are in ", roots.size(), " components, of which some touch, as at (",
+             shortNumber(place[0]), ", ", shortNumber(place[1]), ", ", shortNumber(place[2]),
+             "), but share no vertices there: they are meshed as separate bodies. Merge equal "
+             "vertices to connect them."));
 }
 
 FilledPart read(const std::filesystem::path& file, const FillOptions& options, Context& context) {
@@ -190,7 +221,9 @@ FilledPart read(const std::filesystem::path& file, const FillOptions& options, C
                       ": such files hold no surface, so no mesher and no --tet-size can be "
                       "chosen.");
     }
-    return {readTetMesh(file, {}, context), {}, {}};
+    FilledPart part{readTetMesh(file, {}, context), {}, {}};
+    warnOfTouching(part);
+    return part;
   }
   const TriangleMesh surface = readTriangleMesh(file, context);
   try {

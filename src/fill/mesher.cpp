@@ -68,7 +68,10 @@ void writeStl(const TriangleMesh& surface, const std::filesystem::path& file) {
   out.close(file);
 }
 
-/// The Gmsh script for the task.
+/// Begins what a mesher, or its script, says to the user.
+constexpr const char* kNote = "note: ";
+
+/// The Gmsh script for the task. Solids that touch are glued.
 void writeGeo(const Task& task, const std::filesystem::path& file) {
   Text out(file);
   if (task.surface != nullptr) {
@@ -76,10 +79,19 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
         << "*Pi/180, 1, 1, Pi};\nCreateGeometry;\nSurface Loop(1) = Surface{:};\nVolume(1) = {1};\n"
         << "size = " << task.tetSize << ";\n";
   } else {
-    out << "SetFactory(\"OpenCASCADE\");\nMerge \"part.step\";\nsize = " << task.tetSize
-        << ";\nIf (size == 0)\n  all() = Volume{:};\n  volume = 0;\n  For i In {0:#all() - 1}\n"
-        << "    mass() = Mass Volume{all(i)};\n    volume += mass(0);\n  EndFor\n  size = ("
-        << kRegularTet << " * volume / " << task.tets << ")^(1/3);\nEndIf\n";
+    const auto addVolume = [&out](const char* sum) {
+      out << "all() = Volume{:};\n"
+          << sum << " = 0;\nFor i In {0:#all() - 1}\n"
+          << "  mass() = Mass Volume{all(i)};\n  " << sum << " += mass(0);\nEndFor\n";
+    };
+    out << "SetFactory(\"OpenCASCADE\");\nMerge \"part.step\";\n";
+    addVolume("apart");
+    out << "If (#all() > 1)\n  BooleanFragments{ Volume{all()}; Delete; }{}\nEndIf\n";
+    addVolume("volume");
+    out << "If (volume < (1 - 1e-6) * apart)\n  Printf(\"" << kNote
+        << "Solids overlap; what several have in common is a region of its own.\");\nEndIf\n"
+        << "size = " << task.tetSize << ";\nIf (size == 0)\n  size = (" << kRegularTet
+        << " * volume / " << task.tets << ")^(1/3);\nEndIf\n";
   }
   out << "Mesh.MeshSizeMax = size;\n";
   out.close(file);
@@ -212,7 +224,7 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
   try {
     TetMesh read = readTetMesh(result, {}, context);
     // Names are those of faces and solids of a STEP file; other tags are the mesher's own.
-    if (task.surface != nullptr || read.features.names.empty()) {
+    if (task.surface != nullptr || !hasNames) {
       read.regions.clear();
       read.features = {};
     }
@@ -225,6 +237,13 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
     failBy(mesher, concat("wrote a mesh that cannot be read (", error.what(), ")"), end.said);
   }
   failBy(mesher, "made no tets", end.said);
+}
+
+void addNotes(const std::string& said, std::vector<std::string>& notes) {
+  const std::size_t begin = said.find(kNote);
+  if (begin == std::string::npos) return;
+  const std::size_t text = begin + std::string_view(kNote).size();
+  notes.push_back(said.substr(text, said.find_first_of("\r\n", text) - text));
 }
 
 }  // namespace
@@ -268,7 +287,8 @@ Meshed runMesher(const Task& task, Mesher mesher, const std::function<void(Meshe
     try {
       Meshed meshed{readResult(runner, name, task, folder, end, context), name, {}};
       check(meshed);
-      meshed.refused = std::move(refused);
+      meshed.warnings = std::move(refused);
+      addNotes(end.said, meshed.warnings);
       return meshed;
     } catch (const Error& error) {
       if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;

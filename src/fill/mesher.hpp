@@ -24,8 +24,9 @@ struct Task {
 
 struct Meshed {
   TetMesh tets;
-  std::string mesher;                ///< with its version, if it reports one
-  std::vector<std::string> refused;  ///< for each mesher tried before, why its tets are not taken
+  std::string mesher;  ///< with its version, if it reports one
+  /// Why the tets of meshers tried before are not taken, and what this one says to the user.
+  std::vector<std::string> warnings;
 };
 
 /// The signed volume of a tet; negative if its corners are in the opposite order.
