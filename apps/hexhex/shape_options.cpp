@@ -60,9 +60,11 @@ void addShapeOptions(CLI::App& parser, ShapeOptions& options) {
 }
 
 void printFill(const FilledPart& part) {
+  for (const std::string& warning : part.warnings) printWarning(warning);
   if (!part.report) return;
   const FillReport& report = *part.report;
   std::string text = fmt::format("{} by {}", counted(report.tets, "tet"), report.mesher);
+  if (report.bodies == 0) text += ", in millimetres";  // as meshers convert the units of STEP
   if (report.bodies > 1) text += fmt::format(", in {} bodies", report.bodies);
   if (report.voids > 0) text += fmt::format(", around {}", counted(report.voids, "void"));
   if (report.flatTriangles > 0) {
@@ -95,6 +97,7 @@ void printShape(const ShapeReport& report) {
 
 Json filledAsJson(const std::string& file, const FilledPart& part) {
   Json json = {{"file", file}, {"tets", part.tets.tets.size()}};
+  if (!part.warnings.empty()) json["warnings"] = part.warnings;
   if (!part.report) return json;
   json["filled"] = fieldsAsJson(*part.report);
   return json;

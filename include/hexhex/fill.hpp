@@ -38,7 +38,7 @@ struct TriangleMesh {
 [[nodiscard]] TriangleMesh boundaryOf(const TetMesh& tets, Context& context);
 
 enum class Mesher : std::uint8_t {
-  Auto,     ///< the first of the others that is installed
+  Auto,     ///< the first of the others that is installed and succeeds
   TetWild,  ///< fTetWild: the Python package pytetwild; surfaces only
   Netgen,   ///< the Python package netgen-mesher
   Gmsh,     ///< the Python package gmsh, or the program of that name
@@ -72,6 +72,9 @@ struct FillReport {
 struct FilledPart {
   TetMesh tets;
   std::optional<FillReport> report;  ///< empty if the file held tets
+  /// Sentences on what may not be as expected, such as meshers that changed the shape before
+  /// another one kept it.
+  std::vector<std::string> warnings;
 };
 
 /// Fills the interior of a surface with tets. Each body is closed and filled separately; a closed
@@ -80,8 +83,9 @@ struct FilledPart {
 /// @throws Error NonManifoldEdge for an open surface, or edges with more than two triangles;
 ///         NonManifoldVertex where the surface touches itself at a point; Orientation if it is
 ///         one-sided; NotMeshable if it intersects itself, has no thickness or a triangle with zero
-///         area, or if the mesher fails; FileUnsupported if no mesher is installed; InvalidArgument
-///         for options out of range; EmptyMesh
+///         area, or if all meshers fail or
+///         change the number of its components or handles; FileUnsupported if no mesher is
+///         installed; InvalidArgument for options out of range; EmptyMesh
 [[nodiscard]] FilledPart fillSurface(const TriangleMesh& surface, const FillOptions& options,
                                      Context& context);
 

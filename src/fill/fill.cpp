@@ -10,11 +10,14 @@
 
 #include <fill/closed_surface.hpp>
 #include <fill/mesher.hpp>
+#include <fill/topology.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/fill.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/concat.hpp>
+#include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/short_number.hpp>
 #include <base/stage.hpp>
@@ -78,14 +81,26 @@ void emptyVoids(TetMesh& mesh, const Body& body, Stage& stage) {
   std::erase_if(mesh.tets, [&](const Tet& /*tet*/) { return isInVoid[t++] != 0; });
 }
 
-/// Refuses a mesh whose volume differs too much from the body's.
-void requireFilled(double volume, double filled, const std::string& mesher) {
+/// Refuses tets that are not those of the body: some meshers close gaps narrower than their
+/// tolerance, and lose thin walls and voids.
+void requireFilled(const Body& body, const Meshed& meshed, Context& context) {
   constexpr double kMostMissing = 0.1;
-  if (std::abs(filled - volume) <= kMostMissing * volume) return;
+  const double filled = totalVolume(meshed.tets);
+  if (std::abs(filled - body.volume) > kMostMissing * body.volume) {
+    throw Error(ErrorCode::NotMeshable, "The tets of the mesher " + meshed.mesher +
+                                            " have a volume of " + shortNumber(filled) +
+                                            ", but the surface is around one of " +
+                                            shortNumber(body.volume) + ".");
+  }
+  const Topology wanted = topologyOf(body.surface);
+  const Topology got = topologyOf(boundaryOf(meshed.tets, context));
+  if (got == wanted) return;
   throw Error(ErrorCode::NotMeshable,
-              "The tets of the mesher " + mesher + " have a volume of " + shortNumber(filled) +
-                  ", but the surface is around one of " + shortNumber(volume) +
-                  ". Try another one (--mesher), or a smaller --tet-size.");
+              concat("The mesher ", meshed.mesher,
+                     " changed the shape, as by closing a gap or losing a thin wall or void: the "
+                     "boundary of its tets has ",
+                     got.components, " components and the Euler number ", got.euler,
+                     ", the surface has ", wanted.components, " and ", wanted.euler, "."));
 }
 
 void appendTets(TetMesh& all, const TetMesh& more) {
@@ -109,12 +124,14 @@ FilledPart fillBodies(const Bodies& found, const std::string& name, const FillOp
   for (const Body& body : bodies) {
     Task task{name,           &body.surface,          {},
               report.tetSize, tetsFor(options.cells), options.featureAngle};
-    Meshed meshed = runMesher(task, options.mesher, stage.context());
-    emptyVoids(meshed.tets, body, stage);
-    const double filled = totalVolume(meshed.tets);
-    requireFilled(body.volume, filled, meshed.mesher);
+    const auto check = [&](Meshed& meshed) {
+      emptyVoids(meshed.tets, body, stage);
+      requireFilled(body, meshed, stage.context());
+    };
+    const Meshed meshed = runMesher(task, options.mesher, check, stage.context());
     appendTets(part.tets, meshed.tets);
-    report.filledVolume += filled;
+    part.warnings.insert(part.warnings.end(), meshed.warnings.begin(), meshed.warnings.end());
+    report.filledVolume += totalVolume(meshed.tets);
     report.mesher = meshed.mesher;
     report.triangles += body.surface.triangles.size();
     report.voids += body.voidCount;
@@ -153,14 +170,45 @@ FilledPart fillStep(const std::filesystem::path& file, const FillOptions& option
     Stage stage(context, "fill");
     const Task task{file.string(),       nullptr, file, options.tetSize, tetsFor(options.cells),
                     options.featureAngle};
-    Meshed meshed = runMesher(task, options.mesher, context);
-    FilledPart part{std::move(meshed.tets), FillReport{}};
+    Meshed meshed = runMesher(
+        task, options.mesher, [](Meshed& /*any*/) {}, context);
+    FilledPart part{std::move(meshed.tets), FillReport{}, std::move(meshed.warnings)};
     part.report->mesher = meshed.mesher;
     part.report->tetSize = options.tetSize;
     part.report->tets = part.tets.tets.size();
     part.report->filledVolume = totalVolume(part.tets);
     return part;
   });
+}
+
+/// Warns of bodies with vertices in the same places, which fall apart, though they look like one.
+void warnOfTouching(FilledPart& part) {
+  const TetMesh& mesh = part.tets;
+  DisjointSets bodies(mesh.points.size());
+  for (const Tet& tet : mesh.tets) {
+    for (std::size_t i = 1; i < tet.size(); ++i) bodies.unite(tet[0], tet[i]);
+  }
+  std::vector<std::pair<Vec3, Index>> vertices;
+  std::vector<Index> roots;
+  for (const Tet& tet : mesh.tets) {
+    for (const Index v : tet) vertices.emplace_back(mesh.points[v], bodies.find(v));
+    roots.push_back(bodies.find(tet[0]));
+  }
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  if (roots.size() < 2) return;
+  std::sort(vertices.begin(), vertices.end());
+  const auto touch = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second != b.second;
+  };
+  const auto found = std::adjacent_find(vertices.begin(), vertices.end(), touch);
+  if (found == vertices.end()) return;
+  const Vec3& place = found->first;
+  part.warnings.push_back(
+      concat("The tets are in ", roots.size(), " components, of which some touch, as at (",
+             shortNumber(place[0]), ", ", shortNumber(place[1]), ", ", shortNumber(place[2]),
+             "), but share no vertices there: they are meshed as separate bodies. Merge equal "
+             "vertices to connect them."));
 }
 
 FilledPart read(const std::filesystem::path& file, const FillOptions& options, Context& context) {
@@ -173,7 +221,9 @@ FilledPart read(const std::filesystem::path& file, const FillOptions& options, C
                       ": such files hold no surface, so no mesher and no --tet-size can be "
                       "chosen.");
     }
-    return {readTetMesh(file, {}, context), {}};
+    FilledPart part{readTetMesh(file, {}, context), {}, {}};
+    warnOfTouching(part);
+    return part;
   }
   const TriangleMesh surface = readTriangleMesh(file, context);
   try {

@@ -1,9 +1,8 @@
-"""Fills a body with tets: python3 -c SCRIPT MESHERS INPUT SIZE TETS THREADS
+"""Fills a body with tets: python3 -c SCRIPT MESHER INPUT SIZE TETS THREADS
 
-MESHERS are names with commas between them, best first. The first line of the output names the one
-that is there; exit code 3: none is. INPUT is part.stl, as text, or part.step, beside part.geo, which
+The first line of the output names MESHER with its version; exit code 3: it is not installed. INPUT is part.stl, as text, or part.step, beside part.geo, which
 has Gmsh read it. The tets go into part.msh (Gmsh), with named faces of STEP files as groups of
-triangles, and with solids as groups of tets if there are several. SIZE is the length of an edge; 0, for part.step
+triangles, and with solids as groups of tets if there are several. Solids that touch are glued. SIZE is the length of an edge; 0, for part.step
 alone: so that there are about TETS. THREADS 0: as many as there are cores.
 Ends when its standard input does, as that is when who started it has ended.
 """
@@ -18,6 +17,7 @@ import types
 PACKAGES = {"tetwild": "pytetwild", "netgen": "netgen-mesher", "gmsh": "gmsh"}
 MODULES = {"tetwild": "pytetwild", "netgen": "netgen", "gmsh": "gmsh"}
 NOT_THERE = 3
+OVERLAP = "Solids overlap; what several have in common is a region of its own."
 
 
 def write(points, tets, regions=(), triangles=(), sides=(), names=()):
@@ -47,10 +47,11 @@ def tetwild(source, size, tets, threads):
     with open(source) as lines:
         corners = [line.split()[1:] for line in lines if line.lstrip().startswith("vertex")]
     points, triangles = numpy.unique(numpy.array(corners, dtype=float), axis=0, return_inverse=True)
+    origin = (points.min(axis=0) + points.max(axis=0)) / 2  # far from which its tolerances fail
     points, cells = pytetwild.tetrahedralize(
-        points, triangles.reshape(-1, 3).astype(numpy.int32), edge_length_abs=size, num_threads=threads
+        points - origin, triangles.reshape(-1, 3).astype(numpy.int32), edge_length_abs=size, num_threads=threads
     )[:2]
-    write(points.tolist(), cells.tolist())
+    write((points + origin).tolist(), cells.tolist())
 
 
 def netgen(source, size, tets, threads):
@@ -59,9 +60,14 @@ def netgen(source, size, tets, threads):
 
         geometry = STLGeometry(source)
     else:
-        from netgen.occ import OCCGeometry
+        from netgen.occ import Glue, OCCGeometry
 
         geometry = OCCGeometry(source)
+        apart = list(geometry.shape.solids)
+        if len(apart) > 1:
+            geometry = OCCGeometry(Glue(apart))
+            if geometry.shape.mass < (1 - 1e-6) * sum(solid.mass for solid in apart):
+                print("note: " + OVERLAP)
         size = size or (6 * 2**0.5 * geometry.shape.mass / tets) ** (1 / 3)
     mesh = geometry.GenerateMesh(maxh=size)
     vertices = [[v.nr - 1 for v in element.vertices] for element in mesh.Elements3D()]
@@ -77,7 +83,9 @@ def netgen(source, size, tets, threads):
         sides = [numbers.get(called[descriptors[e.index - 1].bc - 1], 0) for e in mesh.Elements2D()]
     several = len(set(solids)) > 1
     if several:
-        names |= {(3, i): name for i, name in enumerate(mesh.GetRegionNames(codim=0), 1) if name not in ("", "default")}
+        called = dict(enumerate(mesh.GetRegionNames(codim=0), 1))  # without those that have no name
+        for i in set(solids):
+            names[3, i] = called[i] if called.get(i, "default") not in ("", "default") else f"region_{i}"
     write([p.p for p in mesh.Points()], vertices, solids if several else (), faces, sides, names)
 
 
@@ -97,9 +105,11 @@ def gmsh(source, size, tets, threads):
         groups = {}
         for _, tag in entities:
             name = model.getEntityName(dimension, tag).split("/")[-1]
+            if name.startswith("Open CASCADE STEP translator"):  # written where there is no name
+                name = ""
             if dimension == 3 and len(entities) > 1:
                 groups.setdefault(name or f"region_{tag}", []).append(tag)
-            elif dimension == 2 and name:
+            elif dimension == 2 and name and " & " not in name:  # that of a body, with layers
                 groups.setdefault(name, []).append(tag)
         for name, tags in groups.items():
             model.setPhysicalName(dimension, model.addPhysicalGroup(dimension, tags), name)
@@ -122,14 +132,12 @@ def end_with_parent():
 
 
 def main():
-    names, source, size, tets, threads = sys.argv[1:]
+    name, source, size, tets, threads = sys.argv[1:]
     threading.Thread(target=end_with_parent, daemon=True).start()
-    for name in names.split(","):
-        if importlib.util.find_spec(MODULES[name]) is None:
-            continue
-        print(PACKAGES[name], version_of(PACKAGES[name]), flush=True)
-        return globals()[name](source, float(size), float(tets), int(threads))
-    return NOT_THERE
+    if importlib.util.find_spec(MODULES[name]) is None:
+        return NOT_THERE
+    print(PACKAGES[name], version_of(PACKAGES[name]), flush=True)
+    return globals()[name](source, float(size), float(tets), int(threads))
 
 
 sys.exit(main())

@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <locale>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fill/mesher.hpp>
@@ -66,7 +68,10 @@ void writeStl(const TriangleMesh& surface, const std::filesystem::path& file) {
   out.close(file);
 }
 
-/// The Gmsh script for the task.
+/// Begins what a mesher, or its script, says to the user.
+constexpr const char* kNote = "note: ";
+
+/// The Gmsh script for the task. Solids that touch are glued.
 void writeGeo(const Task& task, const std::filesystem::path& file) {
   Text out(file);
   if (task.surface != nullptr) {
@@ -74,10 +79,19 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
         << "*Pi/180, 1, 1, Pi};\nCreateGeometry;\nSurface Loop(1) = Surface{:};\nVolume(1) = {1};\n"
         << "size = " << task.tetSize << ";\n";
   } else {
-    out << "SetFactory(\"OpenCASCADE\");\nMerge \"part.step\";\nsize = " << task.tetSize
-        << ";\nIf (size == 0)\n  all() = Volume{:};\n  volume = 0;\n  For i In {0:#all() - 1}\n"
-        << "    mass() = Mass Volume{all(i)};\n    volume += mass(0);\n  EndFor\n  size = ("
-        << kRegularTet << " * volume / " << task.tets << ")^(1/3);\nEndIf\n";
+    const auto addVolume = [&out](const char* sum) {
+      out << "all() = Volume{:};\n"
+          << sum << " = 0;\nFor i In {0:#all() - 1}\n"
+          << "  mass() = Mass Volume{all(i)};\n  " << sum << " += mass(0);\nEndFor\n";
+    };
+    out << "SetFactory(\"OpenCASCADE\");\nMerge \"part.step\";\n";
+    addVolume("apart");
+    out << "If (#all() > 1)\n  BooleanFragments{ Volume{all()}; Delete; }{}\nEndIf\n";
+    addVolume("volume");
+    out << "If (volume < (1 - 1e-6) * apart)\n  Printf(\"" << kNote
+        << "Solids overlap; what several have in common is a region of its own.\");\nEndIf\n"
+        << "size = " << task.tetSize << ";\nIf (size == 0)\n  size = (" << kRegularTet
+        << " * volume / " << task.tets << ")^(1/3);\nEndIf\n";
   }
   out << "Mesh.MeshSizeMax = size;\n";
   out.close(file);
@@ -86,7 +100,7 @@ void writeGeo(const Task& task, const std::filesystem::path& file) {
 /// The script's output file, which has names of groups; output of other runners has none.
 constexpr const char* kNamed = "part.msh";
 
-/// A way to run one or more meshers; the first one available does the work.
+/// A way to run a mesher.
 struct Runner {
   std::vector<std::string> words;
   std::string name;  ///< empty: the program reports it
@@ -110,26 +124,22 @@ std::string asWord(double number) {
 /// Runners in order of preference.
 std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const bool isStep = task.surface == nullptr;
-  const auto wanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
-  std::string packages;
-  const auto add = [&packages](bool holds, const char* name) {
-    if (holds) packages += concat((packages.empty() ? "" : ","), name);
-  };
-  add(wanted(Mesher::TetWild) && !isStep, "tetwild");
-  add(wanted(Mesher::Netgen), "netgen");
-  add(wanted(Mesher::Gmsh), "gmsh");
   std::vector<Runner> runners;
-  if (!packages.empty()) {
+  const auto isWanted = [&](Mesher each) { return mesher == Mesher::Auto || mesher == each; };
+  const auto addPackage = [&](const char* name) {
     constexpr int kNotThere = 3;  // exit code of the script
-    runners.push_back({{python(), "-c", kScript, packages, isStep ? "part.step" : "part.stl",
+    runners.push_back({{python(), "-c", kScript, name, isStep ? "part.step" : "part.stl",
                         asWord(task.tetSize), asWord(task.tets), std::to_string(threads)},
                        "",
                        kNotThere});
-  }
-  if (wanted(Mesher::Gmsh)) {
+  };
+  if (isWanted(Mesher::TetWild) && !isStep) addPackage("tetwild");
+  if (isWanted(Mesher::Netgen)) addPackage("netgen");
+  if (isWanted(Mesher::Gmsh)) {
+    addPackage("gmsh");
     runners.push_back({{"gmsh", "-nopopup", "-3", "part.geo", "-o", "part.mesh"}, "gmsh"});
   }
-  if (wanted(Mesher::TetGen) && !isStep) {
+  if (isWanted(Mesher::TetGen) && !isStep) {
     const double volume = std::pow(task.tetSize, 3) / kRegularTet;
     runners.push_back({{"tetgen", "-pqgQa" + asWord(volume), "part.stl"}, "tetgen"});
     runners.back().result = "part.1.mesh";
@@ -171,11 +181,10 @@ std::string lastLines(std::string_view said) {
                   (said.empty() ? "" : " " + lastLines(said)));
 }
 
-[[noreturn]] void failBy(const std::string& mesher, const Task& task, const std::string& problem,
+[[noreturn]] void failBy(const std::string& mesher, const std::string& problem,
                          const std::string& said) {
-  throw Error(ErrorCode::NotMeshable, task.name + ": the mesher " + mesher + " " + problem +
-                                          ". Try another one (--mesher), or another --tet-size. " +
-                                          lastLines(said));
+  throw Error(ErrorCode::NotMeshable,
+              concat("The mesher ", mesher, " ", problem, ". ", lastLines(said)));
 }
 
 /// Gives each tet a positive volume, and removes unused points.
@@ -208,14 +217,14 @@ TetMesh tidied(TetMesh read) {
 
 TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& task,
                    const std::filesystem::path& folder, const ProgramEnd& end, Context& context) {
-  if (end.code != 0) failBy(mesher, task, concat("failed with exit code ", end.code), end.said);
+  if (end.code != 0) failBy(mesher, concat("failed with exit code ", end.code), end.said);
   const bool hasNames = std::filesystem::exists(folder / kNamed);
   const std::filesystem::path result = folder / (hasNames ? kNamed : runner.result);
-  if (!std::filesystem::exists(result)) failBy(mesher, task, "wrote no mesh", end.said);
+  if (!std::filesystem::exists(result)) failBy(mesher, "wrote no mesh", end.said);
   try {
     TetMesh read = readTetMesh(result, {}, context);
     // Names are those of faces and solids of a STEP file; other tags are the mesher's own.
-    if (task.surface != nullptr || read.features.names.empty()) {
+    if (task.surface != nullptr || !hasNames) {
       read.regions.clear();
       read.features = {};
     }
@@ -225,9 +234,16 @@ TetMesh readResult(const Runner& runner, const std::string& mesher, const Task& 
     if (!mesh.tets.empty()) return mesh;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;
-    failBy(mesher, task, concat("wrote a mesh that cannot be read (", error.what(), ")"), end.said);
+    failBy(mesher, concat("wrote a mesh that cannot be read (", error.what(), ")"), end.said);
   }
-  failBy(mesher, task, "made no tets", end.said);
+  failBy(mesher, "made no tets", end.said);
+}
+
+void addNotes(const std::string& said, std::vector<std::string>& notes) {
+  const std::size_t begin = said.find(kNote);
+  if (begin == std::string::npos) return;
+  const std::size_t text = begin + std::string_view(kNote).size();
+  notes.push_back(said.substr(text, said.find_first_of("\r\n", text) - text));
 }
 
 }  // namespace
@@ -240,7 +256,8 @@ double volumeOf(const TetMesh& mesh, const Tet& tet) {
          kSix;
 }
 
-Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
+Meshed runMesher(const Task& task, Mesher mesher, const std::function<void(Meshed&)>& check,
+                 Context& context) {
   const TemporaryFolder temporary;
   const std::filesystem::path& folder = temporary.path();
   if (task.surface != nullptr) {
@@ -255,7 +272,11 @@ Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
   }
   writeGeo(task, folder / "part.geo");
   std::string said;
+  std::vector<std::string> refused;
   for (const Runner& runner : runnersFor(task, mesher, context.threads())) {
+    for (const std::string& old : {std::string(kNamed), runner.result}) {
+      std::filesystem::remove(folder / old);
+    }
     const ProgramEnd end = runProgram(runner.words, folder, context);
     if (end.code == ProgramEnd::kNotFound || end.code == runner.codeIfMissing) {
       said += end.said;
@@ -263,9 +284,22 @@ Meshed runMesher(const Task& task, Mesher mesher, Context& context) {
     }
     const std::string name =
         runner.name.empty() ? end.said.substr(0, end.said.find('\n')) : runner.name;
-    return {readResult(runner, name, task, folder, end, context), name};
+    try {
+      Meshed meshed{readResult(runner, name, task, folder, end, context), name, {}};
+      check(meshed);
+      meshed.warnings = std::move(refused);
+      addNotes(end.said, meshed.warnings);
+      return meshed;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::OutOfMemory) throw;
+      refused.emplace_back(error.what());
+    }
   }
-  failWithoutMesher(task, mesher, said);
+  if (refused.empty()) failWithoutMesher(task, mesher, said);
+  std::string sentence = task.name + ":";
+  for (const std::string& each : refused) sentence += " " + each;
+  throw Error(ErrorCode::NotMeshable,
+              sentence + " Try another mesher (--mesher netgen or gmsh), or a smaller --tet-size.");
 }
 
 }  // namespace hexhex::fill

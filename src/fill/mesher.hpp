@@ -1,8 +1,10 @@
-// The meshers that may be installed, and a run of one of them.
+// The meshers that may be installed, and runs of them until one of them succeeds.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include <fill/closed_surface.hpp>
 
@@ -23,12 +25,17 @@ struct Task {
 struct Meshed {
   TetMesh tets;
   std::string mesher;  ///< with its version, if it reports one
+  /// Why the tets of meshers tried before are not taken, and what this one says to the user.
+  std::vector<std::string> warnings;
 };
 
 /// The signed volume of a tet; negative if its corners are in the opposite order.
 [[nodiscard]] double volumeOf(const TetMesh& mesh, const Tet& tet);
 
+/// The tets of the first mesher that is installed, does not fail, and passes a check.
+/// @param check  throws an Error for tets that must not be taken, which it may change
 /// @throws Error  as fillSurface(), for meshers that fail or are not installed; Cancelled
-[[nodiscard]] Meshed runMesher(const Task& task, Mesher mesher, Context& context);
+[[nodiscard]] Meshed runMesher(const Task& task, Mesher mesher,
+                               const std::function<void(Meshed&)>& check, Context& context);
 
 }  // namespace hexhex::fill

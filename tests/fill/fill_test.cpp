@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -122,6 +123,46 @@ TEST(Fill, TurnsTetsAndLeavesPointsOut) {
   const TriangleMesh seen = readTriangleMesh(mesher / "seen.stl", context);
   EXPECT_EQ(seen.points.size(), 4U);
   EXPECT_EQ(seen.triangles.size(), 4U);
+}
+
+TEST(Fill, TakesNoTetsOfAnotherShape) {
+  // One mesher adds a body of a thousandth of the volume; the next one does not.
+  const std::string right = replaced(kTwoTets, "\\n2\\n1 2 3 4 0", "\\n1");
+  const std::string wrong =
+      "MeshVersionFormatted 2\\nDimension 3\\nVertices\\n8\\n0 0 0 0\\n1 0 0 0\\n0 1 0 0\\n0 0 1 "
+      "0\\n"
+      "2 0 0 0\\n2.1 0 0 0\\n2 .1 0 0\\n2 0 .1 0\\nTetrahedra\\n2\\n1 2 3 4 0\\n5 6 7 8 0\\nEnd\\n";
+  const FakeMesher mesher("echo Fake $3; case $3 in tetwild) printf '" + wrong + "';; *) printf '" +
+                          right + "';; esac > part.mesh\n");
+  const FilledPart part = fill(tetSurface());
+  EXPECT_EQ(part.tets.tets.size(), 1U);
+  EXPECT_EQ(part.report->mesher, "Fake netgen");
+  ASSERT_EQ(part.warnings.size(), 1U);
+  const std::string reason =
+      "Fake tetwild changed the shape, as by closing a gap or losing a thin wall or void: the "
+      "boundary of its tets has 2 components and the Euler number 4, the surface has 1 and 2.";
+  EXPECT_NE(part.warnings[0].find(reason), std::string::npos) << part.warnings[0];
+  const Error error = errorOf([] { return fill(tetSurface(), {.mesher = Mesher::TetWild}); });
+  EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
+  expectWords(error, {reason, "--mesher netgen or gmsh", "--tet-size"});
+}
+
+TEST(Fill, WarnsOfTetsThatTouchWithoutSharingVertices) {
+  TemporaryFolder folder;
+  const std::string head = "MeshVersionFormatted 2\nDimension 3\nVertices\n";
+  const std::string first = "0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
+  writeText(folder / "apart.mesh", head + "8\n" + first +
+                                       "1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n"
+                                       "Tetrahedra\n2\n1 2 3 4 0\n5 6 7 8 0\nEnd\n");
+  writeText(folder / "glued.mesh",
+            head + "5\n" + first + "1 1 1 0\nTetrahedra\n2\n1 2 3 4 0\n2 3 4 5 0\nEnd\n");
+  Context context(1);
+  const FilledPart apart = readPart(folder / "apart.mesh", {}, context);
+  ASSERT_EQ(apart.warnings.size(), 1U);
+  EXPECT_NE(apart.warnings[0].find("in 2 components, of which some touch, as at (0, 0, 1)"),
+            std::string::npos)
+      << apart.warnings[0];
+  EXPECT_TRUE(readPart(folder / "glued.mesh", {}, context).warnings.empty());
 }
 
 TEST(Fill, SaysHowToInstallAMesher) {
@@ -285,6 +326,69 @@ TEST_P(RealMesher, KeepsVoidsHandlesAndBodiesApart) {
   const auto two = filled(joined(boxSurface(), boxSurface({1, 1, 1}, {3, 0, 0})), size);
   EXPECT_EQ(two->report->bodies, 2U);
   expectMesh(shapeOf(two->tets), 2, 4);
+}
+
+TEST_P(RealMesher, KeepsASlitOrRefuses) {
+  try {
+    const auto part = filled(splitRingSurface(0.004), 0.5);
+    if (!part) GTEST_SKIP() << "not installed";
+    expectMesh(shapeOf(part->tets), 8, 2);
+  } catch (const Error& error) {
+    EXPECT_EQ(GetParam().first, Mesher::TetWild);
+    expectWords(error, {"changed the shape", "has 1 components and the Euler number 0"});
+  }
+}
+
+TEST_P(RealMesher, WorksFarFromTheOrigin) {
+  const auto part = filled(boxSurface({2, 1, 0.5}, {1e6, 1e6, -1e6}), 0.25);
+  if (!part) GTEST_SKIP() << "not installed";
+  expectMesh(shapeOf(part->tets), 1, 2);
+}
+
+/// Two boxes of STEP, the second of volume 1.5, moved: filled. Empty if no Gmsh is there to write
+/// it.
+std::optional<FilledPart> filledBoxes(Mesher mesher, const std::string& placeAndSize) {
+  TemporaryFolder folder;
+  const char* const python = std::getenv("HEXHEX_PYTHON");
+  const std::string file = (folder / "boxes.step").string();
+  const std::string write = (python == nullptr ? std::string("python3") : std::string(python)) +
+                            " -c \"import gmsh; gmsh.initialize(interruptible=False); "
+                            "gmsh.model.occ.addBox(0,0,0, 1,1,1); gmsh.model.occ.addBox(" +
+                            placeAndSize + "); gmsh.model.occ.synchronize(); gmsh.write('" + file +
+                            "')\" > /dev/null 2>&1";
+  if (std::system(write.c_str()) != 0) return {};  // NOLINT(cert-env33-c): names are our own
+  Context context(1);
+  try {
+    return readPart(file, {.mesher = mesher, .tetSize = 0.3}, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::FileUnsupported) throw;
+    return {};
+  }
+}
+
+std::map<std::int32_t, int> regionsOf(const TetMesh& mesh) {
+  std::map<std::uint32_t, int> regions;
+  for (const std::int32_t region : mesh.regions) ++regions[region];
+  return regions;
+}
+
+TEST(Fill, GluesSolidsOfStepFiles) {
+  for (const Mesher mesher : {Mesher::Netgen, Mesher::Gmsh}) {
+    SCOPED_TRACE(static_cast<int>(mesher));
+    const auto touching = filledBoxes(mesher, "1,0,0, 1.5,1,1");
+    if (!touching) GTEST_SKIP() << "not installed";
+    EXPECT_TRUE(touching->warnings.empty());
+    EXPECT_EQ(regionsOf(touching->tets).size(), 2U);
+    const Shape one = shapeOf(touching->tets);
+    EXPECT_NEAR(one.volume, 2.5, 1e-6);
+    EXPECT_EQ(one.euler, 2);
+    const auto overlapping = filledBoxes(mesher, "0.5,0.3,0.2, 1.1,1,1");
+    ASSERT_TRUE(overlapping);
+    ASSERT_EQ(overlapping->warnings.size(), 1U);
+    EXPECT_NE(overlapping->warnings[0].find("Solids overlap"), std::string::npos);
+    EXPECT_EQ(regionsOf(overlapping->tets).size(), 3U);
+    EXPECT_NEAR(shapeOf(overlapping->tets).volume, 1 + 1.1 - 0.5 * 0.7 * 0.8, 1e-6);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RealMesher,

@@ -30,6 +30,38 @@ inline TriangleMesh boxSurface(const Vec3& size = {1, 1, 1}, const Vec3& from = 
   return mesh;
 }
 
+/// A square ring with a slit of some width, as thick as it is wide: a ball to topologists.
+inline TriangleMesh splitRingSurface(double slit) {
+  const std::vector<double> xs = {0, 1, 2, 3};
+  const std::vector<double> ys = {0, 1, 1.5, 1.5 + slit, 2, 3};
+  const auto isFull = [](Index i, Index j) {
+    return i < 3 && j < 5 && (i != 1 || j == 0 || j == 4) && (i != 2 || j != 2);
+  };
+  TriangleMesh mesh;
+  for (const double y : ys) {
+    for (const double x : xs) mesh.points.insert(mesh.points.end(), {{x, y, 0}, {x, y, 1}});
+  }
+  const auto add = [&mesh](Index a, Index b, Index c, Index d) {
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+  };
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 5; ++j) {
+      if (!isFull(i, j)) continue;
+      const Index a = 2 * (4 * j + i);
+      const Index b = a + 2;
+      const Index c = b + 8;
+      const Index d = a + 8;
+      add(a, d, c, b);
+      add(a + 1, b + 1, c + 1, d + 1);
+      if (!isFull(i, j - 1)) add(a, b, b + 1, a + 1);
+      if (!isFull(i + 1, j)) add(b, c, c + 1, b + 1);
+      if (!isFull(i, j + 1)) add(c, d, d + 1, c + 1);
+      if (!isFull(i - 1, j)) add(d, a, a + 1, d + 1);
+    }
+  }
+  return mesh;
+}
+
 /// A grid that is closed both ways: n by m quads, each two triangles.
 template <class Place>
 TriangleMesh periodicSurface(Index n, Index m, const Place& place) {
