@@ -327,6 +327,7 @@ class ExodusReader {
     }
     [[nodiscard]] std::vector<std::int32_t> tags(int dimension) const {
       std::vector<NumberedGroup> all;
+      all.reserve(size());
       for (std::size_t i = 0; i < size(); ++i) all.push_back({nameOf(i), numberOf(i)});
       return tagsOfGroups(all, dimension);
     }

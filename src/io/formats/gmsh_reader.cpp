@@ -692,6 +692,7 @@ class GmshReader {
     std::set<std::int32_t> used;
     if (!areNumbers) eachTag(dimension, [&](std::int32_t tag) { used.insert(tag); });
     std::vector<NumberedGroup> groups;
+    groups.reserve(used.size());
     for (const std::int32_t number : used) groups.push_back({known[number], number});
     const std::vector<std::int32_t> tags = tagsOfGroups(groups, dimension);
     std::map<std::int32_t, std::int32_t> tagOf;

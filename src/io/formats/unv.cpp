@@ -215,6 +215,7 @@ class UnvReader {
     }
     const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
     std::vector<NumberedGroup> groups;
+    groups.reserve(lists_.nodeSets.size());
     for (const NodeSet& group : lists_.nodeSets) groups.push_back({group.name, group.number});
     const std::vector<std::int32_t> tags = tagsOfGroups(groups, -1);
     for (const auto& [element, group] : members_) tags_.add(element, tags[group]);
