@@ -367,7 +367,7 @@ std::optional<FilledPart> filledBoxes(Mesher mesher, const std::string& placeAnd
 }
 
 std::map<std::int32_t, int> regionsOf(const TetMesh& mesh) {
-  std::map<std::uint32_t, int> regions;
+  std::map<std::int32_t, int> regions;
   for (const std::int32_t region : mesh.regions) ++regions[region];
   return regions;
 }
