@@ -36,14 +36,16 @@ nb::list asList(const std::vector<WayReport>& ways) {
   return list;
 }
 
-/// @return tets, and how they were filled or None
+/// @return tets, how they were filled or None, and warnings
 nb::tuple partOfFile(const std::string& file, const FillOptions& options, int threads,
                      const Progress& progress) {
   FilledPart part =
       run(threads, progress, [&](Context& context) { return readPart(file, options, context); });
   nb::object report = nb::none();
   if (part.report) report = fieldsOf(*part.report);
-  return nb::make_tuple(std::move(part.tets), report);
+  nb::list warnings;
+  for (const std::string& warning : part.warnings) warnings.append(warning);
+  return nb::make_tuple(std::move(part.tets), report, warnings);
 }
 
 nb::tuple mapOfTets(const TetMesh& tets, const ShapeOptions& options, int threads,

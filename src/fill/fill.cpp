@@ -20,6 +20,7 @@
 #include <base/disjoint_sets.hpp>
 #include <base/parallel.hpp>
 #include <base/short_number.hpp>
+#include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
@@ -188,15 +189,14 @@ void warnOfTouching(FilledPart& part) {
   for (const Tet& tet : mesh.tets) {
     for (std::size_t i = 1; i < tet.size(); ++i) bodies.unite(tet[0], tet[i]);
   }
-  std::vector<std::pair<Vec3, Index>> vertices;
   std::vector<Index> roots;
+  for (const Tet& tet : mesh.tets) roots.push_back(bodies.find(tet[0]));
+  sortUnique(roots);
+  if (roots.size() < 2) return;
+  std::vector<std::pair<Vec3, Index>> vertices;
   for (const Tet& tet : mesh.tets) {
     for (const Index v : tet) vertices.emplace_back(mesh.points[v], bodies.find(v));
-    roots.push_back(bodies.find(tet[0]));
   }
-  std::sort(roots.begin(), roots.end());
-  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
-  if (roots.size() < 2) return;
   std::sort(vertices.begin(), vertices.end());
   const auto touch = [](const auto& a, const auto& b) {
     return a.first == b.first && a.second != b.second;

@@ -7,6 +7,7 @@
 #include <fill/topology.hpp>
 
 #include <base/disjoint_sets.hpp>
+#include <base/sorted.hpp>
 
 namespace hexhex::fill {
 
@@ -21,8 +22,7 @@ Topology topologyOf(const TriangleMesh& surface) {
       sets.unite(triangle[i], triangle[(i + 1) % 3]);
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sortUnique(edges);
   const auto count = [](auto number) { return static_cast<std::int64_t>(number); };
   const auto used = count(std::count(isUsed.begin(), isUsed.end(), true));
   return {sets.count() - static_cast<std::uint64_t>(count(isUsed.size()) - used),

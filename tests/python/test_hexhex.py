@@ -630,6 +630,21 @@ def test_mesh_of_a_surface(tmp_path, monkeypatch):
     assert part.filled.volume == pytest.approx(1) and part.filled.triangles == 12
 
 
+def test_bodies_that_touch_are_warned_of(tmp_path):
+    needs_quantization()
+    corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    tets = [(1, 2, 4, 8), (1, 3, 4, 8), (1, 5, 6, 8), (1, 2, 6, 8), (1, 3, 7, 8), (1, 5, 7, 8)]
+    lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", "16"]
+    lines += [f"{x + dx} {y} {z} 0" for dx in (0, 1) for x, y, z in corners]
+    lines += ["Tetrahedra", "12"]
+    lines += [" ".join(str(v + more) for v in tet) + " 0" for more in (0, 8) for tet in tets]
+    file = tmp_path / "two.mesh"
+    file.write_text("\n".join(lines + ["End"]) + "\n")
+    with pytest.warns(UserWarning, match="2 components, of which some touch"):
+        part = hexhex.mesh(file, cells=16, method="polycube")
+    assert part.all_positive
+
+
 def test_mesh_by_edge_length_and_with_a_layer():
     needs_quantization()
     tets = hexhex.generate("box")  # of side 2

@@ -20,6 +20,7 @@ import os
 import pathlib
 import sys
 import tempfile
+import warnings
 from typing import TYPE_CHECKING, Any, Callable, Optional, Protocol, TypeVar, Union
 
 import numpy as np
@@ -664,7 +665,9 @@ def _part_of(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None, mesher: s
         by = _one_of(("auto", "tetwild", "netgen", "gmsh", "tetgen"), mesher, "mesher")
         options = _hexhex.FillOptions(getattr(_hexhex.Mesher, by), _densities(tet_size)[0], cells,
                                       feature_angle)
-        part, report = _hexhex.read_part(os.fspath(points), options, threads, progress)
+        part, report, said = _hexhex.read_part(os.fspath(points), options, threads, progress)
+        for warning in said:
+            warnings.warn(warning, stacklevel=3)
         return part, None if report is None else FillReport(**report)
     if tets is None:
         raise ArgumentError("Give a file, or points and tets.", "InvalidArgument")
@@ -706,6 +709,10 @@ def map_from_tets(points: Path | npt.ArrayLike, tets: npt.ArrayLike | None = Non
             form the mesh of a solid.
         ArgumentError: for options out of range, or if can_quantize() is False.
         FileError: if the file cannot be read.
+
+    Warns:
+        UserWarning: of bodies in a file that touch, but share no vertices, of solids that overlap,
+            and of meshers whose tets were not taken.
 
     >>> tets = hexhex.generate("box")
     >>> if hexhex.can_quantize():
