@@ -103,6 +103,9 @@ Json reportAsJson(const MeshArguments& arguments, const MeshedPart& part, const 
   return json;
 }
 
+/// Distance in diagonals beyond which a mesh lacks features of the part.
+constexpr double kFar = 0.01;
+
 void printPart(const MeshArguments& arguments, const MeshedPart& part, const FilledPart& filled,
                const LongRun& run) {
   printFiles(arguments.part, arguments.output);
@@ -121,6 +124,13 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Fil
   if (part.missingCurves > 0) {
     printLine("tagged curves",
               "no edges of the mesh follow " + counted(part.missingCurves, "piece"));
+  }
+  const double distance = part.improvement.distanceAfter.hausdorff();
+  if (distance > kFar) {
+    printWarning(fmt::format(
+        "The mesh is {:.2g} of the diagonal from the part: small features of it may be lost. "
+        "More --cells, finer tets, or another --seed may keep them.",
+        distance));
   }
   for (const TagName& group : part.missingGroups) {
     const std::string kind = group.dimension == 3 ? "region" : "surface";

@@ -976,6 +976,10 @@ class Repair(CommandTest):
         self.run_command("verify", "kept.hexex", "part.vtu")
         self.run_command("quantize", "--tets", "part.hexex", "--flags", "auto", "-o", "auto.hexex", "--cells", "100")
         self.run_command("mesh", "part.hexex", "-o", "bad.vtu", "--method", "magic", expect=BAD_USAGE)
+        # A ball of a few cells is far from round.
+        self.run_command("generate", "sphere", "--refine", "3", "-o", "ball.hexex", "--quiet")
+        run = self.run_command("mesh", "ball.hexex", "-o", "ball.vtu", "--cells", "8", "--method", "polycube")
+        self.assertIn("of the diagonal from the part: small features", run.stderr)
         # What both ways say is in the report; what is no solid leaves nothing behind.
         run = self.run_command("mesh", "part.hexex", "-o", "best.vtu", "--cells", "100", "--report", "best.json")
         self.assertIn("no other way was needed", run.stdout)
