@@ -36,7 +36,7 @@ def same_maps(a, b):
 
 
 def same_features(a, b):
-    return all(np.array_equal(getattr(a.features, name), getattr(b.features, name))
+    return a.features.names == b.features.names and all(np.array_equal(getattr(a.features, name), getattr(b.features, name))
                for name in ("vertices", "edges", "faces"))
 
 
@@ -290,6 +290,19 @@ def test_pyvista_meshes(mesh):
         wasted.append(np.full(30_000, -1.0))
     assert alone.volume == expected == pytest.approx(8)
     assert alone.clean().n_points == 729
+
+
+def test_names_of_tags_in_pyvista(tagged, mesh, tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    f = mesh.features
+    named = hexhex.Mesh(mesh.points, mesh.cells, regions=np.ones(len(mesh.cells), dtype=np.int32),
+                        features=hexhex.Features(f.vertices, f.edges, f.faces, corners=4,
+                                                 names={(1, int(f.edges[0, 2])): "seam", (3, 1): "steel"}))
+    assert same_features(hexhex.Mesh.from_pyvista(named.to_pyvista()), named)
+    for write in (lambda file: hexhex.write(named, file), named.to_pyvista().save):
+        write(str(tmp_path / "named.vtu"))
+        assert same_features(hexhex.Mesh.from_pyvista(pyvista.read(tmp_path / "named.vtu")), named)
+        assert same_features(hexhex.read_mesh(tmp_path / "named.vtu"), named)
 
 
 def test_pyvista_maps(tagged):

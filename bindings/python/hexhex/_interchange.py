@@ -44,6 +44,10 @@ def _features(features: Features, faces: str, points: int, grid_points: Arrays,
         grid_field["feature_edges"] = features.edges
     if len(features.faces):
         grid_field[faces] = features.faces
+    if features.names:
+        grid_field["named_tags"] = np.array(list(features.names), dtype=np.int32)
+        texts = "".join(name + "\0" for name in features.names.values())
+        grid_field["tag_names"] = np.array(list(texts.encode()), dtype=np.uint8)
 
 
 def grid_of_mesh(mesh: Mesh, quality: bool) -> Grid:
@@ -92,7 +96,20 @@ def _tags_of(grid: Grid, faces: str, corners: int) -> dict[str, Any]:
     for argument, name, width in (("edges", "feature_edges", 3), ("faces", faces, corners + 1)):
         array = grid.of_field.get(name)
         rows[argument] = None if array is None else np.reshape(array, (-1, width))
+    rows["names"] = _names_of(grid.of_field)
     return rows
+
+
+def _names_of(of_field: Arrays) -> dict[tuple[int, int], str]:
+    texts, tags = of_field.get("tag_names"), of_field.get("named_tags")
+    if texts is None or tags is None:
+        return {}
+    if texts.dtype.kind == "U":  # as PyVista reads them from .vtu files
+        names = [str(text) for text in texts]
+    else:
+        names = bytes(texts.astype(np.uint8)).decode().split("\0")[:-1]
+    rows = np.reshape(tags, (-1, 2)).tolist()
+    return {(dimension, tag): name for (dimension, tag), name in zip(rows, names)}
 
 
 def mesh_of_grid(grid: Grid) -> Mesh:
@@ -346,7 +363,7 @@ def from_pyvista(given: Any, cell_type: int, what: str) -> Grid:
 
     def arrays(of: Any, rows: Any = slice(None)) -> Arrays:
         return {name: np.asarray(of[name])[rows] for name in of.keys()
-                if np.asarray(of[name]).dtype.kind in "iuf"}
+                if np.asarray(of[name]).dtype.kind in "iufU"}
 
     return Grid(np.asarray(data.points, dtype=np.float64), data.cells_dict[cell_type],
                 arrays(data.point_data), arrays(data.cell_data, chosen), arrays(data.field_data))

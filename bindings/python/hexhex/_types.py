@@ -838,8 +838,8 @@ class Mesh(_Hexes):
         """Returns a ``vtkUnstructuredGrid`` on the same memory: writing to its points changes the
         mesh. It has the same arrays as .vtu files, if known: the point arrays ``generator_kind``,
         ``generator_tet``, ``generator_corners`` and ``feature_vertex``, the cell arrays
-        ``scaled_jacobian`` and ``region``, and the field arrays ``feature_edges`` and
-        ``feature_quads``. Raises ImportError without vtk.
+        ``scaled_jacobian`` and ``region``, and the field arrays ``feature_edges``,
+        ``feature_quads``, and ``named_tags`` with ``tag_names``. Raises ImportError without vtk.
 
         Args:
             quality: whether to compute scaled Jacobians.
