@@ -264,6 +264,11 @@ def test_meshio(tagged, mesh, tmp_path):
     blocks = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells[:cut].astype(int)),
                                        ("hexahedron", mesh.cells[cut:].astype(int))])
     assert hexhex.summarize(hexhex.Mesh.from_meshio(blocks)) == hexhex.summarize(mesh)
+    # As meshio reads Gmsh's files.
+    physical = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells.astype(int))],
+                           cell_data={"gmsh:physical": [np.full(len(mesh.cells), 5)]},
+                           field_data={"steel": np.array([5, 3]), "inlet": np.array([5, 2])})
+    assert hexhex.Mesh.from_meshio(physical).features.names == {(3, 5): "steel"}
     with pytest.raises(hexhex.ArgumentError, match="no tetrahedra"):
         hexhex.Map.from_meshio(blocks)
 

@@ -273,6 +273,9 @@ def mesh_of_meshio(mesh: Any) -> Mesh:
         if not blocks or tags is None:
             continue
         elements = np.concatenate([np.asarray(mesh.cells[i].data) for i in blocks])
+        for name, value in mesh.field_data.items():  # Gmsh's physical names: tag and dimension
+            if np.shape(value) == (2,) and value[1] == dimension and (tags == value[0]).any():
+                names[dimension, int(value[0])] = name
         names.update({(dimension, tag): name for tag, name in named.items()})
         rows[kind] = np.column_stack((elements, tags))[tags != 0].astype(np.int32)
         if kind == "hexahedron":

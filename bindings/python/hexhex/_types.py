@@ -819,7 +819,7 @@ class Mesh(_Hexes):
     def from_meshio(cls, mesh: Any) -> Mesh:
         """Converts the hexahedra of a ``meshio.Mesh``. Tags of its lines and quads, and regions of
         its cells, come from cell sets, with their names, or else from the arrays ``tag`` and
-        ``region``, ``gmsh:physical`` or ``medit:ref``. Sets called ``boundary``, ``patch_1`` and
+        ``region``, ``gmsh:physical`` (with Gmsh's names) or ``medit:ref``. Sets called ``boundary``, ``patch_1`` and
         the like are not tags. Raises ArgumentError without hexahedra."""
         return _interchange.mesh_of_meshio(mesh)
 
