@@ -182,7 +182,7 @@ rootOf(const V& x) noexcept {
   V roots;
 #if defined(__SSE2__) && !defined(HEXHEX_PLAIN_VECTORS)
   // Compilers would add a call for each negative lane, so that it can report an error.
-  for (std::size_t i = 0; i < sizeof x / sizeof(__m128d); ++i) {
+  for (std::size_t i = 0; i < sizeof x / sizeof(__m128d); ++i) {  // NOLINT: of one size, perhaps
     __m128d two;
     std::memcpy(&two, reinterpret_cast<const char*>(&x) + i * sizeof two, sizeof two);
     two = _mm_sqrt_pd(two);

@@ -324,6 +324,7 @@ std::vector<TagName> missingGroups(const TetMap& map, const HexMesh& mesh) {
     if (found != missing.end()) found->second = each.name;
   }
   std::vector<TagName> list;
+  list.reserve(missing.size());
   for (const auto& [group, name] : missing) list.push_back({group.first, group.second, name});
   return list;
 }
