@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <pipeline/groups.hpp>
 #include <support/effort.hpp>
 
 #include <hexhex/hexhex.hpp>
@@ -485,22 +486,29 @@ TEST(PartTags, OfPatchesAcrossTheGridAreThoseOfQuadsCentres) {
   for (const auto& [vertex, count] : ends) EXPECT_EQ(count, 2);
 }
 
-TEST(PartTags, OfSurfacesAndRegionsTooSmallForCellsAreReported) {
+TEST(PartTags, OfSurfacesTooSmallForQuadsAreReported) {
   TetMesh box = CubeBody{
       {1, 1, 1}, [](const Cell&) {
         return true;
       }}.labelled(8, [](const Vec3& p) {
           return p;
         }).tets;
-  const auto isSmall = [](const Vec3& p) { return p[0] + p[1] < 0.26 && p[2] > 0.74; };
-  tag(
-      box, [&](const Vec3& p) { return p[2] < 1 - 1e-9 ? 0
-                                       : isSmall(p)    ? 3
-                                                       : 4; },
-      [&](const Vec3& p) { return isSmall(p) ? 5 : 6; });
-  box.features.names = {{2, 3, "inlet"}, {3, 5, "sensor"}};
-  const std::vector<TagName> missing = meshed(box, 8).missingGroups;
-  EXPECT_EQ(missing, (std::vector<TagName>{{2, 3, "inlet"}, {3, 5, "sensor"}}));
+  const TagAt isSmall = [](const Vec3& p) {
+    return p[2] < 1 - 1e-9 ? 0 : std::hypot(p[0] - 0.5, p[1] - 0.5) < 0.15 ? 3 : 4;
+  };
+  tag(box, isSmall, [](const Vec3&) { return 0; });
+  box.features.edges.clear();  // which edges of the mesh would follow
+  box.features.names = {{2, 3, "inlet"}};
+  EXPECT_EQ(meshed(box, 8).missingGroups, (std::vector<TagName>{{2, 3, "inlet"}}));
+}
+
+TEST(PartTags, OfRegionsWithoutCellsAreMissing) {
+  TetMap map;
+  map.regions = {0, 5, 6, 5};
+  map.features.names = {{3, 5, "sensor"}, {3, 6, "body"}};
+  HexMesh mesh;
+  mesh.regions = {6, 6};
+  EXPECT_EQ(pipeline::missingGroups(map, mesh), (std::vector<TagName>{{3, 5, "sensor"}}));
 }
 
 TEST(PartTags, AreInTheMapOfTheCommandMap) {
