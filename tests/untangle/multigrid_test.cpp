@@ -33,7 +33,8 @@ SparseMatrix chainAtPlane(int links) {
 
 TEST(Multigrid, TakesLittleMemoryWhereOneUnknownIsThatOfMany) {
   constexpr int kLinks = 20'000;
-  constexpr long kMostKilobytes = 100'000;  // all entries of a coarse level would be 1 GB
+  [[maybe_unused]] constexpr long kMostKilobytes =
+      100'000;  // all entries of a coarse level would be 1 GB
   const auto peak = [] {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -42,7 +43,7 @@ TEST(Multigrid, TakesLittleMemoryWhereOneUnknownIsThatOfMany) {
   const SparseMatrix matrix = chainAtPlane(kLinks);
   Vector expected(kLinks + 1);
   for (int i = 0; i <= kLinks; ++i) expected[i] = 1 + 0.5 * std::sin(0.01 * i);
-  const long before = peak();
+  [[maybe_unused]] const long before = peak();
   const Multigrid levels(matrix, 300, Context());
   const Vector found = levels.solve(matrix * expected);
   EXPECT_LT((found - expected).norm(), 1e-3 * expected.norm());
