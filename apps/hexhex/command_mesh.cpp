@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -133,11 +134,13 @@ void printPart(const MeshArguments& arguments, const MeshedPart& part, const Fil
         distance));
   }
   for (const TagName& group : part.missingGroups) {
-    const std::string kind = group.dimension == 3 ? "region" : "surface";
+    const auto [element, kind] =
+        group.dimension == 3 ? std::pair("cell", "region") : std::pair("quad", "surface");
+    const std::string name =
+        group.name.empty() ? std::to_string(group.tag) : "'" + group.name + "'";
     printWarning(fmt::format(
         "No {} of the mesh has the {} {}: it is too small for this number of cells. Ask for more.",
-        group.dimension == 3 ? "cell" : "quad", kind,
-        group.name.empty() ? std::to_string(group.tag) : "'" + group.name + "'"));
+        element, kind, name));
   }
   printLine("time", run.partsAsText());
 }

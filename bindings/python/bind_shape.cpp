@@ -55,14 +55,6 @@ nb::tuple mapOfTets(const TetMesh& tets, const ShapeOptions& options, int thread
   return nb::make_tuple(std::move(made.map), asDict(made.report));
 }
 
-nb::list asList(const std::vector<TagName>& groups) {
-  nb::list list;
-  for (const TagName& group : groups) {
-    list.append(nb::make_tuple(group.dimension, group.tag, group.name));
-  }
-  return list;
-}
-
 nb::tuple meshOfTets(const TetMesh& tets, const ShapeOptions& shape, double cells,
                      double edgeLength, const ImproveOptions& improvement, int threads,
                      const Progress& progress) {
@@ -77,7 +69,7 @@ nb::tuple meshOfTets(const TetMesh& tets, const ShapeOptions& shape, double cell
   return nb::make_tuple(std::move(part.mesh), std::move(part.map), asDict(part.shape),
                         python::asDict(part.quantization), python::asList(part.verification),
                         asTuple(std::move(part.improvement)), asList(part.ways), part.whyThisWay,
-                        part.tagsReleased, part.missingCurves, asList(part.missingGroups),
+                        part.tagsReleased, part.missingCurves, python::rowsOf(part.missingGroups),
                         python::asList(stages));
 }
 

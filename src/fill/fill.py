@@ -1,9 +1,10 @@
 """Fills a body with tets: python3 -c SCRIPT MESHER INPUT SIZE TETS THREADS
 
-The first line of the output names MESHER with its version; exit code 3: it is not installed. INPUT is part.stl, as text, or part.step, beside part.geo, which
-has Gmsh read it. The tets go into part.msh (Gmsh), with named faces of STEP files as groups of
-triangles, and with solids as groups of tets if there are several. Solids that touch are glued. SIZE is the length of an edge; 0, for part.step
-alone: so that there are about TETS. THREADS 0: as many as there are cores.
+The first line of the output names MESHER with its version; exit code 3: it is not installed. INPUT is
+part.stl, as text, or part.step, beside part.geo, which has Gmsh read it. The tets go into part.msh
+(Gmsh), with named faces of STEP files as groups of triangles, and with solids as groups of tets if there
+are several. Solids that touch are glued. SIZE is the length of an edge; 0, for part.step alone: so that
+there are about TETS. THREADS 0: as many as there are cores.
 Ends when its standard input does, as that is when who started it has ended.
 """
 

@@ -313,8 +313,8 @@ std::uint64_t tagBoundary(const TetMap& map, const Features& held, HexMesh& mesh
 
 std::vector<TagName> missingGroups(const TetMap& map, const HexMesh& mesh) {
   std::map<std::pair<int, std::int32_t>, std::string> missing;
-  for (const std::int32_t region : map.regions) missing.emplace(std::pair(3, region), "");
-  for (const FeatureFace& face : map.features.faces) missing.emplace(std::pair(2, face.tag), "");
+  for (const std::int32_t region : map.regions) missing.try_emplace({3, region});
+  for (const FeatureFace& face : map.features.faces) missing.try_emplace({2, face.tag});
   for (const std::int32_t region : mesh.regions) missing.erase({3, region});
   for (const FeatureQuad& quad : mesh.features.quads) missing.erase({2, quad.tag});
   missing.erase({2, 0});

@@ -90,9 +90,9 @@ std::int32_t sideOfBox(const Vec3& p, const Vec3& size) {
   return 0;
 }
 
-TetMesh plainBox() {
-  return CubeBody{{2, 2, 1}, [](const Cell&) { return true; }}
-      .labelled(3, [](const Vec3& p) { return p; })
+TetMesh plainBox(const Cell& size = {2, 2, 1}, int fineness = 3) {
+  return CubeBody{size, [](const Cell&) { return true; }}
+      .labelled(fineness, [](const Vec3& p) { return p; })
       .tets;
 }
 
@@ -444,12 +444,7 @@ TEST(PartTags, OfInterfacesArriveWhereTheyAreNoPlanes) {
 
 /// A border on a flat side, along no line of the mesh.
 TEST(PartTags, OfPatchesAcrossTheGridAreThoseOfQuadsCentres) {
-  TetMesh box = CubeBody{
-      {2, 2, 1}, [](const Cell&) {
-        return true;
-      }}.labelled(6, [](const Vec3& p) {
-          return p;
-        }).tets;
+  TetMesh box = plainBox({2, 2, 1}, 6);
   const TagAt isNear = [](const Vec3& p) {
     return std::hypot(p[0] - 1, p[1] - 1) < 0.6 && p[2] > 1 - 1e-9 ? 3 : 0;
   };
@@ -487,12 +482,7 @@ TEST(PartTags, OfPatchesAcrossTheGridAreThoseOfQuadsCentres) {
 }
 
 TEST(PartTags, OfSurfacesTooSmallForQuadsAreReported) {
-  TetMesh box = CubeBody{
-      {1, 1, 1}, [](const Cell&) {
-        return true;
-      }}.labelled(8, [](const Vec3& p) {
-          return p;
-        }).tets;
+  TetMesh box = plainBox({1, 1, 1}, 8);
   const TagAt isSmall = [](const Vec3& p) {
     return p[2] < 1 - 1e-9 ? 0 : std::hypot(p[0] - 0.5, p[1] - 0.5) < 0.15 ? 3 : 4;
   };

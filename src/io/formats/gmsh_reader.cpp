@@ -661,7 +661,7 @@ class GmshReader {
     }
     block.nodes.resize(kept * each);
     block.regions.resize(kept);
-    block.numbers.resize(kept);
+    block.numbers.resize(kept);  // from 0 on
   }
 
   /// Calls f with the tag of each element of a dimension.
