@@ -133,18 +133,19 @@ GMSH_SCRIPT = """
 import sys, gmsh
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
-cells, nodes, ghosts, quads = set(), set(), 0, 0
+cells, nodes, parts, quads = set(), set(), set(), 0
 for file in sys.argv[1:]:
     gmsh.clear()
     gmsh.open(file)
     nodes |= set(int(n) for n in gmsh.model.mesh.getNodes()[0])
     for dim, tag in gmsh.model.getEntities(3):
+        parts |= set(gmsh.model.getPartitions(3, tag))
         types, tags, _ = gmsh.model.mesh.getElements(3, tag)
         for of_type in tags:
             cells |= set(int(e) for e in of_type)
     for dim, tag in gmsh.model.getEntities(2):
         quads += sum(len(t) for t in gmsh.model.mesh.getElements(2, tag)[1])
-print(len(cells), len(nodes), quads, gmsh.model.getNumberOfPartitions())
+print(len(cells), len(nodes), quads, len(parts))
 """
 
 
@@ -161,7 +162,7 @@ def judge_gmsh(command, map_file, mesh, folder):
     run(command, "extract", map_file, "-o", folder / "s.msh", "--parts", 4, "--format", "msh-split",
         "--quiet")
     found = run(python, "-c", GMSH_SCRIPT, *[folder / f"s_{k}.msh" for k in range(1, 5)]).split()
-    check(found[-4:-1] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads)],
+    check(found[-4:] == [str(n) for n in (mesh.cells, mesh.points, mesh.quads, 4)],
           f"gmsh: the files of four parts have {found}")
     return None
 
