@@ -90,6 +90,15 @@ def netgen(source, size, tets, threads):
     write([p.p for p in mesh.Points()], vertices, solids if several else (), faces, sides, names)
 
 
+def name_in(path):
+    """Of a solid, from Shapes/ASSEMBLY/INSTANCE/PRODUCT: that of the instance, unless it is a number."""
+    *above, name = path.split("/")
+    if len(above) > 2 and any(letter.isalpha() for letter in above[-1]):
+        name = above[-1]
+    # This is written where there is no name.
+    return "" if name.startswith("Open CASCADE STEP translator") else name
+
+
 def gmsh(source, size, tets, threads):
     import gmsh as program
 
@@ -105,9 +114,7 @@ def gmsh(source, size, tets, threads):
         entities = model.getEntities(dimension)
         groups = {}
         for _, tag in entities:
-            name = model.getEntityName(dimension, tag).split("/")[-1]
-            if name.startswith("Open CASCADE STEP translator"):  # written where there is no name
-                name = ""
+            name = name_in(model.getEntityName(dimension, tag))
             if dimension == 3 and len(entities) > 1:
                 groups.setdefault(name or f"region_{tag}", []).append(tag)
             elif dimension == 2 and name and " & " not in name:  # that of a body, with layers

@@ -121,7 +121,18 @@ std::string asWord(double number) {
   return {room.data(), end.ptr};
 }
 
-/// Runners in order of preference.
+/// Whether parts of a STEP file are placed in an assembly.
+bool isAssembly(const std::filesystem::path& step) {
+  std::ifstream in(step, std::ios::binary);
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.find("NEXT_ASSEMBLY_USAGE_OCCURRENCE") != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// Runners in order of preference. Netgen reads names of faces and solids, but none in assemblies;
+/// Gmsh reads those of an assembly's parts.
 std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
   const bool isStep = task.surface == nullptr;
   std::vector<Runner> runners;
@@ -134,9 +145,11 @@ std::vector<Runner> runnersFor(const Task& task, Mesher mesher, int threads) {
                        kNotThere});
   };
   if (isWanted(Mesher::TetWild) && !isStep) addPackage("tetwild");
-  if (isWanted(Mesher::Netgen)) addPackage("netgen");
+  const bool isNetgenLast = isStep && mesher == Mesher::Auto && isAssembly(task.step);
+  if (isWanted(Mesher::Netgen) && !isNetgenLast) addPackage("netgen");
   if (isWanted(Mesher::Gmsh)) {
     addPackage("gmsh");
+    if (isNetgenLast) addPackage("netgen");
     runners.push_back({{"gmsh", "-nopopup", "-3", "part.geo", "-o", "part.mesh"}, "gmsh"});
   }
   if (isWanted(Mesher::TetGen) && !isStep) {

@@ -345,18 +345,38 @@ TEST_P(RealMesher, WorksFarFromTheOrigin) {
   expectMesh(shapeOf(part->tets), 1, 2);
 }
 
-/// Two boxes of STEP, the second of volume 1.5, moved: filled. Empty if no Gmsh is there to write
-/// it.
-std::optional<FilledPart> filledBoxes(Mesher mesher, const std::string& placeAndSize) {
+TEST(Fill, TriesGmshFirstForAssemblies) {
   TemporaryFolder folder;
+  writeText(folder / "part.step", "#1 = PRODUCT('part');\n");
+  writeText(folder / "machine.step",
+            "#1 = NEXT_ASSEMBLY_USAGE_OCCURRENCE('2','pin','',#5,#3,$);\n");
+  const FakeMesher mesher("printf \"$3 \" >> \"$OUT\"; exit 3\n");
+  const Variable out("OUT", (mesher / "order").string());
+  const Variable path("PATH", "/nowhere");
+  const auto orderFor = [&](const char* name) {
+    writeText(mesher / "order", "");
+    Context context(1);
+    EXPECT_EQ(codeOf([&] { return readPart(folder / name, {}, context); }),
+              ErrorCode::FileUnsupported);
+    return contentOf(mesher / "order");
+  };
+  EXPECT_EQ(orderFor("part.step"), "netgen gmsh ");
+  EXPECT_EQ(orderFor("machine.step"), "gmsh netgen ");
+}
+
+/// Writes a STEP file by statements in Python.
+/// @return whether a Gmsh is there that does it
+bool writeStep(const std::filesystem::path& file, const std::string& statements) {
   const char* const python = std::getenv("HEXHEX_PYTHON");
-  const std::string file = (folder / "boxes.step").string();
-  const std::string write = (python == nullptr ? std::string("python3") : std::string(python)) +
-                            " -c \"import gmsh; gmsh.initialize(interruptible=False); "
-                            "gmsh.model.occ.addBox(0,0,0, 1,1,1); gmsh.model.occ.addBox(" +
-                            placeAndSize + "); gmsh.model.occ.synchronize(); gmsh.write('" + file +
-                            "')\" > /dev/null 2>&1";
-  if (std::system(write.c_str()) != 0) return {};  // NOLINT(cert-env33-c): names are our own
+  const std::string command = (python == nullptr ? std::string("python3") : std::string(python)) +
+                              " -c \"import gmsh; gmsh.initialize(interruptible=False); " +
+                              statements + "; gmsh.model.occ.synchronize(); gmsh.write('" +
+                              file.string() + "')\" > /dev/null 2>&1";
+  return std::system(command.c_str()) == 0;  // NOLINT(cert-env33-c): names are our own
+}
+
+/// Empty if the mesher is not installed.
+std::optional<FilledPart> filledStep(const std::filesystem::path& file, Mesher mesher) {
   Context context(1);
   try {
     return readPart(file, {.mesher = mesher, .tetSize = 0.3}, context);
@@ -364,6 +384,16 @@ std::optional<FilledPart> filledBoxes(Mesher mesher, const std::string& placeAnd
     if (error.code() != ErrorCode::FileUnsupported) throw;
     return {};
   }
+}
+
+/// Two boxes of STEP, the second of volume 1.5, moved: filled. Empty if no Gmsh is there to write
+/// it.
+std::optional<FilledPart> filledBoxes(Mesher mesher, const std::string& placeAndSize) {
+  TemporaryFolder folder;
+  const std::filesystem::path file = folder / "boxes.step";
+  const bool isThere = writeStep(
+      file, "gmsh.model.occ.addBox(0,0,0, 1,1,1); gmsh.model.occ.addBox(" + placeAndSize + ")");
+  return isThere ? filledStep(file, mesher) : std::nullopt;
 }
 
 std::map<std::int32_t, int> regionsOf(const TetMesh& mesh) {
@@ -389,6 +419,48 @@ TEST(Fill, GluesSolidsOfStepFiles) {
     EXPECT_EQ(regionsOf(overlapping->tets).size(), 3U);
     EXPECT_NEAR(shapeOf(overlapping->tets).volume, 1 + 1.1 - 0.5 * 0.7 * 0.8, 1e-6);
   }
+}
+
+/// An assembly of two instances of a box, from a file of one.
+std::string asAssembly(const std::string& box) {
+  // Entities of Open CASCADE's files: #5 is what a product is, #10 its shape, #11 its axes.
+  std::string more =
+      "#1000 = SHAPE_DEFINITION_REPRESENTATION(#1001,#1005);\n"
+      "#1001 = PRODUCT_DEFINITION_SHAPE('','',#1002);\n"
+      "#1002 = PRODUCT_DEFINITION('design','',#1003,#9);\n"
+      "#1003 = PRODUCT_DEFINITION_FORMATION('','',#1004);\n"
+      "#1004 = PRODUCT('machine','machine','',(#8));\n"
+      "#1005 = SHAPE_REPRESENTATION('',(#11,#1016,#1026),#345);\n";
+  int id = 1010;
+  for (const auto& [name, x] : {std::pair("left_pin", "0."), std::pair("right_pin", "3.")}) {
+    const auto ref = [&](int i) { return "#" + std::to_string(id + i); };
+    more += ref(0) + " = CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(" + ref(1) + "," + ref(3) + ");\n" +
+            ref(1) + " = ( REPRESENTATION_RELATIONSHIP('','',#10,#1005)\n" +
+            "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(" + ref(2) + ")\n" +
+            "SHAPE_REPRESENTATION_RELATIONSHIP() );\n" + ref(2) +
+            " = ITEM_DEFINED_TRANSFORMATION('','',#11," + ref(6) + ");\n" + ref(3) +
+            " = PRODUCT_DEFINITION_SHAPE('Placement',''," + ref(4) + ");\n" + ref(4) +
+            " = NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','" + name + "','',#1002,#5,$);\n" + ref(5) +
+            " = CARTESIAN_POINT('',(" + x + ",0.,0.));\n" + ref(6) + " = AXIS2_PLACEMENT_3D(''," +
+            ref(5) + ",#13,#14);\n";
+    id += 10;
+  }
+  return replaced(box, "ENDSEC;\nEND-ISO", more + "ENDSEC;\nEND-ISO");
+}
+
+TEST(Fill, NamesRegionsByInstancesOfAnAssembly) {
+  TemporaryFolder folder;
+  const std::filesystem::path file = folder / "machine.step";
+  if (!writeStep(file, "gmsh.model.occ.addBox(0,0,0, 1,1,1)")) GTEST_SKIP() << "not installed";
+  writeText(file, asAssembly(contentOf(file)));
+  const auto machine = filledStep(file, Mesher::Auto);
+  ASSERT_TRUE(machine);
+  EXPECT_NE(machine->report->mesher.find("gmsh"), std::string::npos) << machine->report->mesher;
+  EXPECT_NEAR(shapeOf(machine->tets).volume, 2, 1e-6);
+  std::vector<std::string> names;
+  for (const TagName& name : machine->tets.features.names) names.push_back(name.name);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"left_pin", "right_pin"}));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RealMesher,
