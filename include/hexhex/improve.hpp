@@ -107,7 +107,7 @@ struct ImproveReport {
   std::uint64_t offSurface =
       0;  ///< vertices off the surface: by the slack, to get nearer, or for the sake of cells
   double seconds = 0;
-  /// Vertices that left creases because nothing else made cells positive. A crease is an untagged
+  /// Vertices that left creases because nothing else made cells good. A crease is an untagged
   /// curve with surface on both sides.
   std::uint64_t offCreases = 0;
   /// Cells of a pillow and of layers beside curves. They come last in the mesh, as do their

@@ -134,6 +134,7 @@ class Moving {
     }
     sweeps.smooth(options_.passes, floor);
     raiseAgain(sweeps, floor);
+    letGo(sweeps, floor);
     Array<Quad> far = quadsTooFar();
     for (const double kept : {floor, lowest}) {
       for (int i = 0; i < Sweeps::kReturns && !far.empty(); ++i) {
@@ -296,8 +297,8 @@ class Moving {
   /// are smooth, they have room. Not in curved cells, where it would double the time.
   void raiseAgain(Sweeps& sweeps, double floor) const {
     if (subject_.isCurved() || options_.passes == 0) return;
-    constexpr int kMost = 6;
-    constexpr double kStall = 0.005;
+    constexpr int kMost = 15;
+    constexpr double kStall = 0.001;
     const double target = options_.target;
     Sweeps::Standing now = sweeps.standing(target);
     for (int i = 0; i < kMost && now.bad + now.below > 0; ++i) {
@@ -307,6 +308,24 @@ class Moving {
       now = sweeps.standing(target);
       if (now.depth > was.depth - kStall) break;
     }
+  }
+
+  /// Releases vertices of the worst cells from creases that fade out, as edges of coarse triangles
+  /// on smooth surfaces do, and raises these cells again. Restores all points if that is no better.
+  void letGo(Sweeps& sweeps, double floor) {
+    if (subject_.isCurved() || options_.passes == 0) return;
+    constexpr double kWorthwhile = 0.02;
+    std::vector<Index> low = sweeps.verticesBelow(options_.target, 0);
+    std::erase_if(low, [&](Index v) {
+      return !places_.surface.isFading(places_.freedom[v], places_.simplex[v]);
+    });
+    if (low.empty()) return;
+    const Positions before = sweeps.positions();
+    const Sweeps::Standing was = sweeps.standing(options_.target);
+    LooseVertices loose(places_, low, subject_.mesh.points);
+    raiseAgain(sweeps, floor);
+    if (sweeps.standing(options_.target).depth > was.depth - kWorthwhile) sweeps.putBackAll(before);
+    noteLoose(loose.holdUnmoved(subject_.mesh.points));
   }
 
   /// Improves the worst cells until progress gets small.

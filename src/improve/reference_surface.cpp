@@ -234,6 +234,25 @@ bool ReferenceSurface::isCrease(Freedom freedom, Index simplex) const {
          std::all_of(at.begin(), at.end(), [this](Index s) { return creases_[s]; });
 }
 
+bool ReferenceSurface::isFading(Freedom freedom, Index simplex) const {
+  if (!isCrease(freedom, simplex)) return false;
+  if (freedom == Freedom::Fixed) return segmentsAt(simplex).size() == 1;
+  for (const Index start : segments_[simplex]) {
+    Index point = start;
+    Index segment = simplex;
+    std::span<const Index> at = segmentsAt(point);
+    while (at.size() == 2) {
+      segment = at[0] == segment ? at[1] : at[0];
+      if (segment == simplex) return false;  // a loop
+      const auto& [a, b] = segments_[segment];
+      point = a == point ? b : a;
+      at = segmentsAt(point);
+    }
+    if (at.size() == 1 && !isTagged(Freedom::Fixed, point)) return true;
+  }
+  return false;
+}
+
 Index ReferenceSurface::triangleAt(Freedom freedom, Index simplex, const Vec3& point) const {
   const bool isCorner = freedom == Freedom::Fixed;
   const std::array<Index, 2> ends =

@@ -132,6 +132,8 @@ class ReferenceSurface {
   /// Whether a curve or corner is one only because of its angle or number of cells, so that the
   /// surface continues across it.
   [[nodiscard]] bool isCrease(Freedom freedom, Index simplex) const;
+  /// Whether it is on a crease that fades out: at an end of its curve, no other curve goes on.
+  [[nodiscard]] bool isFading(Freedom freedom, Index simplex) const;
   /// The triangle at a curve or corner that is nearest to a point.
   [[nodiscard]] Index triangleAt(Freedom freedom, Index simplex, const Vec3& point) const;
 

@@ -93,11 +93,11 @@ ShapedMap finish(const TetMesh& given, TetMap map, const ShapeOptions& options, 
   const FoundFeatures features = featuresOf(map, options.featureAngle * std::numbers::pi / 180,
                                             report.method == ShapeMethod::Frames, stage);
   report.featureEdges = features.count;
-  report.taggedEdges = features.aligned.size();
+  report.taggedEdges = features.aligned;
   report.innerFaces = features.innerFaces;
   report.alignedFaces = features.alignedFaces;
   report.alignedArea = features.alignedArea;
-  addSharpEdges(features.aligned, map.features);
+  addSharpEdges(features.tagged, map.features);
   report.distortion = quantization::distortionOf(map.points, map.tets, map.parameters);
   return {std::move(map), report};
 }

@@ -76,6 +76,24 @@ void countInnerFaces(const TetMap& map, const adjacency::TetTopology& topology,
   if (area > 0) features.alignedArea = aligned / area;
 }
 
+/// Removes edges, from loose ends on, until at each end of an edge another one goes on: what fades
+/// out on a smooth surface is an effect of coarse triangles, as a rule.
+void removeFading(std::vector<std::array<Index, 2>>& edges, std::size_t points) {
+  std::vector<Index> count(points);
+  for (const std::array<Index, 2>& edge : edges) {
+    for (const Index v : edge) ++count[v];
+  }
+  const auto fades = [&](const std::array<Index, 2>& edge) {
+    const bool ends = count[edge[0]] == 1 || count[edge[1]] == 1;
+    if (ends) {
+      for (const Index v : edge) --count[v];
+    }
+    return ends;
+  };
+  while (std::erase_if(edges, fades) > 0) {
+  }
+}
+
 }  // namespace
 
 FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned, Stage& stage) {
@@ -84,21 +102,30 @@ FoundFeatures featuresOf(const TetMap& map, double angle, bool areAligned, Stage
   const Surface surface = surfaceOf(*topology, map.points);
   const double limit = leastCosine(angle);
   FoundFeatures features;
+  std::vector<std::array<Index, 2>> sharp;
   for (Side side = 0; side < surface.tails.size(); ++side) {
     if (side > surface.twins[side]) continue;
     const Index here = Surface::triangleOf(side);
     const Index beyond = surface.beyond(side);
     if (dot(surface.normals[here], surface.normals[beyond]) >= limit) continue;
     ++features.count;
-    if (!areAligned &&
-        axisInMap(map, surface.faces[here]) == axisInMap(map, surface.faces[beyond])) {
-      continue;
-    }
     const Index a = surface.tails[side];
     const Index b = surface.head(side);
-    features.aligned.push_back({.vertices = {std::min(a, b), std::max(a, b)}, .tag = 1});
+    sharp.push_back({std::min(a, b), std::max(a, b)});
+    if (areAligned ||
+        axisInMap(map, surface.faces[here]) != axisInMap(map, surface.faces[beyond])) {
+      features.tagged.push_back({.vertices = sharp.back(), .tag = 1});
+    }
   }
-  std::sort(features.aligned.begin(), features.aligned.end(),
+  features.aligned = features.tagged.size();
+  if (!areAligned) {
+    removeFading(sharp, map.points.size());
+    std::sort(sharp.begin(), sharp.end());
+    std::erase_if(features.tagged, [&](const FeatureEdge& edge) {
+      return !std::binary_search(sharp.begin(), sharp.end(), edge.vertices);
+    });
+  }
+  std::sort(features.tagged.begin(), features.tagged.end(),
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.vertices < b.vertices; });
   countInnerFaces(map, *topology, features);
   return features;

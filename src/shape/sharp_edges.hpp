@@ -11,12 +11,12 @@
 namespace hexhex::shape {
 
 struct FoundFeatures {
-  std::size_t count = 0;  ///< number of feature edges of the tet mesh
-  std::vector<FeatureEdge>
-      aligned;  ///< those between triangles perpendicular to different axes in the map, ascending
-  std::size_t innerFaces = 0;    ///< tagged faces, and those between regions
-  std::size_t alignedFaces = 0;  ///< of these: those that quantize() takes for planes
-  double alignedArea = 1;        ///< fraction of their area
+  std::size_t count = 0;    ///< number of feature edges of the tet mesh
+  std::size_t aligned = 0;  ///< those between triangles perpendicular to different axes in the map
+  std::vector<FeatureEdge> tagged;  ///< those of them that do not fade out, ascending
+  std::size_t innerFaces = 0;       ///< tagged faces, and those between regions
+  std::size_t alignedFaces = 0;     ///< of these: those that quantize() takes for planes
+  double alignedArea = 1;           ///< fraction of their area
 };
 
 /// @param map  boundary triangles must be perpendicular to axes

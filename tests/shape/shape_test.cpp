@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,67 @@ TEST(Shapes, AreBalls) {
                            .tets;
   const MeshedPart outcome = expectMesh(ball, 6, 8, 1000);
   EXPECT_EQ(outcome.shape.featureEdges, 0U);
+}
+
+double volumeOf(const std::vector<Vec3>& points, const Tet& tet) {
+  std::array<Vec3, 3> e{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) e[i][k] = points[tet[i + 1]][k] - points[tet[0]][k];
+  }
+  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
+         e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+/// A coarse ball whose surface points are moved inwards and outwards at random, but folds no tet.
+TetMesh bumpyBall(unsigned seed) {
+  const CubeBody cube({2, 2, 2}, [](const Cell&) { return true; });
+  TetMesh ball = cube.labelled(2,
+                               [](const Vec3& p) {
+                                 const Vec3 q = {p[0] - 1, p[1] - 1, p[2] - 1};
+                                 const Vec3 s = {q[0] * q[0], q[1] * q[1], q[2] * q[2]};
+                                 Vec3 round{};
+                                 for (std::size_t i = 0; i < 3; ++i) {
+                                   const double a = s[(i + 1) % 3];
+                                   const double b = s[(i + 2) % 3];
+                                   round[i] = q[i] * std::sqrt(1 - a / 2 - b / 2 + a * b / 3);
+                                 }
+                                 return round;
+                               })
+                     .tets;
+  const std::vector<Vec3> smooth = ball.points;
+  std::mt19937 random(seed);
+  for (Vec3& p : ball.points) {
+    const double size = std::hypot(p[0], p[1], p[2]);
+    const double bump = 1e-10 * static_cast<double>(random()) / 4.3 - 0.1;  // -0.1 to 0
+    for (double& x : p) x *= size > 0.99 ? 1 + 2 * bump + 0.1 : 1;
+  }
+  for (bool isFolded = true; isFolded;) {
+    isFolded = false;
+    for (const Tet& tet : ball.tets) {
+      if (volumeOf(ball.points, tet) > 1e-5) continue;
+      isFolded = true;
+      for (const Index v : tet) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          ball.points[v][k] = (ball.points[v][k] + smooth[v][k]) / 2;
+        }
+      }
+    }
+  }
+  return ball;
+}
+
+/// Edges between coarse triangles of a smooth surface are sharp here and there, and fade out: they
+/// get no tag, and vertices of bad cells may leave them.
+TEST(Shapes, LetFadingEdgesGo) {
+  HEXHEX_LARGE_TEST();
+  for (const unsigned seed : {4U, 5U}) {
+    SCOPED_TRACE(seed);
+    const MeshedPart outcome = meshed(bumpyBall(seed), 1000);
+    EXPECT_LT(outcome.map.features.edges.size(), outcome.shape.taggedEdges);
+    EXPECT_GT(outcome.improvement.offCreases, 0U);
+    EXPECT_GE(outcome.improvement.after.quality.minimum, 0.28);
+  }
 }
 
 TEST(Shapes, AreCylinders) {

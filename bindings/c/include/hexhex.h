@@ -1234,7 +1234,7 @@ typedef struct hexhex_improve_report {
   double inner_distance_after;  /**< from the corresponding triangles; 0 if there are none */
   uint64_t tagged_vertices;     /**< fixed vertices with a tag */
   uint64_t boundary_vertices;   /**< fixed only by fix_boundary; all others are corners */
-  uint64_t off_creases; /**< vertices that left creases because nothing else made cells positive */
+  uint64_t off_creases; /**< vertices that left creases because nothing else made cells good */
   uint64_t added_cells; /**< cells of a pillow; they come last in the mesh */
   double curve_length;  /**< total length of the object's sharp and tagged edges */
   double curves_followed;      /**< share of that length that mesh edges follow */

@@ -1060,7 +1060,7 @@ class ImproveReport:
     largest_move: float
     mean_move: float  #: mean over the moved vertices
     off_surface: int  #: vertices that used the slack
-    off_creases: int  #: vertices that left creases because nothing else made cells positive
+    off_creases: int  #: vertices that left creases because nothing else made cells good
     added_cells: int  #: cells of a pillow, last in the mesh and not included in ``before``
     curve_length: float  #: total length of the object's sharp and tagged edges
     curves_followed: float  #: share of that length that mesh edges follow
