@@ -65,9 +65,12 @@ ReadOptions readingOf(const ConvertArguments& arguments, std::vector<CellCount>&
 }
 
 std::variant<TetMap, HexMesh> readInput(const ConvertArguments& arguments,
-                                        std::vector<CellCount>& counts, Context& context) {
+                                        std::vector<CellCount>& counts, OtherCells& others,
+                                        Context& context) {
   if (arguments.input.isPair()) return readMap(arguments.input, context);
-  return readMapOrHexMesh(arguments.input.file, readingOf(arguments, counts), context);
+  ReadOptions options = readingOf(arguments, counts);
+  options.others = &others;
+  return readMapOrHexMesh(arguments.input.file, options, context);
 }
 
 /// Whether the input has cells of higher order. Pipes can be read only once, so they are not
@@ -102,8 +105,10 @@ std::string convertCurved(const ConvertArguments& arguments, Context& context) {
 std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCount>& counts,
                          Context& context) {
   if (isCurved(arguments, context)) return convertCurved(arguments, context);
-  auto content = readInput(arguments, counts, context);
+  OtherCells others;
+  auto content = readInput(arguments, counts, others, context);
   WriteOptions writing = arguments.choice.options();
+  writing.others = &others;
   writing.mapArray = arguments.input.mapArray;
   writing.patchAngle = arguments.patchAngle.degrees;
   if (const auto* const map = std::get_if<TetMap>(&content)) {
@@ -119,6 +124,10 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
                        counted(map->points.size(), "point"));
   }
   auto& mesh = std::get<HexMesh>(content);
+  refuseIf(arguments.names.isGiven() && others.count() > 0,
+           arguments.input.description() +
+               " holds other cells beside hexahedra, but --names and --split-tags are for "
+               "boundaries of hexahedra.");
   requireFor(arguments, "a hexahedral mesh",
              [](const std::filesystem::path& file, const WriteOptions& options) {
                requireHexMeshFormat(file, options);
@@ -128,8 +137,10 @@ std::string convertWhole(const ConvertArguments& arguments, std::vector<CellCoun
   arguments.names.apply(mesh, writing.patchAngle, context);
   writeHexMesh(mesh, arguments.output, writing, context);
   arguments.names.warnOfAngle(arguments.patchAngle, mesh, arguments.output, writing, context);
-  return fmt::format("a mesh of {}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
-                     mesh.points.size());
+  const std::string beside =
+      others.count() > 0 ? fmt::format(" and {} of other types", others.count()) : "";
+  return fmt::format("a mesh of {}{}{}, {} vertices", counted(mesh.cells.size(), "cell"), turned,
+                     beside, mesh.points.size());
 }
 
 std::string convertInPieces(const ConvertArguments& arguments, std::vector<CellCount>& counts,
@@ -198,7 +209,9 @@ Command addConvert(CLI::App& app) {
                    "neighbours agree and the volume is positive");
   addRunOptions(*parser, arguments->run);
   parser->footer(
-      "A map is written as a map, and a hexahedral mesh as a hexahedral mesh.\n`hexhex formats` "
+      "A map is written as a map, and a hexahedral mesh as a hexahedral mesh, with "
+      "its\ntetrahedra, "
+      "pyramids and prisms if the format holds them. `hexhex formats`\n"
       "lists the formats.\n\nExamples:\n"
       "  hexhex convert sphere.vtu sphere.msh\n"
       "  hexhex convert --tets ball.mesh --polycube cube.mesh ball.hexex");

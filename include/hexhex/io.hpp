@@ -25,6 +25,25 @@ struct CellCount {
   std::uint64_t count = 0;
 };
 
+/// Straight cells of one kind other than hexahedra.
+struct OtherCellList {
+  std::size_t corners = 4;           ///< of each cell
+  Array<Index> vertices = {};        ///< the corners of all cells, in VTK's order
+  Array<std::int32_t> regions = {};  ///< per cell: its region; may be empty
+
+  [[nodiscard]] std::size_t count() const noexcept { return vertices.size() / corners; }
+};
+
+/// Cells beside the hexahedra of a HexMesh, with its points.
+struct OtherCells {
+  std::array<OtherCellList, 3> kinds = {{{4}, {5}, {6}}};  ///< tetrahedra, pyramids, prisms
+  std::vector<FeatureFace> triangles = {};                 ///< tagged triangles, if known
+
+  [[nodiscard]] std::size_t count() const noexcept {
+    return kinds[0].count() + kinds[1].count() + kinds[2].count();
+  }
+};
+
 /// Options for readers.
 struct ReadOptions {
   /// Name of the format (see fileFormats()), whatever the file's extension. Empty: the format is
@@ -43,6 +62,10 @@ struct ReadOptions {
   /// If not null, receives the types of volume cells in the file, by name. Receives nothing for
   /// `.hexex`, `.ovm`, `.ovmb` and `.pvtu` files, which hold a single type.
   std::vector<CellCount>* cellCounts = nullptr;
+  /// If not null, receives tetrahedra, pyramids and prisms with straight edges from a hex mesh,
+  /// which are no error then. Only with readHexMesh() and readMapOrHexMesh(), from formats that can
+  /// be written with such cells, `.unv`, MFEM and CGNS.
+  OtherCells* others = nullptr;
 };
 
 /// Reads a tetrahedral mesh with an integer-grid map: `.hexex`, `.ovm`, `.ovmb`, `.vtu`, `.vtk`.
@@ -134,6 +157,10 @@ struct WriteOptions {
   /// Type of the elements of straight cells in `.inp` files: C3D8 (if empty), C3D8R or C3D8I.
   /// Anything but empty is an error for other formats.
   std::string_view elementType = {};
+
+  /// If not null, writeHexMesh() writes these cells, too: to `.vtu`, `.vtk`, `.vtkhdf`, `.msh`,
+  /// `.mesh`, `.meshb`, `.inp`, `.exo` and `.e`. Any are an error for other formats.
+  const OtherCells* others = nullptr;
 };
 
 /// Writes a map: `.hexex`, `.ovm`, `.ovmb`, and as a cell array `.vtu`, `.vtk`. Numbers in text

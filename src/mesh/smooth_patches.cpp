@@ -41,7 +41,7 @@ adjacency::VertexLists<EdgeSide, std::uint64_t> listSides(std::size_t points,
             parallelFor(stage, quads.size(), kSmoothPatchesGrain, [&](std::size_t q) {
               for (std::size_t i = 0; i < 4; ++i) {
                 const auto [low, high] = std::minmax(quads[q][i], quads[q][(i + 1) % 4]);
-                add(low, EdgeSide{high, static_cast<Index>(q)});
+                if (low != high) add(low, EdgeSide{high, static_cast<Index>(q)});
               }
             });
             for (const FeatureEdge& seam : seams) {

@@ -1442,7 +1442,7 @@ class MixedCells(CommandTest):
             self.assertEqual(listed["cells"], 1)
 
     def test_are_refused_unless_the_others_shall_be_left_out(self):
-        commands = [("convert", "mixed.vtk", "a.vtu"), ("convert", "mixed.vtk", "a.vtu", "--stream"),
+        commands = [("convert", "mixed.vtk", "a.ovm"), ("convert", "mixed.vtk", "a.vtu", "--stream"),
                     ("improve", "mixed.vtk", "-o", "a.vtu")]
         for command in commands:
             self.assert_fails(*command, expect=FILE_PROBLEM, code="FileUnsupported",
@@ -1450,6 +1450,16 @@ class MixedCells(CommandTest):
             result = self.run_command(*command, "--hexes-only")
             self.assertIn("pyramids (1), tetrahedra (1)", result.stderr)
         self.assertIn("a hexahedral mesh\n", self.run_command("info", "a.vtu").stdout)
+
+    def test_are_carried_where_the_format_holds_them(self):
+        result = self.run_command("convert", "mixed.vtk", "a.msh")
+        self.assertIn("a mesh of 1 cell and 2 of other types, ", result.stdout)
+        self.assertEqual(result.stderr, "")
+        self.run_command("convert", "a.msh", "b.vtu")
+        listed = json.loads(self.run_command("info", "b.vtu", "--json").stdout)
+        self.assertEqual(listed["cell_types"], {"hexahedra": 1, "pyramids": 1, "tetrahedra": 1})
+        self.assert_fails("convert", "b.vtu", "c.msh", "--split-tags", expect=BAD_USAGE,
+                          words=("other cells",))
 
     def test_without_others_there_is_no_warning(self):
         self.run_command("extract", self.generate("box"), "-o", "a.vtu", "--quiet")

@@ -1,6 +1,10 @@
 // Files with hexahedra among other volume cells, as most mesh generators write them: refused, with
-// all types named, or read without the others where that is asked for.
+// all types named; read without the others where that is asked for; or carried from file to file.
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -11,7 +15,9 @@
 #include <hexhex/samples.hpp>
 #include <hexhex/summary.hpp>
 
+#include <io/core/mesh_groups.hpp>
 #include <io/io_test_support.hpp>
+#include <io/other_programs.hpp>
 
 namespace hexhex::test {
 namespace {
@@ -308,6 +314,266 @@ TEST_F(MixedCells, AreFoundInBinaryFiles) {
             std::string::npos);
   EXPECT_EQ(readHexMesh(file, {.hexesOnly = true}, context_).cells.size(), 2U);
 }
+
+/// Hexahedra with a pyramid on the first, a prism on the second, and tets between and beside these,
+/// in regions of several kinds of cells.
+struct Mixed {
+  HexMesh mesh = gridMesh(2, 1, 1);
+  OtherCells others;
+
+  Mixed() {
+    mesh.points.insert(mesh.points.end(), {{0.5, 0.5, 2}, {1, 0.5, 2}, {2, 0.5, 2}, {3, 0.5, 1.5}});
+    mesh.regions = {1, 2};
+    others.kinds[0].vertices = {7, 10, 12, 13, 8, 11, 14, 15};
+    others.kinds[0].regions = {3, 1};
+    others.kinds[1].vertices = {6, 7, 10, 9, 12};
+    others.kinds[1].regions = {2};
+    others.kinds[2].vertices = {7, 10, 13, 8, 11, 14};
+    others.kinds[2].regions = {3};
+    mesh.features.quads = {{{0, 3, 4, 1}, 7}, {{7, 8, 14, 13}, 7}, {{10, 13, 14, 11}, 6}};
+    others.triangles = {{{6, 7, 12}, 7}, {{8, 11, 15}, 8}, {{9, 12, 10}, 8}};
+    mesh.features.edges = {{{0, 1}, 5}, {{13, 14}, 5}};
+    mesh.features.vertices = {{12, 4}};
+    mesh.features.names = {{2, 8, "skin"}, {3, 2, "steel"}};
+  }
+};
+
+/// "corners region vertices" of all cells, sorted.
+std::vector<std::string> cellsOf(const HexMesh& mesh, const OtherCells& others, bool regions) {
+  std::vector<std::string> lines;
+  const io::AllCells cells(mesh, others);
+  const Array<std::int32_t> all = cells.regions();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::string& line = lines.emplace_back(std::to_string(cells[i].size()));
+    line += ' ' + std::to_string(regions && !all.empty() ? all[i] : 0);
+    for (const Index v : cells[i]) line += ' ' + std::to_string(v);
+  }
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
+/// Sorted vertices and tags of all features with tags.
+std::map<std::vector<Index>, std::int32_t> tagsOf(const HexMesh& mesh, const OtherCells& others) {
+  std::map<std::vector<Index>, std::int32_t> tags;
+  const auto add = [&tags](const auto& features) {
+    for (const auto& feature : features) {
+      std::vector<Index> key(feature.vertices.begin(), feature.vertices.end());
+      std::sort(key.begin(), key.end());
+      tags[key] = feature.tag;
+    }
+  };
+  add(mesh.features.quads);
+  add(others.triangles);
+  add(mesh.features.edges);
+  for (const FeatureVertex& feature : mesh.features.vertices) tags[{feature.vertex}] = feature.tag;
+  return tags;
+}
+
+struct MixedFormat {
+  std::string name;
+  std::string extension;
+  bool faces = true;  ///< whether it holds tags of faces
+  bool edges = true;  ///< and of edges
+  bool names = true;  ///< and tags of groups with names
+};
+bool hasFormat(std::string_view name) {
+  const auto formats = fileFormats();
+  return std::any_of(formats.begin(), formats.end(), [name](const FileFormat& format) {
+    return format.name == name && format.writesHexMeshes;
+  });
+}
+std::vector<MixedFormat> mixedFormats() {
+  std::vector<MixedFormat> formats = {
+      {"vtu", ".vtu"},
+      {"vtk", ".vtk", false, false, false},
+      {"vtk-binary", ".vtk", false, false, false},
+      {"msh", ".msh"},
+      {"msh41-ascii", ".msh"},
+      {"msh22-ascii", ".msh"},
+      {"mesh", ".mesh", true, false, false},
+      {"meshb", ".meshb", true, true, false},
+      {"inp", ".inp", true, true, false},  // tags of named groups are new
+
+      {"exodus", ".exo"}};
+  if (hasFormat("vtkhdf")) formats.push_back({"vtkhdf", ".vtkhdf", true, true, false});
+  return formats;
+}
+
+TEST_F(MixedCells, AreCarriedThroughEveryPairOfFormatsThatHoldThem) {
+  const Mixed wanted;
+  for (const MixedFormat& first : mixedFormats()) {
+    for (const MixedFormat& second : mixedFormats()) {
+      SCOPED_TRACE(first.name + " to " + second.name);
+      HexMesh mesh = wanted.mesh;
+      OtherCells others = wanted.others;
+      const bool names = first.names && second.names;
+      if (!names) mesh.features.names.clear();
+      for (const MixedFormat& format : {first, second}) {
+        const std::filesystem::path file = folder_ / ("x" + format.extension);
+        writeHexMesh(mesh, file, {.format = format.name, .others = &others}, context_);
+        others = {};
+        mesh = readHexMesh(file, {.format = format.name, .others = &others}, context_);
+      }
+      expectSameBits(mesh.points, wanted.mesh.points);
+      EXPECT_EQ(cellsOf(mesh, others, true), cellsOf(wanted.mesh, wanted.others, true));
+      HexMesh tagged = wanted.mesh;
+      if (!first.edges || !second.edges) tagged.features.edges.clear();
+      if (first.faces && second.faces) {
+        EXPECT_EQ(tagsOf(mesh, others), tagsOf(tagged, wanted.others));
+      }
+      if (names) {
+        const auto isThere = [&mesh](const TagName& name) {
+          const auto& all = mesh.features.names;
+          return std::find(all.begin(), all.end(), name) != all.end();
+        };
+        EXPECT_TRUE(isThere({2, 8, "skin"}));
+        EXPECT_TRUE(isThere({3, 2, "steel"}));
+      }
+    }
+  }
+}
+
+/// Untagged boundaries are those of all cells: not where hexahedra meet others.
+TEST_F(MixedCells, HaveTheirCommonBoundary) {
+  Mixed mixed;
+  mixed.mesh.features = {};
+  mixed.mesh.regions.clear();
+  mixed.others.triangles.clear();
+  for (OtherCellList& kind : mixed.others.kinds) kind.regions.clear();
+  for (const double angle : {0.0, 20.0}) {
+    const std::filesystem::path file = folder_ / "x.msh";
+    writeHexMesh(mixed.mesh, file, {.patchAngle = angle, .others = &mixed.others}, context_);
+    const std::string text = contentOf(file);
+    EXPECT_EQ(text.find("boundary") == std::string::npos, angle > 0);
+    EXPECT_NE(text.find("\"all_cells\""), std::string::npos);
+    OtherCells read;
+    const HexMesh mesh = readHexMesh(file, {.others = &read}, context_);
+    EXPECT_TRUE(mesh.regions.empty());
+    EXPECT_EQ(cellsOf(mesh, read, true), cellsOf(mixed.mesh, mixed.others, true));
+  }
+  const auto groups = io::inStage(context_, "test", [&](Stage& stage) {
+    return io::groupQuads(mixed.mesh, 0, stage, nullptr, mixed.others);
+  });
+  const auto triangles = std::count_if(groups.elements.begin(), groups.elements.end(),
+                                       [](const Quad& v) { return io::cornersOf(v) == 3; });
+  EXPECT_EQ(triangles, 8);                          // 4 + 2 + 8 without five that two cells share
+  EXPECT_EQ(groups.elements.size(), 8U + 2U + 8U);  // 10 of hexahedra without two, 3 without one
+}
+
+TEST_F(MixedCells, AreRefusedByFormatsThatDoNotHoldThem) {
+  const Mixed mixed;
+  for (const std::string file : {"x.ovm", "x.foam", "y.mesh", "x.cgns"}) {
+    if (file == "x.cgns" && !hasFormat("cgns")) continue;
+    const std::string format = file == "y.mesh" ? "mfem" : "";
+    const Failure failure = failureOf([&] {
+      writeHexMesh(mixed.mesh, folder_ / file, {.format = format, .others = &mixed.others},
+                   context_);
+    });
+    EXPECT_EQ(failure.code, ErrorCode::FileUnsupported) << file;
+    for (const std::string word : {"1 prism, 1 pyramid and 2 tetrahedra", ".vtu, .vtk", ".inp"}) {
+      EXPECT_NE(failure.sentence.find(word), std::string::npos) << failure.sentence;
+    }
+  }
+}
+
+TEST_F(MixedCells, ThatAreWrongAreNotWritten) {
+  Mixed mixed;
+  mixed.others.kinds[2].vertices[3] = 16;
+  const auto write = [&] {
+    writeHexMesh(mixed.mesh, folder_ / "x.vtu", {.others = &mixed.others}, context_);
+  };
+  EXPECT_EQ(failureOf(write).code, ErrorCode::InvalidArgument);
+  mixed = {};
+  mixed.others.kinds[1].regions.push_back(1);
+  EXPECT_EQ(failureOf(write).code, ErrorCode::InvalidArgument);
+}
+
+/// Programs list the prisms of VTK's files in two ways, which mirror each other.
+TEST_F(MixedCells, TurnPrismsOfVtkRound) {
+  Mixed mirrored;
+  mirrored.others.kinds[2].vertices = {7, 13, 10, 8, 14, 11};
+  for (const std::string file : {"x.vtu", "x.vtk"}) {
+    writeHexMesh(mirrored.mesh, folder_ / file, {.others = &mirrored.others}, context_);
+    OtherCells read;
+    static_cast<void>(readHexMesh(folder_ / file, {.others = &read}, context_));
+    EXPECT_EQ(read.kinds[2].vertices, Mixed().others.kinds[2].vertices);
+  }
+}
+
+/// References that say nothing of one kind of cells may tell it from another.
+TEST_F(MixedCells, KeepReferencesOfMedit) {
+  Mixed mixed;
+  mixed.mesh.regions = {1, 1};
+  for (OtherCellList& kind : mixed.others.kinds) kind.regions.assign(kind.count(), 2);
+  for (const std::string file : {"x.mesh", "x.meshb"}) {
+    writeHexMesh(mixed.mesh, folder_ / file, {.others = &mixed.others}, context_);
+    OtherCells read;
+    const HexMesh mesh = readHexMesh(folder_ / file, {.others = &read}, context_);
+    EXPECT_EQ(cellsOf(mesh, read, true), cellsOf(mixed.mesh, mixed.others, true));
+  }
+}
+
+struct MixedCheck {
+  std::string program;
+  std::string file;
+  std::string format;
+  bool regions = true;  ///< whether the program says the regions
+};
+class MixedCellsAndOthers : public testing::TestWithParam<MixedCheck> {};
+
+TEST_P(MixedCellsAndOthers, AreTheSameToOtherPrograms) {
+  const auto& [program, file, format, regions] = GetParam();
+  const TemporaryFolder folder;
+  Context context;
+  Mixed mixed;
+  if (format == "inp") mixed.others.kinds[1] = {5};  // which meshio does not know
+  writeHexMesh(mixed.mesh, folder / file, {.format = format, .others = &mixed.others}, context);
+  const std::string out = (folder / "out").string();
+  const std::string copy =
+      (folder / ("copy" + std::filesystem::path(file).extension().string())).string();
+  const int code = runScript(
+      "mixed_with.py", program + " '" + (folder / file).string() + "' '" + out + "' '" + copy + "'",
+      out + ".errors");
+  if (isMissing(code)) GTEST_SKIP() << program << " for " << interpreter() << " is not installed";
+  ASSERT_EQ(code, 0) << contentOf(out + ".errors");
+  std::string wanted;
+  for (const std::string& line : cellsOf(mixed.mesh, mixed.others, regions)) wanted += line + '\n';
+  EXPECT_EQ(contentOf(out), wanted);
+  OtherCells read;
+  HexMesh mesh = readHexMesh(copy, {.others = &read}, context);
+  // Programs may list points in another order, with rounded coordinates.
+  const auto restore = [&](Index& v) {
+    const auto isNear = [&](const Vec3& point) {
+      return std::hypot(point[0] - mesh.points[v][0], point[1] - mesh.points[v][1],
+                        point[2] - mesh.points[v][2]) < 1e-9;
+    };
+    const auto& known = mixed.mesh.points;
+    v = static_cast<Index>(std::find_if(known.begin(), known.end(), isNear) - known.begin());
+  };
+  for (Hex& cell : mesh.cells) std::for_each(cell.begin(), cell.end(), restore);
+  for (OtherCellList& kind : read.kinds) {
+    std::for_each(kind.vertices.begin(), kind.vertices.end(), restore);
+  }
+  EXPECT_EQ(mesh.points.size(), mixed.mesh.points.size());
+  EXPECT_EQ(cellsOf(mesh, read, regions), cellsOf(mixed.mesh, mixed.others, regions));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, MixedCellsAndOthers,
+    testing::Values(
+        MixedCheck{"vtk", "a.vtu", "vtu"}, MixedCheck{"vtk", "a.vtk", "vtk"},
+        MixedCheck{"vtk", "a.vtk", "vtk-binary"}, MixedCheck{"gmsh", "a.msh", "msh"},
+        MixedCheck{"gmsh", "a.msh", "msh41-ascii"}, MixedCheck{"gmsh", "a.msh", "msh22-ascii"},
+        MixedCheck{"meshio", "a.vtu", "vtu"}, MixedCheck{"meshio", "a.vtk", "vtk"},
+        MixedCheck{"meshio", "a.msh", "msh"}, MixedCheck{"meshio", "a.msh", "msh22-ascii"},
+        MixedCheck{"meshio", "a.mesh", "mesh"}, MixedCheck{"meshio", "a.meshb", "meshb"},
+        MixedCheck{"meshio", "a.inp", "inp", false},
+        MixedCheck{"meshio", "a.e", "exodus-e", false}),
+    [](const auto& test) {
+      std::string name = test.param.program + "_" + test.param.format;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace hexhex::test

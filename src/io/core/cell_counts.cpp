@@ -18,7 +18,8 @@ bool isFlat(std::int64_t type) {
   return type == kBezierQuad || std::find(kFlat.begin(), kFlat.end(), type) != kFlat.end();
 }
 
-/// "tetrahedron", "prism with 15 nodes".
+}  // namespace
+
 std::string singular(std::string_view plural) {
   const std::size_t end = std::min(plural.find(" with "), plural.find(" of "));
   std::string noun(plural.substr(0, end));
@@ -28,13 +29,37 @@ std::string singular(std::string_view plural) {
   return concat(noun, plural.substr(std::min(end, plural.size())));
 }
 
-}  // namespace
-
 const VolumeCells* volumeCells(std::int64_t VolumeCells::*number, std::int64_t value) {
   const auto* const found =
       std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
                    [&](const VolumeCells& type) { return value > 0 && type.*number == value; });
   return found == kVolumeCells.end() ? nullptr : found;
+}
+
+std::span<const Index> AllCells::operator[](std::size_t i) const {
+  if (i < mesh_.cells.size()) return mesh_.cells[i];
+  i -= mesh_.cells.size();
+  const OtherCellList* kind = others_.kinds.data();
+  for (; i >= kind->count(); ++kind) i -= kind->count();
+  return {kind->vertices.data() + i * kind->corners, kind->corners};
+}
+
+Array<std::int32_t> AllCells::regions() const {
+  Array<std::int32_t> regions = mesh_.regions;
+  regions.resize(mesh_.cells.size(), 0);
+  for (const OtherCellList& kind : others_.kinds) {
+    const std::size_t begin = regions.size();
+    regions.insert(regions.end(), kind.regions.begin(), kind.regions.end());
+    regions.resize(begin + kind.count(), 0);
+  }
+  const auto isZero = [](std::int32_t region) { return region == 0; };
+  if (std::all_of(regions.begin(), regions.end(), isZero)) regions.clear();
+  return regions;
+}
+
+const OtherCells& noOthers() {
+  static const OtherCells none;
+  return none;
 }
 
 void CellCounts::addVtk(std::int64_t type, std::uint64_t count) {
@@ -96,13 +121,13 @@ std::string CellCounts::adviceOnCurved() const {
 }
 
 void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,
-                             std::string_view advice) const {
+                             std::string_view advice, const OtherCells& read) const {
   const std::vector<CellCount> all = list();
   const std::uint64_t others =
       std::accumulate(all.begin(), all.end(), std::uint64_t{0},
                       [](std::uint64_t sum, const CellCount& each) { return sum + each.count; }) -
       of(kind);
-  if (others == 0) return;
+  if (others == read.count()) return;
   throw Error(ErrorCode::FileUnsupported,
               concat(fileName, ": the file holds ", text(), ", but all cells must be ", kind.plural,
                      ". ", advice));

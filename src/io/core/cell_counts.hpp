@@ -1,14 +1,19 @@
-// Points and cells of one kind, as read from files that may also hold other cells.
+// Points and cells of one kind, as read from files that may also hold other cells; and meshes with
+// cells of several kinds.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
+
+#include <adjacency/cell_faces.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
@@ -40,9 +45,6 @@ struct CellKind {
   std::size_t corners = 0;
   std::string_view singular;
   std::string_view plural;
-  std::string_view meditKeyword = {};
-  std::uint32_t meshbKeyword = 0;
-  std::int64_t gmshType = 0;
   std::int64_t vtkType = 0;
   PlaceKind place = PlaceKind::None;
 };
@@ -50,21 +52,12 @@ struct CellKind {
 template <std::size_t corners>
 inline constexpr CellKind kCellKind = {};
 template <>
-inline constexpr CellKind kCellKind<4> = {4,  "tetrahedron", "tetrahedra", "Tetrahedra", 8, 4,
-                                          10, PlaceKind::Tet};
+inline constexpr CellKind kCellKind<4> = {4, "tetrahedron", "tetrahedra", 10, PlaceKind::Tet};
 template <>
-inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra",    "Hexahedra", 10,
-                                          5, 12,           PlaceKind::Cell};
-
+inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra", 12, PlaceKind::Cell};
 template <>
-inline constexpr CellKind kCellKind<27> = {.corners = 27,
-                                           .singular = "hexahedron with 27 nodes",
-                                           .plural = "hexahedra with 27 nodes",
-                                           .meditKeyword = "HexahedraQ2",
-                                           .meshbKeyword = 33,
-                                           .gmshType = 12,
-                                           .vtkType = 29,
-                                           .place = PlaceKind::Cell};
+inline constexpr CellKind kCellKind<27> = {27, "hexahedron with 27 nodes",
+                                           "hexahedra with 27 nodes", 29, PlaceKind::Cell};
 
 /// Triangles that carry labels.
 inline constexpr CellKind kTriangleKind = {
@@ -83,7 +76,7 @@ struct VolumeCells {
   std::size_t meditVertices = 0;       ///< per cell
 };
 
-constexpr std::array<VolumeCells, 38> kVolumeCells = {
+inline constexpr std::array<VolumeCells, 38> kVolumeCells = {
     {{"hexahedra", 12, 5, 10, "Hexahedra", 8},
      {"hexahedra with 20 nodes", 25, 17},
      {"hexahedra with 24 nodes", 33},
@@ -123,6 +116,83 @@ constexpr std::array<VolumeCells, 38> kVolumeCells = {
      {"Bezier pyramids", 81},
      {"polyhedra", 42}}};
 
+/// "tetrahedron", "prism with 15 nodes".
+[[nodiscard]] std::string singular(std::string_view plural);
+
+/// The type of cells with this number of nodes: 4, 5, 6 or 8, which are straight, or 27.
+constexpr const VolumeCells& typeWith(std::size_t nodes) {
+  return *std::find_if(kVolumeCells.begin(), kVolumeCells.end(),
+                       [nodes](const VolumeCells& type) { return type.meditVertices == nodes; });
+}
+
+/// Something for each kind of straight cells, by their corners.
+template <class T>
+struct ByCorners {
+  T tet, pyramid, prism, hexahedron;
+
+  [[nodiscard]] constexpr const T& operator[](std::size_t corners) const {
+    return corners == 4 ? tet : (corners == 5 ? pyramid : (corners == 6 ? prism : hexahedron));
+  }
+};
+
+/// Local corners of faces, counter-clockwise seen from outside. Triangles repeat the last one.
+using FaceRows = std::array<std::array<std::uint8_t, 4>, 6>;
+inline constexpr ByCorners<FaceRows> kFaces = {
+    {{{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {2, 0, 3, 3}}},
+    {{{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}},
+    {{{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
+    adjacency::kHexFaces};
+inline constexpr ByCorners<std::size_t> kFaceCounts = {4, 5, 5, 6};
+/// A format's numbers of these faces, from 1 on.
+using SideNumbers = ByCorners<std::array<std::uint8_t, 6>>;
+
+/// A face of a cell.
+[[nodiscard]] inline Quad faceAt(std::span<const Index> cell, std::size_t face) {
+  const auto& row = kFaces[cell.size()][face];
+  return {cell[row[0]], cell[row[1]], cell[row[2]], cell[row[3]]};
+}
+[[nodiscard]] inline std::size_t cornersOf(const Quad& face) { return face[2] == face[3] ? 3 : 4; }
+
+/// The hexahedra of a mesh, then its other cells by kind.
+class AllCells {
+ public:
+  /// @param mesh, others  must outlive this
+  AllCells(const HexMesh& mesh, const OtherCells& others) : mesh_(mesh), others_(others) {}
+
+  [[nodiscard]] const OtherCells& others() const noexcept { return others_; }
+  [[nodiscard]] std::size_t size() const { return mesh_.cells.size() + others_.count(); }
+  [[nodiscard]] std::span<const Index> operator[](std::size_t i) const;
+  /// Empty if no cell has one.
+  [[nodiscard]] Array<std::int32_t> regions() const;
+
+ private:
+  const HexMesh& mesh_;
+  const OtherCells& others_;
+};
+
+/// Views numbers as rows.
+template <std::size_t n>
+[[nodiscard]] std::span<const std::array<Index, n>> inRows(const Array<Index>& numbers) {
+  return {reinterpret_cast<const std::array<Index, n>*>(numbers.data()), numbers.size() / n};
+}
+
+/// Calls f(cells) for each kind of other cells that there is, with a span of arrays of corners.
+template <class F>
+void forEachOtherKind(const OtherCells& others, const F& f) {
+  const auto visit = [&f](auto cells) {
+    if (!cells.empty()) f(cells);
+  };
+  visit(inRows<4>(others.kinds[0].vertices));
+  visit(inRows<5>(others.kinds[1].vertices));
+  visit(inRows<6>(others.kinds[2].vertices));
+}
+
+[[nodiscard]] const OtherCells& noOthers();
+/// Cells to write beside hexahedra.
+[[nodiscard]] inline const OtherCells& othersOf(const WriteOptions& options) {
+  return options.others == nullptr ? noOthers() : *options.others;
+}
+
 /// The volume cell type with this number in a format; null if there is none.
 [[nodiscard]] const VolumeCells* volumeCells(std::int64_t VolumeCells::*number, std::int64_t value);
 
@@ -136,9 +206,10 @@ class CellCounts {
   [[nodiscard]] std::uint64_t of(const CellKind& kind) const;
   /// Refuses a file that also holds cells of other kinds.
   /// @param advice  how to proceed, appended to the message
+  /// @param read    those that are not refused
   /// @throws Error FileUnsupported
-  void requireOnly(const CellKind& kind, const std::string& fileName,
-                   std::string_view advice) const;
+  void requireOnly(const CellKind& kind, const std::string& fileName, std::string_view advice,
+                   const OtherCells& read = noOthers()) const;
 
   [[nodiscard]] std::vector<CellCount> list() const;
   /// "; it holds 1 prism and 8 hexahedra with 27 nodes", to end messages about files that lack
@@ -148,9 +219,10 @@ class CellCounts {
   /// hexahedra of order 2.
   [[nodiscard]] std::string adviceOnCurved() const;
 
- private:
+  /// "1 prism and 8 hexahedra with 27 nodes".
   [[nodiscard]] std::string text() const;
 
+ private:
   std::map<std::string_view, std::uint64_t> counts_;
   std::map<std::int64_t, std::uint64_t> unknown_;  ///< VTK types not in the table
 };

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <adjacency/corner_range.hpp>
@@ -11,6 +12,7 @@
 #include <base/concat.hpp>
 #include <base/parallel.hpp>
 #include <base/vector3.hpp>
+#include <io/core/cell_counts.hpp>
 #include <io/core/checked_sink.hpp>
 #include <mesh/smooth_patches.hpp>
 
@@ -21,7 +23,8 @@ namespace {
 constexpr std::size_t kCheckedSinkGrain = std::size_t{1} << 14;
 
 /// Refuses an optional array that is present but has the wrong size.
-void requireSize(std::size_t size, std::size_t expected, const char* elements, const char* values) {
+void requireSize(std::size_t size, std::size_t expected, std::string_view elements,
+                 const char* values) {
   if (size == 0 || size == expected) return;
   throw Error(ErrorCode::InvalidArgument,
               concat("The mesh has ", expected, " ", elements, " but ", size, " ", values, "."));
@@ -77,6 +80,15 @@ void requireWritable(const HexMesh& mesh, const WriteOptions& options, Stage& st
   mesh::requirePatchAngle(options.patchAngle);
   requireSize(options.scaledJacobians.size(), mesh.cells.size(), "cells", "scaled Jacobians");
   requireFinite(mesh.points, stage);
+  for (const OtherCellList& kind : othersOf(options).kinds) {
+    const std::string_view what = typeWith(kind.corners).plural;
+    requireSize(kind.regions.size(), kind.count(), what, "regions");
+    const auto vertex = std::find_if(kind.vertices.begin(), kind.vertices.end(),
+                                     [&](Index v) { return v >= mesh.points.size(); });
+    if (vertex == kind.vertices.end() && kind.vertices.size() % kind.corners == 0) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                concat("One of the ", what, " names a vertex that does not exist, or lacks one."));
+  }
 }
 
 namespace {

@@ -80,6 +80,17 @@ void requireElementType(const std::filesystem::path& file, const Format& format,
                       "in .inp files are of the type C3D8, C3D8R or C3D8I, others have none."));
 }
 
+/// Refuses cells that are no hexahedra if the format is not written with them.
+void requireOthers(const std::filesystem::path& file, const Format& format,
+                   const OtherCells& others) {
+  if (others.count() == 0 || format.others) return;
+  CellCounts counts;
+  for (const OtherCellList& kind : others.kinds) counts.add(typeWith(kind.corners), kind.count());
+  refuse(file, concat("the format \"", format.label.name, "\" is written with hexahedra only, but ",
+                      "the mesh has others, too: ", counts.text(), ". Formats that hold them: ",
+                      formatsOfOthers(), ". --hexes-only leaves them out."));
+}
+
 /// The format of a file to write with these options.
 const Format& writableFormat(const std::filesystem::path& file, const WriteOptions& options,
                              FileContent content) {
@@ -93,6 +104,7 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
                        ? "\" are read, but not written."
                        : "\" are read; they are written by `hexhex extract --parts` alone.")));
   }
+  if (content == FileContent::HexMesh) requireOthers(file, format, othersOf(options));
   if (options.compress && !format.compresses) {
     refuse(file,
            concat("the format \"", format.label.name, "\" knows no compression; only .vtu does."));
@@ -103,6 +115,10 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
   return format;
 }
 
+constexpr const char* kCarried =
+    " Others are carried if they are tetrahedra, pyramids and prisms with straight edges, from all "
+    "formats but .pvtu, .foam, .ovm and .ovmb.";
+
 /// Reports the volume cells that a reader counted, and refuses files with cells it skipped.
 /// @param allowed  whether cells of other kinds may be skipped
 void settleCells(const Input& input, const CellKind& wanted, const ReadOptions& options,
@@ -112,9 +128,10 @@ void settleCells(const Input& input, const CellKind& wanted, const ReadOptions& 
   input.counts()->requireOnly(
       wanted, input.name(),
       wanted.corners == 8
-          ? "Hexahedra alone would have holes; to read them all the same, add --hexes-only "
-            "(ReadOptions::hexesOnly)."
-          : "Tetrahedra alone would have holes; split the others into tetrahedra.");
+          ? concat("Hexahedra alone would have holes; to read them all the same, add --hexes-only ",
+                   "(ReadOptions::hexesOnly).", (input.others() == nullptr ? "" : kCarried))
+          : "Tetrahedra alone would have holes; split the others into tetrahedra.",
+      input.others() == nullptr ? noOthers() : *input.others());
 }
 
 TetMap readMapOf(const Input& input, const Format& format, const ReadOptions& options,
@@ -125,8 +142,9 @@ TetMap readMapOf(const Input& input, const Format& format, const ReadOptions& op
   return map;
 }
 
-HexMesh readMeshOf(const Input& input, const Format& format, const ReadOptions& options,
+HexMesh readMeshOf(Input input, const Format& format, const ReadOptions& options,
                    Context& context) {
+  input.setOthers(options.hexesOnly ? nullptr : options.others);
   HexMesh mesh =
       inStage(context, "read mesh", [&](Stage& stage) { return format.meshes.read(input, stage); });
   settleCells(input, kCellKind<8>, options, options.hexesOnly);
@@ -453,8 +471,9 @@ void writePatches(const PiecewiseLinearMesh& mesh, const TetMapView& map,
 void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& file,
                        const WriteOptions& options, Context& context) {
   const io::Format& format = io::curvedFormatToWrite(file, options.format, mesh.order);
-  if (!options.elementType.empty()) {
-    io::refuse(file, "only straight cells can be given a type of elements.");
+  if (!options.elementType.empty() || io::othersOf(options).count() > 0) {
+    io::refuse(file,
+               "only straight cells can be given a type of elements, or have others beside them.");
   }
   mesh::requireConsistent(mesh);
   if (!options.scaledJacobians.empty() && options.scaledJacobians.size() != mesh.cellCount()) {

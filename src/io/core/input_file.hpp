@@ -107,6 +107,9 @@ class Input {
   }
   /// The cells that readers of this input have counted.
   [[nodiscard]] const std::shared_ptr<CellCounts>& counts() const noexcept { return counts_; }
+  /// Where readers of hex meshes put other cells; null: nowhere.
+  [[nodiscard]] OtherCells* others() const noexcept { return others_; }
+  void setOthers(OtherCells* others) noexcept { others_ = others; }
   /// All bytes except a byte order mark. A file is read into `room`; for `first` see
   /// readWholeFile().
   [[nodiscard]] std::string_view text(Array<char>& room, Stage& stage,
@@ -122,6 +125,7 @@ class Input {
   std::shared_ptr<const Array<char>> unpacked_;
   std::optional<std::string_view> bytes_;
   std::shared_ptr<CellCounts> counts_ = std::make_shared<CellCounts>();
+  OtherCells* others_ = nullptr;
 };
 
 /// Whether a file's name ends in ".gz".

@@ -165,23 +165,64 @@ void tagPatches(const HexMesh& mesh, double angle, TaggedQuads& found, Stage& st
   }
 }
 
+/// Faces are the same if these are equal.
+Quad faceKey(Quad face) {
+  if (cornersOf(face) == 3) face[3] = kNone;
+  return sorted(face);
+}
+
+/// Makes the boundary of the hexahedra that of all cells. Quads come before triangles.
+void joinOthers(const HexMesh& mesh, const OtherCells& others, TaggedQuads& found) {
+  const AllCells cells(mesh, others);
+  for (const std::size_t corners : {4U, 3U}) {
+    for (std::size_t i = mesh.cells.size(); i < cells.size(); ++i) {
+      for (std::size_t face = 0; face < kFaceCounts[cells[i].size()]; ++face) {
+        const Quad quad = faceAt(cells[i], face);
+        if (cornersOf(quad) != corners) continue;
+        found.quads.push_back(quad);
+        found.places.push_back(8 * std::uint64_t{i} + face);
+      }
+    }
+  }
+  std::vector<std::pair<Quad, std::size_t>> table;  // by vertices
+  table.reserve(found.quads.size());
+  for (const Quad& quad : found.quads) table.emplace_back(faceKey(quad), table.size());
+  std::sort(table.begin(), table.end());
+  std::vector<std::size_t> kept;  // faces of one cell
+  const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
+  adjacency::forEachRun(std::span<const std::pair<Quad, std::size_t>>(table), isSame,
+                        [&](auto run) {
+                          if (run.size() == 1) kept.push_back(run[0].second);
+                        });
+  std::sort(kept.begin(), kept.end());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    found.quads[i] = found.quads[kept[i]];
+    found.places[i] = found.places[kept[i]];
+  }
+  found.quads.resize(kept.size());
+  found.places.resize(kept.size());
+}
+
 TaggedQuads findQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
-                      const std::function<bool(std::uint64_t)>& isInside) {
-  const std::vector<FeatureQuad>& features = mesh.features.quads;
+                      const std::function<bool(std::uint64_t)>& isInside,
+                      const OtherCells& others) {
+  std::vector<FeatureQuad> features = mesh.features.quads;
+  for (const auto& [v, tag] : others.triangles) features.push_back({{v[0], v[1], v[2], v[2]}, tag});
   TaggedQuads found;
   found.places = adjacency::boundaryPlaces(mesh, stage);
   if (isInside) std::erase_if(found.places, isInside);
   found.quads = adjacency::quadsAt(mesh, found.places);
+  if (others.count() > 0) joinOthers(mesh, others, found);
   found.tags.resize(found.quads.size());
   std::fill(found.tags.begin(), found.tags.end(), Tag{0});
   std::vector<std::pair<Quad, std::size_t>> table;  // by sorted vertices
   for (std::size_t i = 0; i < features.size(); ++i) {
-    if (features[i].tag != 0) table.emplace_back(sorted(features[i].vertices), i);
+    if (features[i].tag != 0) table.emplace_back(faceKey(features[i].vertices), i);
   }
   std::sort(table.begin(), table.end());
   std::vector<std::uint8_t> onBoundary(features.size(), 0);
   parallelFor(stage, found.quads.size(), kMeshGroupsGrain, [&](std::size_t i) {
-    const std::pair<Quad, std::size_t> wanted{sorted(found.quads[i]), 0};
+    const std::pair<Quad, std::size_t> wanted{faceKey(found.quads[i]), 0};
     const auto feature = std::lower_bound(table.begin(), table.end(), wanted);
     if (feature == table.end() || feature->first != wanted.first) return;
     found.tags[i] = features[feature->second].tag;
@@ -231,14 +272,18 @@ void addMissingGroups(std::vector<ElementGroup>& groups, std::vector<std::int32_
 }
 
 QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
-                      const std::function<bool(std::uint64_t)>& isInside) {
+                      const std::function<bool(std::uint64_t)>& isInside,
+                      const OtherCells& others) {
   for (std::size_t i = 0; i < mesh.features.quads.size(); ++i) {
     requireVertices(mesh, mesh.features.quads[i].vertices, "quad", i);
+  }
+  for (std::size_t i = 0; i < others.triangles.size(); ++i) {
+    requireVertices(mesh, others.triangles[i].vertices, "triangle", i);
   }
   for (std::size_t i = 0; i < mesh.features.edges.size(); ++i) {
     requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
   }
-  const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside);
+  const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside, others);
   const Array<std::size_t> order = orderByTag(found.tags);
   QuadGroups result{
       {groupsOf(found.tags, order, {"surface", "boundary", givenNames(mesh.features.names, 2)}),
@@ -256,13 +301,15 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   return result;
 }
 
-CellGroups groupCells(const HexMesh& mesh) {
-  if (mesh.regions.empty()) return {{{1, "hexahedra", 0, mesh.cells.size()}}, {}};
-  const Array<std::size_t> order = orderByTag(mesh.regions);
-  CellGroups result{
-      groupsOf(mesh.regions, order, {"region", "hexahedra", givenNames(mesh.features.names, 3)}),
-      {}};
-  if (result.groups.empty()) result.groups.push_back({1, "hexahedra", 0, 0});
+CellGroups groupCells(const HexMesh& mesh, const OtherCells& others) {
+  const char* const all = others.count() > 0 ? "all_cells" : "hexahedra";
+  const AllCells cells(mesh, others);
+  const Array<Tag> ofAll = others.count() > 0 ? cells.regions() : Array<Tag>();
+  const std::span<const Tag> regions = others.count() > 0 ? ofAll : mesh.regions;
+  if (regions.empty()) return {{{1, all, 0, cells.size()}}, {}};
+  const Array<std::size_t> order = orderByTag(regions);
+  CellGroups result{groupsOf(regions, order, {"region", all, givenNames(mesh.features.names, 3)}),
+                    {}};
   if (result.groups.size() == 1) return result;
   result.order.resize(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) result.order[i] = static_cast<Index>(order[i]);
@@ -275,9 +322,13 @@ std::size_t QuadGroups::boundaryEnd(const ElementGroup& group) const {
   return static_cast<std::size_t>(end - places.begin());
 }
 
-MeshGroups::MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage)
-    : vertices(groupVertices(mesh)), edges(groupEdges(mesh)), cells(groupCells(mesh)) {
-  withThreads(stage.context().threads(), [&] { quads = groupQuads(mesh, patchAngle, stage); });
+MeshGroups::MeshGroups(const HexMesh& mesh, const WriteOptions& options, Stage& stage)
+    : vertices(groupVertices(mesh)),
+      edges(groupEdges(mesh)),
+      cells(groupCells(mesh, othersOf(options))) {
+  withThreads(stage.context().threads(), [&] {
+    quads = groupQuads(mesh, options.patchAngle, stage, nullptr, othersOf(options));
+  });
 }
 
 void requireInt32(std::size_t count, const std::string& numbers, const std::string& instead) {
@@ -287,11 +338,12 @@ void requireInt32(std::size_t count, const std::string& numbers, const std::stri
                                           count, "; ", instead, "."));
 }
 
-Array<std::uint32_t> cellReferences(const HexMesh& mesh, Untagged untagged) {
-  if (mesh.regions.empty()) return {};
-  const CellGroups groups = groupCells(mesh);
+Array<std::uint32_t> cellReferences(const HexMesh& mesh, Untagged untagged,
+                                    const OtherCells& others) {
+  const CellGroups groups = groupCells(mesh, others);
+  if (mesh.regions.empty() && groups.groups.size() == 1 && groups.groups[0].tag == 0) return {};
   const Array<std::uint32_t> numbers = groupNumbers(groups.groups, untagged);
-  Array<std::uint32_t> references(mesh.cells.size());
+  Array<std::uint32_t> references(numbers.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) references[groups.at(i)] = numbers[i];
   return references;
 }
@@ -360,7 +412,8 @@ std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension)
   constexpr std::array<std::pair<std::string_view, int>, 5> kTagged = {
       {{"point_", 0}, {"curve_", 1}, {"surface_", 2}, {"patch_", 2}, {"region_", 3}}};
   const auto fits = [dimension](int own) { return dimension == -1 || dimension == own; };
-  if ((name == "boundary" && fits(2)) || (name == "hexahedra" && fits(3))) return 0;
+  const bool isAllCells = name == "hexahedra" || name == "all_cells";
+  if ((name == "boundary" && fits(2)) || (isAllCells && fits(3))) return 0;
   for (const auto& [prefix, own] : kTagged) {
     if (!name.starts_with(prefix) || !fits(own)) continue;
     std::string_view digits = name.substr(prefix.size());

@@ -19,6 +19,7 @@
 
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
 
 namespace hexhex::io {
 
@@ -45,9 +46,11 @@ struct ElementGroups {
 using VertexGroups = ElementGroups<1>;
 using EdgeGroups = ElementGroups<2>;
 
-/// All boundary quads, facing outwards, and the tagged interior quads.
+/// All boundary quads, facing outwards, and the tagged interior quads. Among them, in meshes with
+/// other cells, are triangles: quads that repeat their last vertex.
 struct QuadGroups : ElementGroups<4> {
-  Array<std::uint64_t> places;  ///< per quad: 8 * cell + face; kNoPlace in the interior
+  /// Per quad: 8 * cell + face, as AllCells and kFaces number them; kNoPlace in the interior.
+  Array<std::uint64_t> places;
 
   /// The end of a group's boundary quads; interior quads come last.
   [[nodiscard]] std::size_t boundaryEnd(const ElementGroup& group) const;
@@ -67,12 +70,15 @@ struct QuadGroups : ElementGroups<4> {
 ///                  its place; null: no such quads
 /// @throws Error InvalidArgument for a feature with a vertex index out of range
 [[nodiscard]] QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
-                                    const std::function<bool(std::uint64_t)>& isInside = nullptr);
+                                    const std::function<bool(std::uint64_t)>& isInside = nullptr,
+                                    const OtherCells& others = noOthers());
 
 /// The cells by region, for formats that list them group by group.
 struct CellGroups {
   std::vector<ElementGroup> groups;  ///< at least one
-  Array<Index> order;                ///< cell indices, group by group; empty: the original order
+  /// Cell indices as in AllCells, group by group, those of a group by kind; empty: the original
+  /// order.
+  Array<Index> order;
 
   /// The cell at position i of the list.
   [[nodiscard]] std::size_t at(std::size_t i) const noexcept {
@@ -80,8 +86,20 @@ struct CellGroups {
   }
 };
 
-/// Default names are "region_TAG", and "hexahedra" for region 0 and meshes without regions.
-[[nodiscard]] CellGroups groupCells(const HexMesh& mesh);
+/// Default names are "region_TAG", and "hexahedra" (with other cells: "all_cells") for region 0 and
+/// meshes without regions.
+[[nodiscard]] CellGroups groupCells(const HexMesh& mesh, const OtherCells& others = noOthers());
+
+/// Calls f(group) for the parts of a group whose elements have equally many corners.
+/// @param corners  corners(i): of element i of the list
+template <class Corners, class F>
+void splitByCorners(ElementGroup group, const Corners& corners, const F& f) {
+  for (const std::size_t end = group.end; group.begin < end; group.begin = group.end) {
+    group.end = group.begin + 1;
+    while (group.end < end && corners(group.end) == corners(group.begin)) ++group.end;
+    f(std::as_const(group));
+  }
+}
 
 /// Adds empty groups, so that all meshes with these tags have the same groups with the same numbers
 /// and names.
@@ -100,7 +118,7 @@ struct MeshGroups {
   CellGroups cells;
 
   /// @throws Error InvalidArgument for a feature with a vertex index out of range
-  MeshGroups(const HexMesh& mesh, double patchAngle, Stage& stage);
+  MeshGroups(const HexMesh& mesh, const WriteOptions& options, Stage& stage);
   MeshGroups(VertexGroups vertices_, EdgeGroups edges_, QuadGroups quads_, CellGroups cells_)
       : vertices(std::move(vertices_)),
         edges(std::move(edges_)),
@@ -134,8 +152,8 @@ template <class Groups>
 void requireInt32(std::size_t count, const std::string& numbers,
                   const std::string& instead = "choose another format");
 
-/// The tag in a default name of a group, 0 for "boundary", "hexahedra" and "patch_7"; empty for
-/// other names.
+/// The tag in a default name of a group, 0 for "boundary", "hexahedra", "all_cells" and "patch_7";
+/// empty for other names.
 /// @param dimension  of the elements, if only their names count; -1: any
 [[nodiscard]] std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension = -1);
 
@@ -148,7 +166,8 @@ enum class Untagged : std::uint8_t { Numbered, Zero };
 
 /// The group number of each cell, for formats that list cells in order; empty if all are 1.
 [[nodiscard]] Array<std::uint32_t> cellReferences(const HexMesh& mesh,
-                                                  Untagged untagged = Untagged::Numbered);
+                                                  Untagged untagged = Untagged::Numbered,
+                                                  const OtherCells& others = noOthers());
 
 /// The group number of each vertex, 0 if none, for formats with one reference per vertex.
 [[nodiscard]] Array<std::uint32_t> vertexReferences(const HexMesh& mesh,

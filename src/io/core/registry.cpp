@@ -46,7 +46,8 @@ constexpr Format exodusFormat(std::string_view name, std::string_view extension,
                      .read = ExodusFormat::readCurved,
                      .write = writeQuadraticExodus,
                      .onlyOrder = 2},
-          .parts = {openExodusPartSink, parts}};
+          .parts = {openExodusPartSink, parts},
+          .others = true};
 }
 
 template <bool binary>
@@ -60,7 +61,8 @@ constexpr Format meditFormat(std::string_view name, std::string_view extension,
                      .read = Medit::readCurved,
                      .write = Medit::writeCurved,
                      .onlyOrder = 2},
-          .pieces = {Medit::openSink, Medit::readTo}};
+          .pieces = {Medit::openSink, Medit::readTo},
+          .others = true};
 }
 
 constexpr Format vtkGridFormat(std::string_view name, std::string_view extension,
@@ -95,6 +97,7 @@ constexpr std::array kFormatTable = {
            .writePatches = writePatchesVtu,
            .compresses = true,
            .measures = true,
+           .others = true,
            .groups = false},
     vtkGridFormat("vts", ".vts", "VTK XML structured grid"),
     vtkGridFormat("vtr", ".vtr", "VTK XML rectilinear grid"),
@@ -113,6 +116,7 @@ constexpr std::array kFormatTable = {
            .meshes = {readVtkLegacy, writeVtkLegacy},
            .curved = {holdsCurvedVtkLegacy, readCurvedVtkLegacy},
            .pieces = {openVtkLegacySink, readVtkLegacyTo},
+           .others = true,
            .groups = false},
     Format{.label = {"vtk-binary", ".vtk", "legacy VTK 2.0, binary"},
            .maps = {readVtkLegacyMap, writeVtkLegacyMapBinary},
@@ -120,6 +124,7 @@ constexpr std::array kFormatTable = {
            .meshes = {readVtkLegacy, writeVtkLegacyBinary},
            .curved = {holdsCurvedVtkLegacy, readCurvedVtkLegacy},
            .pieces = {openVtkLegacyBinarySink, readVtkLegacyTo},
+           .others = true,
            .groups = false},
     Format{.label = {"ovm", ".ovm", "OpenVolumeMesh, text"},
            .maps = {OvmText::readMap, OvmText::writeMap},
@@ -138,22 +143,26 @@ constexpr std::array kFormatTable = {
            .meshes = {GmshFormat::readMesh, writeGmsh41Binary},
            .curved = {GmshFormat::holdsCurved, GmshFormat::readCurved, writeLagrangeGmsh},
            .pieces = {openGmsh41BinarySink, readGmshTo},
-           .parts = {openGmshPartSink, "Gmsh 4.1, binary: one file with partitioned entities"}},
+           .parts = {openGmshPartSink, "Gmsh 4.1, binary: one file with partitioned entities"},
+           .others = true},
     Format{.label = {"msh-split", ""},
            .parts = {openSplitGmshPartSink, "Gmsh 4.1, binary: NAME_K.msh, K from 1 on"}},
     Format{.label = {"msh41-ascii", ".msh", "Gmsh 4.1, text"},
            .readTets = GmshFormat::readTets,
-           .meshes = {GmshFormat::readMesh, writeGmsh41Text}},
+           .meshes = {GmshFormat::readMesh, writeGmsh41Text},
+           .others = true},
     Format{.label = {"msh22-ascii", ".msh", "Gmsh 2.2, text"},
            .readTets = GmshFormat::readTets,
-           .meshes = {GmshFormat::readMesh, writeGmsh22Text}},
+           .meshes = {GmshFormat::readMesh, writeGmsh22Text},
+           .others = true},
     Format{.label = {"inp", ".inp", "Abaqus and CalculiX, text"},
            .readTets = AbaqusFormat::readTets,
            .meshes = {AbaqusFormat::readMesh, writeAbaqus},
            .curved = {.isIn = AbaqusFormat::holdsCurved,
                       .read = AbaqusFormat::readCurved,
                       .write = writeQuadraticAbaqus,
-                      .onlyOrder = 2}},
+                      .onlyOrder = 2},
+           .others = true},
     Format{.label = {"unv", ".unv", "I-deas universal, text"},
            .readTets = UnvFormat::readTets,
            .meshes = {.read = UnvFormat::readMesh},
@@ -170,6 +179,7 @@ constexpr std::array kFormatTable = {
            .curved = {kOverHdf5<holdsCurvedVtkHdf>, kOverHdf5<readCurvedVtkHdf>},
            .parts = {kOverHdf5<openVtkHdfPartSink>, "VTKHDF: one file"},
            .measures = true,
+           .others = true,
            .groups = false,
            .overHdf5 = true},
     Format{
@@ -350,6 +360,10 @@ bool holdsSurface(const std::filesystem::path& file, Context& context) {
 
 std::string streamingFormats() {
   return listed([](const Format& format) { return format.pieces.openSink != nullptr; }, nameOf);
+}
+
+std::string formatsOfOthers() {
+  return listed([](const Format& format) { return format.others; }, extensionOf);
 }
 
 std::string teamFormats() {

@@ -67,6 +67,7 @@ struct Format {
 
   bool compresses = false;  ///< supports WriteOptions::compress
   bool measures = false;    ///< stores WriteOptions::scaledJacobians
+  bool others = false;      ///< stores cells that are no hexahedra: WriteOptions::others
   bool groups = true;       ///< stores groups of boundary quads: supports WriteOptions::patchAngle
   /// Writing requires requireHdf5(); in builds without HDF5 all functions are null.
   bool overHdf5 = false;
@@ -95,6 +96,8 @@ enum class FileContent : std::uint8_t {
 
 /// The names of all formats that can be written piece by piece: "vtu, mesh".
 [[nodiscard]] std::string streamingFormats();
+/// The extensions of all formats that can be written with cells other than hexahedra.
+[[nodiscard]] std::string formatsOfOthers();
 /// The names of all formats of parts that a team of processes can write together.
 [[nodiscard]] std::string teamFormats();
 

@@ -37,10 +37,8 @@ namespace hexhex::io {
 
 namespace {
 
-/// Abaqus' face numbers, in the order of kHexFaces.
-constexpr std::array<char, 6> kAbaqusFaces = {'6', '4', '3', '5', '1', '2'};
-/// The corner opposite each face of a tetrahedron, by the digit of the face, '1' first.
-constexpr std::array<std::size_t, 6> kAbaqusOpposite = {3, 2, 0, 1, 4, 4};
+constexpr SideNumbers kAbaqusSides = {
+    {1, 2, 3, 4}, {1, 2, 3, 4, 5}, {1, 2, 3, 4, 5}, {6, 4, 3, 5, 1, 2}};
 constexpr std::string_view kAbaqusHeading = "hexahedral mesh by hexhex";
 
 // Reading.
@@ -82,8 +80,9 @@ struct AbaqusType {
 
 AbaqusType abaqusType(std::string_view name) {
   const std::size_t place = name.find("c3d");
-  const bool shell = name.starts_with("sc8");  // a continuum shell is a hexahedron
-  if (shell) return {volumeCells("hexahedra"), 8};
+  for (const std::size_t corners : {6U, 8U}) {  // continuum shells are prisms and hexahedra
+    if (name.starts_with(concat("sc", corners))) return {&typeWith(corners), corners};
+  }
   if (place == std::string_view::npos) return {};
   AbaqusType type;
   std::from_chars(name.data() + place + 3, name.data() + name.size(), type.nodes);
@@ -454,20 +453,16 @@ class AbaqusReader {
       std::string_view rest = line_;
       const std::string_view elements = takeField(rest);
       const std::string face = lowerCase(takeField(rest));
-      const auto* const found = face.size() == 2 && face[0] == 's'
-                                    ? std::find(kAbaqusFaces.begin(), kAbaqusFaces.end(), face[1])
-                                    : kAbaqusFaces.end();
-      if (found == kAbaqusFaces.end()) continue;  // the whole surface, or a side of a shell
-      const auto row = static_cast<std::size_t>(found - kAbaqusFaces.begin());
-      const std::size_t opposite = kAbaqusOpposite[static_cast<std::size_t>(face[1] - '1')];
+      // Others are the whole surface, or a side of a shell.
+      if (face.size() != 2 || face[0] != 's' || face[1] < '1' || face[1] > '6') continue;
+      const auto side = static_cast<std::uint8_t>(face[1] - '0');
       const auto set = elementSets_.find(lowerCase(unquoted(elements)));
       if (set == elementSets_.end()) {
-        surface.sides.push_back(
-            {integer(elements, "an element or a set of them"), row, opposite, 0});
+        surface.sides.push_back({integer(elements, "an element or a set of them"), side, 0});
       } else {
         takeRoom(kItemsPerSide * set->second.items.size());
         for (const std::uint64_t element : set->second.items) {
-          surface.sides.push_back({element, row, opposite, 0});
+          surface.sides.push_back({element, side, 0});
         }
       }
     }
@@ -555,6 +550,7 @@ class AbaqusReader {
   }
 
   void tagSurfaces() {
+    lists_.sideNumbers = kAbaqusSides;
     for (const Surface& surface : surfaces_) facetTags_.reserve(ownName(surface.name));
     for (Surface& surface : surfaces_) {
       const std::int32_t tag = facetTags_.next(ownName(surface.name));
@@ -727,23 +723,27 @@ struct QuadraticCells {
 
 class AbaqusWriter {
  public:
-  /// @param elementType  "C3D8R"
-  AbaqusWriter(std::string_view elementType, OutputFile& output, Stage& stage)
-      : elementType_(elementType),
-        output_(output),
-        lines_(output, stage.context().threads()),
-        stage_(stage) {}
+  /// @param cells  with their corners
+  AbaqusWriter(const AllCells& cells, OutputFile& output, Stage& stage)
+      : cells_(cells), output_(output), lines_(output, stage.context().threads()), stage_(stage) {}
 
+  /// @param elementType  "C3D8R"
+  /// @param hexahedra  with all nodes
   /// @param middles  midpoint nodes of edges, ascending; empty for straight cells
-  template <class Cells>
-  void write(const Array<Vec3>& points, const Cells& cells, const MeshGroups& groups,
+  template <std::size_t nodes>
+  void write(const Array<Vec3>& points, std::string_view elementType,
+             const Array<std::array<Index, nodes>>& hexahedra, const MeshGroups& groups,
              const Array<EdgeMiddle>& middles) {
     output_.write("*HEADING\n").write(kAbaqusHeading).write('\n');
     writeNodes(points);
-    writeElements(cells);
-    // writeElements() has written the set of all elements.
+    writeElements(elementType, std::span<const std::array<Index, nodes>>(hexahedra), 0);
+    std::size_t first = hexahedra.size();
+    forEachOtherKind(cells_.others(), [&](auto cells) {
+      this->writeElements(concat("C3D", cells[0].size()), cells, first);
+      first += cells.size();
+    });
     for (const ElementGroup& group : groups.cells.groups) {
-      if (group.name == "hexahedra") continue;
+      if (group.name == "hexahedra" || group.name == "all_cells") continue;  // the set of all
       writeSet("*ELSET, ELSET=E_", group, group.end - group.begin,
                [&](std::size_t i) { return groups.cells.at(group.begin + i); });
     }
@@ -765,20 +765,24 @@ class AbaqusWriter {
     lines_.write(points.size(), 4 * (kNumberRoom + 2), node, &progress);
   }
 
-  template <class Cells>
-  void writeElements(const Cells& cells) {
-    constexpr std::size_t kNodes = std::tuple_size_v<typename Cells::value_type>;
-    LoopProgress progress(stage_, cells.size());
-    output_.write("*ELEMENT, TYPE=").write(elementType_).write(", ELSET=HEXAHEDRA\n");
-    const auto cell = [&cells](char* place, std::size_t i) {
-      place = put(place, std::uint64_t{i} + 1);
-      for (std::size_t k = 0; k < kNodes; ++k) {
+  /// @param first  index of the first element
+  template <std::size_t nodes>
+  void writeElements(std::string_view type, std::span<const std::array<Index, nodes>> elements,
+                     std::size_t first) {
+    const bool mixed = cells_.others().count() > 0;
+    LoopProgress progress(stage_, elements.size());
+    output_.write("*ELEMENT, TYPE=")
+        .write(type)
+        .write(mixed ? ", ELSET=ALL_CELLS\n" : ", ELSET=HEXAHEDRA\n");
+    const auto cell = [&](char* place, std::size_t i) {
+      place = put(place, std::uint64_t{first + i + 1});
+      for (std::size_t k = 0; k < nodes; ++k) {
         place = put(place, k + 1 == kNamesPerLine ? ",\n" : ", ");
-        place = put(place, std::uint64_t{cells[i][k]} + 1);
+        place = put(place, std::uint64_t{elements[i][k]} + 1);
       }
       return put(place, '\n');
     };
-    lines_.write(cells.size(), (kNodes + 1) * (kNumberRoom + 2), cell, &progress);
+    lines_.write(elements.size(), (nodes + 1) * (kNumberRoom + 2), cell, &progress);
   }
 
   template <class Groups>
@@ -822,15 +826,16 @@ class AbaqusWriter {
     const std::size_t count = quads.boundaryEnd(group) - group.begin;
     if (count == 0) return;
     output_.write("*SURFACE, TYPE=ELEMENT, NAME=S_").write(upperCase(group.name)).write('\n');
-    const auto face = [&quads, &group](char* place, std::size_t i) {
+    const auto face = [&](char* place, std::size_t i) {
       const std::uint64_t side = quads.places[group.begin + i];
       place = put(put(place, side / 8 + 1), ", S");
-      return put(put(place, kAbaqusFaces[side % 8]), '\n');
+      const auto& sides = kAbaqusSides[cells_[side / 8].size()];
+      return put(put(place, std::uint64_t{sides[side % 8]}), '\n');
     };
     lines_.write(count, kNumberRoom + 5, face, nullptr);
   }
 
-  std::string_view elementType_;
+  const AllCells& cells_;
   OutputFile& output_;
   LineWriter lines_;
   Stage& stage_;
@@ -840,16 +845,19 @@ class AbaqusWriter {
 
 void writeAbaqus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                  Stage& stage) {
-  const MeshGroups groups(mesh, options.patchAngle, stage);
+  const MeshGroups groups(mesh, options, stage);
   const std::string_view type = options.elementType.empty() ? "C3D8" : options.elementType;
-  AbaqusWriter(type, output, stage).write(mesh.points, mesh.cells, groups, {});
+  const AllCells all(mesh, othersOf(options));
+  AbaqusWriter(all, output, stage).write(mesh.points, type, mesh.cells, groups, {});
 }
 
 void writeQuadraticAbaqus(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                           Stage& stage) {
-  const MeshGroups groups(straightMesh(mesh), options.patchAngle, stage);
+  const HexMesh straight = straightMesh(mesh);
+  const MeshGroups groups(straight, options, stage);
   const QuadraticCells cells(mesh);
-  AbaqusWriter("C3D20", output, stage).write(cells.points, cells.cells, groups, cells.middles);
+  AbaqusWriter({straight, noOthers()}, output, stage)
+      .write(cells.points, "C3D20", cells.cells, groups, cells.middles);
 }
 
 }  // namespace hexhex::io

@@ -397,14 +397,14 @@ void refuseEmpty(std::size_t cells, const OutputFile& output) {
 
 void writeCgns(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
   refuseEmpty(mesh.cells.size(), output);
-  writeBase(output, mesh, MeshGroups(mesh, options.patchAngle, stage), stage);
+  writeBase(output, mesh, MeshGroups(mesh, options, stage), stage);
 }
 
 void writeQuadraticCgns(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                         Stage& stage) {
   refuseEmpty(mesh.cellCount(), output);
   const HexMesh straight = straightMesh(mesh);
-  const MeshGroups groups(straight, options.patchAngle, stage);
+  const MeshGroups groups(straight, options, stage);
   QuadraticNodes nodes = {mesh, {}};
   withThreads(stage.context().threads(), [&] {
     nodes.ofGroups = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);

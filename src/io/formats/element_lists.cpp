@@ -3,6 +3,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -57,11 +59,11 @@ void clearZeros(Array<std::int32_t>& regions) {
   if (std::all_of(regions.begin(), regions.end(), isZero)) regions.clear();
 }
 
-/// Takes the cells of one kind and their regions; returns their numbers in the file.
+/// Takes the cells of one kind and their regions, and adds their numbers in the file.
 template <std::size_t corners>
-Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh<corners>& mesh) {
+void takeCells(ElementLists& lists, const Input& input, CellMesh<corners>& mesh,
+               Array<std::uint64_t>& numbers) {
   count(lists, input);
-  Array<std::uint64_t> numbers;
   constexpr CellKind kKind = kCellKind<corners>;
   for (ElementBlock& block : lists.blocks) {
     if (block.type == nullptr || block.type->vtkType != kKind.vtkType) continue;
@@ -77,42 +79,45 @@ Array<std::uint64_t> takeCells(ElementLists& lists, const Input& input, CellMesh
   if (mesh.cells.empty() && !lists.mayBeEmpty) failWithout(kKind, lists, input);
   clearZeros(mesh.regions);
   mesh.points = std::move(lists.points);
-  return numbers;
 }
 
-/// Tagged triangles.
-std::vector<FeatureFace> trianglesOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
-                                     const Array<Tet>& cells) {
-  std::vector<FeatureFace> triangles = lists.triangles;
-  const NodeTags tets(numbers);
-  for (const ElementSide& side : lists.sides) {
-    const Index tet = tets.find(side.element);
-    if (tet == kNone || side.tag == 0 || side.opposite > 3) continue;
-    triangles.push_back({adjacency::faceVertices(cells[tet], side.opposite), side.tag});
+/// The same for other cells.
+void takeOthers(ElementLists& lists, OtherCells& others, Array<std::uint64_t>& numbers) {
+  for (OtherCellList& kind : others.kinds) {
+    for (ElementBlock& block : lists.blocks) {
+      if (block.type != &typeWith(kind.corners)) continue;
+      kind.vertices.insert(kind.vertices.end(), block.nodes.begin(), block.nodes.end());
+      kind.regions.insert(kind.regions.end(), block.regions.begin(), block.regions.end());
+      numbers.insert(numbers.end(), block.numbers.begin(), block.numbers.end());
+    }
+    clearZeros(kind.regions);
   }
-  return triangles;
 }
 
-/// Tagged quads. Sides win over elements with the same vertices.
+/// Tagged quads and triangles. Sides win over elements with the same vertices.
 /// @param cellAt  returns the corners of a cell
 template <class CellAt>
-std::vector<FeatureQuad> quadsOf(const ElementLists& lists, const Array<std::uint64_t>& numbers,
-                                 const CellAt& cellAt) {
-  std::vector<FeatureQuad> quads;
-  const NodeTags cells(numbers);
+void takeFaces(const ElementLists& lists, const Array<std::uint64_t>& numbers, const CellAt& cellAt,
+               std::vector<FeatureQuad>& quads, std::vector<FeatureFace>& triangles) {
+  const NodeTags cells(lists.sides.empty() ? Array<std::uint64_t>() : numbers);
   for (const ElementSide& side : lists.sides) {
     const Index cell = cells.find(side.element);
-    if (cell == kNone || side.tag == 0) continue;  // not a side of a hexahedron
-    FeatureQuad& quad = quads.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) {
-      quad.vertices[k] = cellAt(cell, adjacency::kHexFaces[side.face][k]);
-    }
-    quad.tag = side.tag;
+    if (cell == kNone || side.tag == 0) continue;
+    const std::span<const Index> corners = cellAt(cell);
+    const auto& known = lists.sideNumbers[corners.size()];
+    const auto* const face = std::find(known.begin(), known.end(), side.side);
+    if (face == known.end()) continue;  // a side of another kind of cells
+    const Quad v = faceAt(corners, static_cast<std::size_t>(face - known.begin()));
+    if (cornersOf(v) == 4) quads.push_back({v, side.tag});
+    if (cornersOf(v) == 3) triangles.push_back({{v[0], v[1], v[2]}, side.tag});
   }
-  const bool both = !quads.empty() && !lists.quads.empty();
-  quads.insert(quads.end(), lists.quads.begin(), lists.quads.end());
-  if (both) removeRepeated(quads);
-  return quads;
+  const auto addElements = [](const auto& elements, auto& faces) {
+    const bool both = !faces.empty() && !elements.empty();
+    faces.insert(faces.end(), elements.begin(), elements.end());
+    if (both) removeRepeated(faces);
+  };
+  addElements(lists.quads, quads);
+  addElements(lists.triangles, triangles);
 }
 
 std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
@@ -136,8 +141,8 @@ std::vector<TagName> namesOf(ElementLists& lists) {
 
 /// The cell edges between nodes of sets that name curves.
 template <class CellAt>
-std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, const CellAt& cellAt,
-                                 const auto& cellEdges) {
+std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
+                                 const CellAt& cellAt) {
   std::vector<std::pair<Index, std::int32_t>> members;  // nodes, and tags of their curves
   for (const NodeSet& set : lists.nodeSets) {
     const std::int32_t tag = set.name.starts_with("curve_") ? tagOfGroup(set.name, 0) : 0;
@@ -150,14 +155,19 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, c
                             std::pair(node, std::numeric_limits<std::int32_t>::min()));
   };
   std::vector<std::pair<std::int32_t, std::array<Index, 2>>> found;
+  const auto addEdge = [&](Index a, Index b) {
+    for (auto at = curvesAt(a); at != members.end() && at->first == a; ++at) {
+      if (std::binary_search(members.begin(), members.end(), std::pair(b, at->second))) {
+        found.push_back({at->second, {a, b}});
+      }
+    }
+  };
   for (std::size_t c = 0; c < (members.empty() ? 0 : cells); ++c) {
-    for (const auto& [from, to] : cellEdges) {
-      const Index a = std::min(cellAt(c, from), cellAt(c, to));
-      const Index b = std::max(cellAt(c, from), cellAt(c, to));
-      for (auto at = curvesAt(a); at != members.end() && at->first == a; ++at) {
-        if (std::binary_search(members.begin(), members.end(), std::pair(b, at->second))) {
-          found.push_back({at->second, {a, b}});
-        }
+    const std::span<const Index> cell = cellAt(c);
+    for (std::size_t face = 0; face < kFaceCounts[cell.size()]; ++face) {
+      const Quad v = faceAt(cell, face);
+      for (std::size_t k = 0; k < 4; ++k) {  // each edge is seen from two faces
+        if (v[k] < v[(k + 1) % 4]) addEdge(v[k], v[(k + 1) % 4]);
       }
     }
   }
@@ -167,11 +177,14 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells, c
   return features;
 }
 
+/// @param cellAt  cellAt(i): the corners of the cell with numbers[i]
 template <class CellAt>
 HexFeatures hexFeaturesOf(ElementLists& lists, const Array<std::uint64_t>& numbers,
-                          const CellAt& cellAt) {
-  return {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt, adjacency::kHexEdges),
-          quadsOf(lists, numbers, cellAt), namesOf(lists)};
+                          const CellAt& cellAt, std::vector<FeatureFace>& triangles) {
+  HexFeatures features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt), {}, {}};
+  takeFaces(lists, numbers, cellAt, features.quads, triangles);
+  features.names = namesOf(lists);
+  return features;
 }
 
 /// A face without a midpoint node: its sorted corners and its location.
@@ -259,11 +272,10 @@ const VolumeCells* volumeCells(std::string_view plural) {
 }
 
 const VolumeCells* volumeCells(std::string_view noun, std::size_t nodes) {
-  constexpr std::array<std::pair<std::string_view, std::size_t>, 4> kStraight = {
-      {{"hexahedra", 8}, {"tetrahedra", 4}, {"prisms", 6}, {"pyramids", 5}}};
-  const bool straight =
-      std::find(kStraight.begin(), kStraight.end(), std::pair(noun, nodes)) != kStraight.end();
-  return straight ? volumeCells(noun) : volumeCells(concat(noun, " with ", nodes, " nodes"));
+  const VolumeCells* const straight = volumeCells(noun);
+  return straight != nullptr && straight->meditVertices == nodes
+             ? straight
+             : volumeCells(concat(noun, " with ", nodes, " nodes"));
 }
 
 std::size_t ElementLists::blockOf(const VolumeCells* type, std::size_t nodesEach) {
@@ -332,13 +344,14 @@ std::int32_t tagOfGroup(std::string_view name, std::int64_t number) {
 std::vector<std::int32_t> tagsOfGroups(const std::vector<NumberedGroup>& groups, int dimension) {
   std::vector<std::int32_t> named;
   std::vector<std::int32_t> numbers;
-  std::set<std::int32_t> distinct;
+  std::map<std::int32_t, std::int64_t> distinct;  // tags, and numbers of their groups
   bool merges = false;
   for (const NumberedGroup& group : groups) {
     const bool isOwn = tagInGroupName(group.name, dimension).has_value();
     named.push_back(tagOfGroup(isOwn ? group.name : std::string(), group.number));
     numbers.push_back(named.back() == 0 ? 0 : tagOfGroup({}, group.number));
-    if (named.back() != 0) merges = !distinct.insert(named.back()).second || merges;
+    const auto known = distinct.emplace(named.back(), group.number).first;
+    merges = merges || (named.back() != 0 && known->second != group.number);
   }
   return merges ? numbers : named;
 }
@@ -379,19 +392,26 @@ std::int32_t ElementTags::find(std::uint64_t element) const {
 
 HexMesh hexMeshOf(ElementLists&& lists, const Input& input) {
   HexMesh mesh;
-  const Array<std::uint64_t> numbers = takeCells<8>(lists, input, mesh);
-  const auto cellAt = [&mesh](std::size_t cell, std::size_t k) { return mesh.cells[cell][k]; };
-  mesh.features = hexFeaturesOf(lists, numbers, cellAt);
+  Array<std::uint64_t> numbers;
+  takeCells<8>(lists, input, mesh, numbers);
+  OtherCells unwanted;
+  OtherCells& others = input.others() != nullptr ? *input.others() : unwanted;
+  if (input.others() != nullptr) takeOthers(lists, others, numbers);
+  const AllCells cells(mesh, others);
+  const auto cellAt = [&cells](std::size_t i) { return cells[i]; };
+  mesh.features = hexFeaturesOf(lists, numbers, cellAt, others.triangles);
   return mesh;
 }
 
 TetCells tetsOf(ElementLists&& lists, const Input& input) {
   TetCells tets;
-  const Array<std::uint64_t> numbers = takeCells<4>(lists, input, tets);
-  const auto cellAt = [&tets](std::size_t cell, std::size_t k) { return tets.cells[cell][k]; };
-  tets.features = {verticesOf(lists),
-                   edgesOf(lists, tets.cells.size(), cellAt, adjacency::kTetEdges),
-                   trianglesOf(lists, numbers, tets.cells), namesOf(lists)};
+  Array<std::uint64_t> numbers;
+  takeCells<4>(lists, input, tets, numbers);
+  std::vector<FeatureFace> triangles;
+  const auto cellAt = [&tets](std::size_t i) { return std::span<const Index>(tets.cells[i]); };
+  HexFeatures features = hexFeaturesOf(lists, numbers, cellAt, triangles);
+  tets.features = {std::move(features.vertices), std::move(features.edges), std::move(triangles),
+                   std::move(features.names)};
   return tets;
 }
 
@@ -434,10 +454,11 @@ LagrangeMesh curvedMeshOf(ElementLists&& lists, const Input& input, Stage& stage
   clearZeros(mesh.regions);
   mesh.points = std::move(lists.points);
   addMiddles(mesh.points, mesh.nodes, lacking, input.name());
-  const auto cellAt = [&mesh](std::size_t cell, std::size_t k) {
-    return mesh.nodes[mesh.nodesPerCell() * cell + k];
+  const auto cellAt = [&mesh](std::size_t i) {
+    return std::span<const Index>(mesh.nodes).subspan(mesh.nodesPerCell() * i, 8);
   };
-  mesh.features = hexFeaturesOf(lists, numbers, cellAt);
+  std::vector<FeatureFace> triangles;  // of other cells, which there are none of
+  mesh.features = hexFeaturesOf(lists, numbers, cellAt, triangles);
   fromVtkOrder(mesh, stage);
   return mesh;
 }

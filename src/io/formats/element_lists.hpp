@@ -79,8 +79,7 @@ struct ElementBlock {
 /// A face of an element.
 struct ElementSide {
   std::uint64_t element = 0;  ///< its number in the file
-  std::size_t face = 0;       ///< for hexahedra: a row of kHexFaces
-  std::size_t opposite = 0;   ///< for tetrahedra: the opposite corner; 4: none
+  std::uint8_t side = 0;      ///< as ElementLists::sideNumbers says; others are ignored
   std::int32_t tag = 0;
 };
 
@@ -94,6 +93,7 @@ struct ElementLists {
   Array<Vec3> points;
   std::vector<ElementBlock> blocks;
   std::vector<ElementSide> sides;
+  SideNumbers sideNumbers = {};
   // Tagged elements other than volumes.
   std::vector<FeatureVertex> vertices;
   std::vector<FeatureFace> triangles;
@@ -172,7 +172,8 @@ class ElementTags {
   std::vector<std::pair<std::uint64_t, std::int32_t>> tags_;
 };
 
-/// Builds a mesh from hexahedra with 8 nodes. Tagged sides become tagged quads. Node sets named
+/// Builds a mesh from hexahedra with 8 nodes; other straight cells go into input.others(), if that
+/// is not null. Tagged sides become tagged quads and triangles. Node sets named
 /// "point_7" by this library, and sets of a single node, become tagged vertices; a set "curve_7"
 /// tags the edges between its nodes. Other sets, such as those for loads, are ignored.
 /// @throws Error FileUnsupported if there are no such cells, listing those found; TooLarge

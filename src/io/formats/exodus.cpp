@@ -32,10 +32,8 @@ namespace hexhex::io {
 
 namespace {
 
-/// Exodus side numbers, in the order of kHexFaces.
-constexpr std::array<std::int32_t, 6> kExodusSides = {4, 2, 1, 3, 5, 6};
-/// The corner opposite each side of a tetrahedron.
-constexpr std::array<std::size_t, 6> kExodusOpposite = {2, 0, 1, 3, 4, 4};
+constexpr SideNumbers kExodusSides = {
+    {4, 1, 2, 3}, {5, 1, 2, 3, 4}, {4, 5, 1, 2, 3}, {4, 2, 1, 3, 5, 6}};
 
 /// Entry k: the Exodus position of VTK's node k. Exodus lists the vertical edges before those of
 /// the top, and the interior node before those of the faces.
@@ -46,9 +44,32 @@ constexpr std::array<std::uint8_t, 27> kExodusPlaces = {0,  1,  2,  3,  4,  5,  
 /// Bytes of a name, including the terminating zero.
 constexpr std::size_t kExodusNameBytes = 33;
 constexpr std::size_t kExodusLineBytes = 81;
+constexpr std::string_view kExodusMaker = "by hexhex ";
 
 /// Converts an index to Exodus' 1-based numbers.
 constexpr std::int32_t fromOne(std::size_t i) { return static_cast<std::int32_t>(i) + 1; }
+
+/// Names of kinds of elements; and what the names of blocks end in
+/// that have the cells of a region that are no hexahedra.
+constexpr ByCorners<std::string_view> kExodusTypes = {"TETRA", "PYRAMID", "WEDGE", "HEX8"};
+constexpr ByCorners<std::string_view> kExodusEnds = {"_tet", "_pyr", "_wed", ""};
+constexpr std::size_t kBeforeEnd = kExodusNameBytes - 1 - 4;
+
+/// Blocks hold one kind of cells each: makes several of groups with several kinds.
+void splitBlocks(CellGroups& cells, const AllCells& all) {
+  if (all.others().count() == 0) return;
+  std::vector<ElementGroup> blocks;
+  const auto corners = [&](std::size_t i) { return all[cells.at(i)].size(); };
+  for (const ElementGroup& group : cells.groups) {
+    splitByCorners(group, corners, [&](ElementGroup part) {
+      const std::string_view end = kExodusEnds[corners(part.begin)];
+      if (part.begin > group.begin) part.name = concat(part.name.substr(0, kBeforeEnd), end);
+      blocks.push_back(std::move(part));
+    });
+  }
+  cells.groups = std::move(blocks);
+  numberApart({&cells.groups});
+}
 
 /// The position of each cell in block order; empty: the identity.
 Array<Index> cellPlacesOf(const CellGroups& cells) {
@@ -79,14 +100,15 @@ class ExodusFile {
   /// straight
   /// @param edgeNodes  of its tagged edges, as nodesOfGroups() returns them
   ExodusFile(const HexMesh& mesh, const MeshGroups& groups, Stage& stage, bool allGroups = false,
-             const LagrangeMesh* curved = nullptr, Array<Index> edgeNodes = {})
-      : mesh_(mesh),
+             const LagrangeMesh* curved = nullptr, Array<Index> edgeNodes = {},
+             const OtherCells& others = noOthers())
+      : all_(mesh, others),
         curved_(curved),
         points_(curved != nullptr ? curved->points : mesh.points),
         edgeNodes_(std::move(edgeNodes)),
         groups_(groups),
         allGroups_(allGroups),
-        progress_(stage, 3 * points_.size() + mesh.cells.size()) {
+        progress_(stage, 3 * points_.size() + all_.size()) {
     describe();
     if (!points_.empty()) addPoints();
     if (groups.cells.groups.back().end > 0 || allGroups) addBlocks();
@@ -162,7 +184,7 @@ class ExodusFile {
     addTexts("coor_names", addDimension("num_dim", 3), ofNames_, kExodusNameBytes, {"x", "y", "z"});
     addTexts("info_records", addDimension("num_info", 1),
              addDimension("len_line", kExodusLineBytes), kExodusLineBytes,
-             {concat("by hexhex ", version())});
+             {concat(kExodusMaker, version())});
   }
 
   void addPoints() {
@@ -187,7 +209,8 @@ class ExodusFile {
       const std::size_t count = group.end - group.begin;
       const std::string n = blocks.add(static_cast<std::int32_t>(group.number), group.name, count);
       if (count == 0) continue;
-      const std::size_t each = curved_ != nullptr ? kExodusPlaces.size() : 8;
+      const std::size_t corners = all_[groups_.cells.at(group.begin)].size();
+      const std::size_t each = curved_ != nullptr ? kExodusPlaces.size() : corners;
       const Write write = [this, &group, count, each](LineWriter& values) {
         const auto put = [&](char* place, std::size_t i) {
           const std::size_t cell = groups_.cells.at(group.begin + i);
@@ -199,14 +222,14 @@ class ExodusFile {
       const std::uint32_t length = addDimension("num_el_in_blk" + n, count);
       addVariable("connect" + n, NetcdfType::Int,
                   {length, addDimension("num_nod_per_el" + n, each)}, write, "elem_type",
-                  concat("HEX", each));
+                  curved_ != nullptr ? "HEX27" : std::string(kExodusTypes[corners]));
     }
     addList("eb", "num_el_blk", blocks);
   }
 
   /// Node k of a cell in Exodus order.
   [[nodiscard]] std::int32_t nodeOf(std::size_t cell, std::size_t k) const {
-    if (curved_ == nullptr) return fromOne(mesh_.cells[cell][k]);
+    if (curved_ == nullptr) return fromOne(all_[cell][k]);
     return fromOne(curved_->nodes[cell * kExodusPlaces.size() + order_[k]]);
   }
 
@@ -221,7 +244,7 @@ class ExodusFile {
       for (std::size_t i = group.begin; i < end; ++i) {
         const std::size_t cell = groups_.quads.places[i] / 8;
         cells.push_back(fromOne(places.empty() ? cell : places[cell]));
-        sides.push_back(kExodusSides[groups_.quads.places[i] % 8]);
+        sides.push_back(kExodusSides[all_[cell].size()][groups_.quads.places[i] % 8]);
       }
       if (cells.empty() && !allGroups_) continue;
       const std::string n =
@@ -257,7 +280,7 @@ class ExodusFile {
     addList("ns", "num_node_sets", sets);
   }
 
-  const HexMesh& mesh_;
+  AllCells all_;
   const LagrangeMesh* curved_;
   const Array<Vec3>& points_;
   std::vector<std::uint32_t> order_ = quadraticOrder(kExodusPlaces);  ///< of curved cells
@@ -332,6 +355,19 @@ class ExodusReader {
       return tagsOfGroups(all, dimension);
     }
     [[nodiscard]] std::size_t size() const { return std::max(numbers.size(), names.size()); }
+    /// Gives the blocks that splitBlocks() has made of one group its name and number.
+    void joinKinds() {
+      for (std::size_t i = 0; i < std::min(names.size(), numbers.size()); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          const std::string begin = names[k].substr(0, kBeforeEnd);
+          for (const std::size_t corners : {4U, 5U, 6U}) {
+            if (names[i] != concat(begin, kExodusEnds[corners])) continue;
+            names[i] = names[k];
+            numbers[i] = numbers[k];
+          }
+        }
+      }
+    }
   };
   Groups groupsOf(const std::string& prefix) const {
     Groups groups;
@@ -349,7 +385,11 @@ class ExodusReader {
   }
 
   void readBlocks() {
-    const Groups groups = groupsOf("eb");
+    Groups groups = groupsOf("eb");
+    const NetcdfValues* const made = file_.find("info_records");
+    const std::vector<std::string> by =
+        made != nullptr ? file_.texts(*made) : std::vector<std::string>();
+    if (!by.empty() && by[0].starts_with(kExodusMaker)) groups.joinKinds();
     const std::vector<std::int32_t> tags = groups.tags(3);
     std::uint64_t next = 1;
     for (std::size_t b = 0; b < groups.size(); ++b) {
@@ -375,8 +415,8 @@ class ExodusReader {
     next += count;
     if (block.type == nullptr) return;
     const bool isRead =
-        each <= kExodusPlaces.size() && (block.type->plural.starts_with("hexahedra") ||
-                                         block.type->plural.starts_with("tetrahedra"));
+        block.type->meditVertices == each ||
+        (each <= kExodusPlaces.size() && block.type->plural.starts_with("hexahedra"));
     block.nodesEach = isRead ? each : 0;
     block.numbers.resize(count);
     for (std::size_t i = 0; i < count; ++i) block.numbers[i] = next - count + i;
@@ -422,6 +462,7 @@ class ExodusReader {
   void readSides() {
     const Groups groups = groupsOf("ss");
     const std::vector<std::int32_t> tags = groups.tags(2);
+    lists_.sideNumbers = kExodusSides;
     for (std::size_t s = 0; s < groups.size(); ++s) {
       const std::string end = concat("_ss", s + 1);
       const NetcdfValues* const found = file_.find("elem" + end);
@@ -435,11 +476,9 @@ class ExodusReader {
       const std::int32_t tag = tags[s];
       lists_.addName(2, tag, groups.nameOf(s));
       for (std::size_t i = 0; i < sides.size(); ++i) {
-        const auto* const face = std::find(kExodusSides.begin(), kExodusSides.end(), sides[i]);
-        if (face == kExodusSides.end() || elements[i] < 1) continue;  // not a side of a known cell
-        lists_.sides.push_back({static_cast<std::uint64_t>(elements[i]),
-                                static_cast<std::size_t>(face - kExodusSides.begin()),
-                                kExodusOpposite[static_cast<std::size_t>(sides[i] - 1)], tag});
+        if (sides[i] < 1 || sides[i] > 6 || elements[i] < 1) continue;  // of no known cell
+        lists_.sides.push_back(
+            {static_cast<std::uint64_t>(elements[i]), static_cast<std::uint8_t>(sides[i]), tag});
       }
     }
   }
@@ -663,7 +702,7 @@ class NemesisFile final : public ExodusFile {
         const std::size_t place = places.empty() ? face.cell : places[face.cell];
         atBorder[place] = true;
         shared.add(place, neighbour.part);
-        sides.push_back(kExodusSides[face.side]);
+        sides.push_back(kExodusSides.hexahedron[face.side]);
       }
       shared.endPart();
     }
@@ -766,9 +805,12 @@ std::unique_ptr<PartSink> openExodusPartSink(const std::filesystem::path& file, 
 void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage,
                  std::uint64_t mostBytes) {
   requireInt32(mesh.points.size(), "An Exodus file numbers vertices");
-  requireInt32(mesh.cells.size(), "An Exodus file numbers cells");
-  const MeshGroups groups(mesh, options.patchAngle, stage);
-  ExodusFile(mesh, groups, stage).write(output, stage.context().threads(), mostBytes);
+  const OtherCells& others = othersOf(options);
+  requireInt32(AllCells(mesh, others).size(), "An Exodus file numbers cells");
+  MeshGroups groups(mesh, options, stage);
+  splitBlocks(groups.cells, {mesh, others});
+  ExodusFile(mesh, groups, stage, false, nullptr, {}, others)
+      .write(output, stage.context().threads(), mostBytes);
 }
 
 void writeExodus(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
@@ -780,7 +822,7 @@ void writeQuadraticExodus(const LagrangeMesh& mesh, OutputFile& output, const Wr
                           Stage& stage) {
   requireInt32(mesh.points.size(), "An Exodus file numbers nodes");
   const HexMesh straight = straightMesh(mesh);
-  const MeshGroups groups(straight, options.patchAngle, stage);
+  const MeshGroups groups(straight, options, stage);
   GroupNodes nodes;
   withThreads(stage.context().threads(),
               [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, {}, stage); });

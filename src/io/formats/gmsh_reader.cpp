@@ -826,7 +826,7 @@ class GmshReader {
                        [type](const ElementBlock& block) { return block.type == type; });
       last_ = static_cast<std::size_t>(found - lists_.blocks.begin());
     }
-    const bool isStored = isHexahedron || added.type == kCellKind<4>.gmshType;
+    const bool isStored = isHexahedron || (type != nullptr && type->meditVertices == added.nodes);
     if (last_ == lists_.blocks.size()) {
       ElementBlock& block = lists_.blocks.emplace_back();
       block.type = type;
@@ -862,8 +862,8 @@ class GmshReader {
   template <class Record>
   [[noreturn]] void failNode(Record record, const ElementBlock& block, std::size_t i,
                              std::uint64_t tag) const {
-    const CellKind& kind = block.nodesEach == 4 ? kCellKind<4> : kCellKind<8>;
-    record.fail(ErrorCode::IndexOutOfRange, Place{kind.place, i}, kind.singular, " ", i,
+    const PlaceKind place = block.nodesEach == 4 ? PlaceKind::Tet : PlaceKind::Cell;
+    record.fail(ErrorCode::IndexOutOfRange, Place{place, i}, singular(block.type->plural), " ", i,
                 " (counted from 0) names node ", static_cast<std::int64_t>(tag),
                 ", which is not in the section $Nodes.");
   }

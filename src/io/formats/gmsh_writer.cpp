@@ -31,7 +31,7 @@ namespace hexhex::io {
 
 namespace {
 
-/// A set of elements of one kind.
+/// A set of elements.
 struct GmshEntity {
   std::uint32_t tag;
   std::uint32_t physical;  ///< number of the physical group
@@ -44,7 +44,17 @@ struct GmshEntity {
 /// The groups and entities of a file.
 struct GmshGroups : MeshGroups {
   std::array<std::vector<GmshEntity>, 4> entities;  ///< by dimension
+  /// Their parts with one kind of elements, by the number of corners of these.
+  std::array<std::array<std::vector<GmshEntity>, 9>, 4> blocks;
 
+  GmshGroups(const HexMesh& mesh, const WriteOptions& options, Stage& stage)
+      : GmshGroups(MeshGroups(mesh, options, stage)) {
+    if (othersOf(options).count() == 0) return;
+    const AllCells all(mesh, othersOf(options));
+    split(2, [this](std::size_t i) { return cornersOf(quads.elements[i]); });
+    split(3, [&](std::size_t i) { return all[cells.at(i)].size(); });
+  }
+  /// For elements of one kind in each dimension.
   explicit GmshGroups(MeshGroups all) : MeshGroups(std::move(all)) {
     numberApart({&quads.groups, &cells.groups, &edges.groups, &vertices.groups});
     // A point entity is a single point, so each vertex of a group gets its own.
@@ -58,25 +68,41 @@ struct GmshGroups : MeshGroups {
         entities[dimension].push_back({group.number, group.number, group.begin, group.end});
       }
     }
+    for (std::size_t d = 0; d < 4; ++d) blocks[d][std::size_t{1} << d] = entities[d];
   }
 
   [[nodiscard]] std::array<const std::vector<ElementGroup>*, 4> byDimension() const {
     return {&vertices.groups, &edges.groups, &quads.groups, &cells.groups};
   }
+
+ private:
+  /// @param corners  corners(i): of element i
+  template <class Corners>
+  void split(std::size_t dimension, const Corners& corners) {
+    auto& lists = blocks[dimension];
+    for (const auto& [tag, physical, begin, end] :
+         std::exchange(lists[std::size_t{1} << dimension], {})) {
+      const auto add = [&, tag = tag, physical = physical](const ElementGroup& part) {
+        lists[corners(part.begin)].push_back({tag, physical, part.begin, part.end});
+      };
+      splitByCorners({tag, {}, begin, end}, corners, add);
+    }
+  }
 };
 
-/// The elements of one dimension.
+/// The elements of one kind.
 /// @tparam Count  an integer or std::integral_constant
 /// @tparam At     at(i)[k] is node k of element i
 template <class Count, class At>
 struct GmshKind {
   unsigned dimension;
+  std::size_t corners;
   unsigned type;  ///< Gmsh's element type
   Count nodes;    ///< per element
   At at;
 };
 template <class Count, class At>
-GmshKind(unsigned, unsigned, Count, At) -> GmshKind<Count, At>;
+GmshKind(unsigned, std::size_t, unsigned, Count, At) -> GmshKind<Count, At>;
 
 void writePhysicalNames(OutputFile& output, const GmshGroups& groups) {
   std::size_t count = 0;
@@ -138,6 +164,7 @@ class Msh41Writer {
     for (const Vec3& point : points) boxOfAll.add(point);
     beginEntities(groups);
     forEachKind([&](const auto& kind) {
+      if (kind.corners != 1U << kind.dimension) return;  // one kind of each dimension suffices
       for (const GmshEntity& entity : groups.entities[kind.dimension]) {
         // Use the box of all points for volumes: no need to visit their cells.
         const Box box = kind.dimension == 3 ? boxOfAll : boxOf(kind, entity, points);
@@ -149,7 +176,7 @@ class Msh41Writer {
     beginElements(groups);
     std::uint64_t tag = 1;
     forEachKind([&](const auto& kind) {
-      for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+      for (const GmshEntity& entity : groups.blocks[kind.dimension][kind.corners]) {
         this->beginBlock(kind.dimension, entity, kind.type);
         this->writeElements(tag, entity.size(), kind.nodes, [&](std::size_t i) -> decltype(auto) {
           return kind.at(entity.begin + i);
@@ -235,8 +262,10 @@ class Msh41Writer {
     output_.write("$Elements\n");
     const std::size_t count = groups.elementCount();
     std::size_t blocks = 0;
-    for (const auto& ofDimension : groups.entities) {
-      for (const GmshEntity& entity : ofDimension) blocks += entity.size() > 0 ? 1 : 0;
+    for (const auto& ofDimension : groups.blocks) {
+      for (const auto& ofKind : ofDimension) {
+        for (const GmshEntity& entity : ofKind) blocks += entity.size() > 0 ? 1 : 0;
+      }
     }
     sizes({blocks, count, std::min<std::size_t>(count, 1), count});
     endLine();
@@ -304,26 +333,37 @@ class Msh41Writer {
 template <std::size_t n>
 constexpr std::integral_constant<std::size_t, n> kNodes;
 
-/// Calls f(kind) for the elements of each dimension, in file order.
+/// Calls f(kind) for all kinds of elements, in file order.
 template <class F>
-void forEachKind(const HexMesh& mesh, const GmshGroups& groups, const F& f) {
+void forEachKind(const HexMesh& mesh, const OtherCells& others, const GmshGroups& groups,
+                 const F& f) {
   const auto of = [](const auto& elements) {
     return [&elements](std::size_t i) -> const auto& { return elements[i]; };
   };
-  f(GmshKind{0U, kGmshPoint, kNodes<1>, of(groups.vertices.elements)});
-  f(GmshKind{1U, kGmshLine, kNodes<2>, of(groups.edges.elements)});
-  f(GmshKind{2U, kGmshQuad, kNodes<4>, of(groups.quads.elements)});
-  f(GmshKind{3U, kGmshHexahedron, kNodes<8>,
+  f(GmshKind{0U, 1, kGmshPoint, kNodes<1>, of(groups.vertices.elements)});
+  f(GmshKind{1U, 2, kGmshLine, kNodes<2>, of(groups.edges.elements)});
+  f(GmshKind{2U, 4, kGmshQuad, kNodes<4>, of(groups.quads.elements)});
+  f(GmshKind{2U, 3, kGmshTriangle, kNodes<3>, of(groups.quads.elements)});
+  f(GmshKind{3U, 8, kGmshHexahedron, kNodes<8>,
              [&](std::size_t i) -> const Hex& { return mesh.cells[groups.cells.at(i)]; }});
+  std::size_t first = mesh.cells.size();
+  forEachOtherKind(others, [&](auto cells) {
+    constexpr std::size_t kCorners = std::tuple_size_v<typename decltype(cells)::value_type>;
+    f(GmshKind{3U, kCorners, static_cast<unsigned>(typeWith(kCorners).gmshType),
+               kNodes<kCorners>, [&](std::size_t i) -> const auto& {
+                 return cells[groups.cells.at(i) - first];
+               }
+});
+first += cells.size();
+});
 }
 
 template <class Numbers>
 void writeMsh41(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                 Stage& stage) {
-  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
-  Msh41Writer<Numbers>(output, stage.context().threads())
-      .write(
-          mesh.points, groups, [&](const auto& f) { forEachKind(mesh, groups, f); }, stage);
+  const GmshGroups groups(mesh, options, stage);
+  const auto kinds = [&](const auto& f) { forEachKind(mesh, othersOf(options), groups, f); };
+  Msh41Writer<Numbers>(output, stage.context().threads()).write(mesh.points, groups, kinds, stage);
 }
 
 /// Streams a mesh as one volume. Its box precedes the nodes but is known only after them, so it is
@@ -379,7 +419,7 @@ void writeGmsh41Text(const HexMesh& mesh, OutputFile& output, const WriteOptions
 
 void writeGmsh22Text(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                      Stage& stage) {
-  const GmshGroups groups(MeshGroups(mesh, options.patchAngle, stage));
+  const GmshGroups groups(mesh, options, stage);
   requireInt32(mesh.points.size(), "MSH 2.2 numbers nodes", "write MSH 4.1");
   requireInt32(groups.elementCount(), "MSH 2.2 numbers elements", "write MSH 4.1");
   LineWriter lines(output, stage.context().threads());
@@ -394,8 +434,8 @@ void writeGmsh22Text(const HexMesh& mesh, OutputFile& output, const WriteOptions
   lines.write(mesh.points.size(), 4 * (kNumberRoom + 1), node, &progress);
   output.write("$EndNodes\n$Elements\n").write(groups.elementCount()).write('\n');
   std::uint64_t tag = 1;
-  forEachKind(mesh, groups, [&](const auto& kind) {
-    for (const GmshEntity& entity : groups.entities[kind.dimension]) {
+  forEachKind(mesh, othersOf(options), groups, [&](const auto& kind) {
+    for (const GmshEntity& entity : groups.blocks[kind.dimension][kind.corners]) {
       const auto element = [&](char* place, std::size_t i) {
         const std::array<std::uint64_t, 5> head = {tag + i, kind.type, 2, entity.physical,
                                                    entity.tag};
@@ -467,7 +507,7 @@ std::vector<std::uint32_t> gmshNodeOrder(int order) {
 void writeLagrangeGmsh(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                        Stage& stage) {
   HexMesh straight = straightMesh(mesh);
-  const GmshGroups groups(MeshGroups(straight, options.patchAngle, stage));
+  const GmshGroups groups(straight, options, stage);
   GroupNodes nodes;
   withThreads(stage.context().threads(),
               [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
@@ -478,13 +518,13 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, OutputFile& output, const Write
   const std::size_t perQuad = perEdge * perEdge;
   const std::size_t type = perEdge - 2;
   const auto forEachKind = [&](const auto& f) {
-    f(GmshKind{0U, kGmshPoint, 1U, [&](std::size_t i) { return groups.vertices.elements[i]; }});
-    f(GmshKind{1U, kGmshLines[type], perEdge,
+    f(GmshKind{0U, 1, kGmshPoint, 1U, [&](std::size_t i) { return groups.vertices.elements[i]; }});
+    f(GmshKind{1U, 2, kGmshLines[type], perEdge,
                [&](std::size_t i) { return nodes.edges.data() + i * perEdge; }});
-    f(GmshKind{2U, kGmshQuads[type], perQuad,
+    f(GmshKind{2U, 4, kGmshQuads[type], perQuad,
                [&](std::size_t i) { return nodes.quads.data() + i * perQuad; }});
     f(GmshKind{
-        3U, kGmshHexahedra[type], order.size(), [&](std::size_t i) {
+        3U, 8, kGmshHexahedra[type], order.size(), [&](std::size_t i) {
           return NodesInOrder{mesh.nodes.data() + groups.cells.at(i) * order.size(), order.data()};
         }});
   };

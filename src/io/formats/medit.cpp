@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,24 +44,28 @@ enum class MeditSection : std::uint32_t {
   Triangles = 6,
   Quadrilaterals = 7,
   Tetrahedra = 8,
+  Prisms = 9,
   Hexahedra = 10,
   Corners = 13,
   RequiredVertices = 15,
   EdgesP2 = 25,
   QuadrilateralsQ2 = 27,
   HexahedraQ2 = 33,
+  Pyramids = 49,
   End = 54,
   HexahedraQ2Ordering = 139
 };
 
 /// Keywords of sections in text files.
-constexpr std::array<std::pair<MeditSection, std::string_view>, 14> kMeditKeywords = {
+constexpr std::array<std::pair<MeditSection, std::string_view>, 16> kMeditKeywords = {
     {{MeditSection::Dimension, "Dimension"},
      {MeditSection::Vertices, "Vertices"},
      {MeditSection::Edges, "Edges"},
      {MeditSection::Triangles, "Triangles"},
      {MeditSection::Quadrilaterals, "Quadrilaterals"},
      {MeditSection::Tetrahedra, "Tetrahedra"},
+     {MeditSection::Prisms, "Prisms"},
+     {MeditSection::Pyramids, "Pyramids"},
      {MeditSection::Hexahedra, "Hexahedra"},
      {MeditSection::Corners, "Corners"},
      {MeditSection::RequiredVertices, "RequiredVertices"},
@@ -371,6 +376,9 @@ class SeenReferences {
     const unsigned seen = seen_.load(std::memory_order_relaxed);
     return seen != 0 && seen != kZero && seen != kOne;
   }
+  [[nodiscard]] bool areOnes() const noexcept {
+    return seen_.load(std::memory_order_relaxed) == kOne;
+  }
 
  private:
   static constexpr unsigned kZero = 1;
@@ -387,18 +395,24 @@ class MeditReader {
 
   template <class File>
   requires std::is_constructible_v<Encoding, const File&, const std::string&, Stage&> MeditReader(
-      const File& file, const std::string& fileName, Stage& stage,
-      const std::shared_ptr<CellCounts>& counts)
-      : encoding_(file, fileName, stage), fileName_(fileName), counts_(*counts) {}
+      const File& file, const std::string& fileName, Stage& stage, const Input& input)
+      : encoding_(file, fileName, stage),
+        fileName_(fileName),
+        counts_(*input.counts()),
+        others_(corners == 8 ? input.others() : nullptr) {}
 
   MeditMesh<corners> read() {
     encoding_.readHead();
     while (const auto section = encoding_.nextSection()) readSection(*section);
+    if (others_ != nullptr) completeRegions();
+    // Faces of an untagged boundary are not features.
+    if (!faceReferences_.saySomething()) facesIn(mesh_.features).clear();
+    if (others_ != nullptr && !faceReferences_.saySomething()) others_->triangles.clear();
     mesh_.features.vertices = vertexTags(std::move(corners_), references_, mesh_.cells);
     if (hasCells_) return std::move(mesh_);
     throw Error(ErrorCode::FileUnsupported,
                 concat(fileName_, ": the file holds no ", kKind.plural, ": it has no section ",
-                       kKind.meditKeyword, counts_.instead(), ".",
+                       kType.meditKeyword, counts_.instead(), ".",
                        (corners == 8 ? counts_.adviceOnCurved() : std::string())));
   }
   void requireOnlyCells() const {
@@ -409,11 +423,13 @@ class MeditReader {
 
  private:
   static constexpr CellKind kKind = kCellKind<corners>;
+  static constexpr const VolumeCells& kType = typeWith(corners);
+  static constexpr const char* kCellReference = "the reference of a cell";
 
   void readSection(MeditSection section) {
     if (section == MeditSection::Dimension) readDimension();
     if (section == MeditSection::Vertices) readVertices();
-    if (section == static_cast<MeditSection>(kKind.meshbKeyword)) return readCells();
+    if (section == static_cast<MeditSection>(kType.meditCode)) return readCells();
     for (const VolumeCells& type : kVolumeCells) {
       if (type.meditVertices > 0 && section == static_cast<MeditSection>(type.meditCode)) {
         return countCells(type);
@@ -423,11 +439,12 @@ class MeditReader {
     // Elements before the vertices cannot be validated, and no known program writes them there.
     if (!hasVertices_) return;
     if (section == MeditKinds<corners>::kEdges) {
-      static_cast<void>(readFeatures(mesh_.features.edges, MeditKinds<corners>::kEdge));
+      SeenReferences ignored;
+      readFeatures(mesh_.features.edges, MeditKinds<corners>::kEdge, ignored);
     } else if (section == MeditKinds<corners>::kFaces) {
-      // Faces of an untagged boundary are not features.
-      auto& faces = facesIn(mesh_.features);
-      if (!readFeatures(faces, MeditKinds<corners>::kFace)) faces.clear();
+      readFeatures(facesIn(mesh_.features), MeditKinds<corners>::kFace, faceReferences_);
+    } else if (section == MeditSection::Triangles && others_ != nullptr) {
+      readFeatures(others_->triangles, kTriangleKind, faceReferences_);
     } else if (section == MeditSection::Corners || section == MeditSection::RequiredVertices) {
       readCorners();
     }
@@ -486,15 +503,48 @@ class MeditReader {
     order_ = std::move(order);
   }
 
-  /// Counts the cells of a section without reading them.
+  /// Counts the cells of a section, and reads them if they are wanted.
   void countCells(const VolumeCells& type) {
-    counts_.add(type, encoding_.readCount(type.plural, encoding_.shape(type.meditVertices + 1)));
+    const std::size_t each = type.meditVertices;
+    const std::size_t count = encoding_.readCount(type.plural, encoding_.shape(each + 1));
+    counts_.add(type, count);
+    if (others_ == nullptr || each > 6 || !hasVertices_) return;
+    OtherCellList& cells = others_->kinds[each - 4];
+    failIfRepeated(cells.count() > 0, type.meditKeyword);
+    cells.vertices.resize(each * count);
+    const std::string one = singular(type.plural);
+    const CellKind kind = {each, one, type.plural, type.vtkType, PlaceKind::Cell};
+    cells.regions =
+        readReferenced(count, each, 0, kCellReference, [&](auto& record, std::size_t i) {
+          encoding_.beginElement(record, i, count, type.plural);
+          for (std::size_t k = 0; k < each; ++k) {
+            cells.vertices[each * i + k] = readVertex(record, kind, i, 0);
+          }
+        });
+    encoding_.endSection(type.plural);
+  }
+
+  /// References that are equal for all cells of a kind may tell these from other kinds.
+  void completeRegions() {
+    const auto forEach = [this](const auto& f) {
+      f(mesh_.regions, mesh_.cells.size(), allOne_[corners]);
+      for (OtherCellList& kind : others_->kinds) {
+        f(kind.regions, kind.count(), allOne_[kind.corners]);
+      }
+    };
+    std::set<int> said;  // 2: references that differ
+    forEach([&said](const auto& regions, std::size_t count, bool allOne) {
+      if (count > 0) said.insert(regions.empty() ? int{allOne} : 2);
+    });
+    forEach([&said](auto& regions, std::size_t count, bool allOne) {
+      if (regions.empty() && said.size() > 1) regions.assign(count, int{allOne});
+    });
   }
 
   void readCells() {
-    failIfRepeated(hasCells_, kKind.meditKeyword);
+    failIfRepeated(hasCells_, kType.meditKeyword);
     if (!hasVertices_) {
-      encoding_.source().fail(ErrorCode::FileUnsupported, "the section ", kKind.meditKeyword,
+      encoding_.source().fail(ErrorCode::FileUnsupported, "the section ", kType.meditKeyword,
                               " stands before the section Vertices; exchange them.");
     }
     hasCells_ = true;
@@ -504,17 +554,16 @@ class MeditReader {
       encoding_.beginElement(record, i, mesh_.cells.size(), kKind.plural);
       for (Index& corner : mesh_.cells[i]) corner = readVertex(record, kKind, i, 0);
     };
-    mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, "the reference of a cell", read);
+    mesh_.regions = readReferenced(mesh_.cells.size(), corners, 0, kCellReference, read);
     encoding_.endSection(kKind.plural);
   }
 
   /// Reads edges or quads with their references as tags; drops those with reference 0.
-  /// @return whether the references carry information
   template <class Feature>
-  [[nodiscard]] bool readFeatures(std::vector<Feature>& features, const CellKind& elements) {
+  void readFeatures(std::vector<Feature>& features, const CellKind& elements,
+                    SeenReferences& seen) {
     const RecordShape shape = encoding_.shape(elements.corners + 1);
     features.assign(encoding_.readCount(elements.plural, shape), {});
-    SeenReferences seen;
     encoding_.source().records(features.size(), shape, [&](auto& record, std::size_t i) {
       const std::size_t begin = record.position();
       encoding_.beginElement(record, i, features.size(), elements.singular);
@@ -529,7 +578,6 @@ class MeditReader {
     });
     encoding_.endSection(elements.plural);
     std::erase_if(features, [](const Feature& feature) { return feature.tag == 0; });
-    return seen.saySomething();
   }
 
   /// Reads elements, each followed by its reference.
@@ -550,6 +598,7 @@ class MeditReader {
       seen.add(reference);
       if (Encoding::kIsText) references[i] = static_cast<std::int32_t>(reference);
     });
+    allOne_[integers] = seen.areOnes();
     if (!seen.saySomething()) return {};
     if constexpr (!Encoding::kIsText) {
       // Second pass, so that the usual file takes no memory for references.
@@ -612,6 +661,9 @@ class MeditReader {
   Encoding encoding_;
   const std::string& fileName_;
   CellCounts& counts_;
+  OtherCells* others_;                ///< null: unwanted
+  std::array<bool, 28> allOne_ = {};  ///< by corners of cells: whether all references are 1
+  SeenReferences faceReferences_;
   bool hasVertices_ = false;
   bool hasCells_ = false;
   std::vector<Index> corners_;           ///< from the sections Corners and RequiredVertices
@@ -706,7 +758,7 @@ namespace {
 template <class Fits>
 bool isOtherCells(const Fits& fits) {
   return std::any_of(kVolumeCells.begin(), kVolumeCells.end(), [&](const VolumeCells& type) {
-    return type.meditVertices > 0 && type.meditKeyword != kCellKind<8>.meditKeyword && fits(type);
+    return type.meditVertices > 0 && type.meditKeyword != "Hexahedra" && fits(type);
   });
 }
 
@@ -773,7 +825,8 @@ struct MeditCounts {
   std::uint64_t edges = 0;
   std::uint64_t quads = 0;
   std::uint64_t hexahedra = 0;
-  std::uint64_t nodes = 8;  ///< of each hexahedron
+  std::uint64_t nodes = 8;   ///< of each hexahedron
+  std::uint64_t others = 0;  ///< cells and triangles beside them, at most
 };
 
 /// Everything except vertices and cells.
@@ -783,15 +836,33 @@ struct MeditGroups {
   Array<std::uint32_t> edgeReferences;
   QuadGroups quads;
   Array<std::uint32_t> quadReferences;
-  Array<std::uint32_t> cellReferences;  ///< empty: all 1
+  Array<std::array<Index, 3>> triangles;
+  Array<std::uint32_t> triangleReferences;
+  Array<std::uint32_t> cellReferences;  ///< as in AllCells; empty: all 1
 
-  MeditGroups(const HexMesh& mesh, bool withEdges, double patchAngle, Stage& stage)
+  MeditGroups(const HexMesh& mesh, bool withEdges, const WriteOptions& options, Stage& stage)
       : vertexReferences(io::vertexReferences(mesh, groupVertices(mesh))),
-        cellReferences(io::cellReferences(mesh, Untagged::Zero)) {
+        cellReferences(io::cellReferences(mesh, Untagged::Zero, othersOf(options))) {
     if (withEdges) edges = groupEdges(mesh);
     edgeReferences = groupNumbers(edges.groups);
-    withThreads(stage.context().threads(), [&] { quads = groupQuads(mesh, patchAngle, stage); });
+    withThreads(stage.context().threads(), [&] {
+      quads = groupQuads(mesh, options.patchAngle, stage, nullptr, othersOf(options));
+    });
     quadReferences = groupNumbers(quads.groups, Untagged::Zero);
+    if (othersOf(options).count() == 0) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < quads.elements.size(); ++i) {
+      const Quad v = quads.elements[i];
+      if (cornersOf(v) == 4) {
+        quadReferences[kept] = quadReferences[i];
+        quads.elements[kept++] = v;
+      } else {
+        triangles.push_back({v[0], v[1], v[2]});
+        triangleReferences.push_back(quadReferences[i]);
+      }
+    }
+    quads.elements.resize(kept);
+    quadReferences.resize(kept);
   }
 };
 
@@ -873,13 +944,15 @@ class MeditRecords {
   void setVersion(std::uint32_t version) { version_ = version; }
   std::uint32_t versionFor(const MeditCounts& counts) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
-    if (std::max({counts.vertices, counts.quads, counts.hexahedra}) > kMost) return 4;
+    if (std::max({counts.vertices, counts.quads, counts.hexahedra, counts.others}) > kMost)
+      return 4;
     setVersion(2);
     const bool quadratic = counts.nodes == 27;
     const std::uint64_t bytes = 64 + bytesOf(counts.vertices, 1, 3) +
                                 bytesOf(counts.edges, quadratic ? 4 : 3, 0) +
                                 bytesOf(counts.quads, quadratic ? 10 : 5, 0) +
                                 bytesOf(counts.hexahedra, counts.nodes + 1, 0) +
+                                (counts.others > 0 ? bytesOf(counts.others + 8, 7, 0) : 0) +
                                 (quadratic ? bytesOf(counts.nodes, 3, 0) : 0);
     return bytes > kMost ? 3 : 2;
   }
@@ -909,11 +982,14 @@ class MeditWriter {
   template <std::size_t ofEdge, std::size_t ofQuad, std::size_t ofCell>
   void write(std::span<const Vec3> points, std::span<const std::array<Index, ofEdge>> edges,
              std::span<const std::array<Index, ofQuad>> quads,
-             std::span<const std::array<Index, ofCell>> cells, const MeditGroups& groups,
-             std::uint32_t version, Stage& stage) {
+             std::span<const std::array<Index, ofCell>> cells, const OtherCells& others,
+             const MeditGroups& groups, std::uint32_t version, Stage& stage) {
     using Kinds = MeditKinds<ofCell>;
-    const MeditCounts counts = {points.size(), edges.size(), quads.size(), cells.size(), ofCell};
-    LoopProgress progress(stage, counts.vertices + counts.edges + counts.quads + counts.hexahedra);
+    const MeditCounts counts = {points.size(), edges.size(),
+                                quads.size(),  cells.size(),
+                                ofCell,        groups.triangles.size() + others.count()};
+    LoopProgress progress(
+        stage, counts.vertices + counts.edges + counts.quads + counts.hexahedra + counts.others);
     encoding_.begin(counts, version);
     encoding_.beginSection(MeditSection::Vertices, counts.vertices, 1, 3);
     writeVertices(points, groups.vertexReferences, &progress);
@@ -923,10 +999,25 @@ class MeditWriter {
     }
     encoding_.beginSection(Kinds::kFaces, counts.quads, ofQuad + 1);
     writeElements(quads, groups.quadReferences, &progress);
+    if (!groups.triangles.empty()) {
+      encoding_.beginSection(MeditSection::Triangles, groups.triangles.size(), 4);
+      writeElements(std::span<const std::array<Index, 3>>(groups.triangles),
+                    groups.triangleReferences, &progress);
+    }
     if constexpr (ofCell == 27) writeOrder();
-    encoding_.beginSection(static_cast<MeditSection>(kCellKind<ofCell>.meshbKeyword),
-                           counts.hexahedra, ofCell + 1);
-    writeElements(cells, groups.cellReferences, &progress);
+    encoding_.beginSection(static_cast<MeditSection>(typeWith(ofCell).meditCode), counts.hexahedra,
+                           ofCell + 1);
+    std::span<const std::uint32_t> references = groups.cellReferences;
+    writeElements(cells, references, &progress);
+    std::size_t before = cells.size();
+    forEachOtherKind(others, [&](auto ofKind) {
+      if (!references.empty()) references = references.subspan(before);
+      before = ofKind.size();
+      const std::size_t corners = ofKind[0].size();
+      encoding_.beginSection(static_cast<MeditSection>(typeWith(corners).meditCode), ofKind.size(),
+                             corners + 1);
+      this->writeElements(ofKind, references, &progress);
+    });
     end();
   }
 
@@ -988,25 +1079,19 @@ class MeditWriter {
 template <class Encoding>
 void writeWhole(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
                 const WriteOptions& options, Stage& stage) {
-  const MeditGroups groups(mesh, Encoding::kHoldsEdges, options.patchAngle, stage);
+  const MeditGroups groups(mesh, Encoding::kHoldsEdges, options, stage);
   MeditWriter<Encoding>(output, stage.context().threads())
       .write(std::span<const Vec3>(mesh.points),
              std::span<const std::array<Index, 2>>(groups.edges.elements),
-             std::span<const Quad>(groups.quads.elements), std::span<const Hex>(mesh.cells), groups,
-             version, stage);
-}
-
-/// Views numbers as rows.
-template <std::size_t n>
-std::span<const std::array<Index, n>> inRows(const Array<Index>& numbers) {
-  return {reinterpret_cast<const std::array<Index, n>*>(numbers.data()), numbers.size() / n};
+             std::span<const Quad>(groups.quads.elements), std::span<const Hex>(mesh.cells),
+             othersOf(options), groups, version, stage);
 }
 
 template <class Encoding>
 void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
                     Stage& stage) {
   const HexMesh straight = straightMesh(mesh);
-  MeditGroups groups(straight, Encoding::kHoldsEdges, options.patchAngle, stage);
+  MeditGroups groups(straight, Encoding::kHoldsEdges, options, stage);
   if (!groups.vertexReferences.empty()) groups.vertexReferences.resize(mesh.points.size(), 0);
   GroupNodes nodes;
   withThreads(stage.context().threads(),
@@ -1018,7 +1103,7 @@ void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOpt
   }
   MeditWriter<Encoding>(output, stage.context().threads())
       .write(std::span<const Vec3>(mesh.points), inRows<3>(nodes.edges), inRows<9>(nodes.quads),
-             std::span<const Hex27>(cells), groups, 0, stage);
+             std::span<const Hex27>(cells), noOthers(), groups, 0, stage);
 }
 
 template <bool binary>
@@ -1031,13 +1116,13 @@ using Writing = std::conditional_t<binary, MeditRecords, MeditLines>;
 template <bool binary>
 HexMesh MeditFormat<binary>::readMesh(const Input& input, Stage& stage) {
   if (!binary && isMfem(input)) return MfemFormat::readMesh(input, stage);
-  return readWith<MeditReader<Reading<binary>, 8>>(input, stage, input.counts());
+  return readWith<MeditReader<Reading<binary>, 8>>(input, stage, input);
 }
 
 template <bool binary>
 TetCells MeditFormat<binary>::readTets(const Input& input, Stage& stage) {
   if (!binary && isMfem(input)) return MfemFormat::readTets(input, stage);
-  return readWith<MeditReader<Reading<binary>, 4>>(input, stage, input.counts());
+  return readWith<MeditReader<Reading<binary>, 4>>(input, stage, input);
 }
 
 template <bool binary>
@@ -1049,7 +1134,7 @@ bool MeditFormat<binary>::holdsCurved(const Input& input, Stage& stage) {
 template <bool binary>
 LagrangeMesh MeditFormat<binary>::readCurved(const Input& input, Stage& stage) {
   if (!binary && isMfem(input)) return MfemFormat::readCurved(input, stage);
-  return readWith<QuadraticMeditReader<Reading<binary>>>(input, stage, input.counts());
+  return readWith<QuadraticMeditReader<Reading<binary>>>(input, stage, input);
 }
 
 template <bool binary>

@@ -86,18 +86,23 @@ void addGeneratorKinds(VtkDataSet& data, std::span<const PointPiece> lists) {
 
 /// @tparam Corner  the integer type in the file
 template <class Corner>
-void addCorners(VtkDataSet& data, const VtkPiece& piece, std::uint64_t count) {
-  data.add<Corner>(VtkSection::Cells, "connectivity", 1, count, [&piece](const VtkBytes& output) {
-    const auto write = [&output](const auto& corners) {
-      // Signed and unsigned integers of equal size have the same bytes here.
-      if (sizeof(Corner) == sizeof(corners[0])) {
-        output(corners.data(), corners.size_bytes());
-      } else {
-        writeValues<Corner>(output, corners.size(), [&](std::size_t i) { return corners[i]; });
-      }
-    };
-    std::visit(write, piece.corners);
-  });
+void addCorners(VtkDataSet& data, const VtkPiece& piece, std::size_t each) {
+  const std::size_t others = endOf(*piece.others, data.cells);
+  const std::uint64_t count = each * (data.cells - piece.others->count()) + others;
+  data.add<Corner>(
+      VtkSection::Cells, "connectivity", 1, count, [&piece, others](const VtkBytes& output) {
+        const auto write = [&output](const auto& corners) {
+          // Signed and unsigned integers of equal size have the same bytes here.
+          if (sizeof(Corner) == sizeof(corners[0])) {
+            output(corners.data(), corners.size_bytes());
+          } else {
+            writeValues<Corner>(output, corners.size(), [&](std::size_t i) { return corners[i]; });
+          }
+        };
+        std::visit(write, piece.corners);
+        writeValues<Corner>(output, others,
+                            [&](std::size_t i) { return cornerOf(*piece.others, i); });
+      });
 }
 
 /// @tparam End  the integer type in the file
@@ -107,6 +112,9 @@ void addEnds(VtkDataSet& data, const VtkPiece& piece, std::size_t corners) {
       VtkSection::Cells, "offsets", 1, data.cells, [&piece, corners](const VtkBytes& output) {
         writeValues<End>(output, piece.cells,
                          [&](std::size_t i) { return corners * (piece.firstCell + i + 1); });
+        writeValues<End>(output, piece.others->count(), [&](std::size_t i) {
+          return corners * piece.cells + endOf(*piece.others, i + 1);
+        });
       });
 }
 
@@ -149,9 +157,25 @@ void VtkDataSet::addTexts(std::string_view name, std::span<const TagName> names)
                   [own = std::move(all)](const VtkBytes& out) { out(own.data(), own.size()); }});
 }
 
+Index cornerOf(const OtherCells& others, std::size_t i) {
+  const OtherCellList* kind = others.kinds.data();
+  for (; i >= kind->vertices.size(); ++kind) i -= kind->vertices.size();
+  return kind->vertices[i];
+}
+
+std::size_t endOf(const OtherCells& others, std::size_t i) {
+  std::size_t end = 0;
+  for (const OtherCellList& kind : others.kinds) {
+    const std::size_t ofKind = std::min(i, kind.count());
+    end += kind.corners * ofKind;
+    i -= ofKind;
+  }
+  return end;
+}
+
 VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_t cells,
                        std::size_t corners, std::uint8_t type) {
-  VtkDataSet data(points, cells);
+  VtkDataSet data(points, cells + piece.others->count());
   const std::span lists(&piece.vertices, 1);
   if (!piece.vertices.generatorCorners.empty()) {
     addGeneratorKinds(data, lists);
@@ -163,13 +187,17 @@ VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points, std::uint64_
   constexpr std::uint64_t kLargestInt32 = std::numeric_limits<std::int32_t>::max();
   const auto addCornersAs =
       points > kLargestInt32 ? addCorners<std::int64_t> : addCorners<std::int32_t>;
-  addCornersAs(data, piece, corners * cells);
+  addCornersAs(data, piece, corners);
   const auto addEndsAs =
-      cells > kLargestInt32 / corners ? addEnds<std::int64_t> : addEnds<std::int32_t>;
+      data.cells > kLargestInt32 / corners ? addEnds<std::int64_t> : addEnds<std::int32_t>;
   addEndsAs(data, piece, corners);
   data.add<std::uint8_t>(
-      VtkSection::Cells, "types", 1, cells, [&piece, type](const VtkBytes& output) {
+      VtkSection::Cells, "types", 1, data.cells, [&piece, type](const VtkBytes& output) {
         writeValues<std::uint8_t>(output, piece.cells, [type](std::size_t) { return type; });
+        for (const OtherCellList& kind : piece.others->kinds) {
+          const std::int64_t other = typeWith(kind.corners).vtkType;
+          writeValues<std::uint8_t>(output, kind.count(), [other](std::size_t) { return other; });
+        }
       });
   return data;
 }
@@ -192,10 +220,18 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
 VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece& piece) {
   piece.vertices = {0, mesh.points, mesh.generatorTet, mesh.generatorCorners};
   piece.setCells(0, std::span<const Hex>(mesh.cells));
+  piece.others = &othersOf(options);
   VtkDataSet data = meshDataSet(piece, mesh.points.size(), mesh.cells.size(),
                                 std::tuple_size_v<Hex>, kVtkHexahedron);
-  data.add(VtkSection::CellData, kVtkQuality, options.scaledJacobians);
-  addTags(data, mesh.features, mesh.regions);
+  const bool mixed = piece.others->count() > 0;
+  addTags(data, mesh.features, mixed ? std::span<const std::int32_t>() : mesh.regions);
+  if (!mixed) {
+    data.add(VtkSection::CellData, kVtkQuality, options.scaledJacobians);
+    return data;
+  }
+  addRows(data, kVtkTriangleTags, piece.others->triangles);
+  Array<std::int32_t> regions = AllCells(mesh, *piece.others).regions();
+  if (!regions.empty()) data.addOwn(VtkSection::CellData, kVtkRegions, std::move(regions));
   return data;
 }
 

@@ -22,6 +22,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/cell_counts.hpp>
 #include <io/core/output_file.hpp>
 
 namespace hexhex::io {
@@ -165,6 +166,7 @@ struct VtkPiece {
   std::uint64_t firstCell = 0;
   std::size_t cells = 0;
   std::variant<std::span<const Index>, std::span<const std::uint64_t>> corners = {};
+  const OtherCells* others = &noOthers();  ///< written after the cells
 
   template <class Vertex, std::size_t n>
   void setCells(std::uint64_t first, std::span<const std::array<Vertex, n>> list) {
@@ -174,8 +176,13 @@ struct VtkPiece {
   }
 };
 
-/// A data set of points, cells of one type and, if pieces have them, generators.
+/// Corner i of a list of the corners of all cells, and where the first i cells end in it.
+[[nodiscard]] Index cornerOf(const OtherCells& others, std::size_t i);
+[[nodiscard]] std::size_t endOf(const OtherCells& others, std::size_t i);
+
+/// A data set of points, cells of one type, others and, if pieces have them, generators.
 /// @param piece    must outlive the data set
+/// @param cells    without others
 /// @param corners  per cell
 [[nodiscard]] VtkDataSet meshDataSet(const VtkPiece& piece, std::uint64_t points,
                                      std::uint64_t cells, std::size_t corners, std::uint8_t type);

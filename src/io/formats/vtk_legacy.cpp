@@ -540,6 +540,7 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
   bytes.text = input.text(bytes.room, stage, "#");
   auto file = std::make_unique<VtkLegacyFile>(std::move(bytes), input.name(), stage);
   file->counts = input.counts();
+  file->others = input.others();
   if (withRegions) file->readRegions();
   return file;
 }
@@ -715,7 +716,8 @@ class LegacyWriter {
 
   /// Writes everything before the points.
   /// @throws Error TooLarge if there are more points than 32-bit indices can number
-  void begin(std::uint64_t points, std::uint64_t cells) {
+  /// @param others  written after the cells
+  void begin(std::uint64_t points, std::uint64_t cells, const OtherCells& others = noOthers()) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     if (Numbers::kEncoding == VtkBigBytes::kEncoding && points > kMost) {
       throw Error(ErrorCode::TooLarge,
@@ -724,7 +726,8 @@ class LegacyWriter {
                          "suffice for ",
                          points, " points; write .vtu."));
     }
-    cellCount_ = cells;
+    cellCount_ = cells + others.count();
+    others_ = &others;
     output_.write("# vtk DataFile Version 2.0\n");
     output_.write(corners == 8 ? "hexahedral mesh by hexhex\n" : "integer-grid map by hexhex\n");
     output_.write(Numbers::kEncoding).write("\nDATASET UNSTRUCTURED_GRID\n");
@@ -736,19 +739,25 @@ class LegacyWriter {
   void beginCells() {
     output_.write(Numbers::kEndOfSection);
     output_.write("CELLS ").write(cellCount_);
-    output_.write(' ').write((corners + 1) * cellCount_).write('\n');
+    const std::uint64_t ofOthers = corners * others_->count();
+    output_.write(' ')
+        .write((corners + 1) * cellCount_ - ofOthers + endOf(*others_, cellCount_))
+        .write('\n');
   }
   template <class Vertex>
   void cells(std::uint64_t /*first*/, std::span<const std::array<Vertex, corners>> cells) {
-    lines_.write(
-        cells.size(), (corners + 1) * Numbers::kRoom,
-        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress_);
+    writeCells(cells);
   }
   void types() {
     output_.write(Numbers::kEndOfSection);
     output_.write("CELL_TYPES ").write(cellCount_).write('\n');
-    constexpr auto kType = static_cast<std::uint32_t>(kCellKind<corners>.vtkType);
-    rows(cellCount_, [](std::size_t) { return std::array{kType}; });
+    const auto write = [this](std::uint64_t count, std::int64_t type) {
+      rows(count, [type](std::size_t) { return std::array{static_cast<std::uint32_t>(type)}; });
+    };
+    write(cellCount_ - others_->count(), kCellKind<corners>.vtkType);
+    for (const OtherCellList& kind : others_->kinds) {
+      write(kind.count(), typeWith(kind.corners).vtkType);
+    }
     output_.write(Numbers::kEndOfSection);
   }
   /// Writes a cell array.
@@ -763,16 +772,23 @@ class LegacyWriter {
 
   /// Writes everything up to the cell types; advances the progress from now on.
   void write(std::span<const Vec3> allPoints, std::span<const std::array<Index, corners>> allCells,
-             LoopProgress& progress) {
+             const OtherCells& others, LoopProgress& progress) {
     progress_ = &progress;
-    begin(allPoints.size(), allCells.size());
+    begin(allPoints.size(), allCells.size(), others);
     points({0, allPoints, {}, {}});
     beginCells();
     cells(0, allCells);
+    forEachOtherKind(others, [this](auto ofKind) { this->writeCells(ofKind); });
     types();
   }
 
  private:
+  template <class Cells>
+  void writeCells(Cells cells) {
+    lines_.write(
+        cells.size(), (std::tuple_size_v<typename Cells::value_type> + 1) * Numbers::kRoom,
+        [cells](char* place, std::size_t i) { return Numbers::cell(place, cells[i]); }, progress_);
+  }
   /// Writes n rows: row(i) is an array of numbers.
   template <class Row>
   void rows(std::size_t n, const Row& row) {
@@ -784,18 +800,23 @@ class LegacyWriter {
 
   OutputFile& output_;
   LineWriter lines_;
-  std::uint64_t cellCount_ = 0;
+  std::uint64_t cellCount_ = 0;  ///< with others
+  const OtherCells* others_ = &noOthers();
   LoopProgress* progress_ = nullptr;
 };
 
 template <class Numbers>
-void writeMesh(const HexMesh& mesh, OutputFile& output, Stage& stage) {
+void writeMesh(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
   LegacyWriter<Numbers> writer(output, stage.context().threads());
-  LoopProgress progress(stage, mesh.points.size() + 2 * mesh.cells.size() + mesh.regions.size());
-  writer.write(mesh.points, mesh.cells, progress);
-  if (!mesh.regions.empty()) {
+  const AllCells all(mesh, othersOf(options));
+  const bool mixed = all.others().count() > 0;
+  const Array<std::int32_t> ofAll = mixed ? all.regions() : Array<std::int32_t>();
+  const std::span<const std::int32_t> regions = mixed ? ofAll : mesh.regions;
+  LoopProgress progress(stage, mesh.points.size() + 2 * all.size() + regions.size());
+  writer.write(mesh.points, mesh.cells, all.others(), progress);
+  if (!regions.empty()) {
     writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
-                    [&mesh](std::size_t c) { return std::array{mesh.regions[c]}; });
+                    [regions](std::size_t c) { return std::array{regions[c]}; });
   }
 }
 
@@ -824,7 +845,7 @@ void writeMap(const TetMap& map, OutputFile& output, const WriteOptions& options
   withThreads(stage.context().threads(), [&] { requireWritable(map, stage); });
   const std::size_t tets = map.tets.size();
   LoopProgress progress(stage, map.points.size() + 3 * tets);
-  writer.write(map.points, map.tets, progress);
+  writer.write(map.points, map.tets, noOthers(), progress);
   writer.cellData(
       concat("\nFIELD FieldData 1\n", name, " 12 ", tets, " double\n"),
       [&map](std::size_t t) { return std::bit_cast<std::array<double, 12>>(map.parameters[t]); });
@@ -832,14 +853,14 @@ void writeMap(const TetMap& map, OutputFile& output, const WriteOptions& options
 
 }  // namespace
 
-void writeVtkLegacy(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
+void writeVtkLegacy(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                     Stage& stage) {
-  writeMesh<VtkText>(mesh, output, stage);
+  writeMesh<VtkText>(mesh, output, options, stage);
 }
 
-void writeVtkLegacyBinary(const HexMesh& mesh, OutputFile& output, const WriteOptions& /*options*/,
+void writeVtkLegacyBinary(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
                           Stage& stage) {
-  writeMesh<VtkBigBytes>(mesh, output, stage);
+  writeMesh<VtkBigBytes>(mesh, output, options, stage);
 }
 
 void writeVtkLegacyMap(const TetMap& map, OutputFile& output, const WriteOptions& options,

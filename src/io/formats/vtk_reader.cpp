@@ -479,15 +479,16 @@ template void readVtkCells(const VtkSource&, const CellKind&, std::uint64_t, std
 
 void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
-                  Stage& stage) {
+                  Stage& stage, bool areOthers) {
   const std::size_t all = source.cells;
   std::vector<std::size_t> begins(blockCount(all, kVtkReaderGrain) + 1, 0);
   forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
     begins[block] = countVtkCells(source, cells, begin, end - begin);
   });
   const std::size_t count = exclusiveScan(std::span(begins));
-  noteVtkCells(source, cells, count);
-  if ((all > 0 || source.isSurface) && count == 0) failWithoutVtkCells(source, cells);
+  if (!areOthers) noteVtkCells(source, cells, count);
+  const bool needed = all > 0 || source.isSurface;
+  if (!areOthers && needed && count == 0) failWithoutVtkCells(source, cells);
   Index* const vertices = makeRoom(count);
   if (numbers != nullptr) numbers->resize(count);
   forEachBlock(stage, all, [&](std::size_t begin, std::size_t end, std::size_t block) {
@@ -800,6 +801,40 @@ constexpr CellKind kLineKind = {
     .corners = 2, .singular = "line", .plural = "lines", .vtkType = kVtkLine};
 constexpr CellKind kQuadKind = {.corners = 4, .singular = "quad", .plural = "quads", .vtkType = 9};
 
+/// Turns prisms round if most of their volume is negative: VTK's documentation was once taken to
+/// say so, as by meshio and MFEM, though VTK itself wants them positive.
+void turnPrisms(std::span<const Vec3> points, Array<Index>& vertices) {
+  double volume = 0;
+  for (std::size_t i = 0; i < vertices.size(); i += 6) {
+    const Vec3& origin = points[vertices[i]];
+    const auto to = [&](std::size_t k) { return minus(points[vertices[i + k]], origin); };
+    volume += dot(cross(to(1), to(2)), plus(to(3), plus(to(4), to(5))));
+  }
+  for (std::size_t i = 0; volume < 0 && i < vertices.size(); i += 3) {
+    std::swap(vertices[i + 1], vertices[i + 2]);
+  }
+}
+
+/// Reads straight cells that are no hexahedra, and tagged triangles.
+void readOthers(const VtkSource& source, std::span<const Vec3> points, OtherCells& others,
+                Stage& stage) {
+  for (OtherCellList& kind : others.kinds) {
+    const VolumeCells& type = typeWith(kind.corners);
+    const std::string one = singular(type.plural);
+    const CellKind wanted = {kind.corners, one, type.plural, type.vtkType};
+    Array<std::size_t> numbers;
+    const auto makeRoom = [&kind](std::size_t count) {
+      kind.vertices.resize(kind.corners * count);
+      return kind.vertices.data();
+    };
+    readVtkCells(source, wanted, makeRoom, &numbers, stage, true);
+    if (hasVtkRegions(source)) kind.regions = readVtkRegions(source, numbers);
+  }
+  turnPrisms(points, others.kinds[2].vertices);
+  others.triangles = readRows<FeatureFace>(source, kVtkTriangleTags);
+  addTaggedCells(source, kTriangleKind, others.triangles);
+}
+
 }  // namespace
 
 VtkGenerators findVtkGenerators(const VtkSource& source) {
@@ -854,6 +889,7 @@ HexMesh readVtkHexMesh(const VtkSource& source, Stage& stage) {
   const bool regions = hasVtkRegions(source);
   readMesh(source, mesh.points, mesh.cells, regions ? &numbers : nullptr, stage);
   if (regions) mesh.regions = readVtkRegions(source, numbers);
+  if (source.others != nullptr) readOthers(source, mesh.points, *source.others, stage);
   mesh.features = readVtkHexFeatures(source);
   addTaggedCells(source, kLineKind, mesh.features.edges);
   addTaggedCells(source, kQuadKind, mesh.features.quads);

@@ -108,6 +108,7 @@ class VtkSource {
   bool isSurface = false;                    ///< whether the data set is one of polygons
 
   std::shared_ptr<CellCounts> counts;  ///< of the input
+  OtherCells* others = nullptr;        ///< where the input wants other cells
 
   std::vector<VtkSourceArray> arrays;
   /// Arrays of points and cells, for messages: the names of the first ones, and how many more.
@@ -212,10 +213,12 @@ void readVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
 /// Reads all wanted cells, with all threads.
 /// @param makeRoom  called with their number; returns the destination of their corners
 /// @param[out] numbers  if not null: their indices in the file
+/// @param areOthers  whether they are beside the cells that the file is read for: not counted, and
+///                   there may be none
 /// @throws Error the same; FileUnsupported if all cells are of other kinds
 void readVtkCells(const VtkSource& source, const CellKind& cells,
                   const std::function<Index*(std::size_t)>& makeRoom, Array<std::size_t>* numbers,
-                  Stage& stage);
+                  Stage& stage, bool areOthers = false);
 
 /// Counts the cells of each type.
 /// @param count  of the wanted ones

@@ -65,20 +65,25 @@ struct Column {
 };
 
 /// Adds the arrays that VTKHDF has in addition to those of `.vtu`.
-void addLayout(VtkDataSet& data, const Array<Hex>& cells) {
+void addLayout(VtkDataSet& data, const Array<Hex>& cells, const OtherCells& others = noOthers()) {
   const auto addCount = [&data](const char* name, std::uint64_t count) {
     data.addOwn(VtkSection::Cells, name, std::vector{static_cast<std::int64_t>(count)});
   };
   constexpr std::size_t kCorners = std::tuple_size_v<Hex>;
   addCount("NumberOfPoints", data.points);
   addCount("NumberOfCells", data.cells);
-  addCount("NumberOfConnectivityIds", kCorners * data.cells);
-  data.addComputed<std::int64_t>(VtkSection::Cells, "Offsets", cells.size() + 1,
-                                 [](std::size_t i) { return kCorners * i; });
+  const std::size_t ofHexes = kCorners * cells.size();
+  const std::size_t all = ofHexes + endOf(others, data.cells);
+  addCount("NumberOfConnectivityIds", all);
+  data.addComputed<std::int64_t>(
+      VtkSection::Cells, "Offsets", data.cells + 1, [&, ofHexes](std::size_t i) {
+        return i <= cells.size() ? kCorners * i : ofHexes + endOf(others, i - cells.size());
+      });
   // In 64 bits, whatever the number of points.
   data.addComputed<std::int64_t>(
-      VtkSection::Cells, "Connectivity", kCorners * cells.size(),
-      [&cells](std::size_t i) { return cells[i / kCorners][i % kCorners]; });
+      VtkSection::Cells, "Connectivity", all, [&, ofHexes](std::size_t i) {
+        return i < ofHexes ? cells[i / kCorners][i % kCorners] : cornerOf(others, i - ofHexes);
+      });
 }
 
 /// @param data  including the arrays of addLayout()
@@ -146,7 +151,7 @@ void writeVtkHdf(const HexMesh& mesh, OutputFile& output, const WriteOptions& op
                  Stage& stage) {
   VtkPiece piece;
   VtkDataSet data = hexDataSet(mesh, options, piece);
-  addLayout(data, mesh.cells);
+  addLayout(data, mesh.cells, othersOf(options));
   std::vector<Column> columns = columnsOf(data);
   for (const VtkArray& array : data.arrays()) {
     // names are not written: docs/user/formats.md
@@ -337,6 +342,7 @@ class VtkHdfSource final : public VtkSource {
  public:
   explicit VtkHdfSource(const Input& input) : VtkSource({}, input.name()) {
     counts = input.counts();
+    others = input.others();
   }
   void requireIndexable() const override {
     for (const std::uint64_t count : {points, cells}) {

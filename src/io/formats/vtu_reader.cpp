@@ -832,6 +832,7 @@ std::unique_ptr<VtkSource> openVtuFile(const Input& input, Stage& stage) {
   }
   auto file = std::make_unique<VtuFile>(std::move(bytes), input.name(), stage);
   file->counts = input.counts();
+  file->others = input.others();
   return file;
 }
 
