@@ -24,6 +24,9 @@ namespace {
 /// Rounds of smoothing per attempt. Labels of a smoothed part have fewer and larger charts: more of
 /// its features cross them, but where those of the part itself have no map, they often do.
 constexpr std::array<int, kMostAttempts> kSmoothing = {0, 0, 0, 10, 0, 20, 0, 5};
+/// The first attempts that label the part as it is; later ones keep corners away from where others
+/// had no map, which costs distance from the part.
+constexpr std::uint64_t kFreeAttempts = 2;
 /// Budget for all attempts together, about thirty seconds.
 constexpr double kMostWork = 6e7;
 /// Minimum budget in solver steps, for large meshes.
@@ -72,7 +75,7 @@ class PolycubeSearch {
   TetMap run(std::uint64_t seed, double workLeft) {
     std::optional<CheckedLabels> invalid;  // the best of them
     for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
-      CheckedLabels found = label(kSmoothing[attempt], seed + attempt, workLeft);
+      CheckedLabels found = label(attempt, seed, workLeft);
       if (found.verdict.report.isValid()) {
         if (std::optional<TetMap> map = mapOf(found, workLeft)) return std::move(*map);
       } else if (!invalid || found.verdict.energy < invalid->verdict.energy) {
@@ -87,11 +90,14 @@ class PolycubeSearch {
   }
 
  private:
-  CheckedLabels label(int smoothing, std::uint64_t seed, double& workLeft) {
+  CheckedLabels label(std::uint64_t attempt, std::uint64_t seed, double& workLeft) {
     Stage stage(context_, "labelling");
-    if (smoothing == 0) return labelsOf(surface_, costs_, seed, workLeft, stage);
-    const Surface smooth = smoothed(surface_, tets_.mesh().points, smoothing);
-    CheckedLabels found = labelsOf(smooth, LabelCosts(smooth), seed, workLeft, stage);
+    if (kSmoothing[attempt] == 0) {
+      const LabelCosts costs = attempt < kFreeAttempts ? LabelCosts(surface_) : costs_;
+      return labelsOf(surface_, costs, seed + attempt, workLeft, stage);
+    }
+    const Surface smooth = smoothed(surface_, tets_.mesh().points, kSmoothing[attempt]);
+    CheckedLabels found = labelsOf(smooth, LabelCosts(smooth), seed + attempt, workLeft, stage);
     found.verdict.report.deviation = LabelCheck(surface_, costs_)(found.labels).report.deviation;
     return found;
   }
