@@ -179,9 +179,7 @@ class Moving {
   [[nodiscard]] std::vector<Index> verticesAtBad(const Sweeps& sweeps) const {
     constexpr int kRings = 2;
     if (report_.addedCells > 0) return {};
-    std::vector<Index> vertices = sweeps.verticesBelow(-1, kRings);
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
+    return sweeps.verticesBelow(-1, kRings);
   }
 
   /// Records vertices that left their creases. If restored, they are on a patch, not on a crease.

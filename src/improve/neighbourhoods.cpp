@@ -1,9 +1,28 @@
 #include <algorithm>
+#include <utility>
 
 #include <base/disjoint_sets.hpp>
 #include <improve/neighbourhoods.hpp>
 
 namespace hexhex::improvement {
+
+namespace {
+
+/// Sorts the indices that are marked, each of which is listed once, and clears the marks.
+void sortMarked(std::vector<Index>& list, std::vector<std::uint8_t>& marks) {
+  constexpr std::size_t kMany = 16;  // a comparison takes longer than looking at some marks
+  if (kMany * list.size() < marks.size()) {
+    std::sort(list.begin(), list.end());
+    for (const Index i : list) marks[i] = 0;
+    return;
+  }
+  list.clear();
+  for (Index i = 0; i < marks.size(); ++i) {
+    if (std::exchange(marks[i], 0) != 0) list.push_back(i);
+  }
+}
+
+}  // namespace
 
 std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells) {
   for (const Index cell : cells) isCell_[cell] = 1;
@@ -24,8 +43,8 @@ std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells
       }
     }
   }
-  for (const Index cell : cells) isCell_[cell] = 0;
-  for (const Index v : points) isPoint_[v] = 0;
+  sortMarked(cells, isCell_);
+  sortMarked(points, isPoint_);
   return points;
 }
 

@@ -19,8 +19,9 @@ class Neighbourhoods {
   explicit Neighbourhoods(const CellPoints& mesh)
       : mesh_(mesh), isPoint_(mesh.pointCount, 0), isCell_(mesh.cellCount(), 0) {}
 
-  /// The points of cells and of so many rings of cells around them, each once.
-  /// @param[in,out] cells  extended to all cells at these points
+  /// The points of cells and of so many rings of cells around them, ascending: what is near in the
+  /// mesh is near in memory.
+  /// @param[in,out] cells  extended to all cells at these points, ascending
   [[nodiscard]] std::vector<Index> pointsOf(int rings, std::vector<Index>& cells);
 
  private:

@@ -330,9 +330,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
   const std::size_t rounds = std::min<std::size_t>(
       kMostRoundsAtOnce, (isFolded ? kMostWorkFolded : kMostWorkAtOnce) / cells.size());
   if (rounds <= kStallsAtOnce) return;  // too few to converge
-  std::sort(vertices.begin(), vertices.end());
   cells = movable(std::move(cells), isAny);
-  std::sort(cells.begin(), cells.end());
   std::vector<std::uint8_t> isHeld(mesh_.points.size(), 0);
   for (const Quad& quad : places_.innerQuads) {  // nothing checks their distance
     for (const Index v : quad) isHeld[v] = 1;
@@ -393,8 +391,8 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
   if (low.empty()) return;
   const CellPoints all = cellPoints();
   Neighbourhoods near(all);
-  // Per vertex: the last round in which it moved. Only vertices near moved ones are visited again.
-  std::vector<std::uint8_t> lastMove(mesh_.points.size(), 0);
+  // Per cell: the last round in which it moved. Only vertices of such cells are visited again.
+  std::vector<std::uint8_t> lastMove(qualities_.size(), 0);
   std::uint8_t round = 0;
   for (const int power : kWorstPowers) {
     for (int i = 0; i < kWorstRounds; ++i) {
@@ -403,16 +401,15 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
       std::erase_if(vertices, [&](Index v) {
         if (places_.freedom[v] == Freedom::Fixed) return true;
         bool isAwake = i == 0;
-        for (const Index cell : all.around(v)) {
-          for (const Index other : all.of(cell)) isAwake |= lastMove[other] == round;
-        }
+        for (const Index cell : all.around(v)) isAwake |= lastMove[cell] == round;
         return !isAwake;
       });
       if (vertices.empty()) break;
       ++round;
       const Exchange now = power > 1 ? exchange : Exchange{target, exchange.belowFloor};
       sweep(vertices, slack, [&](VertexMover& mover, Index v) {
-        if (mover.smooth(v, power, now) > kStill) lastMove[v] = round;
+        if (mover.smooth(v, power, now) <= kStill) return;
+        for (const Index cell : all.around(v)) lastMove[cell] = round;
       });
       low = movable(std::move(cells), isLow);
     }
