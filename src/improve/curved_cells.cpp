@@ -59,8 +59,8 @@ curved::LagrangeCells CurvedCells::lanesOf(const Array<Vec3>& points,
   return {points.data(), cells.size(), [&](std::size_t i) { return nodesOf(cells[i]).data(); }};
 }
 
-void CurvedCells::measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
-                          std::span<double> qualities) const {
+void CurvedCells::measureSome(const Array<Vec3>& points, std::span<const Index> cells,
+                              Scratch& scratch, std::span<double> qualities) const {
   constexpr double kSafe = 1e-9;  // far beyond the rounding errors of sums of some hundred terms
   const curved::LagrangeCells lanes = lanesOf(points, cells);
   const auto scaled = quality_.smallest(lanes, scratch.columns);

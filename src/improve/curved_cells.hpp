@@ -37,8 +37,8 @@ class CurvedCells final : public ImprovedCells {
   [[nodiscard]] std::span<const Index> nodesOf(std::size_t cell) const;
   [[nodiscard]] curved::LagrangeCells lanesOf(const Array<Vec3>& points,
                                               std::span<const Index> cells) const;
-  void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
-               std::span<double> qualities) const override;
+  void measureSome(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
+                   std::span<double> qualities) const override;
 
   const LagrangeMesh& mesh_;
   adjacency::VertexCells around_;

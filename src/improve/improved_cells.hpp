@@ -57,27 +57,21 @@ class ImprovedCells {
                         const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
                         EnergyTerms& terms) const = 0;
 
-  /// Calls use(cell, quality) for the listed cells until it returns false.
-  /// @return whether use() never returned false
-  template <class Use>
-  bool forQualities(const Array<Vec3>& points, std::span<const Index> list, Scratch& scratch,
-                    const Use& use) const {
-    std::array<double, kMostAtOnce> qualities;
-    for (std::size_t begin = 0; begin < list.size(); begin += atOnce_) {
-      const auto some = list.subspan(begin, std::min(atOnce_, list.size() - begin));
-      measure(points, some, scratch, qualities);
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        if (!use(some[i], qualities[i])) return false;
-      }
+  /// Cells that take hardly longer to measure together than one.
+  static constexpr std::size_t kTogether = 4;
+  /// Measures any number of cells.
+  void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
+               std::span<double> qualities) const {
+    for (std::size_t begin = 0; begin < cells.size(); begin += atOnce_) {
+      const std::size_t count = std::min(atOnce_, cells.size() - begin);
+      measureSome(points, cells.subspan(begin, count), scratch, qualities.subspan(begin, count));
     }
-    return true;
   }
 
  protected:
-  static constexpr std::size_t kMostAtOnce = 32;
   /// Measures up to `atOnce` cells.
-  virtual void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& scratch,
-                       std::span<double> qualities) const = 0;
+  virtual void measureSome(const Array<Vec3>& points, std::span<const Index> cells,
+                           Scratch& scratch, std::span<double> qualities) const = 0;
 
  private:
   std::size_t atOnce_;

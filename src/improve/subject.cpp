@@ -47,12 +47,11 @@ class StraightCells final : public ImprovedCells {
   }
 
  private:
-  void measure(const Array<Vec3>& points, std::span<const Index> cells, Scratch& /*scratch*/,
-               std::span<double> qualities) const override {
-    static_assert(mesh::CellMeasures::kMost <= kMostAtOnce);
+  void measureSome(const Array<Vec3>& points, std::span<const Index> cells, Scratch& /*scratch*/,
+                   std::span<double> qualities) const override {
     static const mesh::MeasureCells widest = mesh::measuresOfCells().back();
     mesh::CellMeasures measures;
-    std::array<Hex, kMostAtOnce> corners;
+    std::array<Hex, mesh::CellMeasures::kMost> corners;
     for (std::size_t i = 0; i < cells.size(); ++i) corners[i] = mesh_.cells[cells[i]];
     widest(points.data(), std::span(corners).first(cells.size()), measures);
     for (std::size_t i = 0; i < cells.size(); ++i) {

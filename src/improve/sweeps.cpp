@@ -184,12 +184,11 @@ void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
   parallelBlocks(
       stage_, n, kMeasureGrain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
         ImprovedCells::Scratch scratch;
-        std::vector<Index> list;
-        for (std::size_t c = begin; c < end; ++c) list.push_back(cellAt(c));
-        cells_->forQualities(mesh_.points, list, scratch, [&](Index cell, double quality) {
-          qualities_[cell] = quality;
-          return true;
-        });
+        std::array<Index, kMeasureGrain> list;
+        std::array<double, kMeasureGrain> qualities;
+        for (std::size_t c = begin; c < end; ++c) list[c - begin] = cellAt(c);
+        cells_->measure(mesh_.points, std::span(list).first(end - begin), scratch, qualities);
+        for (std::size_t c = begin; c < end; ++c) qualities_[list[c - begin]] = qualities[c - begin];
       });
 }
 

@@ -145,24 +145,31 @@ double VertexMover::sizeAt(Index vertex) const {
 }
 
 bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& exchange) {
-  measured_.clear();
+  constexpr std::size_t kTogether = ImprovedCells::kTogether;
+  const std::span<const Index> cells = points_.around(vertex);
   const double floor = exchange.floor;
   const double lowest = std::min(least, floor);
   const auto leastOf = [&](Index cell) {
     return all_.qualities[cell] < floor || exchange.belowFloor ? lowest : floor;
   };
-  const bool areGood = all_.cells.forQualities(all_.mesh.points, points_.around(vertex), scratch_,
-                                               [&](Index cell, double quality) {
-                                                 measured_.emplace_back(cell, quality);
-                                                 return quality >= leastOf(cell);
-                                               });
-  if (!areGood) return false;
+  measured_.resize(cells.size());
+  const std::size_t groups = (cells.size() + kTogether - 1) / kTogether;
+  for (std::size_t i = 0; i < groups; ++i) {
+    const std::size_t begin = (suspect_ / kTogether + i) % groups * kTogether;
+    const auto some = cells.subspan(begin, std::min(kTogether, cells.size() - begin));
+    all_.cells.measure(all_.mesh.points, some, scratch_, std::span(measured_).subspan(begin));
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      if (measured_[begin + k] >= leastOf(some[k])) continue;
+      suspect_ = begin + k;
+      return false;
+    }
+  }
   double gained = 0;
   double lost = 0;
-  for (const auto& [cell, quality] : measured_) {
-    const double old = all_.qualities[cell];
-    gained += std::min(quality, floor) - std::min(old, floor);
-    lost += std::max(old, floor) - std::max(quality, floor);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double old = all_.qualities[cells[i]];
+    gained += std::min(measured_[i], floor) - std::min(old, floor);
+    lost += std::max(old, floor) - std::max(measured_[i], floor);
   }
   return exchange.price == 0 || lost <= 0 || lost <= exchange.price * gained;
 }
@@ -172,16 +179,21 @@ void VertexMover::untangle(Index vertex) {
   descend(vertex, untangling(terms_), [] { return true; });
 }
 
-double VertexMover::leastQualityAt(Index vertex) const {
+double VertexMover::leastQualityAt(Index vertex) {
   double least = 1;
-  for (const Index cell : points_.around(vertex)) {
-    least = std::min(least, all_.qualities[cell]);
+  const std::span<const Index> cells = points_.around(vertex);
+  suspect_ = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (all_.qualities[cells[i]] >= least) continue;
+    least = all_.qualities[cells[i]];
+    suspect_ = i;
   }
   return least;
 }
 
-void VertexMover::keepMeasured() {
-  for (const auto& [cell, quality] : measured_) all_.qualities[cell] = quality;
+void VertexMover::keepMeasured(Index vertex) {
+  const std::span<const Index> cells = points_.around(vertex);
+  for (std::size_t i = 0; i < cells.size(); ++i) all_.qualities[cells[i]] = measured_[i];
 }
 
 double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
@@ -195,7 +207,7 @@ double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
            (!bounded || all_.chordError.at(vertex, farthest) <= farthest);
   });
   if (moved == 0) return 0;
-  keepMeasured();
+  keepMeasured(vertex);
   return moved / sizeAt(vertex);
 }
 
@@ -218,7 +230,7 @@ void VertexMover::moveTo(Index vertex, const SurfacePlace& place, bool isPulled,
                             : stepBy(vertex, way, share).place);
     if (isGoodAround(vertex, least, {floor}) &&
         (std::isinf(farthest) || all_.chordError.at(vertex, farthest) <= farthest)) {
-      keepMeasured();
+      keepMeasured(vertex);
       return;
     }
     take(vertex, old);

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <adjacency/hex_topology.hpp>
@@ -102,9 +101,11 @@ class VertexMover {
   double descend(Index vertex, const EnergyKind& kind, const Accept& isAccepted);
 
   void collect(Index vertex, bool bezier);
-  [[nodiscard]] double leastQualityAt(Index vertex) const;
-  void keepMeasured();
-  /// Measures the cells around a vertex that has moved.
+  /// Suspects the worst cell to get worse.
+  [[nodiscard]] double leastQualityAt(Index vertex);
+  void keepMeasured(Index vertex);
+  /// Measures the cells around a vertex that has moved: first those beside the suspect, which is
+  /// then the first one that is not good enough. Half of all steps are refused because of one cell.
   /// @param least  least quality around it before
   /// @return whether they are good enough
   bool isGoodAround(Index vertex, double least, const Exchange& exchange);
@@ -114,7 +115,8 @@ class VertexMover {
   CellPoints points_;
   double slack_;
   EnergyTerms terms_;
-  std::vector<std::pair<Index, double>> measured_;  ///< by isGoodAround(): cells, qualities
+  std::vector<double> measured_;  ///< per cell around the vertex: by isGoodAround()
+  std::size_t suspect_ = 0;       ///< among these cells
   ImprovedCells::Scratch scratch_;
 };
 
