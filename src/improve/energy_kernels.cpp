@@ -42,7 +42,16 @@ HEXHEX_INLINE Number shapeOf(const Number& square, const Number& byChi, int powe
   return shape;
 }
 
-HEXHEX_INLINE double energyOf(std::span<const TermLanes> terms, const EnergyKind& kind,
+/// What Regularized is for positive determinants without epsilon, bit for bit. Steps that raise
+/// cells take a tenth less time than with its roots and quotients.
+struct alignas(TermLanes) Plain {
+  Number root;
+  HEXHEX_INLINE Plain(double /*epsilon*/, const Number& det) noexcept : root(det) {}
+  [[nodiscard]] HEXHEX_INLINE Number inverse() const noexcept { return 1 / root; }
+};
+
+template <class Chi>
+HEXHEX_INLINE double energyBy(std::span<const TermLanes> terms, const EnergyKind& kind,
                               const Vec3& step) noexcept {
   Number sum{};
   Number least = Number{} + 1;
@@ -53,7 +62,7 @@ HEXHEX_INLINE double energyOf(std::span<const TermLanes> terms, const EnergyKind
     const Number along =
         term.slope[0] * step[0] + term.slope[1] * step[1] + term.slope[2] * step[2];
     const Number square = term.square + 2 * along + term.growth * length;
-    const Number byChi = Regularized<Number>(kind.epsilon, det).inverse();
+    const Number byChi = Chi(kind.epsilon, det).inverse();
     sum +=
         term.weight * (shapeOf(square, byChi, kind.power) + kind.volume * (det * det + 1) * byChi);
     least = smaller(least, det);
@@ -63,6 +72,12 @@ HEXHEX_INLINE double energyOf(std::span<const TermLanes> terms, const EnergyKind
   return smallest > 0 ? sumOf(sum) : kInfinite;
 }
 
+HEXHEX_INLINE double energyOf(std::span<const TermLanes> terms, const EnergyKind& kind,
+                              const Vec3& step) noexcept {
+  return kind.epsilon > 0 ? energyBy<Regularized<Number>>(terms, kind, step)
+                          : energyBy<Plain>(terms, kind, step);
+}
+
 struct alignas(TermLanes) SlopeSums {
   Number energy{};
   Vector gradient{};
@@ -70,10 +85,11 @@ struct alignas(TermLanes) SlopeSums {
   Number diagonal{};
 };
 
+template <class Chi>
 HEXHEX_INLINE void addSlope(const TermLanes& term, const EnergyKind& kind,
                             SlopeSums& sum) noexcept {
   const Number det = term.determinant;
-  const Regularized<Number> regularized(kind.epsilon, det);
+  const Chi regularized(kind.epsilon, det);
   const Number byRoot = 1 / regularized.root;
   const Number byChi = regularized.inverse();
   const Number bySquare = 1 / term.square;
@@ -111,7 +127,11 @@ HEXHEX_INLINE void addSlope(const TermLanes& term, const EnergyKind& kind,
 HEXHEX_INLINE void slopeOfAll(std::span<const TermLanes> terms, const EnergyKind& kind,
                               EnergySlope& slope) noexcept {
   SlopeSums sum;
-  for (const TermLanes& term : terms) addSlope(term, kind, sum);
+  if (kind.epsilon > 0) {
+    for (const TermLanes& term : terms) addSlope<Regularized<Number>>(term, kind, sum);
+  } else {
+    for (const TermLanes& term : terms) addSlope<Plain>(term, kind, sum);
+  }
   slope.energy = sumOf(sum.energy);
   for (std::size_t k = 0; k < 3; ++k) slope.gradient[k] = sumOf(sum.gradient[k]);
   for (std::size_t k = 0; k < 6; ++k) slope.hessian[k] = sumOf(sum.hessian[k]);
