@@ -17,10 +17,12 @@ namespace {
 /// Maximum number of cells below the target for moving all at once: more take a minute or longer.
 constexpr std::size_t kMostLowAtOnce = 5'000;
 
-/// A mesh farther than 5e-3 diagonals from the surface counts as a different shape: its boundary
-/// quads shrink where they are far, until it is half as far. The limit is a tenth lower, for what
-/// samples miss.
+/// A mesh farther than 5e-3 diagonals from the surface counts as a different shape. The limit is a
+/// tenth lower, for what samples miss.
 constexpr double kOtherShape = 4.5e-3;
+/// Boundary quads of meshes farther than the first one shrink where they are far, until these are
+/// no farther than the second one.
+constexpr double kSpreadFrom = 3.5e-3;
 constexpr double kFarChord = 2.5e-3;
 /// Maximum number of rounds, and of consecutive rounds without a nearer mesh.
 constexpr int kMostSpreads = 40;
@@ -34,8 +36,10 @@ constexpr int kMostClosings = 10;
 constexpr int kClosingStalls = 3;
 /// A smaller reduction of the distance is not worth the quality that it costs.
 constexpr double kNearer = 0.99;
-/// Nor is one after which less than this fraction of the sum of scaled Jacobians is left.
-constexpr double kKept = 0.98;
+/// Nor is one after which less than this fraction of the sum of scaled Jacobians is left: of a mesh
+/// of a different shape, and otherwise.
+constexpr double kKeptOther = 0.98;
+constexpr double kKept = 0.99;
 
 /// The least scaled Jacobian to preserve: the initial one, but at most the target if the mesh is
 /// pulled onto a given surface, which makes good cells worse.
@@ -164,7 +168,9 @@ class Moving {
     return !subject_.isCurved() && options_.passes > 0 && !options_.fixBoundary;
   }
 
-  [[nodiscard]] Sweeps newSweeps() { return {subject_, places_, report_.diagonal, stage_}; }
+  [[nodiscard]] Sweeps newSweeps() {
+    return {subject_, places_, before_, report_.diagonal, stage_};
+  }
 
   [[nodiscard]] Array<Quad> quadsTooFar() const {
     Array<Quad> far;
@@ -205,14 +211,14 @@ class Moving {
   /// Shrinks quads that are far from the surface, as long as the mesh gets nearer. Preserves the
   /// least scaled Jacobian, and nearly all of the mean.
   BoundaryDistance spread(Sweeps& sweeps, double floor, BoundaryDistance best) const {
-    if (!isOtherShape(best)) return best;
+    if (best.largest.hausdorff() <= kSpreadFrom) return best;
     Positions nearest = sweeps.positions();
     BoundaryDistance now = best;
     const auto sum = [&] {
       const Array<double>& all = sweeps.qualities();
       return std::accumulate(all.begin(), all.end(), 0.0);
     };
-    const double enough = kKept * sum();
+    const double enough = (isOtherShape(best) ? kKeptOther : kKept) * sum();
     floor = std::max(floor, 1 - sweeps.standing(options_.target).depth);
     int stalls = 0;
     for (int i = 0; i < kMostSpreads && stalls < kSpreadStalls; ++i) {

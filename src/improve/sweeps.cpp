@@ -160,9 +160,11 @@ constexpr auto kIsBad = [](double quality) { return !isCertified(quality); };
 
 }  // namespace
 
-Sweeps::Sweeps(const Subject& subject, VertexPlaces& places, double diagonal, Stage& stage)
+Sweeps::Sweeps(const Subject& subject, VertexPlaces& places, const Positions& initial,
+               double diagonal, Stage& stage)
     : mesh_(subject.mesh),
       places_(places),
+      initial_(initial),
       stage_(stage),
       meshAround_(adjacency::cellsAroundVertices(mesh_, stage)),
       cells_(subject.cells(meshAround_, stage)),
@@ -188,7 +190,8 @@ void Sweeps::measure(std::size_t n, const CellAt& cellAt) {
         std::array<double, kMeasureGrain> qualities;
         for (std::size_t c = begin; c < end; ++c) list[c - begin] = cellAt(c);
         cells_->measure(mesh_.points, std::span(list).first(end - begin), scratch, qualities);
-        for (std::size_t c = begin; c < end; ++c) qualities_[list[c - begin]] = qualities[c - begin];
+        for (std::size_t c = begin; c < end; ++c)
+          qualities_[list[c - begin]] = qualities[c - begin];
       });
 }
 
@@ -262,7 +265,10 @@ std::vector<Index> Sweeps::untangleCells(Neighbourhoods& near, double slack,
 void Sweeps::untangle(double slack) {
   std::vector<Index> bad = movableCells(kIsBad);
   if (bad.empty()) return;
-  const Positions before = positions();
+  // Most often these are the initial positions, and a copy would be the peak of memory.
+  const bool isFirst = mesh_.points == initial_.points && places_.simplex == initial_.simplices;
+  const std::optional<Positions> copy = isFirst ? std::nullopt : std::optional(positions());
+  const Positions& before = isFirst ? initial_ : *copy;
   Neighbourhoods near(cellPoints());
   bad = untangleCells(near, 0, std::move(bad));
   for (double used = kFirstSlack * slack; slack > 0 && used < 1.01 * slack && !bad.empty();

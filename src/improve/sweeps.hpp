@@ -88,8 +88,10 @@ class Sweeps {
   /// Cells that met the target at given earlier qualities, but no longer do.
   [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
   /// All references must outlive this.
+  /// @param initial   positions before the first move, to share where vertices are restored
   /// @param diagonal  of the bounding box of the surface
-  Sweeps(const Subject& subject, VertexPlaces& places, double diagonal, Stage& stage);
+  Sweeps(const Subject& subject, VertexPlaces& places, const Positions& initial, double diagonal,
+         Stage& stage);
 
   /// Moves vertices around cells that are not certified until all are or nothing helps any more.
   /// Restores vertices around cells that are still not certified.
@@ -179,6 +181,7 @@ class Sweeps {
 
   HexMesh& mesh_;
   VertexPlaces& places_;
+  const Positions& initial_;
   Stage& stage_;
   adjacency::VertexCells meshAround_;
   std::unique_ptr<const ImprovedCells> cells_;
