@@ -8,9 +8,12 @@ namespace hexhex::improvement {
 
 namespace {
 
+/// Lists with at least this part of all indices are long: sorting them takes longer than looking at
+/// all marks.
+constexpr std::size_t kMany = 16;
+
 /// Sorts the indices that are marked, each of which is listed once, and clears the marks.
 void sortMarked(std::vector<Index>& list, std::vector<std::uint8_t>& marks) {
-  constexpr std::size_t kMany = 16;  // a comparison takes longer than looking at some marks
   if (kMany * list.size() < marks.size()) {
     std::sort(list.begin(), list.end());
     for (const Index i : list) marks[i] = 0;
@@ -27,6 +30,10 @@ void sortMarked(std::vector<Index>& list, std::vector<std::uint8_t>& marks) {
 std::vector<Index> Neighbourhoods::pointsOf(int rings, std::vector<Index>& cells) {
   for (const Index cell : cells) isCell_[cell] = 1;
   std::vector<Index> points;
+  if (kMany * cells.size() >= isCell_.size()) {  // lists that grow would be there twice
+    points.reserve(isPoint_.size());
+    cells.reserve(isCell_.size());
+  }
   std::size_t cellsDone = 0;
   std::size_t pointsDone = 0;
   for (int ring = 0; ring <= rings; ++ring) {
