@@ -186,8 +186,8 @@ void printImprovement(const ImproveReport& report) {
               fmt::format("{} vertices, to get nearer to it or for good cells", report.offSurface));
   }
   if (report.offCreases > 0) {
-    printLine("off creases", fmt::format("{} vertices, where nothing else made cells good",
-                                         report.offCreases));
+    printLine("off creases",
+              fmt::format("{} vertices, where nothing else made cells good", report.offCreases));
   }
   warnOfImprovement(report);
 }
