@@ -347,15 +347,13 @@ void forEachKind(const HexMesh& mesh, const OtherCells& others, const GmshGroups
   f(GmshKind{3U, 8, kGmshHexahedron, kNodes<8>,
              [&](std::size_t i) -> const Hex& { return mesh.cells[groups.cells.at(i)]; }});
   std::size_t first = mesh.cells.size();
-  forEachOtherKind(others, [&](auto cells) {
-    constexpr std::size_t kCorners = std::tuple_size_v<typename decltype(cells)::value_type>;
-    f(GmshKind{3U, kCorners, static_cast<unsigned>(typeWith(kCorners).gmshType),
-               kNodes<kCorners>, [&](std::size_t i) -> const auto& {
-                 return cells[groups.cells.at(i) - first];
-               }
-});
-first += cells.size();
-});
+  forEachOtherKind(others, [&]<std::size_t n>(std::span<const std::array<Index, n>> cells) {
+    const auto cellAt = [&groups, cells, first](std::size_t i) -> const std::array<Index, n>& {
+      return cells[groups.cells.at(i) - first];
+    };
+    f(GmshKind{3U, n, static_cast<unsigned>(typeWith(n).gmshType), kNodes<n>, cellAt});
+    first += cells.size();
+  });
 }
 
 template <class Numbers>
