@@ -17,7 +17,9 @@
 
 #include <io/core/mesh_groups.hpp>
 #include <io/io_test_support.hpp>
+#if !defined(_WIN32)  // it runs programs by POSIX's functions
 #include <io/other_programs.hpp>
+#endif
 
 namespace hexhex::test {
 namespace {
@@ -513,6 +515,7 @@ TEST_F(MixedCells, KeepReferencesOfMedit) {
   }
 }
 
+#if !defined(_WIN32)
 struct MixedCheck {
   std::string program;
   std::string file;
@@ -540,7 +543,13 @@ TEST_P(MixedCellsAndOthers, AreTheSameToOtherPrograms) {
   for (const std::string& line : cellsOf(mixed.mesh, mixed.others, regions)) wanted += line + '\n';
   EXPECT_EQ(contentOf(out), wanted);
   OtherCells read;
-  HexMesh mesh = readHexMesh(copy, {.others = &read}, context);
+  HexMesh mesh;
+  try {
+    mesh = readHexMesh(copy, {.others = &read}, context);
+  } catch (const Error& error) {  // programs write with libraries that some builds are without
+    if (std::string(error.what()).find("this build of hexhex") == std::string::npos) throw;
+    GTEST_SKIP() << error.what();
+  }
   // Programs may list points in another order, with rounded coordinates.
   const auto restore = [&](Index& v) {
     const auto isNear = [&](const Vec3& point) {
@@ -574,6 +583,7 @@ INSTANTIATE_TEST_SUITE_P(
       std::replace(name.begin(), name.end(), '-', '_');
       return name;
     });
+#endif
 
 }  // namespace
 }  // namespace hexhex::test
