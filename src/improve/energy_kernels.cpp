@@ -42,8 +42,8 @@ HEXHEX_INLINE Number shapeOf(const Number& square, const Number& byChi, int powe
   return shape;
 }
 
-/// What Regularized is for positive determinants without epsilon, bit for bit. Steps that raise
-/// cells take a tenth less time than with its roots and quotients.
+/// What Regularized is for positive determinants without epsilon, bit for bit. Improving a mesh of
+/// which a tenth is not positive takes 8 % less time than with its roots and quotients.
 struct alignas(TermLanes) Plain {
   Number root;
   HEXHEX_INLINE Plain(double /*epsilon*/, const Number& det) noexcept : root(det) {}

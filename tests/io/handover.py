@@ -21,3 +21,17 @@ def hand_over(readers):
         for group in sorted(groups):
             print(group, groups[group], file=listing)
     return 0
+
+
+def open_in_gmsh(file):
+    """Gmsh's module, with a file in it. Fails if Gmsh warns of anything."""
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.logger.start()
+    gmsh.open(file)
+    complaints = [line for line in gmsh.logger.get() if line.startswith(("Error", "Warning"))]
+    gmsh.logger.stop()
+    assert not complaints, complaints
+    return gmsh

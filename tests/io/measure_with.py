@@ -14,6 +14,8 @@ integration, where cells are unit cubes. Exit code 77: the program is not instal
 
 import sys
 
+from handover import NOT_INSTALLED, open_in_gmsh
+
 POINTS = 7  # of the integration in each direction, as the test takes
 
 
@@ -36,7 +38,6 @@ class Groups:
 
 
 def measure_with_gmsh(file):
-    import gmsh
     import numpy
 
     def gauss(dimension):
@@ -48,13 +49,7 @@ def measure_with_gmsh(file):
             weights = numpy.outer(weights, weight).ravel()
         return numpy.stack([g.ravel() for g in grid], axis=1).ravel(), weights
 
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.logger.start()
-    gmsh.open(file)
-    complaints = [line for line in gmsh.logger.get() if line.startswith(("Error", "Warning"))]
-    gmsh.logger.stop()
-    assert not complaints, complaints
+    gmsh = open_in_gmsh(file)
     groups = Groups()
     for dimension, kind in enumerate(("vertices", "edges", "quads", "cells")):
         for _, tag in gmsh.model.getPhysicalGroups(dimension):
@@ -167,4 +162,4 @@ if __name__ == "__main__":
             PROGRAMS[sys.argv[1]](path).write(path + ".measures")
         except ImportError as error:
             print(error, file=sys.stderr)
-            sys.exit(77)
+            sys.exit(NOT_INSTALLED)

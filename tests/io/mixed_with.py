@@ -10,6 +10,8 @@ program writes. Exit code 77: the program is not installed.
 
 import sys
 
+from handover import NOT_INSTALLED, open_in_gmsh
+
 CORNERS = {"tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
 
 
@@ -69,14 +71,7 @@ def with_vtk(file, copy):
 
 
 def with_gmsh(file, copy):
-    import gmsh
-
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.logger.start()
-    gmsh.open(file)
-    complaints = [line for line in gmsh.logger.get() if line.startswith(("Error", "Warning"))]
-    assert not complaints, complaints
+    gmsh = open_in_gmsh(file)
     cells = []
     for dimension, tag in gmsh.model.getEntities(3):
         groups = gmsh.model.getPhysicalGroupsForEntity(dimension, tag)
@@ -98,7 +93,7 @@ if __name__ == "__main__":
         found = PROGRAMS[program](source, target)
     except ImportError as error:
         print(error, file=sys.stderr)
-        sys.exit(77)
+        sys.exit(NOT_INSTALLED)
     with open(out, "w", encoding="utf-8") as listing:
         for line in sorted(f"{len(c)} {region} " + " ".join(map(str, c)) for region, c in found):
             print(line, file=listing)

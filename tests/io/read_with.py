@@ -10,7 +10,7 @@ set): its name or number, and how many elements it has. Exit code 77: the progra
 
 import sys
 
-from handover import hand_over
+from handover import hand_over, open_in_gmsh
 
 
 def read_with_meshio(file):
@@ -52,15 +52,9 @@ def read_with_vtk(file):
 
 
 def read_with_gmsh(file):
-    import gmsh
     import numpy
 
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.logger.start()
-    gmsh.open(file)
-    complaints = [line for line in gmsh.logger.get() if line.startswith(("Error", "Warning"))]
-    assert not complaints, complaints
+    gmsh = open_in_gmsh(file)
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     order = numpy.argsort(tags)
     points = coordinates.reshape(-1, 3)[order]

@@ -20,6 +20,7 @@
 #include "quantize/real_maps.hpp"
 #include "support/error_of.hpp"
 #include "support/labelled_bodies.hpp"
+#include "support/tet_volume.hpp"
 
 namespace hexhex::test {
 namespace {
@@ -104,16 +105,6 @@ TEST(Shapes, AreBalls) {
   EXPECT_EQ(outcome.shape.featureEdges, 0U);
 }
 
-double volumeOf(const std::vector<Vec3>& points, const Tet& tet) {
-  std::array<Vec3, 3> e{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) e[i][k] = points[tet[i + 1]][k] - points[tet[0]][k];
-  }
-  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-         e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
-}
-
 /// A coarse ball whose surface points are moved inwards and outwards at random, but folds no tet.
 TetMesh bumpyBall(unsigned seed) {
   const CubeBody cube({2, 2, 2}, [](const Cell&) { return true; });
@@ -140,7 +131,7 @@ TetMesh bumpyBall(unsigned seed) {
   for (bool isFolded = true; isFolded;) {
     isFolded = false;
     for (const Tet& tet : ball.tets) {
-      if (volumeOf(ball.points, tet) > 1e-5) continue;
+      if (sixfoldVolume(ball.points, tet) > 1e-5) continue;
       isFolded = true;
       for (const Index v : tet) {
         for (std::size_t k = 0; k < 3; ++k) {

@@ -10,20 +10,10 @@
 #include <hexhex/error.hpp>
 
 #include "adjacency/kuhn_grid.hpp"
+#include "support/tet_volume.hpp"
 
 namespace hexhex::tetmap {
 namespace {
-
-/// Positive, as all tets of the grid are.
-double volumeOf(const std::vector<Vec3>& points, const Tet& tet) {
-  std::array<Vec3, 3> e{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) e[i][k] = points[tet[i + 1]][k] - points[tet[0]][k];
-  }
-  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-         e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
-}
 
 class Splitting : public ::testing::Test {
  protected:
@@ -64,8 +54,8 @@ class Splitting : public ::testing::Test {
     EXPECT_TRUE(std::equal(mesh_.mate.begin(), mesh_.mate.end(), topology->mate.begin()));
     double volume = 0;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      EXPECT_GT(volumeOf(points_, mesh_.tets[t]), 0);
-      volume += volumeOf(points_, mesh_.tets[t]);
+      EXPECT_GT(test::sixfoldVolume(points_, mesh_.tets[t]), 0);
+      volume += test::sixfoldVolume(points_, mesh_.tets[t]);
     }
     EXPECT_NEAR(volume, 6 * 8, 1e-9);
   }
@@ -83,7 +73,7 @@ class Splitting : public ::testing::Test {
         Tet plane = grid_.tets[original_[t]];
         for (Index k = 0; k < 4; ++k) {
           plane[face % 4] = mesh_.tets[t][k];
-          EXPECT_TRUE(k == i || volumeOf(points_, plane) == 0);
+          EXPECT_TRUE(k == i || test::sixfoldVolume(points_, plane) == 0);
         }
       }
     }
