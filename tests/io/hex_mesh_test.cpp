@@ -269,6 +269,20 @@ TEST(Vtu, QualityOfTheCallerIsWrittenAndNotComputed) {
   EXPECT_EQ(folder.fileCount(), 1U);
 }
 
+/// The order of arrays is part of the bytes of a file, which do not change.
+TEST(Vtu, QualityComesBeforeRegions) {
+  const TemporaryFolder folder;
+  HexMesh grid = gridMesh(2, 1, 1);
+  grid.regions = {3, 4};
+  Context context;
+  const std::vector<double> quality = {0.25, -0.5};
+  writeHexMesh(grid, folder / "a.vtu", {quality}, context);
+  const std::string text = contentOf(folder / "a.vtu");
+  const std::size_t regions = text.find("Name=\"region\"");
+  ASSERT_NE(regions, std::string::npos);
+  EXPECT_LT(text.find("Name=\"scaled_jacobian\""), regions);
+}
+
 /// A raw file with 32-bit headers, coordinates in Float32 and unsigned corners.
 TEST(Vtu, OtherNumberTypes) {
   if (std::endian::native != std::endian::little) GTEST_SKIP();

@@ -224,11 +224,9 @@ VtkDataSet hexDataSet(const HexMesh& mesh, const WriteOptions& options, VtkPiece
   VtkDataSet data = meshDataSet(piece, mesh.points.size(), mesh.cells.size(),
                                 std::tuple_size_v<Hex>, kVtkHexahedron);
   const bool mixed = piece.others->count() > 0;
+  if (!mixed) data.add(VtkSection::CellData, kVtkQuality, options.scaledJacobians);
   addTags(data, mesh.features, mixed ? std::span<const std::int32_t>() : mesh.regions);
-  if (!mixed) {
-    data.add(VtkSection::CellData, kVtkQuality, options.scaledJacobians);
-    return data;
-  }
+  if (!mixed) return data;
   addRows(data, kVtkTriangleTags, piece.others->triangles);
   Array<std::int32_t> regions = AllCells(mesh, *piece.others).regions();
   if (!regions.empty()) data.addOwn(VtkSection::CellData, kVtkRegions, std::move(regions));
