@@ -197,9 +197,9 @@ constexpr std::array kReaders = {
     Reader{"ovmb-tets", read<parse<OvmBinary::readTets>>, fuzz::changeOvmb},
     Reader{"ovmb", read<parse<OvmBinary::readMesh>>, fuzz::changeOvmb}};
 
-const Reader* chosen = nullptr;
+const Reader* underTest = nullptr;
 
-bool takesHdf5() { return chosen->name.starts_with("exodus"); }
+bool takesHdf5() { return underTest->name.starts_with("exodus"); }
 
 }  // namespace
 
@@ -210,10 +210,10 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
     const std::string_view argument = (*arguments)[i];
     if (!argument.starts_with(kOption)) continue;
     for (const Reader& reader : kReaders) {
-      if (reader.name == argument.substr(kOption.size())) chosen = &reader;
+      if (reader.name == argument.substr(kOption.size())) underTest = &reader;
     }
   }
-  if (chosen == nullptr) {
+  if (underTest == nullptr) {
     std::fprintf(stderr, "Choose a reader with --reader=NAME:");
     for (const Reader& reader : kReaders) std::fprintf(stderr, " %s", reader.name.data());
     std::fprintf(stderr, "\n");
@@ -235,7 +235,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(unsigned char* data, std::size_t 
   fuzz::Dice dice(seed);
   if (dice.below(2) == 0) return LLVMFuzzerMutate(data, size, most);
   const std::string file(reinterpret_cast<const char*>(data), size);
-  const std::string changed = chosen->change(file, dice, [most](const std::string& bytes) {
+  const std::string changed = underTest->change(file, dice, [most](const std::string& bytes) {
     std::string buffer = bytes;
     buffer.resize(std::max(bytes.size(), most));
     buffer.resize(LLVMFuzzerMutate(reinterpret_cast<unsigned char*>(buffer.data()), bytes.size(),
@@ -255,7 +255,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   allowed = (takesHdf5() ? kHdf5Constant : (implied ? kGridConstant : kConstant)) +
             kFactor * (compressed ? kLargestLzmaRatio : 1) * size;
   try {
-    chosen->read(text);
+    underTest->read(text);
   } catch (const hexhex::Error&) {
     // What most files deserve.
   }
