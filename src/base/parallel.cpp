@@ -36,7 +36,6 @@
 
 namespace hexhex {
 
-namespace detail {
 #if HEXHEX_HAS_TBB
 namespace {
 
@@ -244,13 +243,12 @@ WorkerThreads& workerThreads() {
 }  // namespace
 #endif
 
-void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
-               const BlockFunction& function) {
+void parallelBlocks(LoopProgress* progress, std::size_t n, std::size_t grain, BlockFunction f) {
   const std::size_t blocks = blockCount(n, grain);
   const auto runBlock = [&](std::size_t block) {
     const std::size_t begin = block * grain;
     const std::size_t end = std::min(n, begin + grain);
-    function(begin, end, block);
+    f(begin, end, block);
     if (progress != nullptr) progress->advance(end - begin);
   };
 #if HEXHEX_HAS_TBB
@@ -281,7 +279,12 @@ void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
   for (std::size_t block = 0; block < blocks; ++block) runBlock(block);
 }
 
-void runWithThreads(int threads, const std::function<void()>& function) {
+void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, BlockFunction f) {
+  LoopProgress progress(stage, n);
+  parallelBlocks(&progress, n, grain, f);
+}
+
+void withThreads(int threads, FunctionRef<void()> f) {
 #if HEXHEX_HAS_TBB
   const int count = effectiveThreads(threads);
   // More threads than cores must be permitted first. The permission holds for the whole process, so
@@ -292,14 +295,12 @@ void runWithThreads(int threads, const std::function<void()>& function) {
                        static_cast<std::size_t>(count));
   }
   const int started = workerThreads().start(count);
-  arenaPool().with(started, [&](auto& arena) { arena.execute(function); });
+  arenaPool().with(started, [&](auto& arena) { arena.execute(f); });
 #else
   static_cast<void>(threads);
-  function();
+  f();
 #endif
 }
-
-}  // namespace detail
 
 int effectiveThreads(int threads) {
 #if HEXHEX_HAS_TBB

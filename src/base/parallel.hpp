@@ -9,7 +9,6 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 
 #include <hexhex/error.hpp>
 
+#include <base/function_ref.hpp>
 #include <base/stage.hpp>
 
 namespace hexhex {
@@ -26,21 +26,14 @@ namespace hexhex {
   return (n + grain - 1) / grain;
 }
 
-namespace detail {
 /// Called with (begin, end, block).
-using BlockFunction = std::function<void(std::size_t, std::size_t, std::size_t)>;
-void runBlocks(std::size_t n, std::size_t grain, LoopProgress* progress,
-               const BlockFunction& function);
-void runWithThreads(int threads, const std::function<void()>& function);
-}  // namespace detail
+using BlockFunction = FunctionRef<void(std::size_t, std::size_t, std::size_t)>;
 
 /// Calls f(begin, end, block) for consecutive blocks of `grain` elements of [0, n), in parallel,
 /// and checks for cancellation between blocks. The first exception ends the loop and is rethrown.
-template <class F>
-void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, const F& f) {
-  LoopProgress progress(stage, n);
-  detail::runBlocks(n, grain, &progress, std::cref(f));
-}
+void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, BlockFunction f);
+/// The same with progress that others made, which may be null.
+void parallelBlocks(LoopProgress* progress, std::size_t n, std::size_t grain, BlockFunction f);
 
 /// Calls f(i) for every i in [0, n), in parallel.
 template <class F>
@@ -97,10 +90,7 @@ std::vector<T> collectFromBlocks(Stage& stage, std::size_t n, std::size_t grain,
 }
 
 /// Runs f(); parallel loops inside use at most this many threads (0: all cores).
-template <class F>
-void withThreads(int threads, const F& f) {
-  detail::runWithThreads(threads, std::cref(f));
-}
+void withThreads(int threads, FunctionRef<void()> f);
 
 /// Never more threads than this, or than cores if there are more of them, whatever the caller asks
 /// for: they would only cost time.
@@ -115,8 +105,7 @@ inline constexpr int kMaxThreads = 64;
 
 /// withThreads() for short loops that run many times: if that many threads are in use anyway, calls
 /// f() directly, as entering an arena takes some microseconds.
-template <class F>
-void withThreadsHere(int threads, const F& f) {
+inline void withThreadsHere(int threads, FunctionRef<void()> f) {
   if (currentThreads() == effectiveThreads(threads)) {
     f();
   } else {

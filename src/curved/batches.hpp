@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -45,7 +44,7 @@ void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
       batch[i].end = first + end;
       f(first + begin, first + end, batch[i].pieces);
     };
-    detail::runBlocks(size, grain, &progress, std::cref(fill));
+    parallelBlocks(&progress, size, grain, fill);
     const std::size_t count = blockCount(size, grain);
     for (std::size_t i = 0; i < count; ++i) {
       batch[i].position = measure(std::as_const(batch[i].pieces), batch[i].end);
@@ -53,7 +52,7 @@ void parallelBatches(Stage& stage, std::size_t n, std::size_t grain, const F& f,
     const auto placeOne = [&](std::size_t i, std::size_t /*end*/, std::size_t /*block*/) {
       place(std::as_const(batch[i].pieces), batch[i].position, batch[i].begin);
     };
-    detail::runBlocks(count, 1, nullptr, std::cref(placeOne));
+    parallelBlocks(nullptr, count, 1, placeOne);
   }
 }
 

@@ -102,7 +102,7 @@ std::string numbers(std::uint64_t first, std::uint64_t size) {
 SinkCalls::SinkCalls(std::string name, std::string_view stage, Context& context)
     : name_(std::move(name)), stage_(stage), context_(context), quiet_(context.threads()) {}
 
-void SinkCalls::run(const std::function<void()>& call) {
+void SinkCalls::run(FunctionRef<void()> call) {
   const State before = std::exchange(state_, State::Failed);
   if (before == State::Failed) refuse("a call before this one failed");
   if (before == State::Ended) refuse("end() was called before");

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,6 +16,7 @@
 #include <hexhex/stream.hpp>
 #include <hexhex/types.hpp>
 
+#include <base/function_ref.hpp>
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
 
@@ -44,7 +44,7 @@ class SinkCalls {
   SinkCalls(std::string name, std::string_view stage, Context& context);
 
   /// Performs one call. After a call has thrown, all further calls are refused.
-  void run(const std::function<void()>& call);
+  void run(FunctionRef<void()> call);
 
   void begin(std::uint64_t pointCount, std::uint64_t cellCount);
   void points(const PointPiece& piece);

@@ -9,6 +9,7 @@
 
 #include <hexhex/context.hpp>
 
+#include <base/function_ref.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/output_file.hpp>
@@ -32,16 +33,13 @@ class LineWriter {
   /// @param progress  advanced by n unless null
   template <class Format>
   void write(std::size_t n, std::size_t room, const Format& format, LoopProgress* progress) {
-    const std::size_t grain = kBlockBytes / room;
-    const std::size_t round = grain * blocks_.size();
-    for (std::size_t first = 0; first < n; first += round) {
-      const std::size_t count = std::min(round, n - first);
-      fillBlocks(first, count, grain, format);
-      for (std::size_t block = 0; block < blockCount(count, grain); ++block) {
-        output_.writeBytes(blocks_[block].get(), sizes_[block]);
-      }
-      if (progress != nullptr) progress->advance(count);
-    }
+    writeBlocks(
+        n, kBlockBytes / room,
+        [&format](char* place, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) place = format(place, i);
+          return place;
+        },
+        progress);
   }
 
  private:
@@ -50,16 +48,26 @@ class LineWriter {
   // Blocks take different times; with several per thread, no thread waits long for the others.
   static constexpr std::size_t kBlocksPerThread = 8;
 
-  template <class Format>
-  void fillBlocks(std::size_t first, std::size_t count, std::size_t grain, const Format& format) {
-    withThreadsHere(quiet_.threads(), [&] {
-      parallelBlocks(stage_, count, grain,
-                     [&](std::size_t begin, std::size_t end, std::size_t block) {
-                       char* place = blocks_[block].get();
-                       for (std::size_t i = begin; i < end; ++i) place = format(place, first + i);
-                       sizes_[block] = static_cast<std::size_t>(place - blocks_[block].get());
-                     });
-    });
+  /// @param formatLines  stores the text of [begin, end), and returns its end
+  void writeBlocks(std::size_t n, std::size_t grain,
+                   FunctionRef<char*(char* place, std::size_t begin, std::size_t end)> formatLines,
+                   LoopProgress* progress) {
+    const std::size_t round = grain * blocks_.size();
+    for (std::size_t first = 0; first < n; first += round) {
+      const std::size_t count = std::min(round, n - first);
+      withThreadsHere(quiet_.threads(), [&] {
+        parallelBlocks(stage_, count, grain,
+                       [&](std::size_t begin, std::size_t end, std::size_t block) {
+                         char* const place = blocks_[block].get();
+                         const char* const after = formatLines(place, first + begin, first + end);
+                         sizes_[block] = static_cast<std::size_t>(after - place);
+                       });
+      });
+      for (std::size_t block = 0; block < blockCount(count, grain); ++block) {
+        output_.writeBytes(blocks_[block].get(), sizes_[block]);
+      }
+      if (progress != nullptr) progress->advance(count);
+    }
   }
 
   OutputFile& output_;

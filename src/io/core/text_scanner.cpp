@@ -443,4 +443,19 @@ std::size_t TokenIndex::find(std::size_t token) const {
   }
 }
 
+std::size_t firstUnreadable(Stage& stage, std::size_t n, std::size_t grain,
+                            FunctionRef<void(std::size_t, std::size_t, std::size_t&)> read) {
+  std::atomic<std::size_t> firstWrong{n};
+  parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
+    if (begin > firstWrong.load(std::memory_order_relaxed)) return;
+    std::size_t i = begin;
+    try {
+      read(begin, end, i);
+    } catch (const Error&) {  // element i is invalid; the caller reports it
+    }
+    if (i < end) lowerTo(i, firstWrong);
+  });
+  return firstWrong;
+}
+
 }  // namespace hexhex::io

@@ -18,6 +18,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/concat.hpp>
+#include <base/function_ref.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/double_from_chars.hpp>
@@ -276,21 +277,9 @@ inline constexpr std::size_t kElementGrain = 1024;
 /// for blocks of at most `grain` elements of [0, n), in parallel. At an invalid element it stops or
 /// throws an Error.
 /// @return the first invalid element, or n
-template <class Read>
-[[nodiscard]] std::size_t firstUnreadable(Stage& stage, std::size_t n, std::size_t grain,
-                                          const Read& read) {
-  std::atomic<std::size_t> firstWrong{n};
-  parallelBlocks(stage, n, grain, [&](std::size_t begin, std::size_t end, std::size_t /*block*/) {
-    if (begin > firstWrong.load(std::memory_order_relaxed)) return;
-    std::size_t i = begin;
-    try {
-      read(begin, end, i);
-    } catch (const Error&) {  // element i is invalid; the caller reports it
-    }
-    if (i < end) lowerTo(i, firstWrong);
-  });
-  return firstWrong;
-}
+[[nodiscard]] std::size_t firstUnreadable(
+    Stage& stage, std::size_t n, std::size_t grain,
+    FunctionRef<void(std::size_t, std::size_t, std::size_t&)> read);
 
 /// Calls read(scanner, i), which reads element i or throws an Error about it, for all i in [0, n),
 /// from several threads with a scanner each. `scanner` must be at the first element, and is moved

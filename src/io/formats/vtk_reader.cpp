@@ -199,8 +199,7 @@ constexpr std::size_t kVtkReaderGrain = std::size_t{1} << 13;
 
 /// Calls f(begin, end, block) for all blocks of n elements, in parallel. Of several errors, that of
 /// the first block is thrown.
-template <class F>
-void forEachBlock(Stage& stage, std::size_t n, const F& f) {
+void forEachBlock(Stage& stage, std::size_t n, BlockFunction f) {
   const std::size_t begin = firstUnreadable(
       stage, n, kVtkReaderGrain, [&](std::size_t first, std::size_t end, std::size_t& i) {
         f(first, end, first / kVtkReaderGrain);
