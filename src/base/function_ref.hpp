@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <type_traits>
 #include <utility>
 
 namespace hexhex {
@@ -17,8 +16,7 @@ template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
   template <class F>
-  requires(!std::is_same_v<F, FunctionRef>) FunctionRef(const F& function)
-  noexcept
+  FunctionRef(const F& function) noexcept
       : function_(std::addressof(function)),
         call_([](const void* f, Arguments... arguments) -> Result {
           return (*static_cast<const F*>(f))(std::forward<Arguments>(arguments)...);
