@@ -7,11 +7,9 @@
 #include <string>
 #include <thread>
 
-#if defined(HEXHEX_MPI_MODULE)
-#include <dlfcn.h>
-#endif
-
 #include <hexhex/error.hpp>
+
+#include <base/loaded_library.hpp>
 
 namespace hexhex::command {
 namespace {
@@ -33,35 +31,23 @@ int startedProcesses() { return environmentNumber({"OMPI_COMM_WORLD_SIZE", "PMI_
                   " Start it without mpirun; --parts writes the same files.");
 }
 
-#if defined(HEXHEX_MPI_MODULE)
-/// Loads the module from the command's build folder, or from where it is installed.
-void* loadModule() {
-  std::error_code error;
-  const std::filesystem::path folder =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  std::string problem;
-  for (const std::filesystem::path& place : {folder, folder / HEXHEX_MPI_FOLDER}) {
-    const std::filesystem::path file = place / HEXHEX_MPI_MODULE;
-    if (!std::filesystem::exists(file, error)) continue;
-    // RTLD_GLOBAL: plugins of Open MPI need its symbols.
-    if (void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL)) return module;
-    problem = dlerror();
-  }
-  refuse("its module for MPI " + (problem.empty() ? std::string("is not installed.")
-                                                  : "cannot be loaded: " + problem + '.'));
-}
-#endif
-
 }  // namespace
 
 bool isInTeam(bool asked) { return asked || startedProcesses() > 1; }
 
 #if defined(HEXHEX_MPI_MODULE)
 StartedTeam::StartedTeam() {
-  void* const module = loadModule();
-  const auto begin = reinterpret_cast<ProcessTeam* (*)()>(dlsym(module, "hexhexBeginMpi"));
-  end_ = reinterpret_cast<void (*)()>(dlsym(module, "hexhexEndMpi"));
-  if (begin == nullptr || end_ == nullptr) refuse("its module for MPI is of another version.");
+  std::error_code error;
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  // In the command's build folder, or where it is installed. Plugins of Open MPI need its symbols.
+  LoadedLibrary module({folder / HEXHEX_MPI_MODULE, folder / HEXHEX_MPI_FOLDER / HEXHEX_MPI_MODULE},
+                       /*variable=*/nullptr, /*isGlobal=*/true);
+  const auto begin = module.find<ProcessTeam* (*)()>("hexhexBeginMpi");
+  end_ = module.find<void (*)()>("hexhexEndMpi");
+  if (!module.problem().empty()) {
+    refuse("its module for MPI cannot be loaded: " + module.problem() + '.');
+  }
   team_ = begin();
   const int started = startedProcesses();
   if (started > 1 && team_->size() == 1) {

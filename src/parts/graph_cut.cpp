@@ -7,10 +7,11 @@
 #include <string>
 
 #include <parts/partition.hpp>
-#if __has_include(<dlfcn.h>)
-#define HEXHEX_LOADS_LIBRARIES 1
-#include <dlfcn.h>
-#endif
+
+#include <hexhex/error.hpp>
+
+#include <base/concat.hpp>
+#include <base/loaded_library.hpp>
 
 namespace hexhex::parts {
 
@@ -34,39 +35,23 @@ using PartGraph = int (*)(std::int32_t* vertices, std::int32_t* constraints, std
 
 struct Library {
   const char* title;
-  std::vector<const char*> files;  ///< the last one that can be loaded has the function
+  const char* file;
   const char* function;
   const char* package;
 };
 
-Library libraryOf(PartitionMethod method) {
-  if (method == PartitionMethod::Metis) {
-    return {"METIS", {"libmetis.so.5"}, "METIS_PartGraphKway", "libmetis5"};
-  }
-  return {"Scotch",
-          {"libscotcherr-7.0.so", "libscotch-7.0.so", "libscotchmetisv5-7.0.so"},
-          "SCOTCH_METIS_V5_PartGraphKway",
-          "libscotch-7.0"};
-}
+constexpr Library kMetis = {"METIS", "libmetis.so.5", "METIS_PartGraphKway", "libmetis5"};
+constexpr Library kScotch = {"Scotch", "libscotchmetisv5-7.0.so", "SCOTCH_METIS_V5_PartGraphKway",
+                             "libscotch-7.0"};
 
-[[noreturn]] void failToLoad(const Library& library, const char* problem) {
-  throw Error(ErrorCode::InvalidArgument, std::string(library.title) + " cannot be loaded (" +
-                                              problem + "). Install " + library.package +
-                                              ", or choose the partition \"curve\".");
-}
-
-#if defined(HEXHEX_LOADS_LIBRARIES)
 PartGraph load(const Library& library) {
-  void* loaded = nullptr;
-  for (const char* const file : library.files) loaded = dlopen(file, RTLD_NOW | RTLD_GLOBAL);
-  void* const function = loaded == nullptr ? nullptr : dlsym(loaded, library.function);
-  if (function != nullptr) return reinterpret_cast<PartGraph>(function);
-  const char* const problem = dlerror();
-  failToLoad(library, problem != nullptr ? problem : "it has no such function");
+  LoadedLibrary loaded({library.file});
+  const auto function = loaded.find<PartGraph>(library.function);
+  if (function != nullptr) return function;
+  throw Error(ErrorCode::InvalidArgument,
+              concat(library.title, " cannot be loaded (", loaded.problem(), "). Install ",
+                     library.package, ", or choose the partition \"curve\"."));
 }
-#else
-PartGraph load(const Library& library) { failToLoad(library, "this build loads no libraries"); }
-#endif
 
 /// Collects which elements touch, and in how large an area.
 class GraphMaker {
@@ -261,7 +246,7 @@ class GraphMaker {
 std::vector<std::uint32_t> cutGraph(const igm::PreparedMap& map, const Partition& partition,
                                     const std::vector<PartitionElement>& elements,
                                     PartitionMethod method) {
-  const Library library = libraryOf(method);
+  const Library& library = method == PartitionMethod::Metis ? kMetis : kScotch;
   const PartGraph partGraph = load(library);
   std::vector<std::uint32_t> result(elements.size(), 0);
   if (partition.parts == 1) return result;

@@ -5,13 +5,10 @@
 #include <hexhex/error.hpp>
 
 #include <base/concat.hpp>
+#include <base/loaded_library.hpp>
 #include <base/missing_library.hpp>
 #include <io/core/compressed_blocks.hpp>
 
-#if __has_include(<dlfcn.h>) && !defined(__EMSCRIPTEN__)
-#define HEXHEX_LOADS_LZMA 1
-#include <dlfcn.h>
-#endif
 #ifdef HEXHEX_HAS_ZLIB
 #include <limits>
 #include <new>
@@ -60,14 +57,10 @@ using DecodeLzma = int (*)(std::uint64_t* memoryLimit, std::uint32_t flags, cons
                            const std::uint8_t* in, std::size_t* inPosition, std::size_t inSize,
                            std::uint8_t* out, std::size_t* outPosition, std::size_t outSize);
 
-DecodeLzma lzma() noexcept {
-#if defined(HEXHEX_LOADS_LZMA)
-  static void* const library = dlopen("liblzma.so.5", RTLD_NOW);
-  if (library != nullptr) {
-    return reinterpret_cast<DecodeLzma>(dlsym(library, "lzma_stream_buffer_decode"));
-  }
-#endif
-  return nullptr;
+DecodeLzma lzma() {
+  static const auto function =
+      LoadedLibrary({"liblzma.so.5"}).find<DecodeLzma>("lzma_stream_buffer_decode");
+  return function;
 }
 
 }  // namespace

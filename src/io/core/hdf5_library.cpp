@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,12 +11,11 @@
 #include <hexhex/types.hpp>
 
 #include <base/concat.hpp>
+#include <base/loaded_library.hpp>
 #include <base/missing_library.hpp>
 #include <io/core/hdf5_library.hpp>
 #include <io/core/hdf_reader.hpp>
 #if defined(HEXHEX_HAS_HDF5)
-#include <dlfcn.h>
-
 #include <io/core/hdf_file.hpp>
 #endif
 
@@ -26,41 +24,30 @@ namespace hexhex::io {
 #if defined(HEXHEX_HDF5_NAME)
 namespace {
 
-void* load(const std::filesystem::path& file) {
-  // Loading takes 21 MB of address space, and some of HDF5's dependencies fail noisily without it:
-  // throw std::bad_alloc before that.
-  constexpr std::size_t kBytes = std::size_t{1} << 25;
-  static_cast<void>(Array<char>(kBytes));
-  const char* const chosen = std::getenv("HEXHEX_HDF5");
-  void* library = dlopen(chosen != nullptr ? chosen : HEXHEX_HDF5_NAME, RTLD_NOW);
-  std::string problem = library == nullptr ? dlerror() : "";
-  // The path found at build time, which may lie outside the system's folders.
-  if (library == nullptr && chosen == nullptr) library = dlopen(HEXHEX_HDF5_FILE, RTLD_NOW);
-  if (library != nullptr) {
-    std::array<unsigned, 3> version{};
-    void* const query = dlsym(library, "H5get_libversion");
-    problem = query == nullptr ? dlerror() : "";
-    if (query != nullptr) {
-      reinterpret_cast<decltype(&H5get_libversion)>(query)(&version[0], &version[1], &version[2]);
-      problem = concat("its version is ", version[0], ".", version[1]);
-    }
-    if (version[0] == H5_VERS_MAJOR && version[1] == H5_VERS_MINOR) return library;
-  }
+LoadedLibrary load(const std::filesystem::path& file) {
+  // The second is the path found at build time, which may lie outside the system's folders.
+  LoadedLibrary library({HEXHEX_HDF5_NAME, HEXHEX_HDF5_FILE}, "HEXHEX_HDF5");
+  const auto query = library.find<decltype(&H5get_libversion)>("H5get_libversion");
+  std::array<unsigned, 3> version{};
+  if (query != nullptr) query(&version[0], &version[1], &version[2]);
+  if (version[0] == H5_VERS_MAJOR && version[1] == H5_VERS_MINOR) return library;
   throw Error(ErrorCode::FileUnsupported,
               concat(file.string(), ": such files take the library HDF5, version ", H5_VERS_MAJOR,
-                     ".", H5_VERS_MINOR, ", which cannot be loaded (", problem,
+                     ".", H5_VERS_MINOR, ", which cannot be loaded (",
+                     (query == nullptr ? library.problem()
+                                       : concat("its version is ", version[0], ".", version[1])),
                      "). Install " HEXHEX_HDF5_PACKAGE ", or choose another format."));
 }
 
-void* library(const std::filesystem::path& file) {
-  static void* const loaded = load(file);
+LoadedLibrary& library(const std::filesystem::path& file) {
+  static LoadedLibrary loaded = load(file);
   return loaded;
 }
 
 }  // namespace
 
 void requireHdf5(const std::filesystem::path& file) { static_cast<void>(library(file)); }
-void* hdf5Symbol(const char* name) { return dlsym(library({}), name); }
+void* hdf5Symbol(const char* name) { return library({}).find<void*>(name); }
 #elif defined(HEXHEX_HAS_HDF5)
 void requireHdf5(const std::filesystem::path& /*file*/) {}
 #else

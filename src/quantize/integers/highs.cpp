@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <new>
 #include <string>
 #include <type_traits>
@@ -11,14 +10,10 @@
 
 #include <hexhex/error.hpp>
 
-#if __has_include(<dlfcn.h>) && !defined(__EMSCRIPTEN__)
-#define HEXHEX_LOADS_HIGHS 1
-#include <dlfcn.h>
-#endif
+#include <base/loaded_library.hpp>
 
 namespace hexhex::quantization {
 
-#if defined(HEXHEX_LOADS_HIGHS)
 namespace {
 
 /// The search ends at this relative distance from the optimum ...
@@ -67,40 +62,15 @@ constexpr int kSolveError = 4;
 constexpr int kSimplexInterrupt = 1;
 constexpr int kMipInterrupt = 6;
 
-void* open(const std::string& file) {
-  void* const loaded = dlopen(file.c_str(), RTLD_NOW);
-  const std::string problem = loaded == nullptr ? dlerror() : "";
-  // Only a missing library is acceptable: without HiGHS the integers differ, so they must not
-  // depend on whether loading it happens to fail.
-  const bool isChosen = std::getenv("HEXHEX_HIGHS") != nullptr;
-  if (loaded == nullptr && (isChosen || problem.find("No such file") == std::string::npos)) {
-    throw Error(ErrorCode::FileUnsupported,
-                "HiGHS cannot be loaded from " + file + " (" + problem +
-                    "). Install it anew (pip install highsbox, and HEXHEX_HIGHS names its "
-                    "libhighs.so), or remove it: integers are then found by rounding.");
-  }
-  return loaded;
-}
-
-/// @return nullptr if it is not installed; never unloaded
-void* openAny() {
-  // Fails early with bad_alloc: loading needs this much memory, and may crash without it.
-  static_cast<void>(Array<char>(std::size_t{1} << 25));
-  if (const char* const chosen = std::getenv("HEXHEX_HIGHS")) return open(chosen);
-  for (const char* const file : {HEXHEX_HIGHS_FILES "libhighs.so.1", "libhighs.so"}) {
-    if (void* const loaded = open(file)) return loaded;
-  }
-  return nullptr;
-}
-
+/// @return without functions if it is not installed
 Highs load() {
   Highs highs;
-  void* const library = openAny();
-  if (library == nullptr) return highs;
-  bool isWhole = true;
+  LoadedLibrary library({HEXHEX_HIGHS_FILES "libhighs.so.1", "libhighs.so"}, "HEXHEX_HIGHS");
+  // Only a missing library is acceptable: without HiGHS the integers differ, so they must not
+  // depend on whether loading it happens to fail.
+  if (library.isMissing()) return highs;
   const auto find = [&](auto& function, const char* name) {
-    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
-    isWhole = isWhole && function != nullptr;
+    function = library.find<std::remove_reference_t<decltype(function)>>(name);
   };
   find(highs.majorVersion, "Highs_versionMajor");
   find(highs.integerSize, "Highs_getSizeofHighsInt");
@@ -116,13 +86,15 @@ Highs load() {
   find(highs.modelStatus, "Highs_getModelStatus");
   find(highs.getInt, "Highs_getIntInfoValue");
   find(highs.getSolution, "Highs_getSolution");
-  if (!isWhole || highs.majorVersion() != 1 || highs.integerSize(nullptr) != sizeof(int)) {
-    throw Error(ErrorCode::FileUnsupported,
-                "The HiGHS that is there is none of version 1.6 or a later 1.x with integers of 32 "
-                "bits. Install another one (pip install highsbox, and HEXHEX_HIGHS names its "
-                "libhighs.so), or remove it: integers are then found by rounding.");
+  const std::string& problem = library.problem();
+  if (problem.empty() && highs.majorVersion() == 1 && highs.integerSize(nullptr) == sizeof(int)) {
+    return highs;
   }
-  return highs;
+  throw Error(ErrorCode::FileUnsupported,
+              "HiGHS cannot be loaded, in version 1.6 or a later 1.x with integers of 32 bits (" +
+                  (problem.empty() ? "it is another one" : problem) +
+                  "). Install it anew (pip install highsbox, and HEXHEX_HIGHS names its "
+                  "libhighs.so), or remove it: integers are then found by rounding.");
 }
 
 /// Loads HiGHS on first use.
@@ -244,8 +216,5 @@ std::vector<std::int64_t> solveByHighs(const IntegerProgram& program, const Cont
 IntegerSolver highsSolver() {
   return highsLibrary().run != nullptr ? IntegerSolver{"HiGHS", solveByHighs} : IntegerSolver{};
 }
-#else
-IntegerSolver highsSolver() { return {}; }
-#endif
 
 }  // namespace hexhex::quantization
