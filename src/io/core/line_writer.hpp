@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <hexhex/context.hpp>
@@ -12,21 +14,25 @@
 #include <base/function_ref.hpp>
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/output_file.hpp>
 
 namespace hexhex::io {
 
 /// Writes runs of lines to a file.
 class LineWriter {
  public:
+  /// @param output   an OutputFile or FilePart
   /// @param threads  as in Context
-  LineWriter(OutputFile& output, int threads)
-      : output_(output), quiet_(threads), stage_(quiet_, "write lines") {
+  template <class Output>
+  LineWriter(Output& output, int threads)
+      : pass_([&output](std::string_view text) { output.writeBytes(text.data(), text.size()); }),
+        quiet_(threads),
+        stage_(quiet_, "write lines") {
     const auto count = kBlocksPerThread * static_cast<std::size_t>(effectiveThreads(threads));
     for (std::size_t i = 0; i < count; ++i) blocks_.emplace_back(new char[kBlockBytes]);
     sizes_.resize(count);
   }
 
+  void write(std::string_view text) { pass_(text); }
   /// Writes the text that format(place, i) stores at `place`, a char*, for i in [0, n) in order.
   /// @param room    maximum size of one call's text, at most kBlockBytes
   /// @param format  returns the end of its text; called from several threads
@@ -64,13 +70,13 @@ class LineWriter {
                        });
       });
       for (std::size_t block = 0; block < blockCount(count, grain); ++block) {
-        output_.writeBytes(blocks_[block].get(), sizes_[block]);
+        pass_({blocks_[block].get(), sizes_[block]});
       }
       if (progress != nullptr) progress->advance(count);
     }
   }
 
-  OutputFile& output_;
+  std::function<void(std::string_view)> pass_;
   // Rounds are internal: progress is reported across all of them.
   Context quiet_;
   Stage stage_;
