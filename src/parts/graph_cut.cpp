@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -45,6 +46,10 @@ constexpr Library kScotch = {"Scotch", "libscotchmetisv5-7.0.so", "SCOTCH_METIS_
                              "libscotch-7.0"};
 
 PartGraph load(const Library& library) {
+#if defined(__unix__) || defined(__APPLE__)
+  // What Scotch returns depends on which of its threads comes first, and on how many there are.
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", /*overwrite=*/0);
+#endif
   LoadedLibrary loaded({library.file});
   const auto function = loaded.find<PartGraph>(library.function);
   if (function != nullptr) return function;

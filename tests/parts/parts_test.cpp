@@ -133,6 +133,21 @@ TEST(Parts, OfMetisAndScotchMakeUpTheMeshToo) {
   }
 }
 
+TEST(Parts, OfScotchAreTheSameEachTime) {
+  const TetMap map = generateSample(SampleKind::HandleBody).map;
+  const PartOptions parts{5, 0, PartitionMethod::Scotch};
+  constexpr int kScale = 3;
+  Cut first{};
+  try {
+    first = cutOf(map, parts, kScale);
+  } catch (const Error& error) {
+    ASSERT_EQ(error.code(), ErrorCode::InvalidArgument) << error.what();
+    GTEST_SKIP() << error.what();
+  }
+  constexpr int kRuns = 20;
+  for (int i = 1; i < kRuns; ++i) EXPECT_EQ(cutOf(map, parts, kScale).shared, first.shared) << i;
+}
+
 TEST(Parts, ThatDoNotFitTogetherAreRefused) {
   class Counter final : public PartSink {
    public:
