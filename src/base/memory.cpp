@@ -50,44 +50,72 @@ void adviseHugePages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t
 #endif
 }
 
+#if defined(__linux__)
+
+/// Large arrays are mapped: the heap keeps what they leave, and what alignment leaves between them.
+/// That was 30 of 265 MB at the peak of improving 1.2 million cells. Extractions take no longer.
+constexpr bool kMapsLarge = kPooled;
+
+/// Memory that begins on a huge page, or nullptr.
+/// @param bytes  a multiple of kHugePage
+char* mapAligned(std::size_t bytes) noexcept {
+  assert(bytes % kHugePage == 0);
+  // A larger mapping contains an aligned part; the rest is returned.
+  void* const mapped = ::mmap(nullptr, bytes + kHugePage, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (mapped == MAP_FAILED) return nullptr;
+  char* const begin = static_cast<char*>(mapped);
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % kHugePage;
+  if (before > 0) ::munmap(begin, before);
+  ::munmap(begin + before + bytes, kHugePage - before);
+  return begin + before;
+}
+
+void unmap(void* memory, std::size_t bytes) noexcept { ::munmap(memory, bytes); }
+
+#else
+
+constexpr bool kMapsLarge = false;
+char* mapAligned(std::size_t /*bytes*/) noexcept { return nullptr; }
+void unmap(void* /*memory*/, std::size_t /*bytes*/) noexcept {}
+
+#endif
+
+std::size_t wholePages(std::size_t bytes) {
+  return (bytes + kHugePage - 1) / kHugePage * kHugePage;
+}
+
 void* allocateLarge(std::size_t bytes) {
   if (bytes > static_cast<std::size_t>(-1) / 2) throw std::bad_alloc();
-  const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-  void* const memory = ::operator new (rounded, std::align_val_t{kHugePage});
+  const std::size_t rounded = wholePages(bytes);
+  void* const memory =
+      kMapsLarge ? mapAligned(rounded) : ::operator new (rounded, std::align_val_t{kHugePage});
+  if (memory == nullptr) throw std::bad_alloc();
   // Leaves out the last huge page if much of it would be wasted.
   const bool wastesLittle = rounded - bytes <= bytes / 16;
   if (hugePagesForLarge) adviseHugePages(memory, wastesLittle ? rounded : rounded - kHugePage);
   return memory;
 }
 
+void freeLarge(void* memory, std::size_t bytes) noexcept {
+  if (kMapsLarge) {
+    unmap(memory, wholePages(bytes));
+  } else {
+    ::operator delete (memory, std::align_val_t{kHugePage});
+  }
+}
+
 bool isPooled(std::size_t bytes) { return kPooled && bytes >= kMedium && bytes < kLarge; }
 
 }  // namespace
 
-#if defined(__linux__)
-
 char* mapHugePages(std::size_t bytes) noexcept {
-  assert(bytes % kHugePage == 0);
-  // A mapping of twice the size contains an aligned part; the rest is returned.
-  void* const mapped = ::mmap(nullptr, 2 * bytes, PROT_READ | PROT_WRITE,
-                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (mapped == MAP_FAILED) return nullptr;
-  char* const begin = static_cast<char*>(mapped);
-  const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % kHugePage;
-  if (before > 0) ::munmap(begin, before);
-  ::munmap(begin + before + bytes, bytes - before);
-  adviseHugePages(begin + before, bytes);
-  return begin + before;
+  char* const memory = mapAligned(bytes);
+  if (memory != nullptr) adviseHugePages(memory, bytes);
+  return memory;
 }
 
-void unmapHugePages(char* memory, std::size_t bytes) noexcept { ::munmap(memory, bytes); }
-
-#else
-
-char* mapHugePages(std::size_t /*bytes*/) noexcept { return nullptr; }
-void unmapHugePages(char* /*memory*/, std::size_t /*bytes*/) noexcept {}
-
-#endif
+void unmapHugePages(char* memory, std::size_t bytes) noexcept { unmap(memory, bytes); }
 
 void useHugePages(bool forLarge, bool shared) {
   hugePagesForLarge = forLarge;
@@ -106,7 +134,7 @@ void* allocateArray(std::size_t bytes) {
 
 void freeArray(void* memory, std::size_t bytes) noexcept {
   if (bytes >= kLarge) {
-    ::operator delete (memory, std::align_val_t{kHugePage});
+    freeLarge(memory, bytes);
   } else if (!isPooled(bytes) || !pool().release(memory, bytes)) {
     ::operator delete(memory);
   }
