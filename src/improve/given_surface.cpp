@@ -116,7 +116,6 @@ class Belonging {
   void enter(std::size_t v, Freedom freedom, Index simplex) {
     places_.freedom[v] = freedom;
     places_.simplex[v] = simplex;
-    places_.isLoose[v] = 0;
   }
   /// Vertices inside are free or, on tagged faces, fixed.
   void hold(std::size_t v) {

@@ -246,12 +246,13 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
   HexMesh& mesh = subject.mesh;
   const Boundary boundary(mesh, treeOf(places.surface), stage);
   reportBefore(subject, boundary, places, report, stage);
-  Positions initial{mesh.points, places.simplex};
+  Positions initial(mesh.points, places);
   const Array<Vec3>& points = initial.points;
   try {
     const BoundaryDistance distance =
         movePoints(subject, boundary, places, options, initial, report, context, stage);
-    const ImproveReport moved = report;
+    const bool addsLayers = options.pillow != PillowMode::Never || options.snapCurves;
+    const ImproveReport moved = addsLayers ? report : ImproveReport{};
     const Moved plain(subject, boundary, places, distance);
     reportAfter(plain, places.surface, points, report, stage);
     std::optional<Improved> best =

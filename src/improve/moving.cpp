@@ -118,7 +118,7 @@ class Moving {
   BoundaryDistance run() {
     Sweeps sweeps = newSweeps();
     const double target = options_.target;
-    const std::vector<Index> wereBad = verticesAtBad(sweeps);
+    const std::vector<Index> wereBad = badCells(sweeps);
     // Near cells that cannot become positive, others would get worse.
     const bool canAtOnce =
         !subject_.isCurved() && report_.cannotBePositive.empty() && canMoveAtOnce();
@@ -180,20 +180,18 @@ class Moving {
     return far;
   }
 
-  /// Vertices near initially bad cells, ascending; none after layers were added, whose cells start
-  /// out bad although the surface is right.
-  [[nodiscard]] std::vector<Index> verticesAtBad(const Sweeps& sweeps) const {
-    constexpr int kRings = 2;
-    if (report_.addedCells > 0) return {};
-    return sweeps.verticesBelow(-1, kRings);
+  /// Initially bad cells; none after layers were added, whose cells start out bad although the
+  /// surface is right.
+  [[nodiscard]] std::vector<Index> badCells(const Sweeps& sweeps) const {
+    return report_.addedCells > 0 ? std::vector<Index>() : sweeps.cellsBelow(-1);
   }
 
   /// Records vertices that left their creases. If restored, they are on a patch, not on a crease.
   void noteLoose(std::span<const Index> vertices) {
     report_.offCreases += vertices.size();
     for (const Index v : vertices) {
-      before_.simplices[v] =
-          places_.surface.acrossCreases(before_.points[v], places_.simplex[v]).simplex;
+      before_.setSimplex(
+          v, places_.surface.acrossCreases(before_.points[v], places_.simplex[v]).simplex);
     }
   }
 
@@ -276,14 +274,17 @@ class Moving {
   /// edges of folds are not features, and the surface is no more accurate than its folds: vertices
   /// are released from creases and may leave the surface. Restores all points if the mesh is no
   /// better afterwards.
-  /// @param wereBad  vertices of these cells, ascending
-  void atOnce(Sweeps& sweeps, std::span<const Index> wereBad) {
+  /// @param wereBad  these cells
+  void atOnce(Sweeps& sweeps, const std::vector<Index>& wereBad) {
+    constexpr int kRings = 2;
     const double target = options_.target;
     const Sweeps::Standing standing = sweeps.standing(target);
-    const Array<double> qualities = sweeps.qualities();
-    std::vector<Index> low = sweeps.verticesBelow(target, 0);
-    std::erase_if(low,
-                  [&](Index v) { return !std::binary_search(wereBad.begin(), wereBad.end(), v); });
+    const std::vector<Index> below = sweeps.cellsBelow(target);
+    std::vector<Index> low = sweeps.verticesNear(below, 0);
+    {
+      const std::vector<Index> near = sweeps.verticesNear(wereBad, kRings);
+      std::erase_if(low, [&](Index v) { return !std::binary_search(near.begin(), near.end(), v); });
+    }
     LooseVertices loose(places_, low, subject_.mesh.points);
     const Positions before = sweeps.positions();
     sweeps.moveAtOnce(target, slack_, false, [&] { return quadsTooFar(); });
@@ -292,7 +293,7 @@ class Moving {
     const Sweeps::Standing now = sweeps.standing(target);
     const bool isUntangled = now.bad == 0 && standing.bad > 0;
     const bool isBetter =
-        isUntangled || (now < standing && sweeps.fallenSince(qualities, target).empty());
+        isUntangled || (now < standing && sweeps.fallenSince(below, target).empty());
     if (!isBetter) sweeps.putBackAll(before);
     noteLoose(loose.holdUnmoved(subject_.mesh.points));
   }
@@ -379,7 +380,7 @@ std::optional<BoundaryDistance> closeGaps(const Subject& subject, const Boundary
                                           VertexPlaces& places, const BoundaryDistance& distance,
                                           const ImproveOptions& options, ImproveReport& report,
                                           Context& context, Stage& stage) {
-  Positions before{subject.mesh.points, places.simplex};
+  Positions before(subject.mesh.points, places);
   Moving moving(subject, boundary, places, options, before, report, stage);
   BoundaryDistance after = moving.close(distance);
   if (after.largest.hausdorff() >= distance.largest.hausdorff()) return std::nullopt;

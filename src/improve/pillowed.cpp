@@ -43,7 +43,7 @@ Index extend(VertexPlaces& places, const mesh::Pillow& pillow) {
     const auto vertex = static_cast<Index>(n + i);
     places.freedom.push_back(leader != kNone ? places.freedom[leader] : Freedom::Free);
     places.simplex.push_back(leader != kNone ? places.simplex[leader] : kNone);
-    places.isLoose.push_back(0);
+    places.isLoose.push_back(false);
     if (places.freedom[vertex] == Freedom::Fixed) return leader;
     places.simplex[vertex] = places.nearest(vertex, pillow.mesh.points[vertex]).simplex;
   }
@@ -65,7 +65,7 @@ bool isWorthLayer(const ImproveReport& pillowed, const ImproveReport& without) {
 void moveEnlarged(Improved& improved, const HexMesh& without, const ImproveOptions& options,
                   Context& context, Stage& stage) {
   ImproveReport& report = improved.report;
-  Positions initial{improved.mesh.points, improved.places.simplex};
+  Positions initial(improved.mesh.points, improved.places);
   const Array<Vec3>& points = initial.points;
   report.addedCells = improved.mesh.cells.size() - without.cells.size();
   report.addedPoints.assign(points.begin() + static_cast<std::ptrdiff_t>(without.points.size()),

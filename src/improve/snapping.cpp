@@ -158,7 +158,7 @@ class CurveSnapper {
       for (const Index v : boundary_.quads[q]) {
         const SurfacePlace place = placeOf(regions_.of(q), mesh_.points[v]);
         places_.freedom[v] = Freedom::OnPatch;
-        places_.isLoose[v] = 0;
+        places_.isLoose[v] = false;
         places_.simplex[v] = place.simplex;
         mesh_.points[v] = place.point;
       }
@@ -328,7 +328,7 @@ class CurveSnapper {
       point = place.point;
       places.simplex.push_back(place.simplex);
     }
-    places.isLoose.resize(places.freedom.size(), 0);
+    places.isLoose.resize(places.freedom.size(), false);
   }
 
   struct Patch {

@@ -28,11 +28,7 @@ double squaredDistance(const Box& box, const Vec3& point) {
 
 }  // namespace
 
-TriangleTree::TriangleTree(std::span<const std::array<Vec3, 3>> triangles) {
-  triangles_.reserve(triangles.size());
-  for (const std::array<Vec3, 3>& corners : triangles) {
-    triangles_.push_back({corners, triangles_.size()});
-  }
+void TriangleTree::build() {
   std::size_t nodes = 1;
   for (std::size_t leaves = 1; leaves * kLeaf < triangles_.size(); leaves *= 2) nodes += 2 * leaves;
   boxes_.resize(nodes);
@@ -109,25 +105,15 @@ std::array<Vec3, 4> cornersOf(const Array<Vec3>& points, const Quad& quad) {
 
 /// A tree of four triangles per quad.
 TriangleTree treeOf(const Array<Vec3>& points, std::span<const Quad> quads) {
-  std::vector<std::array<Vec3, 3>> triangles;
-  triangles.reserve(4 * quads.size());
-  for (const Quad& quad : quads) {
-    const std::array<Vec3, 4> corners = cornersOf(points, quad);
-    const Vec3 centre = centreOf(corners);
-    for (std::size_t i = 0; i < 4; ++i) {
-      triangles.push_back({corners[i], corners[(i + 1) % 4], centre});
-    }
-  }
-  return TriangleTree(triangles);
+  return {4 * quads.size(), [&](std::size_t t) {
+            const std::array<Vec3, 4> corners = cornersOf(points, quads[t / 4]);
+            return std::array<Vec3, 3>{corners[t % 4], corners[(t + 1) % 4], centreOf(corners)};
+          }};
 }
 
 TriangleTree treeOf(const ReferenceSurface& surface, std::size_t begin, std::size_t end) {
-  std::vector<std::array<Vec3, 3>> triangles;
-  triangles.reserve(end - begin);
-  for (std::size_t t = begin; t < end; ++t) {
-    triangles.push_back(surface.triangle(static_cast<Index>(t)));
-  }
-  return TriangleTree(triangles);
+  return {end - begin,
+          [&](std::size_t t) { return surface.triangle(static_cast<Index>(begin + t)); }};
 }
 
 /// Positions of samples along edges and across quads. More than the middle, since ridges between

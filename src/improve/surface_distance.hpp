@@ -18,7 +18,15 @@ namespace hexhex::improvement {
 
 class TriangleTree {
  public:
-  explicit TriangleTree(std::span<const std::array<Vec3, 3>> triangles);
+  explicit TriangleTree(std::span<const std::array<Vec3, 3>> triangles)
+      : TriangleTree(triangles.size(), [triangles](std::size_t t) { return triangles[t]; }) {}
+  /// @param triangleOf  called with 0 to count - 1
+  template <class TriangleOf>
+  TriangleTree(std::size_t count, const TriangleOf& triangleOf) {
+    triangles_.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) triangles_.push_back({triangleOf(t), t});
+    build();
+  }
 
   struct Nearest {
     double distance = 0;  ///< infinite without triangles
@@ -30,6 +38,7 @@ class TriangleTree {
   [[nodiscard]] Nearest nearest(const Vec3& point, std::size_t begin = 0, double enough = 0) const;
 
  private:
+  void build();
   void build(std::size_t node, std::size_t begin, std::size_t end);
 
   struct Triangle {

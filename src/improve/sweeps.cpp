@@ -43,7 +43,7 @@ bool Colours::separates(const CellPoints& mesh) const {
   return true;
 }
 
-Colours::Groups Colours::groupsOf(std::span<const Index> vertices) const {
+Colours::Groups Colours::groupsOf(std::vector<Index> vertices) const {
   Groups groups;
   groups.ends.resize(count_);
   for (const Index v : vertices) ++groups.ends[colourOf_[v]];
@@ -63,11 +63,11 @@ LooseVertices::LooseVertices(VertexPlaces& places, std::span<const Index> vertic
   for (const Index v : vertices) {
     const Held held{v, places.freedom[v], places.simplex[v], points[v]};
     if (!places.surface.isCrease(held.freedom, held.simplex)) continue;
-    assert(places.isLoose[v] == 0);
+    assert(!places.isLoose[v]);
     held_.push_back(held);
     places.simplex[v] = places.surface.triangleAt(held.freedom, held.simplex, held.point);
     places.freedom[v] = Freedom::OnPatch;
-    places.isLoose[v] = 1;
+    places.isLoose[v] = true;
   }
 }
 
@@ -81,7 +81,7 @@ std::vector<Index> LooseVertices::holdUnmoved(const Array<Vec3>& points) {
     }
     places_.freedom[v] = held.freedom;
     places_.simplex[v] = held.simplex;
-    places_.isLoose[v] = 0;
+    places_.isLoose[v] = false;
   }
   return moved;
 }
@@ -118,6 +118,10 @@ constexpr double kPrice = 30;
 /// moved again. The same holds for curved cells: 1,749 of order 2 would take 5.0 s instead of 2.9
 /// s, for the same minimum.
 constexpr std::size_t kMostFalling = 5'000;
+
+/// If more than this part of all cells may be below the target, they are searched for among all:
+/// their list, kept while vertices move, would be part of the peak of memory.
+constexpr std::size_t kManyLow = 16;
 
 /// Steps below this fraction of the size of cells do not reactivate neighbours.
 constexpr double kStill = 1e-3;
@@ -202,6 +206,8 @@ void Sweeps::measureAll() {
 template <class Wanted>
 std::vector<Index> Sweeps::cellsThat(const Wanted& isWanted) const {
   std::vector<Index> list;
+  list.reserve(
+      static_cast<std::size_t>(std::count_if(qualities_.begin(), qualities_.end(), isWanted)));
   for (Index cell = 0; cell < qualities_.size(); ++cell) {
     if (isWanted(qualities_[cell])) list.push_back(cell);
   }
@@ -222,11 +228,20 @@ std::vector<Index> Sweeps::movableCells(const Wanted& isWanted) const {
   return movable(cellsThat(isWanted), isWanted);
 }
 
+template <class Wanted>
+std::vector<Index> Sweeps::verticesThat(const Wanted& isWanted) const {
+  std::vector<Index> list;
+  for (Index v = 0; v < mesh_.points.size(); ++v) {
+    if (isWanted(v)) list.push_back(v);
+  }
+  return list;
+}
+
 template <class Move>
-void Sweeps::sweep(std::span<const Index> vertices, double slack, const Move& move) {
+void Sweeps::sweep(std::vector<Index> vertices, double slack, const Move& move) {
   const CellPoints cells = cellPoints();
   if (!colours_) colours_.emplace(cells);
-  const Colours::Groups groups = colours_->groupsOf(vertices);
+  const Colours::Groups groups = colours_->groupsOf(std::move(vertices));
   const ChordError chordError{mesh_, places_, meshAround_, boundary_, std::max(chord_, slack)};
   const MovingMesh all{mesh_, *cells_, boxes_, places_, chordError, qualities_};
   std::size_t begin = 0;
@@ -247,7 +262,7 @@ std::vector<Index> Sweeps::untangleCells(Neighbourhoods& near, double slack,
     std::vector<Index> cells = bad;
     std::vector<Index> vertices = near.pointsOf(rings, cells);
     std::erase_if(vertices, [&](Index v) { return places_.freedom[v] == Freedom::Fixed; });
-    sweep(vertices, slack, [](VertexMover& mover, Index v) { mover.untangle(v); });
+    sweep(std::move(vertices), slack, [](VertexMover& mover, Index v) { mover.untangle(v); });
     measure(cells.size(), [&](std::size_t c) { return cells[c]; });
     bad = movable(std::move(cells), kIsBad);
     ++since;
@@ -266,7 +281,7 @@ void Sweeps::untangle(double slack) {
   std::vector<Index> bad = movableCells(kIsBad);
   if (bad.empty()) return;
   // Most often these are the initial positions, and a copy would be the peak of memory.
-  const bool isFirst = mesh_.points == initial_.points && places_.simplex == initial_.simplices;
+  const bool isFirst = initial_.arePresent(mesh_.points, places_);
   const std::optional<Positions> copy = isFirst ? std::nullopt : std::optional(positions());
   const Positions& before = isFirst ? initial_ : *copy;
   Neighbourhoods near(cellPoints());
@@ -290,11 +305,10 @@ Sweeps::Standing Sweeps::standing(double target) const {
   return standing;
 }
 
-std::vector<Index> Sweeps::fallenSince(const Array<double>& qualities, double target) const {
-  std::vector<Index> fallen;
-  for (Index cell = 0; cell < qualities_.size(); ++cell) {
-    if (qualities[cell] >= target && qualities_[cell] < target) fallen.push_back(cell);
-  }
+std::vector<Index> Sweeps::fallenSince(std::span<const Index> below, double target) const {
+  std::vector<Index> fallen = cellsBelow(target);
+  std::erase_if(
+      fallen, [below](Index cell) { return std::binary_search(below.begin(), below.end(), cell); });
   return fallen;
 }
 
@@ -304,14 +318,16 @@ double Sweeps::deficitOf(std::span<const Index> cells) const {
   return sum;
 }
 
-std::vector<Index> Sweeps::verticesBelow(double target, int rings) const {
-  std::vector<Index> cells = cellsThat([&](double quality) { return quality < target; });
+std::vector<Index> Sweeps::cellsBelow(double target) const {
+  return cellsThat([&](double quality) { return quality < target; });
+}
+
+std::vector<Index> Sweeps::verticesNear(std::vector<Index> cells, int rings) const {
   return Neighbourhoods(cellPoints()).pointsOf(rings, cells);
 }
 
 void Sweeps::putBackAll(const Positions& before) {
-  std::copy(before.points.begin(), before.points.end(), mesh_.points.begin());
-  places_.simplex = before.simplices;
+  before.restoreAll(mesh_.points, places_);
   measureAll();
 }
 
@@ -355,8 +371,7 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
     for (const Quad& quad : farQuads()) {
       for (const Index v : quad) {
         isHeld[v] = 1;
-        mesh_.points[v] = before.points[v];
-        places_.simplex[v] = before.simplices[v];
+        before.restore(v, mesh_.points, places_);
       }
     }
     measureAll();
@@ -373,16 +388,16 @@ void Sweeps::moveAtOnce(double target, double slack, bool isFolded,
 
 void Sweeps::raiseWorst(double target, double slack) {
   const Standing now = standing(target);
-  const std::size_t low = now.bad + now.below;
-  if (low == 0) return;
-  if (low > kMostFalling || cellPoints().perCell > 8) {
+  const std::size_t count = now.bad + now.below;
+  if (count == 0) return;
+  if (count > kMostFalling || cellPoints().perCell > 8) {
     raise({target, false, kPrice}, slack);
     return;
   }
   const Positions before = positions();
-  const Array<double> qualities = qualities_;
+  const std::vector<Index> low = cellsBelow(target);
   raise({target, true, kPrice}, slack);
-  const std::vector<Index> fallen = fallenSince(qualities, target);
+  const std::vector<Index> fallen = fallenSince(low, target);
   if (fallen.empty()) return;
   putBack(cellPoints(), fallen, before, mesh_.points, places_);
   measureAll();
@@ -401,8 +416,9 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
   std::uint8_t round = 0;
   for (const int power : kWorstPowers) {
     for (int i = 0; i < kWorstRounds; ++i) {
-      std::vector<Index> cells = low;
-      std::vector<Index> vertices = near.pointsOf(1, cells);
+      low = low.empty() ? movableCells(isLow) : movable(std::move(low), isLow);
+      std::vector<Index> vertices = near.pointsOf(1, low);
+      if (kManyLow * low.size() > qualities_.size()) std::vector<Index>().swap(low);
       std::erase_if(vertices, [&](Index v) {
         if (places_.freedom[v] == Freedom::Fixed) return true;
         bool isAwake = i == 0;
@@ -412,24 +428,22 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
       if (vertices.empty()) break;
       ++round;
       const Exchange now = power > 1 ? exchange : Exchange{target, exchange.belowFloor};
-      sweep(vertices, slack, [&](VertexMover& mover, Index v) {
+      sweep(std::move(vertices), slack, [&](VertexMover& mover, Index v) {
         if (mover.smooth(v, power, now) <= kStill) return;
         for (const Index cell : all.around(v)) lastMove[cell] = round;
       });
-      low = movable(std::move(cells), isLow);
     }
   }
 }
 
 void Sweeps::smooth(int passes, double floor) {
-  if (passes == 0) return;
   const CellPoints all = cellPoints();
-  std::vector<Index> vertices;
-  for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (places_.freedom[v] != Freedom::Fixed && !all.around(v).empty()) vertices.push_back(v);
-  }
+  const auto canMove = [&](Index v) {
+    return places_.freedom[v] != Freedom::Fixed && !all.around(v).empty();
+  };
   for (int pass = 0; pass < passes; ++pass) {
-    sweep(vertices, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+    sweep(verticesThat(canMove), 0,
+          [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
   }
 }
 
@@ -441,21 +455,18 @@ void Sweeps::moveBack(std::span<const Quad> quads, const Positions& before, doub
     }
   }
   sortUnique(vertices);
-  sweep(vertices, 0, [&](VertexMover& mover, Index v) {
-    mover.moveTo(v, {before.points[v], before.simplices[v]}, false, floor);
-  });
+  sweep(std::move(vertices), 0,
+        [&](VertexMover& mover, Index v) { mover.moveTo(v, before.placeOf(v), false, floor); });
 }
 
 void Sweeps::pullOntoSurface(double floor) {
   for (int i = 0; i < kReturns; ++i) {
-    std::vector<Index> vertices;
-    for (Index v = 0; v < mesh_.points.size(); ++v) {
+    std::vector<Index> vertices = verticesThat([&](Index v) {
       const Vec3& point = mesh_.points[v];
-      if (length(minus(places_.home(v, point).point, point)) > kNearEnough * chord_)
-        vertices.push_back(v);
-    }
+      return length(minus(places_.home(v, point).point, point)) > kNearEnough * chord_;
+    });
     if (vertices.empty()) return;
-    sweep(vertices, 0, [&](VertexMover& mover, Index v) {
+    sweep(std::move(vertices), 0, [&](VertexMover& mover, Index v) {
       mover.moveTo(v, places_.home(v, mesh_.points[v]), true, floor);
     });
     smooth(1, floor);  // makes room
@@ -463,12 +474,12 @@ void Sweeps::pullOntoSurface(double floor) {
 }
 
 void Sweeps::smoothInside(double floor) {
-  std::vector<Index> inner;
-  for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (places_.freedom[v] == Freedom::Free && !meshAround_(v).empty()) inner.push_back(v);
-  }
   takeBoxes();
-  sweep(inner, 0, [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+  const auto isInner = [&](Index v) {
+    return places_.freedom[v] == Freedom::Free && !meshAround_(v).empty();
+  };
+  sweep(verticesThat(isInner), 0,
+        [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
 }
 
 void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors, double even,
@@ -484,11 +495,10 @@ void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors,
       weights[v] += weight;
     }
   }
-  std::vector<Index> outer;
-  for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (weights[v] > 0 && places_.freedom[v] != Freedom::Fixed) outer.push_back(v);
-  }
-  sweep(outer, 0, [&](VertexMover& mover, Index v) {
+  const auto isOuter = [&](Index v) {
+    return weights[v] > 0 && places_.freedom[v] != Freedom::Fixed;
+  };
+  sweep(verticesThat(isOuter), 0, [&](VertexMover& mover, Index v) {
     mover.moveTo(v, places_.nearest(v, times(1 / weights[v], sums[v])), false, floor,
                  mover.farthestAt(v));
   });
@@ -496,14 +506,11 @@ void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors,
 }
 
 void Sweeps::shift(const Array<Vec3>& moves, double floor) {
-  std::vector<Index> outer;
-  for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (moves[v] != Vec3{}) outer.push_back(v);
-  }
-  sweep(outer, 0, [&](VertexMover& mover, Index v) {
-    const Vec3 to = plus(mesh_.points[v], moves[v]);
-    mover.moveTo(v, {to, places_.nearest(v, to).simplex}, true, floor);
-  });
+  sweep(verticesThat([&](Index v) { return moves[v] != Vec3{}; }), 0,
+        [&](VertexMover& mover, Index v) {
+          const Vec3 to = plus(mesh_.points[v], moves[v]);
+          mover.moveTo(v, {to, places_.nearest(v, to).simplex}, true, floor);
+        });
   smoothInside(floor);
 }
 

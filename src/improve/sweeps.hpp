@@ -33,7 +33,7 @@ class Colours {
     std::vector<Index> vertices;
     std::vector<std::size_t> ends;
   };
-  [[nodiscard]] Groups groupsOf(std::span<const Index> vertices) const;
+  [[nodiscard]] Groups groupsOf(std::vector<Index> vertices) const;
 
  private:
   [[nodiscard]] bool separates(const CellPoints& mesh) const;
@@ -85,8 +85,9 @@ class Sweeps {
   [[nodiscard]] Standing standing(double target) const;
   /// Per cell: its quality.
   [[nodiscard]] const Array<double>& qualities() const noexcept { return qualities_; }
-  /// Cells that met the target at given earlier qualities, but no longer do.
-  [[nodiscard]] std::vector<Index> fallenSince(const Array<double>& qualities, double target) const;
+  /// Cells that do not meet the target, but did earlier.
+  /// @param below  cellsBelow() at that time
+  [[nodiscard]] std::vector<Index> fallenSince(std::span<const Index> below, double target) const;
   /// All references must outlive this.
   /// @param initial   positions before the first move, to share where vertices are restored
   /// @param diagonal  of the bounding box of the surface
@@ -109,11 +110,15 @@ class Sweeps {
   void moveAtOnce(double target, double slack, bool isFolded,
                   const std::function<Array<Quad>()>& farQuads);
 
-  /// The vertices of cells that are not certified or below the target, and of rings of cells
-  /// around.
-  [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const;
+  /// The cells that are not certified or below the target.
+  [[nodiscard]] std::vector<Index> cellsBelow(double target) const;
+  /// The vertices of cells, and of rings of cells around, ascending.
+  [[nodiscard]] std::vector<Index> verticesNear(std::vector<Index> cells, int rings) const;
+  [[nodiscard]] std::vector<Index> verticesBelow(double target, int rings) const {
+    return verticesNear(cellsBelow(target), rings);
+  }
 
-  [[nodiscard]] Positions positions() const { return {mesh_.points, places_.simplex}; }
+  [[nodiscard]] Positions positions() const { return {mesh_.points, places_}; }
   /// Restores all vertices.
   void putBackAll(const Positions& before);
 
@@ -174,8 +179,11 @@ class Sweeps {
   std::vector<Index> untangleCells(Neighbourhoods& near, double slack, std::vector<Index> bad);
   /// Improves cells below exchange.floor, which is the target.
   void raise(const Exchange& exchange, double slack);
+  template <class Wanted>
+  [[nodiscard]] std::vector<Index> verticesThat(const Wanted& isWanted) const;
+  /// Moves vertices. The list is freed early.
   template <class Move>
-  void sweep(std::span<const Index> vertices, double slack, const Move& move);
+  void sweep(std::vector<Index> vertices, double slack, const Move& move);
   /// Moves the vertices inside once, for ideal boxes of their present lengths.
   void smoothInside(double floor);
 

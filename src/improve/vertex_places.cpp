@@ -202,7 +202,7 @@ void place(const Array<Vec3>& points, const GeneratorOf& generatorOf, VertexPlac
   const std::size_t n = points.size();
   places.freedom.resize(n);
   places.simplex.resize(n);
-  places.isLoose.assign(n, 0);
+  places.isLoose.assign(n, false);
   parallelFor(stage, n, kVertexPlacesGrain, [&](std::size_t v) {
     std::array<Index, 4> corners{};
     const std::size_t count = generatorOf(v, corners);

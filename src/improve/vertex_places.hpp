@@ -22,8 +22,7 @@ struct VertexPlaces {
   Array<Freedom> freedom;  ///< per vertex
   /// Per vertex: the triangle or segment that holds it, the corner, or kNone.
   Array<Index> simplex;
-  /// Per vertex on a patch: 1 if it may leave it across creases.
-  std::vector<std::uint8_t> isLoose;
+  std::vector<bool> isLoose;     ///< per vertex on a patch: whether it may leave it across creases
   std::vector<Quad> innerQuads;  ///< of the mesh, on inner triangles of the surface
   std::uint64_t tagged = 0;      ///< vertices that are Fixed because they have a tag
 
@@ -41,8 +40,8 @@ struct VertexPlaces {
   /// The nearest place to a point among those to which a vertex may move.
   [[nodiscard]] SurfacePlace nearest(Index vertex, const Vec3& point, double enough = 0) const {
     if (freedom[vertex] == Freedom::OnPatch) {
-      return isLoose[vertex] != 0 ? surface.acrossCreases(point, simplex[vertex], enough)
-                                  : surface.onPatch(point, simplex[vertex], enough);
+      return isLoose[vertex] ? surface.acrossCreases(point, simplex[vertex], enough)
+                             : surface.onPatch(point, simplex[vertex], enough);
     }
     if (freedom[vertex] == Freedom::OnCurve) return surface.onCurve(point, simplex[vertex]);
     return {point, simplex[vertex]};
