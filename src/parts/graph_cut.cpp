@@ -52,7 +52,11 @@ PartGraph load(const Library& library) {
 #endif
   LoadedLibrary loaded({library.file});
   const auto function = loaded.find<PartGraph>(library.function);
-  if (function != nullptr) return function;
+  if (function != nullptr) {
+    // Its random numbers would go on from those of earlier calls.
+    if (const auto reset = loaded.find<void (*)()>("SCOTCH_randomReset")) reset();
+    return function;
+  }
   throw Error(ErrorCode::InvalidArgument,
               concat(library.title, " cannot be loaded (", loaded.problem(), "). Install ",
                      library.package, ", or choose the partition \"curve\"."));
