@@ -117,14 +117,17 @@ extern void __libc_free(void *);
 
 static atomic_long in_use; /* bytes, of what main() allocated; `calls` is the most in KiB */
 
-/* Whether so many bytes cannot be had. */
-static int lacks(size_t size) {
-  if (hits(MALLOC) || hits(NEW)) return errno = ENOMEM, 1;
+/* Whether so many bytes are more than there are. */
+static int exceeds(size_t size) {
   if (!fault.armed || fault.kind != MEMORY) return 0;
   const long total = (atomic_load(&in_use) + (long)size) / 1024 + 1;
   if (fault.at > 0 && total > fault.at) return errno = ENOMEM, 1;
   if (total > atomic_load(calls)) atomic_store(calls, total);
   return 0;
+}
+static int lacks(size_t size) {
+  if (hits(MALLOC) || hits(NEW)) return errno = ENOMEM, 1;
+  return exceeds(size);
 }
 static void *taken(void *memory) {
   if (fault.armed && memory != NULL) atomic_fetch_add(&in_use, (long)malloc_usable_size(memory));
@@ -132,6 +135,9 @@ static void *taken(void *memory) {
 }
 static void given_back(void *memory) {
   if (fault.armed && memory != NULL) atomic_fetch_sub(&in_use, (long)malloc_usable_size(memory));
+}
+static void map_more(long size) {
+  if (fault.armed) atomic_fetch_add(&in_use, size);
 }
 
 void *malloc(size_t size) { return lacks(size) ? NULL : taken(__libc_malloc(size)); }
@@ -155,6 +161,9 @@ int posix_memalign(void **memory, size_t alignment, size_t size) {
   *memory = fresh;
   return 0;
 }
+#else
+static int exceeds(size_t size) { return (void)size, 0; }
+static void map_more(long size) { (void)size; }
 #endif
 
 /* std::set_new_handler(): for "new", there is none, so that what fails throws. */
@@ -295,8 +304,14 @@ int close(int descriptor) {
   return -1;
 }
 void *mmap(void *where, size_t size, int access, int flags, int descriptor, off_t position) {
-  if (fails(MMAP, ENOMEM)) return MAP_FAILED;
-  return (void *)syscall(SYS_mmap, where, size, access, flags, descriptor, position);
+  if (fails(MMAP, ENOMEM) || exceeds(size)) return MAP_FAILED;
+  void *const mapped = (void *)syscall(SYS_mmap, where, size, access, flags, descriptor, position);
+  if (mapped != MAP_FAILED) map_more((long)size);
+  return mapped;
+}
+int munmap(void *where, size_t size) {
+  map_more(-(long)size);
+  return (int)syscall(SYS_munmap, where, size);
 }
 void *mmap64(void *where, size_t size, int access, int flags, int descriptor, off64_t position) {
   return mmap(where, size, access, flags, descriptor, position);
