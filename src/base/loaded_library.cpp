@@ -1,4 +1,6 @@
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include <hexhex/types.hpp>
 
@@ -10,6 +12,22 @@
 #endif
 
 namespace hexhex {
+
+#if defined(HEXHEX_HAS_DLOPEN)
+namespace {
+
+/// Whether the file itself is missing, and not one that it needs: sentences name what is missing.
+bool saysMissing(const std::string& problem, const std::string& file) {
+  const auto says = [&](const std::string& words) {
+    return problem.find(words) != std::string::npos;
+  };
+  // In the language of the process; macOS speaks English.
+  const bool isMissing = says(std::strerror(ENOENT)) || says("no such file");
+  return isMissing && says(file) && !says("needed by") && !says("Library not loaded");
+}
+
+}  // namespace
+#endif
 
 LoadedLibrary::LoadedLibrary([[maybe_unused]] std::vector<std::string> files,
                              [[maybe_unused]] const char* variable,
@@ -23,7 +41,7 @@ LoadedLibrary::LoadedLibrary([[maybe_unused]] std::vector<std::string> files,
   for (std::size_t i = 0; isMissing_ && i < files.size(); ++i) {
     library_ = dlopen(files[i].c_str(), RTLD_NOW | (isGlobal ? RTLD_GLOBAL : 0));
     const std::string problem = library_ == nullptr ? dlerror() : "";
-    isMissing_ = problem.find("No such file") != std::string::npos;
+    isMissing_ = library_ == nullptr && saysMissing(problem, files[i]);
     problem_ = library_ != nullptr ? "" : problem_ + (i > 0 ? "; " : "") + problem;
   }
   isMissing_ = isMissing_ && chosen == nullptr;

@@ -32,7 +32,7 @@ using BlockFunction = FunctionRef<void(std::size_t, std::size_t, std::size_t)>;
 /// Calls f(begin, end, block) for consecutive blocks of `grain` elements of [0, n), in parallel,
 /// and checks for cancellation between blocks. The first exception ends the loop and is rethrown.
 void parallelBlocks(Stage& stage, std::size_t n, std::size_t grain, BlockFunction f);
-/// The same with progress that others made, which may be null.
+/// The same with progress of the caller; null: none, and no checks for cancellation.
 void parallelBlocks(LoopProgress* progress, std::size_t n, std::size_t grain, BlockFunction f);
 
 /// Calls f(i) for every i in [0, n), in parallel.

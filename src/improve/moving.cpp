@@ -274,7 +274,7 @@ class Moving {
   /// edges of folds are not features, and the surface is no more accurate than its folds: vertices
   /// are released from creases and may leave the surface. Restores all points if the mesh is no
   /// better afterwards.
-  /// @param wereBad  these cells
+  /// @param wereBad  the initially bad cells
   void atOnce(Sweeps& sweeps, const std::vector<Index>& wereBad) {
     constexpr int kRings = 2;
     const double target = options_.target;

@@ -414,16 +414,16 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
   // Per cell: the last round in which it moved. Only vertices of such cells are visited again.
   std::vector<std::uint8_t> lastMove(qualities_.size(), 0);
   std::uint8_t round = 0;
+  const auto isAwake = [&](Index cell) { return lastMove[cell] == round; };
   for (const int power : kWorstPowers) {
     for (int i = 0; i < kWorstRounds; ++i) {
       low = low.empty() ? movableCells(isLow) : movable(std::move(low), isLow);
       std::vector<Index> vertices = near.pointsOf(1, low);
       if (kManyLow * low.size() > qualities_.size()) std::vector<Index>().swap(low);
       std::erase_if(vertices, [&](Index v) {
-        if (places_.freedom[v] == Freedom::Fixed) return true;
-        bool isAwake = i == 0;
-        for (const Index cell : all.around(v)) isAwake |= lastMove[cell] == round;
-        return !isAwake;
+        const auto cells = all.around(v);
+        return places_.freedom[v] == Freedom::Fixed ||
+               (i > 0 && std::none_of(cells.begin(), cells.end(), isAwake));
       });
       if (vertices.empty()) break;
       ++round;

@@ -181,7 +181,7 @@ class Sweeps {
   void raise(const Exchange& exchange, double slack);
   template <class Wanted>
   [[nodiscard]] std::vector<Index> verticesThat(const Wanted& isWanted) const;
-  /// Moves vertices. The list is freed early.
+  /// Moves vertices. Frees their list once they are grouped by colour.
   template <class Move>
   void sweep(std::vector<Index> vertices, double slack, const Move& move);
   /// Moves the vertices inside once, for ideal boxes of their present lengths.

@@ -48,7 +48,7 @@ constexpr Library kScotch = {"Scotch", "libscotchmetisv5-7.0.so", "SCOTCH_METIS_
 PartGraph load(const Library& library) {
 #if defined(__unix__) || defined(__APPLE__)
   // What Scotch returns depends on which of its threads comes first, and on how many there are.
-  setenv("SCOTCH_PTHREAD_NUMBER", "1", /*overwrite=*/0);
+  if (&library == &kScotch) setenv("SCOTCH_PTHREAD_NUMBER", "1", /*overwrite=*/0);
 #endif
   LoadedLibrary loaded({library.file});
   const auto function = loaded.find<PartGraph>(library.function);

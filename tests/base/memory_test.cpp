@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <rapidcheck.h>
 #include <span>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include <hexhex/array.hpp>
 
 #include <base/memory.hpp>
 
@@ -125,6 +128,26 @@ TEST(PagePool, ServesThreads) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(intact, std::vector<int>(4, 1));
   EXPECT_EQ(pool.slabCount(), 0);
+}
+
+/// Bytes of address space of this process; 0 if the system does not say.
+std::size_t addressSpace() {
+  constexpr std::size_t kPage = 4096;
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return kPage * pages;
+}
+
+TEST(Memory, OfLargeArraysIsGivenBack) {
+  if (!isPooling() || addressSpace() == 0) GTEST_SKIP() << "no mapped arrays on this system";
+  constexpr std::size_t kBytes = (std::size_t{1} << 28) + 1;
+  const std::size_t before = addressSpace();
+  for (int i = 0; i < 64; ++i) {
+    void* const memory = detail::allocateArray(kBytes);
+    EXPECT_GE(addressSpace(), before + kBytes);
+    detail::freeArray(memory, kBytes);
+  }
+  EXPECT_LE(addressSpace(), before + kBytes);
 }
 
 }  // namespace

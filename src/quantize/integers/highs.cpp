@@ -91,8 +91,8 @@ Highs load() {
     return highs;
   }
   throw Error(ErrorCode::FileUnsupported,
-              "HiGHS cannot be loaded, in version 1.6 or a later 1.x with integers of 32 bits (" +
-                  (problem.empty() ? "it is another one" : problem) +
+              "HiGHS 1.6, or a later 1.x, with integers of 32 bits cannot be loaded (" +
+                  (problem.empty() ? "the one that is there is another version" : problem) +
                   "). Install it anew (pip install highsbox, and HEXHEX_HIGHS names its "
                   "libhighs.so), or remove it: integers are then found by rounding.");
 }
