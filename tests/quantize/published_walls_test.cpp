@@ -150,6 +150,7 @@ TEST(Walls, AreFacesBetweenBlocksIfTheyAreKept) {
 }
 
 TEST(Walls, OfPublishedMapsAreNoFeatures) {
+  HEXHEX_LARGE_TEST();
   if (realMaps().empty()) GTEST_SKIP() << "no real maps";
   for (const std::filesystem::path& file : realMaps()) {
     SCOPED_TRACE(file.stem().string());
