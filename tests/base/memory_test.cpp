@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <rapidcheck.h>
 #include <span>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/status_bytes.hpp>
 
 #include <hexhex/array.hpp>
 
@@ -131,15 +131,8 @@ TEST(PagePool, ServesThreads) {
 }
 
 #if !defined(HEXHEX_SANITIZED)  // sanitizers keep freed arrays for a while
-/// Bytes of address space of this process; 0 if the system does not say.
-std::size_t addressSpace() {
-  constexpr std::size_t kPage = 4096;
-  std::size_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return kPage * pages;
-}
-
 TEST(Memory, OfLargeArraysIsGivenBack) {
+  const auto addressSpace = [] { return test::statusBytes("VmSize:"); };
   if (!isPooling() || addressSpace() == 0) GTEST_SKIP() << "no mapped arrays on this system";
   constexpr std::size_t kBytes = (std::size_t{1} << 28) + 1;
   const std::size_t before = addressSpace();

@@ -1,33 +1,18 @@
 // withThreads() itself; what loops compute is tested where they are used.
 #include <atomic>
-#include <cstdio>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/status_bytes.hpp>
 
 #include <base/parallel.hpp>
-
-#if defined(__linux__)
-#include <unistd.h>
-#endif
 
 namespace hexhex {
 namespace {
 
 #if defined(__linux__)
-/// Bytes of this process in memory.
-long residentBytes() {
-  std::FILE* const file = std::fopen("/proc/self/statm", "r");
-  long total = 0;
-  long resident = 0;
-  if (file == nullptr) return 0;
-  const int fields = std::fscanf(file, "%ld %ld", &total, &resident);
-  std::fclose(file);
-  return fields == 2 ? resident * sysconf(_SC_PAGESIZE) : 0;
-}
-
 // Each call used to leave some seven kilobytes behind.
 TEST(WithThreads, LeavesNoMemoryBehind) {
   const auto call = [] {
@@ -42,10 +27,10 @@ TEST(WithThreads, LeavesNoMemoryBehind) {
     }
   };
   for (int i = 0; i < 100; ++i) call();
-  const long before = residentBytes();
-  ASSERT_GT(before, 0);
+  const std::size_t before = test::statusBytes("VmRSS:");
+  ASSERT_GT(before, 0U);
   for (int i = 0; i < 2000; ++i) call();
-  EXPECT_LT(residentBytes() - before, 8 << 20);
+  EXPECT_LT(test::statusBytes("VmRSS:"), before + (8 << 20));
 }
 #endif
 

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include <gtest/gtest.h>
+#include <support/status_bytes.hpp>
 
 #include <hexhex/io.hpp>
 
@@ -26,13 +27,12 @@ class MemoryLimit {
   MemoryLimit() {
 #if !defined(HEXHEX_SANITIZED)
     ::getrlimit(RLIMIT_AS, &before_);
-    long pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
+    const std::size_t taken = test::statusBytes("VmSize:");
     constexpr rlim_t kRoom = rlim_t{64}
                              << 20;  // threads' stacks and heaps; files here have kilobytes
     rlimit limit = before_;
-    limit.rlim_cur = static_cast<rlim_t>(pages) * 4096 + kRoom;
-    if (pages > 0) limited_ = ::setrlimit(RLIMIT_AS, &limit) == 0;
+    limit.rlim_cur = taken + kRoom;
+    if (taken > 0) limited_ = ::setrlimit(RLIMIT_AS, &limit) == 0;
 #endif
   }
   ~MemoryLimit() {

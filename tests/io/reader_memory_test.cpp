@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/status_bytes.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
@@ -39,15 +40,6 @@ struct Cost {
   std::size_t bytes = 0;  ///< resident, at its peak, beyond what it began with
   double seconds = 0;     ///< of processors
 };
-
-std::size_t statusBytes(const std::string& key) {
-  std::ifstream lines("/proc/self/status");
-  for (std::string word; lines >> word;) {
-    std::size_t kibibytes = 0;
-    if (word == key && lines >> kibibytes) return kibibytes * 1024;
-  }
-  return 0;
-}
 
 double secondsOf(int who) {
   rusage usage{};
