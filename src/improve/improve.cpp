@@ -210,6 +210,11 @@ void reportAfter(const Moved& moved, const ReferenceSurface& object, Array<Vec3>
   report.worst = worstCell(subject, boundary, places, report);
 }
 
+/// Snapping edges to curves adds a layer, too.
+bool mayAddLayers(const ImproveOptions& options) {
+  return options.pillow != PillowMode::Never || options.snapCurves;
+}
+
 /// Whether snapping edges to curves could help: some curves are not followed, or quads with two
 /// edges on a curve are flat.
 bool couldSnap(const ImproveOptions& options, const ImproveReport& report) {
@@ -251,8 +256,7 @@ void moveAll(const Subject& subject, VertexPlaces& places, const ImproveOptions&
   try {
     const BoundaryDistance distance =
         movePoints(subject, boundary, places, options, initial, report, context, stage);
-    const bool addsLayers = options.pillow != PillowMode::Never || options.snapCurves;
-    const ImproveReport moved = addsLayers ? report : ImproveReport{};
+    const ImproveReport moved = mayAddLayers(options) ? report : ImproveReport{};
     const Moved plain(subject, boundary, places, distance);
     reportAfter(plain, places.surface, points, report, stage);
     std::optional<Improved> best =
@@ -352,7 +356,7 @@ ImproveReport improveStraight(HexMesh& mesh, const ImproveOptions& options, Cont
 
 void requireImprovable(const LagrangeMesh& mesh, const ImproveOptions& options) {
   mesh::requireConsistent(mesh);
-  if (options.pillow != PillowMode::Never || options.snapCurves) {
+  if (mayAddLayers(options)) {
     throw Error(ErrorCode::InvalidArgument,
                 "Layers under the boundary are added to straight cells, not to those of a curved "
                 "mesh, and edges of straight ones are laid onto curves. Leave out both.");
