@@ -12,6 +12,7 @@
 #include <quantize/polycube/polycube.hpp>
 #include <shape/counted_faults.hpp>
 #include <shape/labels.hpp>
+#include <shape/loop_labels.hpp>
 #include <shape/polycube_map.hpp>
 #include <shape/rotation.hpp>
 
@@ -31,6 +32,10 @@ constexpr std::uint64_t kFreeAttempts = 2;
 constexpr double kMostWork = 6e7;
 /// Minimum budget in solver steps, for large meshes.
 constexpr double kStepsOfAll = 300;
+/// Labels by loops, where no others are valid: an additional share of the budget, and the moves of
+/// their search.
+constexpr double kShareOfLoops = 0.25;
+constexpr std::uint64_t kMovesOfLoops = 1500;
 
 std::vector<FaceFlags> flagsOf(const Surface& surface, const Labels& labels, std::size_t tets) {
   std::vector<FaceFlags> flags(tets, FaceFlags{-1, -1, -1, -1});
@@ -53,6 +58,11 @@ std::string faultsOf(const LabelReport& report) {
        {"charts without room between two of their edges", report.flatCharts}});
 }
 
+/// Whether an error says that labels have no map.
+bool saysNoMap(const Error& error) {
+  return error.code() == ErrorCode::InvalidArgument || error.code() == ErrorCode::FlippedTet;
+}
+
 /// The centroid of the place of an error.
 Vec3 pointAt(const TetMesh& mesh, const Place& place) {
   std::vector<Vec3> points;
@@ -72,7 +82,8 @@ class PolycubeSearch {
                  Context& context)
       : tets_(tets), surface_(surface), costs_(surface), report_(report), context_(context) {}
 
-  TetMap run(std::uint64_t seed, double workLeft) {
+  TetMap run(std::uint64_t seed, double mostWork) {
+    double workLeft = mostWork;
     std::optional<CheckedLabels> invalid;  // the best of them
     for (std::uint64_t attempt = 0; attempt < kMostAttempts && workLeft > 0; ++attempt) {
       CheckedLabels found = label(attempt, seed, workLeft);
@@ -82,11 +93,13 @@ class PolycubeSearch {
         invalid = std::move(found);
       }
     }
+    if (problem_) fail(workLeft <= 0, "");
     // Invalid labels hardly ever have a map, and none where valid ones do not.
-    if (!problem_) {
-      if (std::optional<TetMap> map = mapOf(*invalid, workLeft)) return std::move(*map);
+    if (std::optional<TetMap> map = mapOf(*invalid, workLeft)) return std::move(*map);
+    if (std::optional<TetMap> map = mapByLoops(seed, kShareOfLoops * mostWork)) {
+      return std::move(*map);
     }
-    fail(workLeft <= 0);
+    fail(workLeft <= 0, " Labels by loops along handles have no map either.");
   }
 
  private:
@@ -106,13 +119,9 @@ class PolycubeSearch {
     report_.labels = found.verdict.report;
     report_.labelMoves = found.moves;
     try {
-      return quantization::mapFromLabels(tets_.mesh(),
-                                         flagsOf(surface_, found.labels, tets_.mesh().tets.size()),
-                                         workLeft, context_);
+      return mapFrom(found.labels, tets_, surface_, workLeft);
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::InvalidArgument && error.code() != ErrorCode::FlippedTet) {
-        throw;
-      }
+      if (!saysNoMap(error)) throw;
       // Labels without a map mostly fail at one or two corners, close to where tets stay flipped.
       costs_.avoidCornersAt(pointAt(tets_.mesh(), error.place()));
       problem_ = error;
@@ -120,14 +129,41 @@ class PolycubeSearch {
     }
   }
 
-  [[noreturn]] void fail(bool isSpent) const {
+  /// From labels by loops. Few have a map, and hardly any before a search has moved borders so that
+  /// edges do not turn back.
+  std::optional<TetMap> mapByLoops(std::uint64_t seed, double workLeft) {
+    Stage stage(context_, "labelling");
+    const std::optional<LoopLabels> loops = labelsByLoops(tets_, surface_, stage);
+    if (!loops) return std::nullopt;
+    const LabelCosts costs(loops->surface);
+    LabelSearch search(loops->surface, costs, Random(seed, kMostAttempts));
+    const CheckedLabels found = search.improve(loops->labels, kMovesOfLoops, context_);
+    stage.finish();
+    try {
+      TetMap map = mapFrom(found.labels, loops->tets, loops->surface, workLeft);
+      report_.labels = found.verdict.report;
+      report_.labelMoves = found.moves;
+      return map;
+    } catch (const Error& error) {
+      if (!saysNoMap(error)) throw;
+      return std::nullopt;
+    }
+  }
+
+  TetMap mapFrom(const Labels& labels, const PositiveTets& tets, const Surface& surface,
+                 double& workLeft) {
+    return quantization::mapFromLabels(
+        tets.mesh(), flagsOf(surface, labels, tets.mesh().tets.size()), workLeft, context_);
+  }
+
+  [[noreturn]] void fail(bool isSpent, const std::string& more) const {
     const LabelReport& labels = report_.labels;
     throw Error(
         ErrorCode::NotMeshable,
         "No polycube of the shape was found: " +
             (labels.isValid() ? "labels were found, but no map of them"
                               : "the best labels that were found have " + faultsOf(labels)) +
-            ". " + problem_->what() +
+            ". " + problem_->what() + more +
             (isSpent ? " The search ended at the bound of its work." : "") +
             " Another seed may find other labels; a finer tet mesh leaves more room.",
         tets_.givenPlace(problem_->place()));

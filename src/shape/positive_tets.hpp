@@ -5,9 +5,12 @@
 #include <vector>
 
 #include <shape/surface.hpp>
+#include <tetmap/cut.hpp>
 
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
+
+#include <base/stage.hpp>
 
 namespace hexhex::shape {
 
@@ -19,7 +22,9 @@ class PositiveTets {
   void turn(const Rotation& rotation) {
     for (Vec3& point : mesh_.points) point = turned(rotation, point);
   }
-  /// Translates a place in these tets to the given ones.
+  /// Splits edges at their midpoints, the longest first. Tags are carried along.
+  void split(std::vector<tetmap::EdgeInTet> edges, Stage& stage);
+  /// Translates a place in these tets, unless they were split, to the given ones.
   [[nodiscard]] Place givenPlace(const Place& place) const {
     if (place.kind != PlaceKind::Face || !isSwapped_[place.index] || place.second < 2) return place;
     return {place.kind, place.index, 5 - place.second};

@@ -4,6 +4,7 @@
 #include <shape/surface.hpp>
 
 #include <base/box.hpp>
+#include <base/disjoint_sets.hpp>
 
 namespace hexhex::shape {
 
@@ -51,6 +52,21 @@ void Surface::turn(const Rotation& rotation) {
   }
 }
 
+std::vector<Side> Surface::sidesAt() const {
+  std::vector<Side> sides(pointCount, kNone);
+  for (Side side = 0; side < tails.size(); ++side) sides[tails[side]] = side;
+  return sides;
+}
+
+std::vector<Index> Surface::components() const {
+  DisjointSets sets(pointCount);
+  for (Side side = 0; side < tails.size(); ++side) sets.unite(tails[side], head(side));
+  std::vector<Index> components;
+  components.reserve(pointCount);
+  for (Index v = 0; v < pointCount; ++v) components.push_back(sets.find(v));
+  return components;
+}
+
 Surface surfaceOf(const adjacency::TetTopology& topology, const std::vector<Vec3>& points) {
   const quantization::BoundarySides sides(topology);
   Surface surface;
@@ -87,26 +103,19 @@ Surface smoothed(const Surface& surface, std::vector<Vec3> points, int rounds) {
 }
 
 bool isManifold(const Surface& surface) {
-  // Counts the sides around each vertex by walking from a side to the next one with the same tail.
-  std::vector<Index> sidesAt(surface.pointCount);
-  std::vector<Side> firstAt(surface.pointCount, kNone);
+  std::vector<Index> countAt(surface.pointCount);
   std::vector<std::array<Index, 2>> edges;
   for (Side side = 0; side < surface.tails.size(); ++side) {
-    ++sidesAt[surface.tails[side]];
-    firstAt[surface.tails[side]] = side;
+    ++countAt[surface.tails[side]];
     edges.push_back({surface.tails[side], surface.head(side)});
   }
   std::sort(edges.begin(), edges.end());
   if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
-  for (std::size_t v = 0; v < sidesAt.size(); ++v) {
-    Side side = firstAt[v];
-    if (side == kNone) continue;
+  for (const Side first : surface.sidesAt()) {
+    if (first == kNone) continue;
     Index count = 0;
-    do {
-      side = Surface::next(surface.twins[side]);
-      ++count;
-    } while (side != firstAt[v]);
-    if (count != sidesAt[v]) return false;
+    surface.forEachSideAround(first, [&count](Side /*side*/) { ++count; });
+    if (count != countAt[surface.tails[first]]) return false;
   }
   return true;
 }

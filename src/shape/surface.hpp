@@ -56,10 +56,24 @@ struct Surface {
   [[nodiscard]] Index head(Side side) const noexcept { return tails[next(side)]; }
   [[nodiscard]] Index beyond(Side side) const noexcept { return triangleOf(twins[side]); }
 
+  /// Per vertex: a side that starts there, or kNone inside the object.
+  [[nodiscard]] std::vector<Side> sidesAt() const;
+  /// Per vertex: the first one of its component.
+  [[nodiscard]] std::vector<Index> components() const;
+  /// Visits the sides that start where one does, clockwise as seen from outside.
+  template <class Visit>
+  void forEachSideAround(Side first, const Visit& visit) const {
+    Side side = first;
+    do {
+      visit(side);
+      side = next(twins[side]);
+    } while (side != first);
+  }
+
   void turn(const Rotation& rotation);
 };
 
-/// @param topology  with stars, of tets with positive volume
+/// @param topology  of tets with positive volume
 [[nodiscard]] Surface surfaceOf(const adjacency::TetTopology& topology,
                                 const std::vector<Vec3>& points);
 

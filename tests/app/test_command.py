@@ -998,18 +998,21 @@ class Repair(CommandTest):
         self.assertEqual(list(self.folder.glob("bad*")), [])
 
     def test_page_of_a_part_without_a_mesh(self):
-        """A single tet has too few triangles for the faces of a polycube."""
-        (self.folder / "tet.node").write_text("4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n")
-        (self.folder / "tet.ele").write_text("1 4 0\n0 0 1 2 3\n")
-        arguments = ["mesh", "tet.ele", "-o", "tet.vtu", "--cells", "100", "--method", "polycube"]
-        run = self.run_command(*arguments, "--view", "tet.html", expect=None)
+        """A tet with a long spike on each face has no frame field with a mesh."""
+        points = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, -2), (1, -2, 1), (1, 1, 1), (-2, 1, 1))
+        tets = ((0, 1, 2, 3), (0, 2, 1, 4), (0, 1, 3, 5), (1, 2, 3, 6), (0, 3, 2, 7))
+        for name, first, rows in (("node", "8 3 0 0", points), ("ele", "5 4 0", tets)):
+            lines = [" ".join(map(str, (number, *row))) for number, row in enumerate(rows)]
+            (self.folder / f"star.{name}").write_text("\n".join([first, *lines, ""]))
+        arguments = ["mesh", "star.ele", "-o", "star.vtu", "--cells", "100", "--method", "frames"]
+        run = self.run_command(*arguments, "--view", "star.html", expect=None)
         if "cannot make maps" in run.stderr or "without the viewer page" in run.stderr:
             self.skipTest("built without quantization or viewer")
         self.assertEqual(run.returncode, INVALID_MAP)
-        self.assertIn("tet.html shows where", run.stderr)
+        self.assertIn("star.html shows where", run.stderr)
         self.assertIn("[NotMeshable, edge", run.stderr)
-        self.assertIn('"start":{"colour":"region"', (self.folder / "tet.html").read_text())
-        self.assertFalse((self.folder / "tet.vtu").exists())
+        self.assertIn('"start":{"colour":"region"', (self.folder / "star.html").read_text())
+        self.assertFalse((self.folder / "star.vtu").exists())
         # The page is less important than the reason.
         run = self.run_command(*arguments, "--view", "/dev/full", expect=INVALID_MAP)
         self.assertIn("There is no page: ", run.stderr)

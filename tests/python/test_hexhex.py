@@ -668,15 +668,18 @@ def test_mesh_of_tets_refuses(tmp_path):
         assert caught.value.code in ("InvalidArgument", "IndexOutOfRange")
     with pytest.raises(hexhex.FileError):
         hexhex.mesh(tmp_path / "none.vtu", cells=9)
-    with pytest.raises(hexhex.MapError) as caught:  # a tet is no box, but has a mesh
-        hexhex.map_from_tets(*corner, method="polycube")
+    # A tet with a long spike on each face.
+    star = ([*corner[0], (1, 1, -2), (1, -2, 1), (1, 1, 1), (-2, 1, 1)],
+            [(0, 1, 2, 3), (0, 2, 1, 4), (0, 1, 3, 5), (1, 2, 3, 6), (0, 3, 2, 7)])
+    with pytest.raises(hexhex.MapError) as caught:
+        hexhex.map_from_tets(*star, method="frames")
     assert caught.value.code == "NotMeshable" and caught.value.place
-    part = hexhex.mesh(*corner, cells=9)
+    part = hexhex.mesh(*star, cells=9)
     assert part.all_positive and part.why
     ways = {way.method: way for way in part.ways}
-    assert ways["polycube"].refusal and not ways["polycube"].has_mesh
-    assert ways["frames"].certified and not ways["frames"].refusal
-    assert ways["frames"].minimum == part.improvement.after.minimum
+    assert ways["frames"].refusal and not ways["frames"].has_mesh
+    assert ways["polycube"].certified and not ways["polycube"].refusal
+    assert ways["polycube"].minimum == part.improvement.after.minimum
     with pytest.raises(ZeroDivisionError):
         hexhex.mesh(*corner, cells=9, progress=lambda stage, share: 1 / 0)
 

@@ -1,5 +1,6 @@
 // From tets alone to certified meshes: of bodies whose polycubes are known, turned and deformed; of
 // real parts, where the folder is there; and of what is no part.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -238,25 +239,59 @@ TEST(Shapes, RefuseWhatIsOutOfRange) {
   }
 }
 
+/// A tet with a spike on each face: only edges that are split have room for labels.
 TEST(Shapes, EndTheSearchForLabelsAtItsBound) {
-  // No labels of four triangles are those of a polycube.
-  const TetMesh tet = {.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                       .tets = {{0, 1, 2, 3}}};
+  const TetMesh star = {{{0.962, 0.811, 0.716},
+                         {1.259, -0.970, -0.731},
+                         {-1.039, 0.991, -1.048},
+                         {-1.108, -1.102, 0.793},
+                         {-4.642, -5.753, -5.640},
+                         {-6.646, 3.734, 2.684},
+                         {7.201, -7.848, 4.996},
+                         {6.225, 4.393, -5.535}},
+                        {{0, 2, 1, 3}, {4, 1, 2, 3}, {0, 5, 2, 3}, {0, 1, 6, 3}, {0, 1, 2, 7}}};
   Context context(1);
-  const shape::PositiveTets positive(tet);
+  const shape::PositiveTets positive(star);
   const shape::Surface surface = shape::readSurface(positive, context);
-  const auto isAtBound = [&](double work) {
-    const Error error = errorOf([&] {
-      ShapeReport report;
-      static_cast<void>(shape::polycubeMap(positive, surface, 1, work, report, context));
-    });
-    EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
-    EXPECT_NE(std::string(error.what()).find("the best labels that were found have"),
-              std::string::npos);
-    return std::string(error.what()).find("ended at the bound of its work") != std::string::npos;
+  const auto map = [&](double work) {
+    ShapeReport report;
+    return shape::polycubeMap(positive, surface, 1, work, report, context);
   };
-  EXPECT_TRUE(isAtBound(1));
-  EXPECT_FALSE(isAtBound(shape::workFor(1)));  // enough for all tries
+  const Error error = errorOf([&] { static_cast<void>(map(1)); });
+  EXPECT_EQ(error.code(), ErrorCode::NotMeshable);
+  for (const char* const words :
+       {"the best labels that were found have", "Labels by loops along handles have no map either",
+        "ended at the bound of its work"}) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(map(shape::workFor(star.tets.size())).parameters.empty());
+}
+
+/// No labels of four to twelve triangles are those of a polycube: edges are split where loops need
+/// room. A tet, a bipyramid, an octahedron, a pyramid and a wedge.
+TEST(Shapes, GetMoreTrianglesWhereLabelsHaveNoRoom) {
+  const std::vector<Vec3> ends = {
+      {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}};
+  const std::vector<Vec3> axes = {{1, 0, 0},  {-1, 0.1, 0}, {0, 1, 0},
+                                  {0, -1, 0}, {0, 0, 1},    {0, 0, -1.1}};
+  const std::vector<Vec3> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.6, 1}};
+  const std::vector<Vec3> prism = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                   {0, 0, 1}, {1, 0, 1}, {0, 1, 1.1}};
+  for (const TetMesh& tets :
+       std::vector<TetMesh>{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
+                            {ends, {{1, 4, 2, 3}, {0, 2, 4, 3}}},
+                            {axes, {{2, 5, 3, 1}, {2, 3, 5, 0}, {2, 3, 4, 1}, {2, 4, 3, 0}}},
+                            {square, {{3, 2, 4, 1}, {3, 1, 4, 0}}},
+                            {prism, {{4, 3, 5, 2}, {4, 3, 2, 0}, {4, 2, 1, 0}}}}) {
+    SCOPED_TRACE(tets.tets.size());
+    const ShapedMap found = shaped(tets);
+    EXPECT_GE(found.report.labels.charts, 6U);
+    EXPECT_TRUE(std::equal(tets.points.begin(), tets.points.end(), found.map.points.begin()));
+    ExtractOptions exact;
+    exact.tolerance = 0;
+    const HexMesh mesh = verifiedExtraction(quantize(found.map, {.cells = 50}).map, exact);
+    EXPECT_FALSE(mesh.cells.empty());
+  }
 }
 
 TEST(Shapes, CanBeCancelled) {

@@ -78,10 +78,13 @@ export default function makePages(): void {
   hexhex("extract", "tagged.ovmb", "-o", "features.ovmb", "--quiet");
   hexhex("view", "features.ovmb", "--quiet");
 
-  // A part that has no mesh: one tet.
-  writeFileSync(join(kPages, "tet.node"), "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
-  writeFileSync(join(kPages, "tet.ele"), "1 4 0\n0 0 1 2 3\n");
-  const part = ["tet.ele", "-o", "tet.vtu", "--cells", "100", "--method", "polycube", "--view", "tet.html"];
+  // A part that has no mesh along frames: a tet with a long spike on each face.
+  const points = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "1 1 -2", "1 -2 1", "1 1 1", "-2 1 1"];
+  const tets = ["0 1 2 3", "0 2 1 4", "0 1 3 5", "1 2 3 6", "0 3 2 7"];
+  const numbered = (rows: string[]) => rows.map((row, i) => `${i} ${row}\n`).join("");
+  writeFileSync(join(kPages, "star.node"), `${points.length} 3 0 0\n${numbered(points)}`);
+  writeFileSync(join(kPages, "star.ele"), `${tets.length} 4 0\n${numbered(tets)}`);
+  const part = ["star.ele", "-o", "star.vtu", "--cells", "100", "--method", "frames", "--view", "star.html"];
   try {
     hexhex("mesh", ...part, "--quiet");
   } catch {

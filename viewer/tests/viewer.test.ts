@@ -326,7 +326,7 @@ test("shows what is tagged", async ({ page }) => {
 });
 
 test("shows where a part cannot be meshed", async ({ page }) => {
-  await open(page, "tet.html");
+  await open(page, "star.html");
   await expect(page.locator("#colour")).toHaveValue("region");
   await expect(page.locator("#legend")).toContainText("region of the cell");
   await expect(page.locator("#legend")).not.toContainText("valence");
