@@ -20,7 +20,7 @@ template <class... Enumerations>
 constexpr bool kAreInts = (std::is_same_v<std::underlying_type_t<Enumerations>, int> && ...);
 static_assert(kAreInts<hexhex_status, hexhex_place_kind, hexhex_chart_style, hexhex_defect_kind,
                        hexhex_answer_table, hexhex_output, hexhex_mesh_array, hexhex_engine,
-                       hexhex_pillow_mode, hexhex_valence_table>);
+                       hexhex_curved_nodes, hexhex_pillow_mode, hexhex_valence_table>);
 
 namespace hexhex::c {
 

@@ -702,7 +702,7 @@ typedef enum hexhex_engine HEXHEX_AS_INT {
 } hexhex_engine;
 
 /** Placement of the nodes of higher-order cells: see CurvedNodes in <hexhex/extract.hpp>. */
-typedef enum hexhex_curved_nodes {
+typedef enum hexhex_curved_nodes HEXHEX_AS_INT {
   HEXHEX_NODES_BLENDED = 0, /**< on the surface; blended inside, so that no cell folds over */
   HEXHEX_NODES_EXACT = 1    /**< all where the map puts them */
 } hexhex_curved_nodes;
