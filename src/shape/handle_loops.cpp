@@ -191,13 +191,6 @@ HomologyClass sumAlong(const std::vector<Side>& sides, const std::vector<Homolog
   return sum;
 }
 
-/// V - E + F = 2 - 2 handles, and two triangles have three edges.
-std::size_t handlesOf(const std::vector<Index>& component, const std::vector<Index>& valences) {
-  std::size_t sides = 0;
-  for (const Index v : component) sides += valences[v];
-  return (2 + sides / 6 - component.size()) / 2;
-}
-
 /// Connects loops, and adds all to a graph.
 /// @return false if there is no room for a path
 bool join(const Surface& surface, std::vector<std::vector<Side>> loops, PathSearch& search,
@@ -236,56 +229,60 @@ bool join(const Surface& surface, std::vector<std::vector<Side>> loops, PathSear
 
 HandleLoops::HandleLoops(const std::vector<Tet>& tets, const Surface& surface,
                          const std::vector<Vec3>& points, Stage& stage)
-    : surface_(surface), points_(points) {
+    : surface_(surface), points_(points), sideAt_(surface.sidesAt()) {
   const EdgeClasses classes(tets, points.size(), stage);
   classes_.reserve(surface.tails.size());
   for (Side side = 0; side < surface.tails.size(); ++side) {
     classes_.push_back(classes(surface.tails[side], surface.head(side)));
   }
+  std::vector<Index> valences(surface.pointCount);
+  for (const Index v : surface.tails) ++valences[v];
   const std::vector<Index> componentOf = surface.components();
-  std::vector<Index> vertices = surface.tails;
-  sortUnique(vertices);
-  std::map<Index, std::vector<Index>> components;
-  for (const Index v : vertices) components[componentOf[v]].push_back(v);
+  std::map<Index, Component> components;
+  for (Index v = 0; v < valences.size(); ++v) {
+    if (valences[v] > 0) components[componentOf[v]].vertices.push_back(v);
+  }
   components_.reserve(components.size());
-  for (auto& [first, each] : components) components_.push_back(std::move(each));
+  for (auto& [first, each] : components) {
+    std::size_t sides = 0;
+    for (const Index v : each.vertices) sides += valences[v];
+    // V - E + F = 2 - 2 handles, and two triangles have three edges.
+    each.handles = (2 + sides / 6 - each.vertices.size()) / 2;
+    components_.push_back(std::move(each));
+  }
 }
 
-Index HandleLoops::tip(const std::vector<Index>& component, const std::vector<Side>& sideAt,
-                       lattice::Direction up) const {
+Index HandleLoops::tip(const Component& component, lattice::Direction up) const {
   const auto heightOf = [&](Index v) {
     return lattice::signOf(up) * points_[v][static_cast<std::size_t>(lattice::axisOf(up))];
   };
   Index best = kNone;
-  for (const Index v : component) {
+  for (const Index v : component.vertices) {
     if (best != kNone && heightOf(v) <= heightOf(best)) continue;
     double facing = 0;  // of the ceiling of a void, it is negative
-    surface_.forEachSideAround(sideAt[v], [&](Side side) {
+    surface_.forEachSideAround(sideAt_[v], [&](Side side) {
       facing += cosine(surface_.normals[Surface::triangleOf(side)], up);
     });
-    if (facing > 0 && columnsAround(surface_, sideAt[v]) >= 4) best = v;
+    if (facing > 0 && columnsAround(surface_, sideAt_[v]) >= kLeastColumns) best = v;
   }
   return best;
 }
 
 std::optional<LoopGraph> HandleLoops::graph(lattice::Direction up, Stage& stage) const {
   LoopGraph graph{std::vector<bool>(surface_.pointCount), {}};
-  std::vector<Index> valences(surface_.pointCount);
-  for (const Index v : surface_.tails) ++valences[v];
-  const std::vector<Side> sideAt = surface_.sidesAt();
-  PathSearch search(surface_, sideAt, up);
+  PathSearch search(surface_, sideAt_, up);
   ClassBasis basis;
-  for (const std::vector<Index>& component : components_) {
+  for (const Component& component : components_) {
     std::vector<std::vector<Side>> loops;
-    for (std::size_t left = handlesOf(component, valences); left > 0; --left) {
+    while (loops.size() < component.handles) {
       stage.context().throwIfCancelled();
-      loops.push_back(search.loop(component, classes_, basis));
+      loops.push_back(search.loop(component.vertices, classes_, basis));
       if (loops.back().empty()) return std::nullopt;
       basis.add(sumAlong(loops.back(), classes_));
       search.use(loops.back());
     }
     if (loops.empty()) {
-      const Index vertex = tip(component, sideAt, up);
+      const Index vertex = tip(component, up);
       if (vertex == kNone) return std::nullopt;
       graph.has[vertex] = true;
     } else if (!join(surface_, std::move(loops), search, graph)) {

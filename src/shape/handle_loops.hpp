@@ -12,6 +12,9 @@
 
 namespace hexhex::shape {
 
+/// The columns that a wall around a graph must have: one per direction.
+inline constexpr int kLeastColumns = 4;
+
 /// A connected graph on each component of a surface: loops and paths between them, or a vertex of a
 /// component without handles. Its neighbourhood is a disk with as many holes as the component has
 /// handles, and so is the rest of the component.
@@ -38,14 +41,18 @@ class HandleLoops {
   [[nodiscard]] std::optional<LoopGraph> graph(lattice::Direction up, Stage& stage) const;
 
  private:
-  /// The highest vertex that faces up, where walls have room for four columns, or kNone.
-  [[nodiscard]] Index tip(const std::vector<Index>& component, const std::vector<Side>& sideAt,
-                          lattice::Direction up) const;
+  struct Component {
+    std::vector<Index> vertices;  ///< ascending
+    std::size_t handles = 0;
+  };
+  /// The highest vertex that faces up, where walls have room for all columns, or kNone.
+  [[nodiscard]] Index tip(const Component& component, lattice::Direction up) const;
 
   const Surface& surface_;
   const std::vector<Vec3>& points_;
-  std::vector<HomologyClass> classes_;          ///< per side
-  std::vector<std::vector<Index>> components_;  ///< their vertices
+  std::vector<Side> sideAt_;            ///< per vertex
+  std::vector<HomologyClass> classes_;  ///< per side
+  std::vector<Component> components_;
 };
 
 }  // namespace hexhex::shape

@@ -25,7 +25,6 @@ namespace {
 
 constexpr Index kTop = 0;  // charts; walls have others
 constexpr Index kBottom = 1;
-constexpr std::size_t kLeastColumns = 4;
 /// The cost of a corner between columns, and that of a border as long as the root of the area,
 /// relative to labels at right angles to all of the surface.
 constexpr double kCostOfCorner = 0.005;
@@ -152,7 +151,7 @@ class Prism {
     }
     charts_ = wall.end;
     walls_.push_back(wall);
-    return wall.end - wall.begin >= kLeastColumns;
+    return wall.end - wall.begin >= Index{kLeastColumns};
   }
 
   [[nodiscard]] double shareOf(Index t) const { return surface_.areas[t] / surface_.area; }

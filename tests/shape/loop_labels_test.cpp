@@ -372,18 +372,7 @@ TEST(LoopLabels, OfVoidsFaceInside) {
   }
 }
 
-TEST(LoopLabels, HaveRoomAtSpikes) {
-  const TetMesh star = {{{0.962, 0.811, 0.716},
-                         {1.259, -0.970, -0.731},
-                         {-1.039, 0.991, -1.048},
-                         {-1.108, -1.102, 0.793},
-                         {-4.642, -5.753, -5.640},
-                         {-6.646, 3.734, 2.684},
-                         {7.201, -7.848, 4.996},
-                         {6.225, 4.393, -5.535}},
-                        {{0, 2, 1, 3}, {4, 1, 2, 3}, {0, 5, 2, 3}, {0, 1, 6, 3}, {0, 1, 2, 7}}};
-  expectPrisms(star, {0});
-}
+TEST(LoopLabels, HaveRoomAtSpikes) { expectPrisms(test::spikedTet(), {0}); }
 
 TEST(LoopLabels, CanBeCancelled) {
   Context context;

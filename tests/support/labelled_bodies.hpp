@@ -140,6 +140,20 @@ class CubeBody {
   std::function<bool(const Cell&)> isFull_;
 };
 
+/// A tet with a long spike on each face, at whose tips three triangles meet: no labels of the
+/// twelve triangles are those of a polycube.
+inline TetMesh spikedTet() {
+  return {{{0.962, 0.811, 0.716},
+           {1.259, -0.970, -0.731},
+           {-1.039, 0.991, -1.048},
+           {-1.108, -1.102, 0.793},
+           {-4.642, -5.753, -5.640},
+           {-6.646, 3.734, 2.684},
+           {7.201, -7.848, 4.996},
+           {6.225, 4.393, -5.535}},
+          {{0, 2, 1, 3}, {4, 1, 2, 3}, {0, 5, 2, 3}, {0, 1, 6, 3}, {0, 1, 2, 7}}};
+}
+
 /// How many vertices of a mesh have so many cells, of odd numbers.
 inline std::map<int, int> cornersOf(const HexMesh& mesh) {
   std::vector<int> counts(mesh.points.size());
