@@ -34,6 +34,9 @@ struct BenchMap {
 /// Maps whose meshes are verified and certified: few, 50 and more than 100 hexahedra per tet.
 [[nodiscard]] const std::vector<BenchMap>& checkedMaps();
 
+/// The map whose mesh is written in all ways: 26.5 million cells, or a generated one.
+[[nodiscard]] const BenchMap& writtenMap();
+
 /// Generated maps of one kind, from 0.01 to 1000 hexahedra per tet.
 [[nodiscard]] const std::vector<BenchMap>& densityMaps();
 

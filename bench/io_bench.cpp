@@ -106,16 +106,6 @@ const BenchMesh& lessDenseMesh() {
   return mesh;
 }
 
-/// Of a file, or of all files in a folder: some formats are folders.
-std::uint64_t bytesOf(const std::filesystem::path& file) {
-  if (!std::filesystem::is_directory(file)) return std::filesystem::file_size(file);
-  std::uint64_t bytes = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(file)) {
-    if (entry.is_regular_file()) bytes += entry.file_size();
-  }
-  return bytes;
-}
-
 /// What one run takes, in bytes.
 struct Need {
   std::uint64_t memory = 0;

@@ -7,6 +7,7 @@
 #include <spawn.h>
 #include <string>
 #include <sys/wait.h>
+#include <thread>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -97,9 +98,18 @@ void checking(benchmark::State& state, const BenchMap& which, int threads) {
 /// What a run of the command took.
 struct Run {
   double seconds = 0;
+  double writingSeconds = 0;  ///< 0 if it wrote while it extracted
   double peakBytes = 0;
   bool succeeded = false;
 };
+
+/// The number behind a key of a report, if it is there.
+std::optional<double> numberOf(const std::string& report, const std::string& key) {
+  const std::string quoted = "\"" + key + "\":";
+  const std::size_t place = report.find(quoted);
+  if (place == std::string::npos) return std::nullopt;
+  return std::stod(report.substr(place + quoted.size()));
+}
 
 /// @param report  where the command writes its report
 Run runCommand(std::vector<std::string> words, const std::filesystem::path& report) {
@@ -118,13 +128,10 @@ Run runCommand(std::vector<std::string> words, const std::filesystem::path& repo
   });
   std::ifstream file(report);
   const std::string text(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>{});
-  const std::string key = "\"peak_memory_bytes\":";
-  const std::size_t place = text.find(key);
-  if (place == std::string::npos) {
-    run.succeeded = false;
-  } else {
-    run.peakBytes = std::stod(text.substr(place + key.size()));
-  }
+  const std::optional<double> peak = numberOf(text, "peak_memory_bytes");
+  run.succeeded = run.succeeded && peak.has_value();
+  run.peakBytes = peak.value_or(0);
+  run.writingSeconds = numberOf(text, "writing").value_or(0);
   return run;
 }
 
@@ -173,6 +180,66 @@ void commanding(benchmark::State& state, const BenchMap& which, int threads) {
   state.counters["bytes_of_mesh_and_map"] = known;
 }
 
+/// How the command writes a mesh.
+struct Way {
+  const char* name;
+  std::vector<std::string> options;
+  const char* file;
+};
+
+/// `hexhex extract` into a file of a mesh in memory, piece by piece, or into files of parts.
+void writing(benchmark::State& state, const Way& way, int threads) {
+  const BenchMap& which = writtenMap();
+  const std::filesystem::path input = folder() / "map.hexex";
+  const std::filesystem::path output = folder() / "written";
+  writeMap(load(which), input);
+  std::vector<std::string> words = {HEXHEX_COMMAND, "extract", input.string(), "--quiet"};
+  words.insert(words.end(), {"-o", (output / way.file).string()});
+  words.insert(words.end(), {"--scale", std::to_string(which.scale)});
+  words.insert(words.end(), {"--threads", std::to_string(threads)});
+  words.insert(words.end(), way.options.begin(), way.options.end());
+  Run sum;
+  double plain = 0;
+  for (auto _ : state) {
+    std::filesystem::remove_all(output);
+    std::filesystem::create_directory(output);
+    const Run run = runCommand(words, folder() / "report.json");
+    if (!run.succeeded) {
+      state.SkipWithError("the command failed");
+      return;
+    }
+    state.SetIterationTime(run.seconds);
+    sum.writingSeconds += run.writingSeconds;
+    sum.peakBytes += run.peakBytes;
+    const std::uint64_t bytes = bytesOf(output);
+    std::filesystem::remove_all(output);  // room for as many bytes
+    plain += secondsOfPlainWrite(bytes, threads);
+  }
+  std::filesystem::remove(input);
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["writing_seconds"] = sum.writingSeconds / runs;
+  state.counters["plain_write_seconds"] = plain / runs;
+  state.counters["peak_bytes"] = sum.peakBytes / runs;
+}
+
+/// With 1, 2, 4, ... threads, as many as there are.
+void addWays() {
+  const std::vector<Way> ways = {{"memory", {}, "mesh.vtu"},
+                                 {"stream", {"--stream"}, "mesh.vtu"},
+                                 {"parts64", {"--parts", "64"}, "mesh.pvtu"}};
+  const int all = static_cast<int>(std::thread::hardware_concurrency());
+  for (int threads = 1; threads <= all; threads *= 2) {
+    for (const Way& way : ways) {
+      const std::string name = "ways/" + writtenMap().name + "/way:" + way.name +
+                               "/threads:" + std::to_string(threads);
+      benchmark::RegisterBenchmark(
+          name.c_str(), [way, threads](benchmark::State& state) { writing(state, way, threads); })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
 #endif
 
 template <class F>
@@ -192,6 +259,7 @@ void registerMesh() {
   for (const BenchMap& map : checkedMaps()) add("check", map, checking);
 #ifdef HEXHEX_COMMAND
   for (const BenchMap& map : checkedMaps()) add("command", map, commanding);
+  addWays();
 #endif
 }
 

@@ -1,9 +1,11 @@
 #include "plain_write.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <fcntl.h>
 #include <random>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -29,17 +31,32 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-double secondsOfPlainWrite(std::uint64_t bytes) {
-  constexpr std::size_t kSlice = std::size_t{1} << 22;
+std::uint64_t bytesOf(const std::filesystem::path& file) {
+  if (!std::filesystem::is_directory(file)) return std::filesystem::file_size(file);
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(file)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  return bytes;
+}
+
+double secondsOfPlainWrite(std::uint64_t bytes, int threads) {
+  constexpr std::uint64_t kSlice = std::uint64_t{1} << 22;
   static const std::vector<char> slice(kSlice, 'x');
   const std::filesystem::path file = folder() / "plain";
   const auto begin = std::chrono::steady_clock::now();
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  while (bytes > 0) {
-    const ssize_t written =
-        ::write(descriptor, slice.data(), std::min<std::uint64_t>(bytes, kSlice));
-    if (written <= 0) break;
-    bytes -= static_cast<std::uint64_t>(written);
+  std::atomic<std::uint64_t> next = 0;
+  const auto writeSlices = [&] {
+    for (std::uint64_t at = 0; (at = next.fetch_add(kSlice)) < bytes;) {
+      const std::uint64_t size = std::min(bytes - at, kSlice);
+      if (::pwrite(descriptor, slice.data(), size, static_cast<off_t>(at)) <= 0) return;
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < threads; ++i) others.emplace_back(writeSlices);
+    writeSlices();
   }
   ::close(descriptor);
   const double seconds = secondsSince(begin);

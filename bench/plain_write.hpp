@@ -29,7 +29,10 @@ class TemporaryFolder {
 
 [[nodiscard]] double secondsSince(std::chrono::steady_clock::time_point begin);
 
-/// Seconds for writing as many bytes from memory that is in use already, with one thread.
-[[nodiscard]] double secondsOfPlainWrite(std::uint64_t bytes);
+/// Of a file, or of all files in a folder: some formats are folders.
+[[nodiscard]] std::uint64_t bytesOf(const std::filesystem::path& file);
+
+/// Seconds for writing as many bytes into one file, from memory that is in use already.
+[[nodiscard]] double secondsOfPlainWrite(std::uint64_t bytes, int threads = 1);
 
 }  // namespace hexhex::bench

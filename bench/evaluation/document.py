@@ -25,6 +25,7 @@ def _parts(runs: list[Run], about: dict[str, str]) -> dict[str, Parts]:
         "stage-groups": lambda: plot_density.describe_groups(runs),
         "table-curved": lambda: tables.curved(runs),
         "table-files": lambda: tables.files(runs),
+        "table-ways": lambda: tables.ways(runs),
         "table-checks": lambda: tables.checks(runs),
         "table-commands": lambda: tables.commands(runs),
     }, "ablation.md": {

@@ -33,6 +33,7 @@ FULL = [
     Step("mesh", BENCH, "^(check|command)/", 5),
     Step("curved", BENCH, "^arcs_and_patches/.*engine:atlas/threads:1", 3),
     Step("files", BENCH, "^(read|write|copy|summarize)_", 3),
+    Step("ways", BENCH, "^ways/", 3),
 ]
 FULL_TEXT = ("full: medians of five repetitions, of seven for ablations, of three at scales above "
              "8, of arcs and of files; extraction in three rounds")
@@ -49,5 +50,6 @@ QUICK = [
     Step("mesh", BENCH, "^(check|command)/", 1, 0.01),
     Step("curved", BENCH, "^arcs_and_patches/(sphere_blocks_low|s17c).*engine:atlas/threads:1", 1, 0.01),
     Step("files", BENCH, "^(read|write|copy|summarize)_", 1, 0.01),
+    Step("ways", BENCH, "^ways/", 1, 0.01),
 ]
 QUICK_TEXT = "quick (`--quick`): extraction is the median of three runs, all else ran once"

@@ -222,6 +222,25 @@ def files(runs: list[Run]) -> str:
     return table(["MB per second", *columns, "time of writing / plain write"], rows)
 
 
+def ways(runs: list[Run]) -> str:
+    """Whole runs into files: of the mesh in memory, in pieces, in parts; and beside a plain write."""
+    rows = []
+    for memory in select(runs, "ways", way="memory"):
+        stream, parts = (next(iter(select(runs, "ways", way=way, threads=str(memory.threads))), None)
+                         for way in ("stream", "parts64"))
+        row = [str(memory.threads), number(memory["plain_write_seconds"]),
+               number(memory["writing_seconds"]),
+               _ratio(memory["writing_seconds"], memory["plain_write_seconds"]),
+               number(memory["ms"] * 1e-3), number(memory["peak_bytes"] * 1e-6)]
+        for run in (stream, parts):
+            row += [number(run["ms"] * 1e-3 if run else None), _ratio(run["ms"] if run else None, memory["ms"]),
+                    number(run["peak_bytes"] * 1e-6 if run else None)]
+        rows.append(row)
+    return table(["threads", "plain write: s", "writing: s", "writing / plain", "whole run: s", "MB",
+                  "stream: s", "stream / whole", "MB", "64 parts: s", "parts / whole", "MB"],
+                 rows) if rows else ""
+
+
 def _by_threads(runs: list[Run], family: str) -> list[tuple[Run, Run | None]]:
     """With one thread, and with two."""
     found = select(runs, family)

@@ -5,8 +5,8 @@
  * number of a signal; N says at which call, from 1 on, or 0 for never; PERSISTENT is 1 if all calls
  * of the kind from there on fail. "new" is "malloc" without the memory that the command has set aside
  * for such times. For "memory", N is how many KiB there are. The answer on descriptor
- * 199 is a line: the status of the process, and how many calls of the kind there were, or how many
- * KiB were in use. FAULT_OUTPUT names the folder for what the command
+ * 199 is a line: the status of the process, and how many calls of each kind there were, or for "memory"
+ * how many KiB were in use. FAULT_OUTPUT names the folder for what the command
  * prints (out, err) and, for requests of kind "log", for the order of what it did (log).
  *
  * FAULT='KIND N PERSISTENT' in the environment makes one such run without all that, for debuggers.
@@ -49,7 +49,7 @@ static struct {
   int persistent;
   atomic_int armed;
 } fault;
-static atomic_long *calls; /* shared with the server */
+static atomic_long *calls; /* of each kind; shared with the server */
 static int logging = -1;
 static pid_t command; /* gets the signals, also for what its children do */
 
@@ -68,9 +68,9 @@ static void trace(void) {
 
 /* Whether this call of the kind is the one. */
 static int hits(enum Kind kind) {
-  if (!fault.armed || fault.kind != kind) return 0;
-  const long call = atomic_fetch_add(calls, 1) + 1;
-  if (fault.at == 0 || call < fault.at || (call > fault.at && !fault.persistent)) return 0;
+  if (!fault.armed) return 0;
+  const long call = atomic_fetch_add(&calls[kind], 1) + 1;
+  if (fault.kind != kind || fault.at == 0 || call < fault.at || (call > fault.at && !fault.persistent)) return 0;
   if (call == fault.at) trace();
   return 1;
 }
@@ -115,18 +115,19 @@ extern void *__libc_realloc(void *, size_t);
 extern void *__libc_memalign(size_t, size_t);
 extern void __libc_free(void *);
 
-static atomic_long in_use; /* bytes, of what main() allocated; `calls` is the most in KiB */
+static atomic_long in_use; /* bytes, of what main() allocated; calls[MEMORY] is the most in KiB */
 
 /* Whether so many bytes are more than there are. */
 static int exceeds(size_t size) {
-  if (!fault.armed || fault.kind != MEMORY) return 0;
+  if (!fault.armed) return 0;
   const long total = (atomic_load(&in_use) + (long)size) / 1024 + 1;
-  if (fault.at > 0 && total > fault.at) return errno = ENOMEM, 1;
-  if (total > atomic_load(calls)) atomic_store(calls, total);
+  if (fault.kind == MEMORY && fault.at > 0 && total > fault.at) return errno = ENOMEM, 1;
+  if (total > atomic_load(&calls[MEMORY])) atomic_store(&calls[MEMORY], total);
   return 0;
 }
 static int lacks(size_t size) {
-  if (hits(MALLOC) || hits(NEW)) return errno = ENOMEM, 1;
+  const int fails_in_malloc = hits(MALLOC); /* both are counted */
+  if (hits(NEW) || fails_in_malloc) return errno = ENOMEM, 1;
   return exceeds(size);
 }
 static void *taken(void *memory) {
@@ -375,12 +376,12 @@ static int parse_request(const char *line) {
   char kind[16];
   if (sscanf(line, "%15s %ld %d", kind, &fault.at, &fault.persistent) != 3) return 0;
   parse(kind);
-  atomic_store(calls, 0);
+  for (int k = 0; k <= NOTHING; ++k) atomic_store(&calls[k], 0);
   return 1;
 }
 
 static int serve(int argc, char **argv, char **environment) {
-  calls = mmap(NULL, sizeof *calls, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  calls = mmap(NULL, (NOTHING + 1) * sizeof *calls, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (getenv("FAULT") != NULL) {
     return parse_request(getenv("FAULT")) ? alone(argc, argv, environment) : 98;
   }
@@ -396,7 +397,9 @@ static int serve(int argc, char **argv, char **environment) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    dprintf(kAnswers, "%d %ld\n", status, atomic_load(calls));
+    dprintf(kAnswers, "%d", status);
+    for (int k = 0; k <= NOTHING; ++k) dprintf(kAnswers, " %s=%ld", kKinds[k], atomic_load(&calls[k]));
+    dprintf(kAnswers, "\n");
   }
   _exit(0);
 }
