@@ -140,6 +140,48 @@ class GzipStream {
   bool ended_ = false;
 };
 
+/// libdeflate, which compresses 2.5 times as fast as zlib, to a twentieth more. It is not linked.
+struct Libdeflate {
+  struct Compressor;
+  Compressor* (*allocate)(int level) = nullptr;
+  std::size_t (*bound)(Compressor*, std::size_t size) = nullptr;
+  std::size_t (*compress)(Compressor*, const void* in, std::size_t inSize, void* out,
+                          std::size_t outSize) = nullptr;
+  void (*free)(Compressor*) = nullptr;
+
+  Libdeflate() {
+    LoadedLibrary library({"libdeflate.so.0"});
+    allocate = library.find<decltype(allocate)>("libdeflate_alloc_compressor");
+    bound = library.find<decltype(bound)>("libdeflate_zlib_compress_bound");
+    compress = library.find<decltype(compress)>("libdeflate_zlib_compress");
+    free = library.find<decltype(free)>("libdeflate_free_compressor");
+  }
+  [[nodiscard]] bool isComplete() const {
+    return allocate != nullptr && bound != nullptr && compress != nullptr && free != nullptr;
+  }
+};
+
+constexpr int kLevel = 1;  // higher levels take longer for little: zlib's 6 three times, for 10 %
+
+/// @return the number of bytes; 0 if there is no memory for it
+std::size_t deflateByZlib(std::span<const char> bytes, std::span<char> room) {
+  auto size = static_cast<uLongf>(room.size());
+  const int status = ::compress2(reinterpret_cast<Bytef*>(room.data()), &size,
+                                 reinterpret_cast<const Bytef*>(bytes.data()),
+                                 static_cast<uLong>(bytes.size()), kLevel);
+  return status == Z_OK ? size : 0;
+}
+
+std::size_t deflateBy(const Libdeflate& library, std::span<const char> bytes,
+                      std::span<char> room) {
+  Libdeflate::Compressor* const compressor = library.allocate(kLevel);
+  if (compressor == nullptr) return 0;
+  const std::size_t size =
+      library.compress(compressor, bytes.data(), bytes.size(), room.data(), room.size());
+  library.free(compressor);
+  return size;
+}
+
 }  // namespace
 
 Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
@@ -159,14 +201,15 @@ Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
 }
 
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {
-  constexpr int kLevel = 1;  // higher levels take three times as long for 10 % less
+  static const Libdeflate library;
   const std::size_t before = compressed.size();
-  uLongf size = ::compressBound(static_cast<uLong>(bytes.size()));
-  compressed.resize(before + size);
-  const int status = ::compress2(reinterpret_cast<Bytef*>(compressed.data() + before), &size,
-                                 reinterpret_cast<const Bytef*>(bytes.data()),
-                                 static_cast<uLong>(bytes.size()), kLevel);
-  if (status != Z_OK) throw std::bad_alloc();  // the buffer is large enough, so memory ran out
+  compressed.resize(before + (library.isComplete()
+                                  ? library.bound(nullptr, bytes.size())
+                                  : ::compressBound(static_cast<uLong>(bytes.size()))));
+  const std::span<char> room = std::span(compressed).subspan(before);
+  const std::size_t size =
+      library.isComplete() ? deflateBy(library, bytes, room) : deflateByZlib(bytes, room);
+  if (size == 0) throw std::bad_alloc();  // there is enough room, so memory ran out
   compressed.resize(before + size);
 }
 
