@@ -21,7 +21,7 @@
 
 #include <io/core/cell_counts.hpp>
 #include <io/core/compressed_blocks.hpp>
-#include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>

@@ -19,7 +19,7 @@
 
 #include <base/vector3.hpp>
 #include <io/core/compressed_blocks.hpp>
-#include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/netcdf.hpp>
 #include <io/io_test_support.hpp>

@@ -19,7 +19,7 @@
 #include <hexhex/parts.hpp>
 #include <hexhex/samples.hpp>
 
-#include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/formats/formats.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>

@@ -17,7 +17,7 @@
 #include <hexhex/samples.hpp>
 
 #include <io/core/compressed_blocks.hpp>
-#include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/io_test_support.hpp>
 #include <io/other_programs.hpp>
 

@@ -9,7 +9,7 @@
 #include <hexhex/samples.hpp>
 
 #include <base/parallel.hpp>
-#include <io/formats/ovm_cells.hpp>
+#include <io/formats/ovm_mesh.hpp>
 #include <io/io_test_support.hpp>
 
 namespace hexhex::test {

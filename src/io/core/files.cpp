@@ -20,10 +20,10 @@
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/compressed_blocks.hpp>
-#include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/registry.hpp>
-#include <io/core/repeated_features.hpp>
 #include <io/surface/surface.hpp>
 #include <mesh/lagrange_check.hpp>
 

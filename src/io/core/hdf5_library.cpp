@@ -13,7 +13,6 @@
 #include <base/concat.hpp>
 #include <base/loaded_library.hpp>
 #include <base/missing_library.hpp>
-#include <io/core/hdf5_library.hpp>
 #include <io/core/hdf_reader.hpp>
 #if defined(HEXHEX_HAS_HDF5)
 #include <io/core/hdf_file.hpp>

@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include <io/core/hdf5_library.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/output_file.hpp>
 
 /// A function or global of the library: HDF5(H5Dwrite), HDF5(H5T_NATIVE_INT32_g).

@@ -1,7 +1,10 @@
-// Reads HDF5 files: datasets by path. Does not include headers of HDF5.
+// The HDF5 library and a reader of its files, without headers of HDF5. The library is loaded when
+// the first file needs it: it depends on some thirty other libraries (curl, OpenSSL, Kerberos ...),
+// which take longer to load than most commands take to run.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +13,15 @@
 #include <io/core/input_file.hpp>
 
 namespace hexhex::io {
+
+/// Loads the library unless it is loaded already.
+/// @param file  the file that needs it
+/// @throws Error FileUnsupported if the library is missing, has another version, or this build has
+///         no support for it; std::bad_alloc if there is not enough memory to load it
+void requireHdf5(const std::filesystem::path& file);
+
+/// The address of a symbol of the library. @pre  requireHdf5() succeeded
+[[nodiscard]] void* hdf5Symbol(const char* name);
 
 /// Signature of HDF5 files (unless a user block precedes it).
 inline constexpr std::string_view kHdfMark = "\x89HDF\r\n\x1a\n";

@@ -9,11 +9,13 @@
 #include <functional>
 #include <initializer_list>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <hexhex/features.hpp>
 #include <hexhex/parts.hpp>
 #include <hexhex/types.hpp>
 
@@ -156,6 +158,26 @@ void requireInt32(std::size_t count, const std::string& numbers,
 /// empty for other names.
 /// @param dimension  of the elements, if only their names count; -1: any
 [[nodiscard]] std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension = -1);
+
+/// The vertices of a feature in ascending order, to compare features.
+[[nodiscard]] inline std::array<std::uint32_t, 1> keyOf(const FeatureVertex& feature) {
+  return {feature.vertex};
+}
+template <class Feature>
+[[nodiscard]] auto keyOf(const Feature& feature) {
+  return sorted(feature.vertices);
+}
+
+/// Keeps the first feature of each set of vertices, whatever the tags.
+template <class Feature>
+void removeRepeated(std::vector<Feature>& features) {
+  std::set<decltype(keyOf(features[0]))> seen;
+  std::size_t kept = 0;
+  for (const Feature& feature : features) {
+    if (seen.insert(keyOf(feature)).second) features[kept++] = feature;
+  }
+  features.resize(kept);
+}
 
 /// Gives groups unique numbers across dimensions, since programs such as meshio and GetFEM merge
 /// groups with equal numbers. Numbers that are tags are kept where possible, earlier kinds first.

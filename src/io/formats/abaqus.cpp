@@ -25,7 +25,6 @@
 #include <base/stage.hpp>
 #include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
-#include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>

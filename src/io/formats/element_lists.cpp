@@ -17,7 +17,6 @@
 #include <base/concat.hpp>
 #include <base/sorted.hpp>
 #include <io/core/mesh_groups.hpp>
-#include <io/core/repeated_features.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
 

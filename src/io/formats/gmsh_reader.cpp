@@ -24,7 +24,6 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/plain_mesh.hpp>
-#include <io/core/repeated_features.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>

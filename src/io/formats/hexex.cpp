@@ -14,9 +14,8 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/core/line_writer.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/repeated_features.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
 

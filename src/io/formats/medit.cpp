@@ -24,7 +24,6 @@
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/hdf_reader.hpp>
-#include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/number_source.hpp>
 #include <io/core/output_file.hpp>

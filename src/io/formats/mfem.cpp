@@ -19,7 +19,6 @@
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
-#include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>

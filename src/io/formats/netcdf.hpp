@@ -13,7 +13,6 @@
 #include <hexhex/types.hpp>
 
 #include <io/core/hdf_reader.hpp>
-#include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 
 namespace hexhex::io {

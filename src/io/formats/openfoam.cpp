@@ -26,14 +26,13 @@
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
 #include <io/core/input_file.hpp>
-#include <io/core/line_writer.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/ovm_cells.hpp>
+#include <io/formats/ovm_mesh.hpp>
 
 namespace hexhex::io {
 

@@ -1,4 +1,4 @@
-// Converts hex meshes, and maps on tets, to and from polyhedral meshes (see ovm_cells.hpp).
+// Converts hex meshes, and maps on tets, to and from polyhedral meshes (see ovm_mesh.hpp).
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,7 +19,7 @@
 #include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/formats/ovm_cells.hpp>
+#include <io/formats/ovm_mesh.hpp>
 
 namespace hexhex::io {
 

@@ -19,7 +19,6 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/ovm_cells.hpp>
 #include <io/formats/ovm_mesh.hpp>
 
 namespace hexhex::io {

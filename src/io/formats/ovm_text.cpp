@@ -10,10 +10,9 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
-#include <io/core/line_writer.hpp>
+#include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
-#include <io/formats/ovm_cells.hpp>
 #include <io/formats/ovm_mesh.hpp>
 
 namespace hexhex::io {

@@ -1,8 +1,8 @@
-// Finds the edges and faces of tets and of hexahedra (see ovm_cells.hpp).
+// Finds the edges and faces of tets and of hexahedra (see ovm_mesh.hpp).
 // Included first: OvmEntity::HalfFace and OvmInteger::CornerOrder would shadow types of adjacency.
 // clang-format off
 #include <base/concat.hpp>
-#include <io/formats/ovm_cells.hpp>
+#include <io/formats/ovm_mesh.hpp>
 // clang-format on
 
 #include <algorithm>

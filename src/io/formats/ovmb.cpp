@@ -21,7 +21,7 @@
 #include <base/vector3.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/core/line_writer.hpp>
+#include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/ovm_mesh.hpp>
 

@@ -23,7 +23,6 @@
 #include <io/core/bytes.hpp>
 #include <io/core/cell_counts.hpp>
 #include <io/core/checked_sink.hpp>
-#include <io/core/line_writer.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/plain_mesh.hpp>
 #include <io/core/text_scanner.hpp>
