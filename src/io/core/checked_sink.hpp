@@ -128,28 +128,20 @@ class CheckedSink : public MeshSink {
   Writer writer_;
 };
 
+struct OwnedFile {
+  OutputFile output;
+};
 /// A writer together with its output file.
 template <class Writer>
-class FileWriter {
+class FileWriter : OwnedFile, public Writer {
  public:
   FileWriter(const std::filesystem::path& file, int threads)
-      : output_(file), writer_(output_, threads) {}
+      : OwnedFile{OutputFile(file)}, Writer(output, threads) {}
 
-  void begin(std::uint64_t points, std::uint64_t cells) { writer_.begin(points, cells); }
-  void points(const PointPiece& piece) { writer_.points(piece); }
-  void beginCells() { writer_.beginCells(); }
-  template <class Cell>
-  void cells(std::uint64_t first, std::span<const Cell> cells) {
-    writer_.cells(first, cells);
-  }
   void end() {
-    writer_.end();
-    output_.commit();
+    Writer::end();
+    output.commit();
   }
-
- private:
-  OutputFile output_;
-  Writer writer_;
 };
 
 /// Opens a sink for a writer that is constructed from an OutputFile and a number of threads.

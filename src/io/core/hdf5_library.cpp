@@ -60,16 +60,15 @@ std::unique_ptr<HdfReader> HdfReader::open(const Input& input) {
 }
 #endif
 
-std::string firstBytes(const Input& input) {
-  constexpr std::size_t kCount = 8;
-  if (input.bytes()) return std::string(input.bytes()->substr(0, kCount));
+std::string firstBytes(const Input& input, std::size_t count) {
+  if (input.bytes()) return std::string(input.bytes()->substr(0, count));
   std::error_code unknown;
   if (std::filesystem::exists(input.path(), unknown) &&
       !std::filesystem::is_regular_file(input.path(), unknown)) {
     return {};  // a pipe can be opened only once
   }
   const InputFile file(input.path());
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), kCount)), '\0');
+  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), count)), '\0');
   file.readAt(0, head.data(), head.size());
   return head;
 }

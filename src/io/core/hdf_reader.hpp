@@ -26,8 +26,8 @@ void requireHdf5(const std::filesystem::path& file);
 /// Signature of HDF5 files (unless a user block precedes it).
 inline constexpr std::string_view kHdfMark = "\x89HDF\r\n\x1a\n";
 
-/// The first eight bytes of an input; empty for a pipe, which can be read only once.
-[[nodiscard]] std::string firstBytes(const Input& input);
+/// The first bytes of an input; empty for a pipe, which can be read only once.
+[[nodiscard]] std::string firstBytes(const Input& input, std::size_t count = kHdfMark.size());
 
 /// An open file. For its lifetime, no other thread uses HDF5 through this library.
 ///

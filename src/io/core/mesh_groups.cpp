@@ -288,20 +288,21 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
   for (std::size_t i = 0; i < mesh.features.edges.size(); ++i) {
     requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
   }
-  const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside, others);
-  const Array<std::size_t> order = orderByTag(found.tags);
-  QuadGroups result{
-      {groupsOf(found.tags, order, {"surface", "boundary", givenNames(mesh.features.names, 2)}),
-       {}},
-      {}};
-  for (ElementGroup& group : result.groups) {
-    if (group.tag > found.lastTag) group.name = groupName({"patch"}, group.tag - found.lastTag);
-  }
-  result.elements.resize(order.size());
-  result.places.resize(order.size());
-  parallelFor(stage, order.size(), kMeshGroupsGrain, [&](std::size_t i) {
-    result.elements[i] = found.quads[order[i]];
-    result.places[i] = found.places[order[i]];
+  QuadGroups result;
+  withThreadsHere(stage.context().threads(), [&] {
+    const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside, others);
+    const Array<std::size_t> order = orderByTag(found.tags);
+    result.groups =
+        groupsOf(found.tags, order, {"surface", "boundary", givenNames(mesh.features.names, 2)});
+    for (ElementGroup& group : result.groups) {
+      if (group.tag > found.lastTag) group.name = groupName({"patch"}, group.tag - found.lastTag);
+    }
+    result.elements.resize(order.size());
+    result.places.resize(order.size());
+    parallelFor(stage, order.size(), kMeshGroupsGrain, [&](std::size_t i) {
+      result.elements[i] = found.quads[order[i]];
+      result.places[i] = found.places[order[i]];
+    });
   });
   return result;
 }
@@ -330,11 +331,8 @@ std::size_t QuadGroups::boundaryEnd(const ElementGroup& group) const {
 MeshGroups::MeshGroups(const HexMesh& mesh, const WriteOptions& options, Stage& stage)
     : vertices(groupVertices(mesh)),
       edges(groupEdges(mesh)),
-      cells(groupCells(mesh, othersOf(options))) {
-  withThreads(stage.context().threads(), [&] {
-    quads = groupQuads(mesh, options.patchAngle, stage, nullptr, othersOf(options));
-  });
-}
+      quads(groupQuads(mesh, options.patchAngle, stage, nullptr, othersOf(options))),
+      cells(groupCells(mesh, othersOf(options))) {}
 
 void requireInt32(std::size_t count, const std::string& numbers, const std::string& instead) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
@@ -404,9 +402,7 @@ MeshGroups groupPart(const MeshPart& part, const PartsInfo& info, Stage& stage) 
   };
   VertexGroups vertices = groupVertices(part.mesh);
   EdgeGroups edges = groupEdges(part.mesh);
-  QuadGroups quads;
-  withThreads(stage.context().threads(),
-              [&] { quads = groupQuads(part.mesh, 0, stage, isInside); });
+  QuadGroups quads = groupQuads(part.mesh, 0, stage, isInside);
   addMissingGroups(vertices.groups, info.vertexTags, false, "point", "");
   addMissingGroups(edges.groups, info.edgeTags, false, "curve", "");
   addMissingGroups(quads.groups, info.quadTags, true, "surface", "boundary");
@@ -489,11 +485,8 @@ namespace hexhex {
 std::vector<NamedPatch> namedPatches(const HexMesh& mesh, double angle, Context& context) {
   mesh::requirePatchAngle(angle);
   return inStage(context, "namedPatches", "patches", [&](Stage& stage) {
-    io::QuadGroups groups;
-    withThreads(context.threads(), [&] {
-      adjacency::requireCornersInRange(mesh, stage);
-      groups = io::groupQuads(mesh, angle, stage);
-    });
+    withThreads(context.threads(), [&] { adjacency::requireCornersInRange(mesh, stage); });
+    const io::QuadGroups groups = io::groupQuads(mesh, angle, stage);
     std::int32_t lastTag = 0;  // larger tags denote smooth patches
     for (const FeatureQuad& quad : mesh.features.quads) lastTag = std::max(lastTag, quad.tag);
     std::vector<NamedPatch> patches;

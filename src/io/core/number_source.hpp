@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <hexhex/error.hpp>
 #include <hexhex/types.hpp>
@@ -36,60 +37,82 @@ struct RecordShape {
   }
 };
 
-/// Numbers as text.
-class TextSource {
+/// Numbers as text: a scanner that reads runs of elements with several threads.
+class TextSource : public TextScanner {
  public:
-  /// @param scanner  moved by the source
-  /// @param index  of its text; null for a text with comments, which cannot be skipped
-  TextSource(TextScanner& scanner, const TokenIndex* index, Stage& stage)
-      : scanner_(&scanner), index_(index), stage_(&stage) {}
+  /// @param text, stage  must outlive this
+  TextSource(std::string_view text, std::string fileName, Stage& stage,
+             Comments comments = Comments::None)
+      : TextScanner(text, std::move(fileName), comments), stage_(&stage) {}
+
+  /// Must come before what follows, except in a text with comments: one thread reads its elements,
+  /// and they cannot be skipped.
+  void makeIndex() {
+    if (mayHaveComments() && text().find('#') != std::string_view::npos) return;
+    index_ = std::make_shared<const TokenIndex>(text(), *stage_);
+  }
+  [[nodiscard]] bool hasIndex() const noexcept { return index_ != nullptr; }
 
   [[nodiscard]] std::uint64_t size(const NumberName& name) {
     const std::int64_t value = integer(name);
     if (value < 0) fail(ErrorCode::FileSyntax, name.text(), " is negative.");
     return static_cast<std::uint64_t>(value);
   }
-  [[nodiscard]] std::int64_t integer(const NumberName& name) { return scanner_->integer(name); }
-  [[nodiscard]] double real(const NumberName& name) { return scanner_->number(name); }
-
-  [[nodiscard]] std::size_t position() const { return scanner_->position(); }
-  void moveTo(std::size_t position) { scanner_->moveTo(position); }
-  /// Throws if the text ends after `done` elements.
-  void failIfAtEnd(std::size_t done, std::size_t count, std::string_view what) const {
-    scanner_->failIfAtEnd(done, count, what);
-  }
+  [[nodiscard]] double real(const NumberName& name) { return number(name); }
   /// The last number read, as spelled in the file.
   [[nodiscard]] std::string spelling(std::uint64_t /*number*/) const {
-    return std::string(scanner_->currentToken());
+    return std::string(currentToken());
   }
 
+  [[nodiscard]] std::size_t tokensLeft() const {
+    return index_->count() - index_->countBefore(position());
+  }
+  /// Moves to the n-th token from here, or to the end of the text.
+  void skipTokens(std::size_t n) { moveTo(index_->find(index_->countBefore(position()) + n)); }
   /// Maximum number of records in the rest of the file.
-  [[nodiscard]] std::size_t room(RecordShape shape) const {
-    return (index_->count() - index_->countBefore(position())) / shape.tokens();
-  }
+  [[nodiscard]] std::size_t room(RecordShape shape) const { return tokensLeft() / shape.tokens(); }
   /// Skips n records. @pre  n <= room(shape)
-  void skip(std::size_t n, RecordShape shape) {
-    moveTo(index_->find(index_->countBefore(position()) + n * shape.tokens()));
-  }
-  template <class F>
-  void records(std::size_t n, RecordShape shape, const F& f) {
-    readElements(*scanner_, index_, *stage_, n, shape.tokens(),
-                 [&](TextScanner& scanner, std::size_t i) {
-                   TextSource record(scanner, index_, *stage_);
-                   f(record, i);
-                 });
-  }
+  void skip(std::size_t n, RecordShape shape) { skipTokens(n * shape.tokens()); }
 
-  /// See TextScanner::fail().
-  template <class... Parts>
-  [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
-    scanner_->fail(code, sentence...);
+  /// Calls read(source, i), which reads element i or throws an Error about it, for all i in [0, n).
+  template <class Read>
+  void inSequence(std::size_t n, const Read& read) {
+    LoopProgress progress(*stage_, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, n - i));
+      read(*this, i);
+    }
+  }
+  /// The same from several threads, with a source each; moves past the last element.
+  ///
+  /// If elements are invalid or missing, the error is about the first one, for any number of
+  /// threads.
+  template <class Read>
+  void elements(std::size_t n, std::size_t tokensEach, const Read& read) {
+    if (index_ == nullptr || n <= kElementGrain) return inSequence(n, read);
+    const std::size_t firstToken = index_->countBefore(position());
+    const std::size_t complete = std::min(n, (index_->count() - firstToken) / tokensEach);
+    const auto moveToElement = [&](TextSource& moved, std::size_t element) {
+      moved.moveTo(index_->find(firstToken + element * tokensEach));
+    };
+    const std::size_t wrong = firstUnreadable(
+        *stage_, complete, kElementGrain, [&](std::size_t begin, std::size_t end, std::size_t& i) {
+          TextSource local = *this;
+          moveToElement(local, begin);
+          for (; i < end; ++i) read(local, i);
+        });
+    // Normally nothing is left. Otherwise, reading sequentially throws the error of the first one.
+    moveToElement(*this, wrong);
+    for (std::size_t i = wrong; i < n; ++i) read(*this, i);
+  }
+  template <class Read>
+  void records(std::size_t n, RecordShape shape, const Read& read) {
+    elements(n, shape.tokens(), read);
   }
 
  private:
-  TextScanner* scanner_;
-  const TokenIndex* index_;
   Stage* stage_;
+  std::shared_ptr<const TokenIndex> index_;
 };
 
 /// Bytes of a file, in memory or on disk.

@@ -217,14 +217,18 @@ TextWindow::TextWindow(const ByteFile& file, Context& context, std::size_t size)
 void TextWindow::moveTo(std::uint64_t position) {
   begin_ = position;
   size_ = 0;
-  scanner_.emplace(std::string_view(), file_.name());
-  index_.emplace(scanner_->text(), stage_);
+  open({});
   fill();
+}
+
+void TextWindow::open(std::string_view text) {
+  source_.emplace(text, file_.name(), stage_);
+  source_->makeIndex();
 }
 
 bool TextWindow::fill() {
   context_.throwIfCancelled();
-  const std::size_t behind = scanner_->position();
+  const std::size_t behind = source_->position();
   const std::size_t kept = size_ - behind;
   if (kept > 0) std::memmove(bytes_.data(), bytes_.data() + behind, kept);
   begin_ += behind;
@@ -241,16 +245,15 @@ bool TextWindow::fill() {
     while (!text.empty() && !isSpace(text.back())) text.remove_suffix(1);
     if (text.empty()) text = {bytes_.data(), size_};
   }
-  scanner_.emplace(text, file_.name());
-  index_.emplace(text, stage_);
+  open(text);
   sawComments_ = sawComments_ || text.find('#') != std::string_view::npos;
   return more > 0;
 }
 
 std::string TextWindow::token() {
-  while (tokensLeft() == 0 && fill()) {
+  while (source_->tokensLeft() == 0 && fill()) {
   }
-  return std::string(scanner_->readToken());
+  return std::string(source_->readToken());
 }
 
 std::optional<std::uint64_t> TextWindow::count() {
@@ -267,27 +270,26 @@ std::optional<std::uint64_t> TextWindow::count() {
 
 bool TextWindow::skip(std::uint64_t tokens) {
   while (true) {
-    const std::size_t left = tokensLeft();
+    const std::size_t left = source_->tokensLeft();
     if (tokens <= left) {
-      const std::size_t first = index_->countBefore(scanner_->position());
       // Stop after the last token, not at the next one: binary data may follow.
       if (tokens > 0) {
-        scanner_->moveTo(index_->find(first + static_cast<std::size_t>(tokens) - 1));
-        static_cast<void>(scanner_->readToken());
+        source_->skipTokens(static_cast<std::size_t>(tokens) - 1);
+        static_cast<void>(source_->readToken());
       }
       return true;
     }
     tokens -= left;
-    scanner_->moveTo(scanner_->text().size());
+    source_->moveTo(source_->text().size());
     if (!fill()) return false;
   }
 }
 
 bool TextWindow::skipLineBreak() {
-  const std::string_view rest = scanner_->text().substr(scanner_->position());
+  const std::string_view rest = source_->text().substr(source_->position());
   const std::size_t end = rest.find('\n');
   if (end == std::string_view::npos || rest.find_first_not_of(" \r") != end) return false;
-  scanner_->moveTo(scanner_->position() + end + 1);
+  source_->moveTo(source_->position() + end + 1);
   return true;
 }
 

@@ -79,10 +79,10 @@ class TextWindow {
   /// Moves to a position in the file.
   void moveTo(std::uint64_t position);
   /// Position in the file of the next byte.
-  [[nodiscard]] std::uint64_t position() const { return begin_ + scanner_->position(); }
+  [[nodiscard]] std::uint64_t position() const { return begin_ + source_->position(); }
 
   /// The rest of the line. @pre  the line is in the window, as at the beginning of the file
-  [[nodiscard]] std::string takeLine() { return std::string(scanner_->takeLine()); }
+  [[nodiscard]] std::string takeLine() { return std::string(source_->takeLine()); }
   /// The next token; empty at the end of the file.
   [[nodiscard]] std::string token();
   /// The next token as a nonnegative integer; empty if it is not one.
@@ -97,12 +97,12 @@ class TextWindow {
   template <class Read>
   void elements(std::size_t n, std::size_t tokensEach, const Read& read) {
     for (std::size_t done = 0; done < n;) {
-      const std::size_t complete = std::min(n - done, tokensLeft() / tokensEach);
+      const std::size_t complete = std::min(n - done, source_->tokensLeft() / tokensEach);
       if (complete == 0 && !fill()) {
         throw Error(ErrorCode::FileSyntax, file_.name() + ": the file is incomplete.");
       }
-      readElements(*scanner_, &*index_, stage_, complete, tokensEach,
-                   [&](TextScanner& scanner, std::size_t i) { read(scanner, done + i); });
+      source_->elements(complete, tokensEach,
+                        [&](TextScanner& scanner, std::size_t i) { read(scanner, done + i); });
       done += complete;
     }
   }
@@ -114,9 +114,8 @@ class TextWindow {
   [[nodiscard]] bool sawComments() const noexcept { return sawComments_; }
 
  private:
-  [[nodiscard]] std::size_t tokensLeft() const {
-    return index_->count() - index_->countBefore(scanner_->position());
-  }
+  /// Begins to read a text.
+  void open(std::string_view text);
   /// Discards the text already read and refills the window. @return false at the end of the file
   bool fill();
 
@@ -127,8 +126,7 @@ class TextWindow {
   Array<char> bytes_;
   std::uint64_t begin_ = 0;  ///< position of the window in the file
   std::size_t size_ = 0;     ///< bytes in the window
-  std::optional<TextScanner> scanner_;
-  std::optional<TokenIndex> index_;
+  std::optional<TextSource> source_;
   bool sawComments_ = false;
 };
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -112,110 +111,60 @@ NumberProblem parseNumber(std::string_view token, double& value) {
 
 namespace {
 
-/// A natural number: base 2^32, least significant limb first, no leading zeros (0 has no limbs).
+/// A natural number: base 10^9, most significant limb first.
 using Natural = std::vector<std::uint32_t>;
 
-constexpr std::size_t kLimbBits = 32;
+constexpr std::uint32_t kBase = 1'000'000'000;
+constexpr std::size_t kLimbDigits = 9;
 
-/// value = value * factor + addend
-void multiplyAdd(Natural& value, std::uint32_t factor, std::uint32_t addend) {
-  std::uint64_t carry = addend;
-  for (std::uint32_t& limb : value) {
-    carry += std::uint64_t{limb} * factor;
-    limb = static_cast<std::uint32_t>(carry);
-    carry >>= kLimbBits;
-  }
-  if (carry != 0) value.push_back(static_cast<std::uint32_t>(carry));
-}
+/// Divides natural numbers digit by digit, as on paper.
+class LongDivision {
+ public:
+  /// @param dividend, divisor  digits, the first of which is not 0; as if a point stood behind it
+  LongDivision(std::string_view dividend, std::string_view divisor)
+      : limbs_(std::max(dividend.size(), divisor.size()) / kLimbDigits + 2),
+        remainder_(limbsOf(dividend)),
+        divisor_(limbsOf(divisor)) {}
 
-Natural fromDecimal(std::string_view digits) {
-  // Nine digits are the most whose power of ten fits in a limb.
-  constexpr std::size_t kChunk = 9;
-  Natural value;
-  value.reserve(digits.size() / kChunk + 1);
-  for (std::size_t begin = 0; begin < digits.size();) {
-    const std::size_t end = std::min(begin + kChunk, digits.size());
-    std::uint32_t chunk = 0;
-    std::uint32_t power = 1;
-    for (; begin < end; ++begin) {
-      chunk = chunk * 10 + static_cast<std::uint32_t>(digits[begin] - '0');
-      power *= 10;
+  /// The next digit of the quotient; the first one stands before the point, and may be 0.
+  [[nodiscard]] char nextDigit() {
+    char digit = '0';
+    for (; remainder_ >= divisor_; ++digit) subtractDivisor();
+    std::uint64_t carry = 0;
+    for (std::size_t i = limbs_; i-- > 0;) {
+      carry += std::uint64_t{10} * remainder_[i];
+      remainder_[i] = static_cast<std::uint32_t>(carry % kBase);
+      carry /= kBase;
     }
-    multiplyAdd(value, power, chunk);
+    return digit;
   }
-  return value;
-}
+  /// Whether all further digits are 0.
+  [[nodiscard]] bool isDone() const { return remainder_ == Natural(limbs_, 0); }
 
-/// Position of the highest set bit plus one. The value is not 0.
-std::int64_t bitLength(const Natural& value) {
-  return static_cast<std::int64_t>(kLimbBits * (value.size() - 1) +
-                                   static_cast<std::size_t>(std::bit_width(value.back())));
-}
-
-Natural shiftedLeft(const Natural& value, std::int64_t bits) {
-  const auto limbs = static_cast<std::size_t>(bits) / kLimbBits;
-  const auto factor = std::uint32_t{1} << (static_cast<std::size_t>(bits) % kLimbBits);
-  Natural result(limbs, 0);
-  result.insert(result.end(), value.begin(), value.end());
-  // The low limbs are 0, so multiplying all limbs shifts the value only.
-  multiplyAdd(result, factor, 0);
-  return result;
-}
-
-bool lessThan(const Natural& a, const Natural& b) {
-  if (a.size() != b.size()) return a.size() < b.size();
-  return std::lexicographical_compare(a.rbegin(), a.rend(), b.rbegin(), b.rend());
-}
-
-/// a = a - b, where a >= b
-void subtract(Natural& a, const Natural& b) {
-  std::uint64_t borrow = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const std::uint64_t difference = std::uint64_t{a[i]} - (i < b.size() ? b[i] : 0) - borrow;
-    a[i] = static_cast<std::uint32_t>(difference);
-    borrow = (difference >> kLimbBits) & 1U;
-  }
-  while (!a.empty() && a.back() == 0) a.pop_back();
-}
-
-/// The double nearest to quotient * 2^exponent, ties to even. The lowest bit of the quotient is
-/// sticky: it stands for all bits below. The quotient has at least 55 bits.
-double roundToNearest(std::uint64_t quotient, std::int64_t exponent) {
-  constexpr std::int64_t kSmallestExponent = -1074;  // of a subnormal double
-  constexpr std::int64_t kMantissaBits = 53;
-  const auto length = static_cast<std::int64_t>(std::bit_width(quotient));
-  const std::int64_t lowest = std::max(exponent + length - kMantissaBits, kSmallestExponent);
-  const std::int64_t dropped = lowest - exponent;
-  if (dropped > length) return 0.0;  // below half the smallest double
-  std::uint64_t kept = quotient >> dropped;
-  const std::uint64_t rest = quotient & ((std::uint64_t{1} << dropped) - 1);
-  const std::uint64_t half = std::uint64_t{1} << (dropped - 1);
-  if (rest > half || (rest == half && kept % 2 == 1)) ++kept;
-  // Beyond this the result is infinite anyway, and the exponent would not fit an int.
-  constexpr std::int64_t kHugeExponent = 2000;
-  return std::ldexp(static_cast<double>(kept), static_cast<int>(std::min(lowest, kHugeExponent)));
-}
-
-/// Divides integers of any size, by long division bit by bit.
-double divideExactly(const Natural& numerator, const Natural& denominator) {
-  // Shifted to equal length, their quotient lies between 1/2 and 2. Its 56 bits have at least 55
-  // significant ones: 53 for the double, a rounding bit and a sticky bit.
-  constexpr int kQuotientBits = 56;
-  const std::int64_t excess = bitLength(numerator) - bitLength(denominator);
-  Natural remainder = excess < 0 ? shiftedLeft(numerator, -excess) : numerator;
-  const Natural divisor = excess > 0 ? shiftedLeft(denominator, excess) : denominator;
-  std::uint64_t quotient = 0;
-  for (int i = 0; i < kQuotientBits; ++i) {
-    quotient <<= 1U;
-    if (!lessThan(remainder, divisor)) {
-      subtract(remainder, divisor);
-      quotient |= 1U;
+ private:
+  /// The first limb is 0: ten times the remainder needs it.
+  [[nodiscard]] Natural limbsOf(std::string_view digits) const {
+    Natural limbs(limbs_, 0);
+    for (std::size_t i = 0; i < (limbs_ - 1) * kLimbDigits; ++i) {
+      const char digit = i < digits.size() ? digits[i] : '0';
+      std::uint32_t& limb = limbs[1 + i / kLimbDigits];
+      limb = 10 * limb + static_cast<std::uint32_t>(digit - '0');
     }
-    multiplyAdd(remainder, 2, 0);
+    return limbs;
   }
-  if (!remainder.empty()) quotient |= 1U;
-  return roundToNearest(quotient, excess - (kQuotientBits - 1));
-}
+  void subtractDivisor() {
+    std::uint32_t borrow = 0;
+    for (std::size_t i = limbs_; i-- > 0;) {
+      const std::uint32_t taken = divisor_[i] + borrow;
+      borrow = remainder_[i] < taken ? 1 : 0;
+      remainder_[i] = remainder_[i] + borrow * kBase - taken;
+    }
+  }
+
+  std::size_t limbs_;
+  Natural remainder_;
+  Natural divisor_;
+};
 
 }  // namespace
 
@@ -229,9 +178,34 @@ double nearestQuotient(std::string_view numerator, std::string_view denominator)
     std::from_chars(denominator.data(), denominator.data() + denominator.size(), q);
     return static_cast<double>(p) / static_cast<double>(q);
   }
-  const Natural p = fromDecimal(numerator);
-  if (p.empty()) return 0.0;
-  return divideExactly(p, fromDecimal(denominator));
+  numerator.remove_prefix(std::min(numerator.find_first_not_of('0'), numerator.size()));
+  denominator.remove_prefix(denominator.find_first_not_of('0'));
+  if (numerator.empty()) return 0.0;
+  LongDivision division(numerator, denominator);
+  const std::int64_t point = 1 + static_cast<std::int64_t>(numerator.size()) -
+                             static_cast<std::int64_t>(denominator.size());
+  // The nearest double to an integer / 10^places * 10^point.
+  const auto nearest = [point](auto integer, std::size_t places) {
+    double value = std::numeric_limits<double>::infinity();
+    const std::int64_t exponent = point - static_cast<std::int64_t>(places);
+    static_cast<void>(parseDecimal(concat(integer, "e", exponent), value));
+    return value;
+  };
+  // Between the numbers that begin with these digits, there is rarely a point where rounding
+  // changes.
+  constexpr std::size_t kFirstDigits = 18;
+  std::string digits;
+  while (digits.size() < kFirstDigits) digits += division.nextDigit();
+  std::uint64_t first = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), first);
+  const double low = nearest(first, kFirstDigits);
+  if (division.isDone() || low == nearest(first + 1, kFirstDigits)) return low;
+  // Such points, halfway between doubles, have at most 767 digits other than leading zeros: what
+  // comes behind these only tells whether the quotient is larger.
+  constexpr std::size_t kMostDigits = 770;
+  while (digits.size() < kMostDigits) digits += division.nextDigit();
+  if (!division.isDone()) digits += '1';
+  return nearest(digits, digits.size());
 }
 
 std::string lowerCase(std::string_view word) {

@@ -119,7 +119,8 @@ inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
 struct NumberName {
   static constexpr std::size_t kNoNumber = ~std::size_t{0};
 
-  NumberName(const char* name) : before(name) {}
+  NumberName(const char* name) : before(name) {}  // best a literal, whose length is known
+  NumberName(std::string_view name) : before(name) {}
   NumberName(std::string_view before_, std::string_view of_, std::size_t number_ = kNoNumber)
       : before(before_), of(of_), number(number_) {}
 
@@ -261,6 +262,9 @@ class TextScanner {
   [[nodiscard]] std::uint64_t line() const;
 
   [[nodiscard]] const std::string& fileName() const noexcept { return fileName_; }
+  [[nodiscard]] bool mayHaveComments() const noexcept { return comments_ == Comments::Hash; }
+  /// From here on, '#' has no meaning.
+  void endComments() noexcept { comments_ = Comments::None; }
 
   /// Throws an error about the current token: "<file>, line 12: <sentence>".
   /// @param sentence  its parts, as for concat()
@@ -285,7 +289,7 @@ class TextScanner {
   void failIfRepeated(bool present, std::string_view section) const;
 
  private:
-  [[nodiscard]] bool isComment(char c) const { return c == '#' && comments_ == Comments::Hash; }
+  [[nodiscard]] bool isComment(char c) const { return c == '#' && mayHaveComments(); }
   [[nodiscard]] bool endsToken(const char* place) const {
     return place == end_ || isSpace(*place) || isComment(*place);
   }
@@ -331,38 +335,5 @@ inline constexpr std::size_t kElementGrain = 1024;
 [[nodiscard]] std::size_t firstUnreadable(
     Stage& stage, std::size_t n, std::size_t grain,
     FunctionRef<void(std::size_t, std::size_t, std::size_t&)> read);
-
-/// Calls read(scanner, i), which reads element i or throws an Error about it, for all i in [0, n),
-/// from several threads with a scanner each. `scanner` must be at the first element, and is moved
-/// past the last.
-///
-/// If elements are invalid or missing, the error is about the first one, for any number of threads.
-/// @param index  of the text of `scanner`; null for a text with comments, which one thread reads
-template <class Read>
-void readElements(TextScanner& scanner, const TokenIndex* index, Stage& stage, std::size_t n,
-                  std::size_t tokensEach, const Read& read) {
-  if (index == nullptr || n <= kElementGrain) {
-    LoopProgress progress(stage, n);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (i % kElementGrain == 0) progress.advance(std::min(kElementGrain, n - i));
-      read(scanner, i);
-    }
-    return;
-  }
-  const std::size_t firstToken = index->countBefore(scanner.position());
-  const std::size_t complete = std::min(n, (index->count() - firstToken) / tokensEach);
-  const auto moveTo = [&](TextScanner& moved, std::size_t element) {
-    moved.moveTo(index->find(firstToken + element * tokensEach));
-  };
-  const std::size_t wrong = firstUnreadable(
-      stage, complete, kElementGrain, [&](std::size_t begin, std::size_t end, std::size_t& i) {
-        TextScanner local = scanner;
-        moveTo(local, begin);
-        for (; i < end; ++i) read(local, i);
-      });
-  // Normally nothing is left. Otherwise, reading sequentially throws the error of the first one.
-  moveTo(scanner, wrong);
-  for (std::size_t i = wrong; i < n; ++i) read(scanner, i);
-}
 
 }  // namespace hexhex::io

@@ -131,12 +131,6 @@ class AbaqusReader {
     std::vector<ElementSide> sides;
   };
   using Sets = std::map<std::string, Set>;
-  /// An element that is not a volume.
-  struct Facet {
-    std::uint64_t number;
-    std::size_t count;  ///< number of corners
-    std::array<std::uint64_t, 4> nodes;
-  };
 
   static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
@@ -364,7 +358,7 @@ class AbaqusReader {
   void readFacet(std::size_t nodes, std::uint64_t number, std::string_view rest,
                  const std::string& set) {
     if (nodes == 0 || parts_ == ElementParts::Types) return;
-    Facet& facet = facets_.emplace_back(Facet{number, nodes, {}});
+    FlatElement& facet = facets_.emplace_back(FlatElement{number, nodes, {}});
     for (std::size_t k = 0; k < nodes; ++k) {
       facet.nodes[k] = integer(takeField(rest), "a node of an element");
     }
@@ -541,11 +535,7 @@ class AbaqusReader {
       for (const std::uint64_t element : set->second.items) regions.add(element, tag);
     }
     regions.sort();
-    for (ElementBlock& block : lists_.blocks) {
-      for (const std::uint64_t number : block.numbers) {
-        block.regions.push_back(regions.find(number));
-      }
-    }
+    lists_.setRegions(regions);
   }
 
   void tagSurfaces() {
@@ -564,9 +554,9 @@ class AbaqusReader {
   /// A quad, triangle or line gets the tag of the first set that contains nothing else; sets named
   /// by *ELEMENT come last.
   void tagFacets(std::size_t corners, const NodeTags& nodes) {
-    std::map<std::uint64_t, std::pair<const Facet*, std::int32_t>> facets;
-    for (const Facet& facet : facets_) {
-      if (facet.count == corners) facets.emplace(facet.number, std::pair(&facet, 0));
+    std::map<std::uint64_t, std::pair<const FlatElement*, std::int32_t>> facets;
+    for (const FlatElement& facet : facets_) {
+      if (facet.corners == corners) facets.emplace(facet.number, std::pair(&facet, 0));
     }
     for (const Sets* sets : {&elementSets_, &facetSets_}) {
       for (const auto& [name, set] : *sets) {
@@ -583,17 +573,7 @@ class AbaqusReader {
         }
       }
     }
-    for (const auto& [number, entry] : facets) addFacet(*entry.first, entry.second, nodes);
-  }
-
-  void addFacet(const Facet& facet, std::int32_t tag, const NodeTags& nodes) {
-    std::array<Index, 4> v{};
-    for (std::size_t k = 0; k < facet.count; ++k) v[k] = nodes.find(facet.nodes[k]);
-    const bool isKnown = std::find(v.begin(), v.end(), kNone) == v.end();
-    if (tag == 0 || !isKnown) return;
-    if (facet.count == 4) lists_.quads.push_back({v, tag});
-    if (facet.count == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
-    if (facet.count == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
+    for (const auto& [number, entry] : facets) lists_.addFlat(*entry.first, entry.second, nodes);
   }
 
   [[nodiscard]] std::uint64_t integer(std::string_view word, const char* what) const {
@@ -645,7 +625,7 @@ class AbaqusReader {
   std::vector<std::string> sections_;    ///< and from *SOLID SECTION
   std::vector<std::string> listedSets_;  ///< names from *ELSET
   std::vector<Surface> surfaces_;
-  std::vector<Facet> facets_;
+  std::vector<FlatElement> facets_;
   Sets facetSets_;  ///< named by *ELEMENT
   GroupTags facetTags_;
 };

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <hexhex/curved.hpp>
@@ -35,23 +36,12 @@ namespace hexhex::io {
 namespace {
 
 /// CGNS element types by number of nodes, for orders 1 and 2.
-constexpr int elementType(std::size_t nodes) {
-  switch (nodes) {
-    case 27:
-      return 19;
-    case 9:
-      return 9;
-    case 8:
-      return 17;
-    case 4:
-      return 7;
-    case 3:
-      return 4;
-    case 2:
-      return 3;
-    default:
-      return 2;
-  }
+constexpr std::int32_t elementType(std::size_t nodes) {
+  constexpr std::array<std::pair<std::size_t, std::int32_t>, 7> kTypes = {
+      {{1, 2}, {2, 3}, {3, 4}, {4, 7}, {8, 17}, {9, 9}, {27, 19}}};
+  return std::find_if(kTypes.begin(), kTypes.end(),
+                      [nodes](const auto& type) { return type.first == nodes; })
+      ->second;
 }
 
 /// The nodes of order-2 cells, which replace the corners of straight ones.
@@ -405,10 +395,8 @@ void writeQuadraticCgns(const LagrangeMesh& mesh, OutputFile& output, const Writ
   refuseEmpty(mesh.cellCount(), output);
   const HexMesh straight = straightMesh(mesh);
   const MeshGroups groups(straight, options, stage);
-  QuadraticNodes nodes = {mesh, {}};
-  withThreads(stage.context().threads(), [&] {
-    nodes.ofGroups = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
-  });
+  const QuadraticNodes nodes = {mesh,
+                                nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage)};
   writeBase(output, straight, groups, stage, &nodes);
 }
 

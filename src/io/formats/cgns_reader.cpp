@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -399,16 +400,9 @@ class CgnsReader {
     addTags(volumeGroups_, {3}, tags, names);
     addTags(flatGroups_, {1, 2}, tags, names);
     tags.sort();
-    for (ElementBlock& block : lists_.blocks) {
-      for (const std::uint64_t number : block.numbers) block.regions.push_back(tags.find(number));
-    }
+    lists_.setRegions(tags);
     for (const auto& [number, corners, v] : flats_) {
-      const std::int32_t tag = tags.find(number);
-      if (tag == 0) continue;
-      if (corners == 1) lists_.vertices.push_back({v[0], tag});
-      if (corners == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
-      if (corners == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
-      if (corners == 4) lists_.quads.push_back({v, tag});
+      lists_.addFlat(std::span(v).first(corners), tags.find(number));
     }
     lists_.addNamesInUse(names);
   }

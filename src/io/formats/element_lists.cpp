@@ -293,6 +293,27 @@ void ElementLists::addName(int dimension, std::int32_t tag, std::string_view nam
   names.push_back({dimension, tag, std::string(name)});
 }
 
+void ElementLists::addFlat(std::span<const Index> v, std::int32_t tag) {
+  if (tag == 0 || std::find(v.begin(), v.end(), kNone) != v.end()) return;
+  if (v.size() == 1) vertices.push_back({v[0], tag});
+  if (v.size() == 2) lines.push_back({{v[0], v[1]}, tag});
+  if (v.size() == 3) triangles.push_back({{v[0], v[1], v[2]}, tag});
+  if (v.size() == 4) quads.push_back({{v[0], v[1], v[2], v[3]}, tag});
+}
+
+void ElementLists::addFlat(const FlatElement& element, std::int32_t tag, const NodeTags& nodes) {
+  std::array<Index, 4> v{};
+  for (std::size_t k = 0; k < element.corners; ++k) v[k] = nodes.find(element.nodes[k]);
+  addFlat(std::span(v).first(element.corners), tag);
+}
+
+void ElementLists::setRegions(const ElementTags& tags) {
+  for (ElementBlock& block : blocks) {
+    block.regions.clear();
+    for (const std::uint64_t number : block.numbers) block.regions.push_back(tags.find(number));
+  }
+}
+
 void ElementLists::addNamesInUse(const std::vector<TagName>& known) {
   std::set<std::pair<int, std::int32_t>> used;
   for (const ElementBlock& block : blocks) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -83,6 +85,15 @@ struct ElementSide {
   std::int32_t tag = 0;
 };
 
+/// A line, triangle or quad, with the numbers of its corners in the file.
+struct FlatElement {
+  std::uint64_t number = 0;
+  std::size_t corners = 0;
+  std::array<std::uint64_t, 4> nodes = {};
+};
+
+class ElementTags;
+
 struct NodeSet {
   std::string name;
   std::int32_t number = 0;
@@ -107,6 +118,12 @@ struct ElementLists {
   [[nodiscard]] std::size_t blockOf(const VolumeCells* type, std::size_t nodesEach);
   /// Stores the name of a group given by another program.
   void addName(int dimension, std::int32_t tag, std::string_view name);
+  /// Adds a point, line, triangle or quad, by its number of corners, unless the tag is 0 or a
+  /// corner is kNone.
+  void addFlat(std::span<const Index> corners, std::int32_t tag);
+  void addFlat(const FlatElement& element, std::int32_t tag, const NodeTags& nodes);
+  /// Sets the region of each element in a block.
+  void setRegions(const ElementTags& tags);
   /// Stores those names whose tag is used by an element of their dimension, 1 to 3.
   void addNamesInUse(const std::vector<TagName>& known);
 };

@@ -823,9 +823,7 @@ void writeQuadraticExodus(const LagrangeMesh& mesh, OutputFile& output, const Wr
   requireInt32(mesh.points.size(), "An Exodus file numbers nodes");
   const HexMesh straight = straightMesh(mesh);
   const MeshGroups groups(straight, options, stage);
-  GroupNodes nodes;
-  withThreads(stage.context().threads(),
-              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, {}, stage); });
+  GroupNodes nodes = nodesOfGroups(mesh, straight, groups.edges, {}, stage);
   ExodusFile(straight, groups, stage, false, &mesh, std::move(nodes.edges))
       .write(output, stage.context().threads(), kMostExodusBytes);
 }

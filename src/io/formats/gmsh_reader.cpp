@@ -93,7 +93,8 @@ constexpr bool hasEntities(GmshVersion version) noexcept { return version >= Gms
 
 /// The tag of a node or element. Negative tags wrap to large numbers.
 template <class Record>
-[[nodiscard]] std::uint64_t readGmshTag(Record& record, GmshVersion version, const char* what) {
+[[nodiscard]] std::uint64_t readGmshTag(Record& record, GmshVersion version,
+                                        std::string_view what) {
   if (version == GmshVersion::V41) return record.size(what);
   return static_cast<std::uint64_t>(record.integer(what));
 }
@@ -162,11 +163,11 @@ class GmshFile {
   /// @param text  must outlive this, as must the other references
   /// @throws Error FileSyntax, FileUnsupported
   GmshFile(std::string_view text, const std::string& fileName, Stage& stage)
-      : text_(text), bytes_(text, fileName), scanner_(text, fileName), stage_(stage) {
+      : text_(text), bytes_(text, fileName), scanner_(text, fileName, stage), stage_(stage) {
     skipComments();
     const std::string_view first = scanner_.peekToken();
     if (first == "$NOD" || first == "$PARA") {
-      index_.emplace(text_, stage_);
+      scanner_.makeIndex();
       return;
     }
     if (scanner_.readToken() != "$MeshFormat") {
@@ -224,8 +225,7 @@ class GmshFile {
       f(source);
       scanner_.moveTo(source.position());
     } else {
-      TextSource source(scanner_, &*index_, stage_);
-      f(source);
+      f(scanner_);
     }
   }
 
@@ -263,20 +263,19 @@ class GmshFile {
   }
 
   void readEncoding() {
-    TextSource numbers(scanner_, nullptr, stage_);
-    const std::int64_t type = numbers.integer("the file type");
+    const std::int64_t type = scanner_.integer("the file type");
     if (type != 0 && type != 1) {
       scanner_.fail(ErrorCode::FileSyntax, "the file type is 0 (text) or 1 (binary), found ", type,
                     ".");
     }
     binary_ = type == 1;
-    const std::int64_t size = numbers.integer("the size of numbers");
+    const std::int64_t size = scanner_.integer("the size of numbers");
     if (size != 8) {
       scanner_.fail(ErrorCode::FileUnsupported, "numbers of ", size,
                     " bytes are not supported, only 8.");
     }
     if (!binary_) {
-      index_.emplace(text_, stage_);
+      scanner_.makeIndex();
       return;
     }
     withSource([](auto& source) {
@@ -289,9 +288,8 @@ class GmshFile {
 
   std::string_view text_;
   ByteFile bytes_;
-  TextScanner scanner_;
+  TextSource scanner_;
   Stage& stage_;
-  std::optional<TokenIndex> index_;  ///< text files only
   bool binary_ = false;
   GmshVersion version_ = GmshVersion::V1;
 };
@@ -881,11 +879,7 @@ class GmshReader {
       source.fail(ErrorCode::IndexOutOfRange, "an element names node ",
                   static_cast<std::int64_t>(node), ", which is not in the section $Nodes.");
     }
-    if (!isFeature) return;
-    if (corners == 1) lists_.vertices.push_back({v[0], tag});
-    if (corners == 2) lists_.lines.push_back({{v[0], v[1]}, tag});
-    if (corners == 3) lists_.triangles.push_back({{v[0], v[1], v[2]}, tag});
-    if (corners == 4) lists_.quads.push_back({v, tag});
+    if (isFeature) lists_.addFlat(std::span(v).first(corners), tag);
   }
 
   GmshFile file_;

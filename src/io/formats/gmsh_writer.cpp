@@ -895,9 +895,7 @@ void writeLagrangeGmsh(const LagrangeMesh& mesh, OutputFile& output, const Write
                        Stage& stage) {
   HexMesh straight = straightMesh(mesh);
   GmshGroups groups(straight, options, stage);
-  GroupNodes nodes;
-  withThreads(stage.context().threads(),
-              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
+  const GroupNodes nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
   straight = {};
 
   const std::vector<std::uint32_t> order = gmshNodeOrder(mesh.order);

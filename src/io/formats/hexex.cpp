@@ -15,8 +15,8 @@
 #include <base/stage.hpp>
 #include <io/core/checked_sink.hpp>
 #include <io/core/mesh_groups.hpp>
+#include <io/core/number_source.hpp>
 #include <io/core/output_file.hpp>
-#include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
 
 namespace hexhex::io {
@@ -58,7 +58,9 @@ class HexexReader {
   static constexpr std::string_view kFirst = "+0123456789";  // begins with the number of vertices
 
   HexexReader(std::string_view text, const std::string& fileName, Stage& stage, bool keepWalls)
-      : scanner_(text, fileName), index_(text, stage), stage_(stage), keepWalls_(keepWalls) {}
+      : scanner_(text, fileName, stage), stage_(stage), keepWalls_(keepWalls) {
+    scanner_.makeIndex();
+  }
 
   TetMap read() {
     readPoints();
@@ -71,21 +73,20 @@ class HexexReader {
   void readPoints() {
     const std::size_t count = scanner_.readCount("vertices", kMinimumVertexBytes);
     map_.points.resize(count);
-    readElements(scanner_, &index_, stage_, count, kTokensOfVertex,
-                 [&](TextScanner& scanner, std::size_t vertex) {
-                   scanner.failIfAtEnd(vertex, count, "vertices");
-                   for (double& coordinate : map_.points[vertex]) {
-                     coordinate = scanner.number({"a coordinate of ", "vertex", vertex});
-                   }
-                 });
+    scanner_.elements(count, kTokensOfVertex, [&](TextScanner& scanner, std::size_t vertex) {
+      scanner.failIfAtEnd(vertex, count, "vertices");
+      for (double& coordinate : map_.points[vertex]) {
+        coordinate = scanner.number({"a coordinate of ", "vertex", vertex});
+      }
+    });
   }
 
   void readTets() {
     const std::size_t count = scanner_.readCount("tets", kMinimumTetBytes);
     map_.tets.resize(count);
     map_.parameters.resize(count);
-    readElements(scanner_, &index_, stage_, count, kTokensOfTet,
-                 [this](TextScanner& scanner, std::size_t i) { readTet(scanner, i); });
+    scanner_.elements(count, kTokensOfTet,
+                      [this](TextScanner& scanner, std::size_t i) { readTet(scanner, i); });
   }
 
   void readTet(TextScanner& scanner, std::size_t tet) {
@@ -184,8 +185,7 @@ class HexexReader {
     return vertices;
   }
 
-  TextScanner scanner_;
-  TokenIndex index_;
+  TextSource scanner_;
   Stage& stage_;
   bool keepWalls_;
   TetMap map_;

@@ -12,6 +12,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/concat.hpp>
+#include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/formats/lagrange_nodes.hpp>
@@ -173,8 +174,12 @@ std::vector<std::uint32_t> quadraticOrder(const std::array<std::uint8_t, 27>& pl
 
 GroupNodes nodesOfGroups(const LagrangeMesh& mesh, const HexMesh& straight, const EdgeGroups& edges,
                          const QuadGroups& quads, Stage& stage) {
-  ElementFinder finder(straight, stage);
-  return {edgeNodes(mesh, straight, edges, finder), quadNodes(mesh, quads, finder)};
+  GroupNodes nodes;
+  withThreads(stage.context().threads(), [&] {
+    ElementFinder finder(straight, stage);
+    nodes = {edgeNodes(mesh, straight, edges, finder), quadNodes(mesh, quads, finder)};
+  });
+  return nodes;
 }
 
 }  // namespace hexhex::io

@@ -182,12 +182,11 @@ class MeditText {
   static constexpr std::string_view kFirst = "M#";
 
   MeditText(std::string_view text, const std::string& fileName, Stage& stage)
-      : scanner_(text, fileName, TextScanner::Comments::Hash) {
-    if (text.find('#') == std::string_view::npos) index_.emplace(text, stage);
-    source_.emplace(scanner_, index_ ? &*index_ : nullptr, stage);
+      : scanner_(text, fileName, stage, TextScanner::Comments::Hash) {
+    scanner_.makeIndex();
   }
 
-  [[nodiscard]] TextSource& source() { return *source_; }
+  [[nodiscard]] TextSource& source() { return scanner_; }
 
   void readHead() {
     if (scanner_.readToken() != "MeshVersionFormatted") {
@@ -199,7 +198,7 @@ class MeditText {
                     "a MEDIT file begins with \"MeshVersionFormatted\", found ",
                     quoted(scanner_.currentToken()), ".");
     }
-    static_cast<void>(source_->integer("the version of the format"));
+    static_cast<void>(scanner_.integer("the version of the format"));
   }
 
   /// Skips everything between known keywords.
@@ -247,7 +246,7 @@ class MeditText {
   [[nodiscard]] static std::uint64_t vertex(TextSource& record, const NumberName& name) {
     return static_cast<std::uint64_t>(record.integer(name));
   }
-  [[nodiscard]] static std::int64_t reference(TextSource& record, const char* what) {
+  [[nodiscard]] static std::int64_t reference(TextSource& record, std::string_view what) {
     const std::int64_t reference = record.integer(what);
     if (std::in_range<std::int32_t>(reference)) return reference;
     record.fail(ErrorCode::FileUnsupported, what, " is ", reference,
@@ -255,9 +254,7 @@ class MeditText {
   }
 
  private:
-  TextScanner scanner_;
-  std::optional<TokenIndex> index_;  ///< only for text without comments
-  std::optional<TextSource> source_;
+  TextSource scanner_;
 };
 
 /// `.meshb`: each section stores the position of the next one.
@@ -349,7 +346,7 @@ class MeditBytes {
   [[nodiscard]] std::uint64_t vertex(Source& record, const NumberName& name) const {
     return version_ >= 4 ? record.size(name) : static_cast<std::uint32_t>(record.integer(name));
   }
-  [[nodiscard]] std::int64_t reference(BinaryRecord& record, const char* what) const {
+  [[nodiscard]] std::int64_t reference(BinaryRecord& record, std::string_view what) const {
     return version_ >= 4 ? static_cast<std::int64_t>(record.size(what)) : record.integer(what);
   }
 
@@ -423,7 +420,7 @@ class MeditReader {
  private:
   static constexpr CellKind kKind = kCellKind<corners>;
   static constexpr const VolumeCells& kType = typeWith(corners);
-  static constexpr const char* kCellReference = "the reference of a cell";
+  static constexpr std::string_view kCellReference = "the reference of a cell";
 
   void readSection(MeditSection section) {
     if (section == MeditSection::Dimension) readDimension();
@@ -584,7 +581,7 @@ class MeditReader {
   /// @return the references; empty if they carry no information
   template <class F>
   [[nodiscard]] Array<std::int32_t> readReferenced(std::size_t count, std::size_t integers,
-                                                   std::size_t reals, const char* what,
+                                                   std::size_t reals, std::string_view what,
                                                    const F& read) {
     auto& source = encoding_.source();
     const RecordShape shape = encoding_.shape(integers + 1, reals);
@@ -844,9 +841,7 @@ struct MeditGroups {
         cellReferences(io::cellReferences(mesh, Untagged::Zero, othersOf(options))) {
     if (withEdges) edges = groupEdges(mesh);
     edgeReferences = groupNumbers(edges.groups);
-    withThreads(stage.context().threads(), [&] {
-      quads = groupQuads(mesh, options.patchAngle, stage, nullptr, othersOf(options));
-    });
+    quads = groupQuads(mesh, options.patchAngle, stage, nullptr, othersOf(options));
     quadReferences = groupNumbers(quads.groups, Untagged::Zero);
     if (othersOf(options).count() == 0) return;
     std::size_t kept = 0;
@@ -1092,9 +1087,7 @@ void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOpt
   const HexMesh straight = straightMesh(mesh);
   MeditGroups groups(straight, Encoding::kHoldsEdges, options, stage);
   if (!groups.vertexReferences.empty()) groups.vertexReferences.resize(mesh.points.size(), 0);
-  GroupNodes nodes;
-  withThreads(stage.context().threads(),
-              [&] { nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage); });
+  const GroupNodes nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
   const std::vector<std::uint32_t> order = quadraticOrder(kMeditPlaces);
   Array<Hex27> cells(mesh.cellCount());
   for (std::size_t c = 0; c < cells.size(); ++c) {

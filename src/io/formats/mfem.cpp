@@ -385,13 +385,6 @@ class MfemWriter {
   LineWriter lines_;
 };
 
-QuadGroups quadsOfWhole(const HexMesh& mesh, const WriteOptions& options, Stage& stage) {
-  QuadGroups quads;
-  withThreads(stage.context().threads(),
-              [&] { quads = groupQuads(mesh, options.patchAngle, stage); });
-  return quads;
-}
-
 /// A set of parts that share something, ascending; at least two.
 using PartGroup = std::vector<std::uint32_t>;
 
@@ -567,7 +560,7 @@ ElementLists readMfem(const Input& input, ElementParts parts, Stage& stage) {
 
 void writeMfem(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
   MfemWriter writer(output, stage.context().threads());
-  const QuadGroups quads = quadsOfWhole(mesh, options, stage);
+  const QuadGroups quads = groupQuads(mesh, options.patchAngle, stage);
   LoopProgress progress(stage, mesh.cells.size() + quads.elements.size() + mesh.points.size());
   writer.writeElements("v1.0", mesh.cells, cellReferences(mesh), quads, &progress);
   output.write(mesh.points.size()).write("\n3\n");
@@ -579,7 +572,7 @@ void writeLagrangeMfem(const LagrangeMesh& mesh, OutputFile& output, const Write
                        Stage& stage) {
   MfemWriter writer(output, stage.context().threads());
   const HexMesh straight = straightMesh(mesh);
-  const QuadGroups quads = quadsOfWhole(straight, options, stage);
+  const QuadGroups quads = groupQuads(straight, options.patchAngle, stage);
   LoopProgress progress(stage, straight.cells.size() + quads.elements.size() + mesh.nodes.size());
   writer.writeElements("v1.0", straight.cells, cellReferences(straight), quads, &progress);
   // L2_T4: per-cell polynomials given by values at equidistant nodes, x fastest: the order of

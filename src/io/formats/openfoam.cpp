@@ -267,11 +267,7 @@ class PolyMeshReader {
       for (const Index cell : cells) regions.add(cell, tag);
     }
     regions.sort();
-    for (ElementBlock& block : lists_.blocks) {
-      for (std::size_t i = 0; i < block.count(); ++i) {
-        block.regions[i] = regions.find(block.numbers[i]);
-      }
-    }
+    lists_.setRegions(regions);
   }
 
   struct Cell {
@@ -550,13 +546,9 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
   OutputFolder folder(isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file);
   std::optional<OutputFile> marker;
   if (isMarker(file)) marker.emplace(file);
-  QuadGroups quads;
   PolyMesh poly;
-  withThreads(context.threads(), [&] {
-    quads = groupQuads(mesh, options.patchAngle, stage);
-    addInnerFaces(mesh, poly, stage);
-  });
-  addPatches(quads, poly);
+  withThreads(context.threads(), [&] { addInnerFaces(mesh, poly, stage); });
+  addPatches(groupQuads(mesh, options.patchAngle, stage), poly);
   requireInt32(mesh.points.size(), "OpenFOAM numbers vertices");
   requireInt32(poly.faces.size(), "OpenFOAM numbers faces");
   try {

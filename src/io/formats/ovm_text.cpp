@@ -10,6 +10,7 @@
 
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
+#include <io/core/number_source.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
@@ -85,10 +86,7 @@ Index readHandle(TextScanner& scanner, const OvmElements& elements, std::size_t 
 }
 
 std::uint32_t readValence(TextScanner& scanner, const OvmElements& elements, std::size_t number) {
-  std::int64_t valence = 0;
-  if (!scanner.readInteger(valence)) {
-    scanner.failInteger(concat("the valence of ", elements.one, " ", number));
-  }
+  const std::int64_t valence = scanner.integer({"the valence of ", elements.one, number});
   if (valence < elements.leastValence || valence > kNone) {
     scanner.fail(ErrorCode::FileSyntax, elements.one, " ", number, " has the valence ", valence,
                  "; at least ", elements.leastValence, " is needed.");
@@ -100,20 +98,15 @@ class OvmTextReader {
  public:
   OvmTextReader(std::string_view text, const std::string& fileName, const CellKind& kind,
                 Stage& stage)
-      : text_(text),
-        scanner_(text, fileName, TextScanner::Comments::Hash),
-        stage_(stage),
-        index_(text, stage),
-        hasComments_(text.find('#') != std::string_view::npos),
-        mesh_(kind) {}
+      : text_(text), scanner_(text, fileName, stage, TextScanner::Comments::Hash), mesh_(kind) {
+    scanner_.makeIndex();
+  }
 
   OvmMesh read() {
     OvmTopology& topology = mesh_.topology;
     readHeader();
     readArrays(mesh_.points, kOvmElements[0], [](TextScanner& scanner, std::size_t i) {
-      double coordinate = 0;
-      if (scanner.readNumber(coordinate)) return coordinate;
-      scanner.failNumber(concat("a coordinate of vertex ", i));
+      return scanner.number({"a coordinate of ", "vertex", i});
     });
     topology.vertexCount = mesh_.points.size();
     const OvmElements& edges = kOvmElements[1];
@@ -165,11 +158,10 @@ class OvmTextReader {
                   const Read& readValue) {
     const std::size_t count = readSection(elements);
     arrays.resize(count);
-    readElements(scanner_, hasComments_ ? nullptr : &index_, stage_, count, n,
-                 [&](TextScanner& scanner, std::size_t i) {
-                   scanner.failIfAtEnd(i, count, elements.many);
-                   for (Value& value : arrays[i]) value = readValue(scanner, i);
-                 });
+    scanner_.elements(count, n, [&](TextScanner& scanner, std::size_t i) {
+      scanner.failIfAtEnd(i, count, elements.many);
+      for (Value& value : arrays[i]) value = readValue(scanner, i);
+    });
   }
 
   /// Reads lists in parallel if they have the wanted length and there are no comments.
@@ -177,42 +169,39 @@ class OvmTextReader {
     const std::size_t count = readSection(elements);
     const std::size_t begin = scanner_.position();
     lists.handles.resize(count * lists.length);
-    const auto readAll = [&](const TokenIndex* index) {
-      readElements(scanner_, index, stage_, count, 1 + lists.length,
-                   [&](TextScanner& scanner, std::size_t i) {
-                     scanner.failIfAtEnd(i, count, elements.many);
-                     const std::uint32_t valence = readValence(scanner, elements, i);
-                     const auto list =
-                         std::span(lists.handles).subspan(i * lists.length, lists.length);
-                     if (valence == lists.length) {
-                       for (Index& handle : list) handle = readHandle(scanner, elements, i, limit);
-                       return;
-                     }
-                     if (index != nullptr) {
-                       scanner.fail(ErrorCode::FileUnsupported, "lengths differ.");
-                     }
-                     for (std::uint32_t k = 0; k < valence; ++k) {
-                       static_cast<void>(readHandle(scanner, elements, i, limit));
-                     }
-                     std::fill(list.begin(), list.end(), kNone);
-                     mesh_.noteOther(lists, i, valence);
-                   });
+    const auto readList = [&](TextScanner& scanner, std::size_t i, bool inParallel) {
+      scanner.failIfAtEnd(i, count, elements.many);
+      const std::uint32_t valence = readValence(scanner, elements, i);
+      const auto list = std::span(lists.handles).subspan(i * lists.length, lists.length);
+      if (valence == lists.length) {
+        for (Index& handle : list) handle = readHandle(scanner, elements, i, limit);
+        return;
+      }
+      if (inParallel) scanner.fail(ErrorCode::FileUnsupported, "lengths differ.");
+      for (std::uint32_t k = 0; k < valence; ++k) {
+        static_cast<void>(readHandle(scanner, elements, i, limit));
+      }
+      std::fill(list.begin(), list.end(), kNone);
+      mesh_.noteOther(lists, i, valence);
     };
-    if (hasComments_) return readAll(nullptr);
-    try {
-      readAll(&index_);
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::Cancelled) throw;
-      scanner_.moveTo(begin);
-      readAll(nullptr);
+    if (scanner_.hasIndex()) {
+      try {
+        return scanner_.elements(count, 1 + lists.length, [&](TextScanner& scanner, std::size_t i) {
+          readList(scanner, i, true);
+        });
+      } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;
+        scanner_.moveTo(begin);
+      }
     }
+    scanner_.inSequence(count,
+                        [&](TextScanner& scanner, std::size_t i) { readList(scanner, i, false); });
   }
 
   /// Reads the supported properties and skips all others.
   void readProperties() {
-    const std::size_t begin = scanner_.position();
-    scanner_ = TextScanner(text_, scanner_.fileName());  // here, '#' may be part of a string
-    scanner_.moveTo(begin);
+    scanner_.endComments();  // here, '#' may be part of a string
+    if (!scanner_.hasIndex()) scanner_.makeIndex();
     // Values of unknown types extend to the next property line. After other values, only property
     // lines and comments may follow.
     bool anythingGoes = false;
@@ -251,31 +240,27 @@ class OvmTextReader {
                     "the values of the map are incomplete: the file ends before them.");
     }
     values.resize(count);
-    readElements(
-        scanner_, &index_, stage_, count, 3, [&values](TextScanner& scanner, std::size_t i) {
-          for (double& parameter : values[i]) {
-            if (scanner.readNumber(parameter)) continue;
-            const NumberProblem problem = parseNumber(scanner.currentToken(), parameter);
-            if (problem != NumberProblem::NotFinite && problem != NumberProblem::Overflow) {
-              scanner.failNumber(concat("a parameter of half-face ", i));
-            }
-            parameter = std::numeric_limits<double>::quiet_NaN();
-            scanner.readToken();
-          }
-        });
+    scanner_.elements(count, 3, [&values](TextScanner& scanner, std::size_t i) {
+      for (double& parameter : values[i]) {
+        if (scanner.readNumber(parameter)) continue;
+        const NumberProblem problem = parseNumber(scanner.currentToken(), parameter);
+        if (problem != NumberProblem::NotFinite && problem != NumberProblem::Overflow) {
+          scanner.failNumber(concat("a parameter of half-face ", i));
+        }
+        parameter = std::numeric_limits<double>::quiet_NaN();
+        scanner.readToken();
+      }
+    });
   }
 
   void readIntegers(Array<std::int32_t>& values, const PropertyHeader& header) {
     const std::size_t count = mesh_.topology.count(header.entity);
+    const std::string name = quoted(header.name);
     for (std::size_t i = 0; i < count; ++i) {
-      std::int64_t value = 0;
-      if (!scanner_.readInteger(value)) {
-        scanner_.failInteger("a value of the property " + quoted(header.name));
-      }
+      const std::int64_t value = scanner_.integer({"a value of the property ", name});
       if (!std::in_range<std::int32_t>(value)) {
-        scanner_.fail(ErrorCode::FileUnsupported, "the property ", quoted(header.name),
-                      " has the value ", scanner_.currentToken(),
-                      ", which does not fit into 32 bits with a sign.");
+        scanner_.fail(ErrorCode::FileUnsupported, "the property ", name, " has the value ",
+                      scanner_.currentToken(), ", which does not fit into 32 bits with a sign.");
       }
       values.push_back(static_cast<std::int32_t>(value));
     }
@@ -299,10 +284,7 @@ class OvmTextReader {
   }
 
   std::string_view text_;
-  TextScanner scanner_;
-  Stage& stage_;
-  TokenIndex index_;
-  bool hasComments_;
+  TextSource scanner_;
   OvmMesh mesh_;
 };
 

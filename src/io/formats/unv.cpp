@@ -79,13 +79,6 @@ class UnvReader {
   }
 
  private:
-  /// An edge or a face that may be tagged.
-  template <std::size_t n>
-  struct Flat {
-    std::uint64_t number;
-    std::array<std::uint64_t, n> nodes;
-  };
-
   void requireMark(const char* what) {
     if (scanner_->readToken() != "-1") scanner_->failToken(what);
   }
@@ -123,7 +116,7 @@ class UnvReader {
     }
   }
 
-  std::uint64_t number(const char* what) {
+  std::uint64_t number(std::string_view what) {
     const std::int64_t value = scanner_->integer(what);
     if (value < 0) scanner_->failInteger(what);
     return static_cast<std::uint64_t>(value);
@@ -167,13 +160,12 @@ class UnvReader {
   void addElement(std::uint64_t element, const UnvType& type,
                   std::span<const std::uint64_t> nodes) {
     if (type.kind == UnvKind::Line && nodes.size() >= 2) {
-      edges_.push_back({element, {nodes.front(), nodes.back()}});
-    } else if (type.kind == UnvKind::Triangle) {
-      const std::size_t step = nodes.size() / 3;  // edge midpoints are listed between the corners
-      triangles_.push_back({element, {nodes[0], nodes[step], nodes[2 * step]}});
-    } else if (type.kind == UnvKind::Quad) {
-      const std::size_t step = nodes.size() / 4;
-      quads_.push_back({element, {nodes[0], nodes[step], nodes[2 * step], nodes[3 * step]}});
+      flats_.push_back({element, 2, {nodes.front(), nodes.back()}});
+    } else if (type.kind == UnvKind::Triangle || type.kind == UnvKind::Quad) {
+      const std::size_t corners = type.kind == UnvKind::Quad ? 4 : 3;
+      FlatElement& face = flats_.emplace_back(FlatElement{element, corners, {}});
+      const std::size_t step = nodes.size() / corners;  // edge midpoints are between the corners
+      for (std::size_t k = 0; k < corners; ++k) face.nodes[k] = nodes[k * step];
     } else if (type.kind == UnvKind::Volume) {
       const std::size_t b = lists_.blockOf(type.cells, nodes.size());
       blockNodes_.resize(lists_.blocks.size());
@@ -217,20 +209,20 @@ class UnvReader {
     std::vector<NumberedGroup> groups;
     groups.reserve(lists_.nodeSets.size());
     for (const NodeSet& group : lists_.nodeSets) groups.push_back({group.name, group.number});
-    const std::vector<std::int32_t> tags = tagsOfGroups(groups, -1);
-    for (const auto& [element, group] : members_) tags_.add(element, tags[group]);
-    tags_.sort();
+    const std::vector<std::int32_t> ofGroups = tagsOfGroups(groups, -1);
+    ElementTags tags;
+    for (const auto& [element, group] : members_) tags.add(element, ofGroups[group]);
+    tags.sort();
     for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
       ElementBlock& block = lists_.blocks[b];
       nameNodes(block, std::exchange(blockNodes_[b], {}), nodes, input_, "data set of nodes");
-      for (const std::uint64_t number : block.numbers) block.regions.push_back(tags_.find(number));
     }
-    addFlat(edges_, nodes, lists_.lines);
-    addFlat(triangles_, nodes, lists_.triangles);
-    addFlat(quads_, nodes, lists_.quads);
+    lists_.setRegions(tags);
+    for (const FlatElement& flat : flats_) lists_.addFlat(flat, tags.find(flat.number), nodes);
     std::vector<TagName> names;  // a group may contain elements of several kinds
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (const int dimension : {1, 2, 3}) names.push_back({dimension, tags[g], groups[g].name});
+      for (const int dimension : {1, 2, 3})
+        names.push_back({dimension, ofGroups[g], groups[g].name});
     }
     lists_.addNamesInUse(names);
     for (std::size_t s = 0; s < nodeSets_.size(); ++s) {
@@ -238,22 +230,6 @@ class UnvReader {
         const Index node = nodes.find(number);
         if (node != kNone) lists_.nodeSets[s].nodes.push_back(node);
       }
-    }
-  }
-
-  template <std::size_t n, class Feature>
-  void addFlat(const std::vector<Flat<n>>& flats, const NodeTags& nodes,
-               std::vector<Feature>& features) const {
-    for (const Flat<n>& flat : flats) {
-      Feature feature;
-      feature.tag = tags_.find(flat.number);
-      if (feature.tag == 0) continue;
-      bool known = true;
-      for (std::size_t k = 0; k < n; ++k) {
-        feature.vertices[k] = nodes.find(flat.nodes[k]);
-        known = known && feature.vertices[k] != kNone;
-      }
-      if (known) features.push_back(feature);
     }
   }
 
@@ -265,11 +241,8 @@ class UnvReader {
   Array<std::uint64_t> nodeNumbers_;
   std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block: node numbers
   std::vector<std::vector<std::uint64_t>> nodeSets_;    ///< per group: node numbers
-  std::vector<Flat<2>> edges_;
-  std::vector<Flat<3>> triangles_;
-  std::vector<Flat<4>> quads_;
+  std::vector<FlatElement> flats_;
   std::vector<std::pair<std::uint64_t, std::size_t>> members_;  ///< elements, with their groups
-  ElementTags tags_;
 };
 
 }  // namespace

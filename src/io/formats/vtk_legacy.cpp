@@ -23,6 +23,7 @@
 #include <io/core/bytes.hpp>
 #include <io/core/cell_counts.hpp>
 #include <io/core/checked_sink.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/plain_mesh.hpp>
 #include <io/core/text_scanner.hpp>
@@ -78,10 +79,8 @@ constexpr std::array<NumberType, 16> kTypes = {{{"int", std::int32_t{}},
 class VtkLegacyFile final : public VtkSource {
  public:
   VtkLegacyFile(VtkFileBytes bytes, const std::string& fileName, Stage& stage)
-      : VtkSource(std::move(bytes), fileName), stage_(stage), scanner_(text(), fileName) {
+      : VtkSource(std::move(bytes), fileName), stage_(stage), scanner_(text(), fileName, stage) {
     readHead();
-    while (!isBehindMesh() && readOn()) {
-    }
     require(hasPoints_, "POINTS");
     require(hasCells_, "CELLS");
     require(hasTypes_, "CELL_TYPES");
@@ -108,19 +107,14 @@ class VtkLegacyFile final : public VtkSource {
                       }});
   }
 
-  /// Reads the next section or array, or the head of a field.
+  /// Reads the next array, or the head of a field.
   bool readOn() override {
     if (fieldArrays_ > 0) {
       readFieldArray();
       return true;
     }
     if (!scanner_.skipSpace()) return false;
-    const std::string keyword = readKeyword();
-    if (isBehindMesh()) {
-      readAttribute(keyword);
-    } else {
-      readSection(keyword);
-    }
+    readAttribute(readKeyword());
     return true;
   }
 
@@ -145,9 +139,9 @@ class VtkLegacyFile final : public VtkSource {
       scanner_.fail(ErrorCode::FileUnsupported, "the data set ", quoted(scanner_.currentToken()),
                     " is not supported.");
     }
-    if (!binary_) index_.emplace(text(), stage_);
-    if (isGrid) readGrid(kind);
-    if (kind == "polydata") readPolygons();
+    if (!binary_) scanner_.makeIndex();
+    if (isGrid) return readGrid(kind);
+    kind == "polydata" ? readPolygons() : readMesh();
   }
 
   /// Reads the sections of a structured grid, whose cells are implied.
@@ -166,7 +160,6 @@ class VtkLegacyFile final : public VtkSource {
         Vec3& numbers = keyword == "origin" ? origin : spacing;
         for (double& x : numbers) x = scanner_.number("a number");
       } else if (keyword == "points") {
-        beginSection(hasPoints_, "POINTS");
         readPoints();
       } else if (keyword.size() == 13 && keyword.ends_with("_coordinates")) {
         readAxis(axes[static_cast<std::size_t>(keyword[0] - 'x') % 3]);
@@ -201,7 +194,7 @@ class VtkLegacyFile final : public VtkSource {
   void readAxis(Array<double>& axis) {
     axis.resize(scanner_.readCount("coordinates", 2));
     const VtkColumn column = readNumbers(axis.size(), readType(), VtkNumbers::Reals,
-                                         [](std::size_t) { return "a coordinate"; });
+                                         [](std::size_t) { return NumberName("a coordinate"); });
     copy(column, 0, axis.size(), axis.data());
   }
 
@@ -209,7 +202,6 @@ class VtkLegacyFile final : public VtkSource {
   void readPolygons() {
     readSections([&](const std::string& keyword) {
       if (keyword == "points") {
-        beginSection(hasPoints_, "POINTS");
         readPoints();
       } else if (keyword == "polygons") {
         beginSection(hasCells_, "POLYGONS");
@@ -232,7 +224,7 @@ class VtkLegacyFile final : public VtkSource {
   /// @param read  reads the section of a keyword; false if it is none of this data set
   template <class Read>
   void readSections(const Read& read) {
-    while (scanner_.skipSpace()) {
+    while (!isBehindMesh() && scanner_.skipSpace()) {
       const std::size_t begin = scanner_.position();
       const std::string keyword = readKeyword();
       if (keyword == "field") {
@@ -240,9 +232,8 @@ class VtkLegacyFile final : public VtkSource {
         while (fieldArrays_ > 0) readFieldArray();
       } else if (keyword == "metadata") {
         skipMetadata();
-      } else if (keyword == "point_data" || keyword == "cell_data") {
-        return scanner_.moveTo(begin);
       } else if (!read(keyword)) {
+        if (keyword == "point_data" || keyword == "cell_data") return scanner_.moveTo(begin);
         scanner_.failToken("a section of the data set");
       }
     }
@@ -251,24 +242,22 @@ class VtkLegacyFile final : public VtkSource {
   /// Whether only arrays follow.
   [[nodiscard]] bool isBehindMesh() const { return hasPoints_ && hasCells_ && hasTypes_; }
 
-  void readSection(const std::string& keyword) {
-    if (keyword == "points") {
-      beginSection(hasPoints_, "POINTS");
-      readPoints();
-    } else if (keyword == "cells") {
-      beginSection(hasCells_, "CELLS");
-      readCells();
-    } else if (keyword == "cell_types") {
-      beginSection(hasTypes_, "CELL_TYPES");
-      types =
-          readIntegers(scanner_.readCount("types of cells", 2), kTypes[0], "the type of a cell");
-    } else if (keyword == "field") {
-      beginField();
-    } else if (keyword == "metadata") {
-      skipMetadata();
-    } else {
-      scanner_.failToken("POINTS, CELLS or CELL_TYPES");
-    }
+  void readMesh() {
+    readSections([&](const std::string& keyword) {
+      if (keyword == "points") {
+        readPoints();
+      } else if (keyword == "cells") {
+        beginSection(hasCells_, "CELLS");
+        readCells();
+      } else if (keyword == "cell_types") {
+        beginSection(hasTypes_, "CELL_TYPES");
+        types =
+            readIntegers(scanner_.readCount("types of cells", 2), kTypes[0], "the type of a cell");
+      } else {
+        scanner_.failToken("POINTS, CELLS or CELL_TYPES");
+      }
+      return true;
+    });
   }
 
   /// Marks a section as present; throws if it was already.
@@ -284,6 +273,7 @@ class VtkLegacyFile final : public VtkSource {
   }
 
   void readPoints() {
+    beginSection(hasPoints_, "POINTS");
     points = scanner_.readCount("points", 6);
     const NumberType& type = readType();
     if (!isReal(type.scalar)) {
@@ -431,14 +421,14 @@ class VtkLegacyFile final : public VtkSource {
     const std::size_t begin = scanner_.position();
     const bool isNumbers = type.name != "string" && type.name != "bit";
     if (isBehindMesh() && tuples == elements() && isNumbers) {
-      arrays.push_back({ofCells_ ? VtkSection::CellData : VtkSection::PointData,
-                        decodedVtkName(name),
-                        isReal(type.scalar) ? VtkNumbers::Reals : VtkNumbers::Integers, components,
-                        false, [this, begin, count, &type](VtkNumbers numbers, auto&&) {
-                          scanner_.moveTo(begin);
-                          return readNumbers(count, type, numbers,
-                                             [](std::size_t) { return "a number of an array"; });
-                        }});
+      arrays.push_back(
+          {ofCells_ ? VtkSection::CellData : VtkSection::PointData, decodedVtkName(name),
+           isReal(type.scalar) ? VtkNumbers::Reals : VtkNumbers::Integers, components, false,
+           [this, begin, count, &type](VtkNumbers numbers, auto&&) {
+             scanner_.moveTo(begin);
+             return readNumbers(count, type, numbers,
+                                [](std::size_t) { return NumberName("a number of an array"); });
+           }});
     }
     skipNumbers(count, type);
   }
@@ -491,13 +481,13 @@ class VtkLegacyFile final : public VtkSource {
       return column;
     }
     column = textColumn(numbers, count);
-    readElements(scanner_, &*index_, stage_, count, 1, [&](TextScanner& scanner, std::size_t i) {
+    scanner_.elements(count, 1, [&](TextScanner& scanner, std::size_t i) {
       readVtkNumber(scanner, numbers, column, i, what(i));
     });
     return column;
   }
 
-  VtkColumn readIntegers(std::size_t count, const NumberType& type, const char* what) {
+  VtkColumn readIntegers(std::size_t count, const NumberType& type, std::string_view what) {
     if (!isOf<std::int32_t>(type.scalar) && !isOf<std::int64_t>(type.scalar)) {
       scanner_.fail(ErrorCode::FileUnsupported, what, " cannot be of type ", type.name,
                     ", only int or vtktypeint64.");
@@ -507,7 +497,7 @@ class VtkLegacyFile final : public VtkSource {
 
   void skipNumbers(std::size_t count, const NumberType& type) {
     if (!binary_) {
-      scanner_.moveTo(index_->find(index_->countBefore(scanner_.position()) + count));
+      scanner_.skipTokens(count);
       return;
     }
     if (type.name == "string") {
@@ -522,8 +512,7 @@ class VtkLegacyFile final : public VtkSource {
   [[nodiscard]] std::size_t elements() const { return ofCells_ ? cells : points; }
 
   Stage& stage_;
-  TextScanner scanner_;
-  std::optional<TokenIndex> index_;  ///< text files only
+  TextSource scanner_;
   bool binary_ = false;
   bool hasPoints_ = false;
   bool hasCells_ = false;
@@ -545,14 +534,8 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
 }
 
 bool holdsVtkLegacySurface(const Input& input) {
-  std::array<char, 1024> bytes{};  // the title, which comes before, has at most 256 characters
-  std::string_view head(bytes.data(), bytes.size());
-  if (input.bytes()) {
-    head = input.bytes()->substr(0, bytes.size());
-  } else if (const InputFile file(input.path()); file.isRegular()) {
-    head = head.substr(0, file.read(bytes.data(), bytes.size()));
-  }
-  return lowerCase(head).find("dataset polydata") != std::string::npos;
+  constexpr std::size_t kHead = 1024;  // the title, which comes before, has at most 256 characters
+  return lowerCase(firstBytes(input, kHead)).find("dataset polydata") != std::string::npos;
 }
 
 namespace {

@@ -181,15 +181,6 @@ VtkColumn textColumn(VtkNumbers numbers, std::size_t count) {
   return column;
 }
 
-void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
-                   const NumberName& name) {
-  const auto set = [place = column.decoded.data() + i * sizeof(double)](auto number) {
-    std::memcpy(place, &number, sizeof(number));
-  };
-  if (numbers == VtkNumbers::Reals) return set(scanner.number(name));
-  set(scanner.integer(name));
-}
-
 namespace {
 
 // Points and cells, a range at a time; meshes and maps.

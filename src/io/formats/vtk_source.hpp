@@ -187,8 +187,14 @@ class VtkSource {
 [[nodiscard]] VtkColumn textColumn(VtkNumbers numbers, std::size_t count);
 
 /// Parses a number of a text into position i of a column.
-void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column, std::size_t i,
-                   const NumberName& name);
+inline void readVtkNumber(TextScanner& scanner, VtkNumbers numbers, VtkColumn& column,
+                          std::size_t i, const NumberName& name) {
+  const auto set = [place = column.decoded.data() + i * sizeof(double)](auto number) {
+    std::memcpy(place, &number, sizeof(number));
+  };
+  if (numbers == VtkNumbers::Reals) return set(scanner.number(name));
+  set(scanner.integer(name));
+}
 
 // Meshes and maps from data sets, for all formats: selects cells and arrays, and reports errors.
 

@@ -762,7 +762,7 @@ class VtuFile final : public VtkSource {
                  " numbers, but there is only room for ", room, ".");
     }
     VtkColumn column = textColumn(numbers, count ? *count : room);
-    const char* const what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
+    const std::string_view what = numbers == VtkNumbers::Reals ? "a number" : "a whole number";
     column.count = 0;
     while (count ? column.count < *count : scanner.skipSpace()) {
       readVtkNumber(scanner, numbers, column, column.count++, what);
