@@ -11,6 +11,7 @@
 
 #ifdef HEXHEX_HAS_ZLIB
 #include <limits>
+#include <memory>
 #include <new>
 #include <zlib.h>
 #endif
@@ -102,44 +103,6 @@ bool inflateBlock(std::string_view compressed, std::span<char> bytes) noexcept {
 
 namespace {
 
-/// Decompresses a gzip file step by step.
-class GzipStream {
- public:
-  explicit GzipStream(std::string_view compressed) : rest_(compressed) {
-    constexpr int kGzipOnly = 16;  // added to the window size
-    if (::inflateInit2(&stream_, MAX_WBITS + kGzipOnly) != Z_OK) throw std::bad_alloc();
-  }
-  ~GzipStream() { ::inflateEnd(&stream_); }
-  GzipStream(const GzipStream&) = delete;
-  GzipStream& operator=(const GzipStream&) = delete;
-
-  /// Fills as much of `room` as possible. @return number of bytes; `good` is false for corrupt data
-  [[nodiscard]] std::size_t read(std::span<char> room, bool& good) {
-    constexpr std::size_t kStep = std::size_t{1} << 30;  // zlib's counts have 32 bits
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest_.data()));
-    stream_.avail_in = static_cast<uInt>(std::min(rest_.size(), kStep));
-    stream_.next_out = reinterpret_cast<Bytef*>(room.data());
-    stream_.avail_out = static_cast<uInt>(std::min(room.size(), kStep));
-    const uInt in = stream_.avail_in;
-    const uInt out = stream_.avail_out;
-    const int status = ::inflate(&stream_, Z_NO_FLUSH);
-    if (status == Z_MEM_ERROR) throw std::bad_alloc();
-    rest_.remove_prefix(in - stream_.avail_in);
-    ended_ = status == Z_STREAM_END;
-    const std::size_t made = out - stream_.avail_out;
-    good = ended_ || (status == Z_OK && (made > 0 || in > stream_.avail_in));
-    if (ended_ && !rest_.empty()) good = ::inflateReset(&stream_) == Z_OK;
-    return made;
-  }
-  /// Whether the last member is complete.
-  [[nodiscard]] bool isComplete() const noexcept { return ended_ && rest_.empty(); }
-
- private:
-  std::string_view rest_;
-  z_stream stream_{};
-  bool ended_ = false;
-};
-
 /// libdeflate, which compresses 2.5 times as fast as zlib, to a twentieth more. It is not linked.
 struct Libdeflate {
   struct Compressor;
@@ -186,13 +149,30 @@ std::size_t deflateBy(const Libdeflate& library, std::span<const char> bytes,
 
 Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
   constexpr std::size_t kFirstRoom = std::size_t{1} << 16;
-  GzipStream stream(compressed);
+  constexpr std::size_t kStep = std::size_t{1} << 30;  // zlib's counts have 32 bits
+  constexpr int kGzipOnly = 16;                        // added to the window size
+  z_stream stream{};
+  if (::inflateInit2(&stream, MAX_WBITS + kGzipOnly) != Z_OK) throw std::bad_alloc();
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> owner(&stream, ::inflateEnd);
   Array<char> bytes;
   std::size_t size = 0;
-  for (bool good = true; !stream.isComplete();) {
+  bool isComplete = false;  // whether the last member is
+  while (!isComplete || !compressed.empty()) {
     if (size == bytes.size()) bytes.resize(std::max(2 * size, kFirstRoom));
-    size += stream.read(std::span(bytes).subspan(size), good);
-    if (good) continue;
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
+    stream.avail_in = static_cast<uInt>(std::min(compressed.size(), kStep));
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + size);
+    stream.avail_out = static_cast<uInt>(std::min(bytes.size() - size, kStep));
+    const uInt in = stream.avail_in;
+    const uInt out = stream.avail_out;
+    const int status = ::inflate(&stream, Z_NO_FLUSH);
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
+    const bool moved = stream.avail_in < in || stream.avail_out < out;
+    compressed.remove_prefix(in - stream.avail_in);
+    size += out - stream.avail_out;
+    isComplete = status == Z_STREAM_END;
+    if (isComplete && (compressed.empty() || ::inflateReset(&stream) == Z_OK)) continue;
+    if (status == Z_OK && moved) continue;
     throw Error(ErrorCode::FileSyntax,
                 name + ": the file is no complete gzip file, or damaged. Try `gzip --test`.");
   }

@@ -74,21 +74,6 @@ void ChangedFolder::sync() const {
                   std::generic_category().message(errno) + ".");
 }
 
-namespace {
-
-void giveName(const std::filesystem::path& finished, const std::filesystem::path& target) {
-  if (system_call::rename(finished, target) == 0) return;
-  failToWrite(target, "the finished file cannot be renamed to it", errno);
-}
-
-}  // namespace
-
-void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target) {
-  const ChangedFolder folder(target);
-  giveName(finished, target);
-  folder.sync();
-}
-
 OutputFile::OutputFile(std::filesystem::path target, Target kind)
     : target_(std::move(target)), buffer_(new char[kBufferSize]) {
   std::error_code error;
@@ -214,7 +199,9 @@ void OutputFile::commit() {
   finish(renamed);
   if (!renamed) return;
   const ChangedFolder folder(target_);
-  giveName(temporary_, target_);
+  if (system_call::rename(temporary_, target_) != 0) {
+    fail("the finished file cannot be renamed to it", errno);
+  }
   temporary_.clear();
   folder.sync();
 }

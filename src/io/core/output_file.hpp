@@ -117,10 +117,6 @@ class ChangedFolder {
   int descriptor_;
 };
 
-/// Renames a finished file within its folder, durably: the new name survives a power failure.
-/// @throws Error FileWrite
-void replaceFile(const std::filesystem::path& finished, const std::filesystem::path& target);
-
 /// A buffered file, written to a temporary beside its target. commit() syncs it to disk and renames
 /// it; without commit(), the temporary is removed and the target left unchanged. An existing target
 /// that is not a regular file (a device, a pipe) is written directly.

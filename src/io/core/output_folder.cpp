@@ -78,10 +78,6 @@ OutputFolder::~OutputFolder() {
   if (!committed_) removeParents();
 }
 
-Error OutputFolder::named(const Error& error) const {
-  return inTermsOf(target_, temporary_, error);
-}
-
 Error inTermsOf(const fs::path& target, const fs::path& temporary, const Error& error) {
   std::string sentence = error.what();
   const std::size_t place = sentence.find(temporary.string());

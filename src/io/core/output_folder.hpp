@@ -21,6 +21,16 @@ namespace hexhex::io {
 /// The error with the temporary's path replaced by the target's.
 [[nodiscard]] Error inTermsOf(const std::filesystem::path& target,
                               const std::filesystem::path& temporary, const Error& error);
+/// Runs write(); its errors name the target instead of the temporary.
+template <class Write>
+void runInTermsOf(const std::filesystem::path& target, const std::filesystem::path& temporary,
+                  const Write& write) {
+  try {
+    write();
+  } catch (const Error& error) {
+    throw inTermsOf(target, temporary, error);
+  }
+}
 
 /// A folder that is filled beside its target and replaces it by commit(). Without commit(), it is
 /// removed along with the parent folders created for it, and the target is left unchanged.
@@ -43,8 +53,11 @@ class OutputFolder {
   /// Undoes commit() as far as possible.
   void takeBack() noexcept;
 
-  /// The error with the temporary's path replaced by the target's.
-  [[nodiscard]] Error named(const Error& error) const;
+  /// Runs write(); its errors name the target instead of the temporary folder.
+  template <class Write>
+  void run(const Write& write) const {
+    runInTermsOf(target_, temporary_, write);
+  }
 
  private:
   void takeName();
@@ -146,11 +159,7 @@ class PartFolder {
   /// Runs write(); its errors name the target instead of the temporary folder.
   template <class Write>
   void run(const Write& write) const {
-    try {
-      write();
-    } catch (const Error& error) {
-      throw inTermsOf(target_, temporary_, error);
-    }
+    runInTermsOf(target_, temporary_, write);
   }
   /// For the first process only, as is takeBack().
   /// @param parts  number of parts

@@ -319,7 +319,6 @@ class AbaqusReader {
     ElementBlock& block = lists_.blocks.emplace_back();
     block.type = type.cells;
     block.nodesEach = type.nodes;
-    std::vector<std::uint64_t>& places = blockNodes_.emplace_back();
     const std::string set = keyword.value("elset");
     if (!set.empty()) blockSets_.push_back(set);
     while (nextData()) {
@@ -341,9 +340,9 @@ class AbaqusReader {
           if (!nextData()) fail(concat("the nodes of element ", number, " are missing"));
           rest = line_;
         }
-        places.push_back(integer(takeField(rest), "a node of an element"));
+        block.listed.push_back(integer(takeField(rest), "a node of an element"));
       }
-      if (type.nodes == 27) putFacesInOrder(std::span(places).last(7));
+      if (type.nodes == 27) putFacesInOrder(std::span(block.listed).last(7));
     }
   }
 
@@ -467,10 +466,7 @@ class AbaqusReader {
       input_.fail(ErrorCode::FileUnsupported, "the file has no *NODE section.");
     }
     const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
-    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
-      nameNodes(lists_.blocks[b], std::exchange(blockNodes_[b], {}), nodes, input_,
-                "*NODE section");
-    }
+    lists_.nameNodes(nodes, input_, "*NODE section");
     tagRegions();
     tagSurfaces();
     for (const std::size_t corners : {4U, 3U, 2U}) tagFacets(corners, nodes);
@@ -618,7 +614,6 @@ class AbaqusReader {
   std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
-  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block: node numbers
   Sets nodeSets_;
   Sets elementSets_;
   std::vector<std::string> blockSets_;   ///< names of sets that are regions: from *ELEMENT,

@@ -386,14 +386,16 @@ NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) 
   return nodes;
 }
 
-void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
-               const NodeTags& nodes, const Input& input, std::string_view place) {
-  block.nodes.resize(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    block.nodes[i] = nodes.find(numbers[i]);
-    if (block.nodes[i] != kNone) continue;
-    input.fail(ErrorCode::IndexOutOfRange, "element ", block.numbers[i / block.nodesEach],
-               " names node ", numbers[i], ", which is in no ", place, ".");
+void ElementLists::nameNodes(const NodeTags& nodes, const Input& input, std::string_view place) {
+  for (ElementBlock& block : blocks) {
+    const std::vector<std::uint64_t> numbers = std::exchange(block.listed, {});
+    block.nodes.resize(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      block.nodes[i] = nodes.find(numbers[i]);
+      if (block.nodes[i] != kNone) continue;
+      input.fail(ErrorCode::IndexOutOfRange, "element ", block.numbers[i / block.nodesEach],
+                 " names node ", numbers[i], ", which is in no ", place, ".");
+    }
   }
 }
 

@@ -72,8 +72,9 @@ struct ElementBlock {
       nullptr;  ///< null for elements that are not volumes; their nodes are not stored
   std::size_t nodesEach = 0;
   Array<Index> nodes;
-  Array<std::uint64_t> numbers;  ///< per element: its number in the file, to which sides refer
-  Array<std::int32_t> regions;   ///< per element
+  std::vector<std::uint64_t> listed;  ///< by the numbers of the file, until nameNodes()
+  Array<std::uint64_t> numbers;       ///< per element: its number in the file, to which sides refer
+  Array<std::int32_t> regions;        ///< per element
 
   [[nodiscard]] std::size_t count() const noexcept { return numbers.size(); }
 };
@@ -122,6 +123,10 @@ struct ElementLists {
   /// corner is kNone.
   void addFlat(std::span<const Index> corners, std::int32_t tag);
   void addFlat(const FlatElement& element, std::int32_t tag, const NodeTags& nodes);
+  /// Sets the nodes of blocks that list their numbers in the file.
+  /// @param place  where the file lists nodes, for messages: "*NODE section"
+  /// @throws Error IndexOutOfRange
+  void nameNodes(const NodeTags& nodes, const Input& input, std::string_view place);
   /// Sets the region of each element in a block.
   void setRegions(const ElementTags& tags);
   /// Stores those names whose tag is used by an element of their dimension, 1 to 3.
@@ -169,12 +174,6 @@ class GroupTags {
 /// Builds the map from node numbers in the file to indices.
 /// @throws Error FileSyntax if two nodes have the same number
 [[nodiscard]] NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input);
-/// Sets the nodes of a block.
-/// @param numbers  node numbers in the file, element by element
-/// @param place  where the file lists nodes, for messages: "*NODE section"
-/// @throws Error IndexOutOfRange
-void nameNodes(ElementBlock& block, const std::vector<std::uint64_t>& numbers,
-               const NodeTags& nodes, const Input& input, std::string_view place);
 
 /// Tags of elements by number. The last tag given to an element counts.
 class ElementTags {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -299,7 +300,7 @@ class ExodusFile {
 
 class ExodusReader {
  public:
-  ExodusReader(NetcdfReader file, const Input& input, ElementParts parts)
+  ExodusReader(std::unique_ptr<HdfReader> file, const Input& input, ElementParts parts)
       : file_(std::move(file)), input_(input), parts_(parts) {}
 
   ElementLists read() {
@@ -315,18 +316,37 @@ class ExodusReader {
   }
 
  private:
+  /// Whether there is a variable, with all values that it announces.
+  [[nodiscard]] bool has(const std::string& name) const {
+    if (!file_->has(name)) return false;
+    file_->requireStored(name);
+    return true;
+  }
+  /// Rows of characters, each up to its first zero byte; none if there is no such variable.
+  [[nodiscard]] std::vector<std::string> texts(const std::string& name) const {
+    std::vector<std::string> rows;
+    const auto shape = has(name) ? file_->shape(name) : std::vector<std::uint64_t>();
+    if (shape.size() != 2 || shape[1] == 0) return rows;
+    const std::string all = file_->text(name);
+    for (std::size_t begin = 0; begin < all.size(); begin += static_cast<std::size_t>(shape[1])) {
+      const std::string row = all.substr(begin, static_cast<std::size_t>(shape[1]));
+      rows.push_back(row.substr(0, row.find('\0')));
+    }
+    return rows;
+  }
+
   void readPoints() {
-    const NetcdfValues* const together = file_.find("coord");  // all axes, in older files
+    const bool together = has("coord");  // all axes, in older files
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::string name = concat("coord", "xyz"[axis]);
-      const NetcdfValues* const values = together != nullptr ? together : file_.find(name);
-      if (values == nullptr) {
+      const std::string name = together ? "coord" : concat("coord", "xyz"[axis]);
+      if (!has(name)) {
         input_.fail(ErrorCode::FileUnsupported, "the file lacks the variable \"", name,
                     "\": it has no nodes in space.");
       }
-      std::vector<double> numbers = file_.reals(*values);
-      if (together != nullptr) {
-        if (values->lengths.size() != 2 || values->lengths[0] != 3) {
+      std::vector<double> numbers = file_->reals(name);
+      if (together) {
+        const std::vector<std::uint64_t> shape = file_->shape(name);
+        if (shape.size() != 2 || shape[0] != 3) {
           input_.fail(ErrorCode::FileUnsupported, "the file has no nodes in space.");
         }
         const auto each = static_cast<std::ptrdiff_t>(numbers.size() / 3);
@@ -371,47 +391,45 @@ class ExodusReader {
   };
   Groups groupsOf(const std::string& prefix) const {
     Groups groups;
-    const NetcdfValues* const status = file_.find(prefix + "_status");
-    const NetcdfValues* const numbers = file_.find(prefix + "_prop1");
-    const NetcdfValues* const names = file_.find(prefix + "_names");
-    if (numbers != nullptr) groups.numbers = file_.integers(*numbers);
-    if (names != nullptr) groups.names = file_.texts(*names);
-    if (numbers == nullptr && status != nullptr) {
-      for (std::uint64_t i = 0; i < status->count; ++i) {
-        groups.numbers.push_back(static_cast<std::int64_t>(i) + 1);
-      }
+    groups.names = texts(prefix + "_names");
+    const std::string status = prefix + "_status";
+    if (has(prefix + "_prop1")) {
+      groups.numbers = file_->integers(prefix + "_prop1");
+    } else if (has(status)) {
+      groups.numbers.resize(file_->integers(status).size());
+      std::iota(groups.numbers.begin(), groups.numbers.end(), 1);
     }
     return groups;
   }
 
   void readBlocks() {
     Groups groups = groupsOf("eb");
-    const NetcdfValues* const made = file_.find("info_records");
-    const std::vector<std::string> by =
-        made != nullptr ? file_.texts(*made) : std::vector<std::string>();
+    const std::vector<std::string> by = texts("info_records");
     if (!by.empty() && by[0].starts_with(kExodusMaker)) groups.joinKinds();
     const std::vector<std::int32_t> tags = groups.tags(3);
     std::uint64_t next = 1;
     for (std::size_t b = 0; b < groups.size(); ++b) {
       // Empty blocks have no variable.
-      const NetcdfValues* const values = file_.find(concat("connect", b + 1));
-      if (values == nullptr) continue;
-      readBlock(*values, tags[b], next);
+      const std::string name = concat("connect", b + 1);
+      if (!has(name)) continue;
+      readBlock(name, tags[b], next);
       lists_.addName(3, tags[b], groups.nameOf(b));
     }
     if (lists_.blocks.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no elements.");
   }
 
-  void readBlock(const NetcdfValues& values, std::int32_t region, std::uint64_t& next) {
-    const std::string type = lowerCase(values.elementType);
-    if (type == "nsided" || type == "nfaced" || values.lengths.size() != 2) {
-      input_.fail(ErrorCode::FileUnsupported, "elements of the type \"", values.elementType,
+  void readBlock(const std::string& name, std::int32_t region, std::uint64_t& next) {
+    const std::string named = file_->attribute(name, "elem_type");
+    const std::string type = lowerCase(named);
+    const std::vector<std::uint64_t> shape = file_->shape(name);
+    if (type == "nsided" || type == "nfaced" || shape.size() != 2) {
+      input_.fail(ErrorCode::FileUnsupported, "elements of the type \"", named,
                   "\" are not supported. Leave their block out.");
     }
     ElementBlock& block = lists_.blocks.emplace_back();
-    const auto each = static_cast<std::size_t>(values.lengths[1]);
+    const auto each = static_cast<std::size_t>(shape[1]);
     block.type = typeOf(type, each);
-    const auto count = static_cast<std::size_t>(values.lengths[0]);
+    const auto count = static_cast<std::size_t>(shape[0]);
     next += count;
     if (block.type == nullptr) return;
     const bool isRead =
@@ -422,12 +440,12 @@ class ExodusReader {
     for (std::size_t i = 0; i < count; ++i) block.numbers[i] = next - count + i;
     block.regions.assign(count, region);
     if (!isRead || parts_ == ElementParts::Types) return;  // others are only counted
-    const std::vector<std::int64_t> nodes = file_.integers(values);
+    const std::vector<std::int64_t> nodes = file_->integers(name);
     block.nodes.resize(nodes.size());
     const bool isCurved = each == 20 || each == kExodusPlaces.size();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const std::size_t k = i % each;
-      block.nodes[i] = nodeOf(nodes[isCurved ? i - k + kExodusPlaces[k] : i], values.name);
+      block.nodes[i] = nodeOf(nodes[isCurved ? i - k + kExodusPlaces[k] : i], name);
     }
   }
 
@@ -465,10 +483,12 @@ class ExodusReader {
     lists_.sideNumbers = kExodusSides;
     for (std::size_t s = 0; s < groups.size(); ++s) {
       const std::string end = concat("_ss", s + 1);
-      const NetcdfValues* const found = file_.find("elem" + end);
-      if (found == nullptr) continue;
-      const std::vector<std::int64_t> elements = file_.integers(*found);
-      const std::vector<std::int64_t> sides = file_.integers(file_.get("side" + end));
+      if (!has("elem" + end)) continue;
+      if (!has("side" + end)) {
+        input_.fail(ErrorCode::FileSyntax, "the file lacks the variable \"side", end, "\".");
+      }
+      const std::vector<std::int64_t> elements = file_->integers("elem" + end);
+      const std::vector<std::int64_t> sides = file_->integers("side" + end);
       if (elements.size() != sides.size()) {
         input_.fail(ErrorCode::FileSyntax, "side set ", s + 1,
                     " has not as many sides as elements.");
@@ -486,17 +506,17 @@ class ExodusReader {
   void readNodeSets() {
     const Groups groups = groupsOf("ns");
     for (std::size_t s = 0; s < groups.size(); ++s) {
-      const NetcdfValues* const found = file_.find(concat("node_ns", s + 1));
-      if (found == nullptr) continue;
+      const std::string name = concat("node_ns", s + 1);
+      if (!has(name)) continue;
       const std::int32_t tag = tagOfGroup(groups.nameOf(s), groups.numberOf(s));
       NodeSet& set = lists_.nodeSets.emplace_back(NodeSet{groups.nameOf(s), tag, {}});
-      for (const std::int64_t node : file_.integers(*found)) {
-        set.nodes.push_back(nodeOf(node, found->name));
+      for (const std::int64_t node : file_->integers(name)) {
+        set.nodes.push_back(nodeOf(node, name));
       }
     }
   }
 
-  NetcdfReader file_;
+  std::unique_ptr<HdfReader> file_;  ///< NetCDF's variables are datasets
   const Input& input_;
   ElementParts parts_;
   ElementLists lists_;
@@ -506,7 +526,7 @@ class ExodusReader {
 
 ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
   const auto readNewer = [&](const Input& file) {
-    return ExodusReader({HdfReader::open(file), input.name()}, input, parts).read();
+    return ExodusReader(HdfReader::open(file), input, parts).read();
   };
   // Refuse other formats before reading the whole file.
   const std::string head = firstBytes(input);
@@ -515,7 +535,7 @@ ElementLists readExodus(const Input& input, ElementParts parts, Stage& stage) {
   Array<char> room;
   const std::string_view bytes = input.text(room, stage, "");
   if (bytes.starts_with(kHdfMark)) return readNewer({bytes, input.name()});
-  return ExodusReader({bytes, input.name()}, input, parts).read();
+  return ExodusReader(openNetcdf(bytes, input.name()), input, parts).read();
 }
 
 namespace {

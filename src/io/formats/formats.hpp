@@ -146,16 +146,20 @@ OpenSink openVtuSink;
 HoldsCurved holdsLagrangeVtu;
 ReadCurved readLagrangeVtu;
 WriteCurved writeLagrangeVtu;
-/// `.vtu` or `.vtp`: a line per segment. Point arrays: `hex_edge` (Int32; -1 at hex vertices),
-/// `parameter` (Float64 along the hex edge; 0 at hex vertices), and generators as in meshes. Cell
-/// arrays: `hex_edge`, and `tet_kind`, `tet`, `tet_corners` of the simplex that contains the
-/// segment.
-WritePiecewise writeArcsVtu, writeArcsVtp;
-/// A polygon per tet or triangle. Point arrays: `point_kind` (UInt8: 0 hex vertex, 1 on an arc, 2
-/// in a patch) and generators. Cell arrays: `hex_face`, `tet_kind`, `tet`, `tet_corners`. Field
-/// array `corner_uv` (Float64, 2 components): (u, v) of the corners of all polygons, in order of
-/// the connectivity.
-WritePiecewise writePatchesVtu, writePatchesVtp;
+/// `.vtu` or `.vtp`. Arcs: a line per segment. Point arrays: `hex_edge` (Int32; -1 at hex
+/// vertices), `parameter` (Float64 along the hex edge; 0 at hex vertices), and generators as in
+/// meshes. Cell arrays: `hex_edge`, and `tet_kind`, `tet`, `tet_corners` of the simplex that
+/// contains the segment.
+///
+/// Patches: a polygon per tet or triangle. Point arrays: `point_kind` (UInt8: 0 hex vertex, 1 on an
+/// arc, 2 in a patch) and generators. Cell arrays: `hex_face`, `tet_kind`, `tet`, `tet_corners`.
+/// Field array `corner_uv` (Float64, 2 components): (u, v) of the corners of all polygons, in order
+/// of the connectivity.
+template <bool polyData>
+struct PiecewiseVtk {
+  static WritePiecewise writeArcs;
+  static WritePiecewise writePatches;
+};
 
 // `.pvtu`: NAME.pvtu, and in the folder NAME a piece `NAME_K.vtu` for each part, as written by
 // writeVtu() without scaled_jacobian, with GlobalPointIds and GlobalCellIds and, if there are
@@ -171,12 +175,15 @@ OpenPartSink openPvtuSink;
 ReadMesh readVtkLegacy;
 ReadTets readVtkLegacyTets;
 ReadMap readVtkLegacyMap;
-WriteMesh writeVtkLegacy, writeVtkLegacyBinary;
-WriteMap writeVtkLegacyMap, writeVtkLegacyMapBinary;
 /// Streams files up to version 4 that hold only hexahedra; loads others as a whole.
 ReadPieces readVtkLegacyTo;
-/// Writes no regions.
-OpenSink openVtkLegacySink, openVtkLegacyBinarySink;
+template <bool binary>
+struct VtkLegacyWriting {
+  static WriteMesh writeMesh;
+  static WriteMap writeMap;
+  /// Writes no regions.
+  static OpenSink openSink;
+};
 /// Hexahedra with 20 or 27 nodes.
 HoldsCurved holdsCurvedVtkLegacy;
 ReadCurved readCurvedVtkLegacy;

@@ -1081,23 +1081,6 @@ void writeWhole(const HexMesh& mesh, OutputFile& output, std::uint32_t version,
              othersOf(options), groups, version, stage);
 }
 
-template <class Encoding>
-void writeQuadratic(const LagrangeMesh& mesh, OutputFile& output, const WriteOptions& options,
-                    Stage& stage) {
-  const HexMesh straight = straightMesh(mesh);
-  MeditGroups groups(straight, Encoding::kHoldsEdges, options, stage);
-  if (!groups.vertexReferences.empty()) groups.vertexReferences.resize(mesh.points.size(), 0);
-  const GroupNodes nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
-  const std::vector<std::uint32_t> order = quadraticOrder(kMeditPlaces);
-  Array<Hex27> cells(mesh.cellCount());
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    for (std::size_t k = 0; k < 27; ++k) cells[c][k] = mesh.nodes[27 * c + order[k]];
-  }
-  MeditWriter<Encoding>(output, stage.context().threads())
-      .write(std::span<const Vec3>(mesh.points), inRows<3>(nodes.edges), inRows<9>(nodes.quads),
-             std::span<const Hex27>(cells), noOthers(), groups, 0, stage);
-}
-
 template <bool binary>
 using Reading = std::conditional_t<binary, MeditBytes, MeditText>;
 template <bool binary>
@@ -1143,7 +1126,19 @@ void MeditFormat<binary>::write(const HexMesh& mesh, OutputFile& output,
 template <bool binary>
 void MeditFormat<binary>::writeCurved(const LagrangeMesh& mesh, OutputFile& output,
                                       const WriteOptions& options, Stage& stage) {
-  writeQuadratic<Writing<binary>>(mesh, output, options, stage);
+  using Encoding = Writing<binary>;
+  const HexMesh straight = straightMesh(mesh);
+  MeditGroups groups(straight, Encoding::kHoldsEdges, options, stage);
+  if (!groups.vertexReferences.empty()) groups.vertexReferences.resize(mesh.points.size(), 0);
+  const GroupNodes nodes = nodesOfGroups(mesh, straight, groups.edges, groups.quads, stage);
+  const std::vector<std::uint32_t> order = quadraticOrder(kMeditPlaces);
+  Array<Hex27> cells(mesh.cellCount());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (std::size_t k = 0; k < 27; ++k) cells[c][k] = mesh.nodes[27 * c + order[k]];
+  }
+  MeditWriter<Encoding>(output, stage.context().threads())
+      .write(std::span<const Vec3>(mesh.points), inRows<3>(nodes.edges), inRows<9>(nodes.quads),
+             std::span<const Hex27>(cells), noOthers(), groups, 0, stage);
 }
 
 template <bool binary>

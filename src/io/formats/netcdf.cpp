@@ -1,6 +1,7 @@
-// Writes and reads NetCDF files in the classic formats; reads NetCDF-4 as well.
+// Writes and reads NetCDF files in the classic formats.
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string_view>
 #include <type_traits>
 
@@ -127,7 +128,22 @@ namespace {
 
 // Type codes, and the bytes of a value by type.
 constexpr std::uint32_t kChar = 2;
+constexpr std::uint32_t kInt = 4;
+constexpr std::uint32_t kFloat = 5;
+constexpr std::uint32_t kDouble = 6;
+constexpr std::uint32_t kInt64 = 10;
+constexpr std::string_view kElementType = "elem_type";
 constexpr std::array<std::uint8_t, 12> kNetcdfBytes = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+
+/// A variable of a file: position, type and shape of its values.
+struct NetcdfValues {
+  std::string name;
+  std::uint32_t type = 0;  ///< type code of the format
+  std::vector<std::uint64_t> lengths;
+  std::string elementType;  ///< the attribute "elem_type"
+  std::uint64_t count = 0;
+  std::uint64_t begin = 0;
+};
 
 /// Reads the header front to back.
 class NetcdfHeadReader {
@@ -180,7 +196,7 @@ class NetcdfHeadReader {
     if (type == 0 || type >= kNetcdfBytes.size()) fail("values are of an unknown type.");
     return kNetcdfBytes[type];
   }
-  /// @return the value of "elem_type", the type of elements
+  /// @return the value of kElementType
   std::string attributes() {
     std::string elementType;
     const std::uint64_t all = beginList(12);
@@ -192,7 +208,7 @@ class NetcdfHeadReader {
       if (length > bytes_.size()) fail("an attribute is longer than the file.");
       const std::string_view value(take(length * size), static_cast<std::size_t>(length * size));
       skipPadding();
-      if (name == "elem_type" && type == kChar) elementType = value.substr(0, value.find('\0'));
+      if (name == kElementType && type == kChar) elementType = value.substr(0, value.find('\0'));
     }
     return elementType;
   }
@@ -234,10 +250,69 @@ class NetcdfHeadReader {
   std::vector<std::uint64_t> lengths_;
 };
 
-void sortByName(std::vector<NetcdfValues>& variables) {
-  std::sort(variables.begin(), variables.end(),
-            [](const NetcdfValues& a, const NetcdfValues& b) { return a.name < b.name; });
-}
+class NetcdfReader final : public HdfReader {
+ public:
+  NetcdfReader(std::string_view bytes, const std::string& fileName)
+      : bytes_(bytes), fileName_(fileName) {
+    for (NetcdfValues& each : NetcdfHeadReader(bytes, fileName).read()) {
+      variables_.emplace(each.name, std::move(each));
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> members(const std::string& /*group*/) const override {
+    std::vector<std::string> names;
+    for (const auto& [name, values] : variables_) names.push_back(name);
+    return names;
+  }
+  [[nodiscard]] bool has(const std::string& path) const override {
+    return variables_.contains(path);
+  }
+  [[nodiscard]] std::vector<std::uint64_t> shape(const std::string& path) const override {
+    return variables_.at(path).lengths;
+  }
+  [[nodiscard]] bool hasReals(const std::string& path) const override {
+    return variables_.at(path).type == kFloat || variables_.at(path).type == kDouble;
+  }
+  void requireStored(const std::string& /*path*/) const override {}  // of all, with the header
+  [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path) const override {
+    return numbers<std::int32_t, std::int64_t>(path, kInt, kInt64, "integers of 32 or 64 bits");
+  }
+  [[nodiscard]] std::vector<double> reals(const std::string& path) const override {
+    return numbers<float, double>(path, kFloat, kDouble, "floating-point numbers");
+  }
+  [[nodiscard]] std::string text(const std::string& path) const override {
+    const NetcdfValues& values = variables_.at(path);
+    if (values.type != kChar) return {};
+    return std::string(bytes_.substr(static_cast<std::size_t>(values.begin),
+                                     static_cast<std::size_t>(values.count)));
+  }
+  [[nodiscard]] std::string attribute(const std::string& path, const char* name) const override {
+    return name == kElementType ? variables_.at(path).elementType : std::string();
+  }
+
+ private:
+  /// The numbers of a variable of one of two types, of 32 and of 64 bits.
+  template <class Narrow, class Number>
+  [[nodiscard]] std::vector<Number> numbers(const std::string& path, std::uint32_t narrow,
+                                            std::uint32_t wide, const char* what) const {
+    const NetcdfValues& values = variables_.at(path);
+    if (values.type != narrow && values.type != wide) {
+      throw Error(ErrorCode::FileSyntax,
+                  concat(fileName_, ": the variable \"", path, "\" has no ", what, "."));
+    }
+    std::vector<Number> numbers(static_cast<std::size_t>(values.count));
+    const char* place = bytes_.data() + values.begin;
+    for (Number& number : numbers) {
+      number = values.type == narrow ? Number{loadBig<Narrow>(place)} : loadBig<Number>(place);
+      place += kNetcdfBytes[values.type];
+    }
+    return numbers;
+  }
+
+  std::string_view bytes_;
+  const std::string& fileName_;
+  std::map<std::string, NetcdfValues> variables_;
+};
 
 }  // namespace
 
@@ -252,84 +327,8 @@ void requireNetcdf(std::string_view head, const std::string& fileName) {
   }
 }
 
-NetcdfReader::NetcdfReader(std::string_view bytes, const std::string& fileName)
-    : bytes_(bytes), fileName_(fileName), variables_(NetcdfHeadReader(bytes, fileName).read()) {
-  sortByName(variables_);
-}
-
-NetcdfReader::NetcdfReader(std::unique_ptr<HdfReader> file, const std::string& fileName)
-    : hdf_(std::move(file)), fileName_(fileName) {
-  for (const std::string& name : hdf_->members("/")) {
-    if (!hdf_->has(name)) continue;
-    // A dimension is stored as a dataset, too.
-    if (hdf_->attribute(name, "NAME").starts_with("This is a netCDF dimension")) continue;
-    NetcdfValues& values = variables_.emplace_back();
-    values.name = name;
-    values.lengths = hdf_->shape(name);
-    values.elementType = hdf_->attribute(name, "elem_type");
-    values.count = 1;
-    for (const std::uint64_t length : values.lengths) values.count *= length;
-  }
-  sortByName(variables_);
-}
-
-const NetcdfValues* NetcdfReader::find(std::string_view name) const {
-  const auto found =
-      std::lower_bound(variables_.begin(), variables_.end(), name,
-                       [](const NetcdfValues& a, std::string_view b) { return a.name < b; });
-  if (found == variables_.end() || found->name != name) return nullptr;
-  if (hdf_ != nullptr) hdf_->requireStored(found->name);
-  return &*found;
-}
-
-const NetcdfValues& NetcdfReader::get(std::string_view name) const {
-  const NetcdfValues* const found = find(name);
-  if (found != nullptr) return *found;
-  throw Error(ErrorCode::FileSyntax,
-              concat(fileName_, ": the file lacks the variable \"", name, "\"."));
-}
-
-template <class Narrow, class Number>
-std::vector<Number> NetcdfReader::numbers(const NetcdfValues& values, std::uint32_t narrow,
-                                          std::uint32_t wide, const char* what) const {
-  if (values.type != narrow && values.type != wide) {
-    throw Error(ErrorCode::FileSyntax,
-                concat(fileName_, ": the variable \"", values.name, "\" has no ", what, "."));
-  }
-  std::vector<Number> numbers(static_cast<std::size_t>(values.count));
-  const char* place = bytes_.data() + values.begin;
-  for (Number& number : numbers) {
-    number = values.type == narrow ? Number{loadBig<Narrow>(place)} : loadBig<Number>(place);
-    place += kNetcdfBytes[values.type];
-  }
-  return numbers;
-}
-
-std::vector<std::int64_t> NetcdfReader::integers(const NetcdfValues& values) const {
-  if (hdf_ != nullptr) return hdf_->integers(values.name);
-  return numbers<std::int32_t, std::int64_t>(values, 4, 10, "integers of 32 or 64 bits");
-}
-
-std::vector<double> NetcdfReader::reals(const NetcdfValues& values) const {
-  if (hdf_ != nullptr) return hdf_->reals(values.name);
-  return numbers<float, double>(values, 5, 6, "floating-point numbers");
-}
-
-std::vector<std::string> NetcdfReader::texts(const NetcdfValues& values) const {
-  std::vector<std::string> texts;
-  const bool areTexts = hdf_ != nullptr || values.type == kChar;
-  if (!areTexts || values.lengths.size() != 2 || values.count == 0) return texts;
-  const std::string own = hdf_ != nullptr ? hdf_->text(values.name) : std::string();
-  const std::string_view all = hdf_ != nullptr
-                                   ? own
-                                   : bytes_.substr(static_cast<std::size_t>(values.begin),
-                                                   static_cast<std::size_t>(values.count));
-  const auto width = static_cast<std::size_t>(values.lengths[1]);
-  for (std::size_t begin = 0; begin < all.size(); begin += width) {
-    const std::string_view row = all.substr(begin, width);
-    texts.emplace_back(row.substr(0, row.find('\0')));
-  }
-  return texts;
+std::unique_ptr<HdfReader> openNetcdf(std::string_view bytes, const std::string& fileName) {
+  return std::make_unique<NetcdfReader>(bytes, fileName);
 }
 
 }  // namespace hexhex::io

@@ -551,16 +551,14 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
   addPatches(groupQuads(mesh, options.patchAngle, stage), poly);
   requireInt32(mesh.points.size(), "OpenFOAM numbers vertices");
   requireInt32(poly.faces.size(), "OpenFOAM numbers faces");
-  try {
+  folder.run([&] {
     PolyMeshWriter writer(folder.temporary(), context.threads());
     writer.write(mesh, poly, stage);
     writer.writeBoundary(poly.patches);
     // Without regions, writes empty zones, which replace those of an earlier mesh.
     writer.writeZones(mesh.regions.empty() ? CellGroups{} : groupCells(mesh));
     writer.commit();
-  } catch (const Error& error) {
-    throw folder.named(error);
-  }
+  });
   folder.commit();
   if (!marker) return;
   try {
@@ -751,22 +749,14 @@ class OpenFoamSink final : public PartSink {
     Stage stage(context_, "write mesh");
     folders_.emplace_back(folderOf(part.part));
     const OutputFolder& folder = folders_.back();
-    try {
-      withThreads(context_.threads(), [&] { writePart(part, folder, stage); });
-    } catch (const Error& error) {
-      throw folder.named(error);
-    }
+    folder.run([&] { withThreads(context_.threads(), [&] { writePart(part, folder, stage); }); });
   }
 
   void end() override {
     Stage stage(context_, "write mesh");
     numberFaces();
     for (std::size_t p = 0; p < open_.size(); ++p) {
-      try {
-        finishPart(open_[p], folders_[p], stage);
-      } catch (const Error& error) {
-        throw folders_[p].named(error);
-      }
+      folders_[p].run([&] { finishPart(open_[p], folders_[p], stage); });
     }
     barrier(team_);  // wait until all parts are written
     nameAll();

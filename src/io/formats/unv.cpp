@@ -167,12 +167,11 @@ class UnvReader {
       const std::size_t step = nodes.size() / corners;  // edge midpoints are between the corners
       for (std::size_t k = 0; k < corners; ++k) face.nodes[k] = nodes[k * step];
     } else if (type.kind == UnvKind::Volume) {
-      const std::size_t b = lists_.blockOf(type.cells, nodes.size());
-      blockNodes_.resize(lists_.blocks.size());
-      lists_.blocks[b].numbers.push_back(element);
-      const bool quadratic = lists_.blocks[b].nodesEach == 20;
+      ElementBlock& block = lists_.blocks[lists_.blockOf(type.cells, nodes.size())];
+      block.numbers.push_back(element);
+      const bool quadratic = block.nodesEach == 20;
       for (std::size_t k = 0; k < nodes.size(); ++k) {
-        blockNodes_[b].push_back(nodes[quadratic ? kNodesInVtkOrder[k] : k]);
+        block.listed.push_back(nodes[quadratic ? kNodesInVtkOrder[k] : k]);
       }
     }
   }
@@ -213,10 +212,7 @@ class UnvReader {
     ElementTags tags;
     for (const auto& [element, group] : members_) tags.add(element, ofGroups[group]);
     tags.sort();
-    for (std::size_t b = 0; b < lists_.blocks.size(); ++b) {
-      ElementBlock& block = lists_.blocks[b];
-      nameNodes(block, std::exchange(blockNodes_[b], {}), nodes, input_, "data set of nodes");
-    }
+    lists_.nameNodes(nodes, input_, "data set of nodes");
     lists_.setRegions(tags);
     for (const FlatElement& flat : flats_) lists_.addFlat(flat, tags.find(flat.number), nodes);
     std::vector<TagName> names;  // a group may contain elements of several kinds
@@ -239,8 +235,7 @@ class UnvReader {
   std::optional<TextScanner> scanner_;
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
-  std::vector<std::vector<std::uint64_t>> blockNodes_;  ///< per block: node numbers
-  std::vector<std::vector<std::uint64_t>> nodeSets_;    ///< per group: node numbers
+  std::vector<std::vector<std::uint64_t>> nodeSets_;  ///< per group: node numbers
   std::vector<FlatElement> flats_;
   std::vector<std::pair<std::uint64_t, std::size_t>> members_;  ///< elements, with their groups
 };

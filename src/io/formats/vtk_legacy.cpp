@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <hexhex/error.hpp>
@@ -787,21 +788,6 @@ class LegacyWriter {
   LoopProgress* progress_ = nullptr;
 };
 
-template <class Numbers>
-void writeMesh(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
-  LegacyWriter<Numbers> writer(output, stage.context().threads());
-  const AllCells all(mesh, othersOf(options));
-  const bool mixed = all.others().count() > 0;
-  const Array<std::int32_t> ofAll = mixed ? all.regions() : Array<std::int32_t>();
-  const std::span<const std::int32_t> regions = mixed ? ofAll : mesh.regions;
-  LoopProgress progress(stage, mesh.points.size() + 2 * all.size() + regions.size());
-  writer.write(mesh.points, mesh.cells, all.others(), progress);
-  if (!regions.empty()) {
-    writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
-                    [regions](std::size_t c) { return std::array{regions[c]}; });
-  }
-}
-
 /// Encodes an array name as a token, with other characters as "%20" like VTK.
 std::string encodedName(std::string_view name) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
@@ -820,10 +806,32 @@ std::string encodedName(std::string_view name) {
   return token;
 }
 
-template <class Numbers>
-void writeMap(const TetMap& map, OutputFile& output, const WriteOptions& options, Stage& stage) {
+template <bool binary>
+using LegacyNumbers = std::conditional_t<binary, VtkBigBytes, VtkText>;
+
+}  // namespace
+
+template <bool binary>
+void VtkLegacyWriting<binary>::writeMesh(const HexMesh& mesh, OutputFile& output,
+                                         const WriteOptions& options, Stage& stage) {
+  LegacyWriter<LegacyNumbers<binary>> writer(output, stage.context().threads());
+  const AllCells all(mesh, othersOf(options));
+  const bool mixed = all.others().count() > 0;
+  const Array<std::int32_t> ofAll = mixed ? all.regions() : Array<std::int32_t>();
+  const std::span<const std::int32_t> regions = mixed ? ofAll : mesh.regions;
+  LoopProgress progress(stage, mesh.points.size() + 2 * all.size() + regions.size());
+  writer.write(mesh.points, mesh.cells, all.others(), progress);
+  if (!regions.empty()) {
+    writer.cellData("\nSCALARS region int 1\nLOOKUP_TABLE default\n",
+                    [regions](std::size_t c) { return std::array{regions[c]}; });
+  }
+}
+
+template <bool binary>
+void VtkLegacyWriting<binary>::writeMap(const TetMap& map, OutputFile& output,
+                                        const WriteOptions& options, Stage& stage) {
   const std::string name = encodedName(options.mapArray);
-  LegacyWriter<Numbers, 4> writer(output, stage.context().threads());
+  LegacyWriter<LegacyNumbers<binary>, 4> writer(output, stage.context().threads());
   withThreads(stage.context().threads(), [&] { requireWritable(map, stage); });
   const std::size_t tets = map.tets.size();
   LoopProgress progress(stage, map.points.size() + 3 * tets);
@@ -833,35 +841,13 @@ void writeMap(const TetMap& map, OutputFile& output, const WriteOptions& options
       [&map](std::size_t t) { return std::bit_cast<std::array<double, 12>>(map.parameters[t]); });
 }
 
-}  // namespace
-
-void writeVtkLegacy(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                    Stage& stage) {
-  writeMesh<VtkText>(mesh, output, options, stage);
+template <bool binary>
+std::unique_ptr<MeshSink> VtkLegacyWriting<binary>::openSink(const std::filesystem::path& file,
+                                                             Context& context) {
+  return openWriterSink<LegacyWriter<LegacyNumbers<binary>>>(file, context);
 }
 
-void writeVtkLegacyBinary(const HexMesh& mesh, OutputFile& output, const WriteOptions& options,
-                          Stage& stage) {
-  writeMesh<VtkBigBytes>(mesh, output, options, stage);
-}
-
-void writeVtkLegacyMap(const TetMap& map, OutputFile& output, const WriteOptions& options,
-                       Stage& stage) {
-  writeMap<VtkText>(map, output, options, stage);
-}
-
-void writeVtkLegacyMapBinary(const TetMap& map, OutputFile& output, const WriteOptions& options,
-                             Stage& stage) {
-  writeMap<VtkBigBytes>(map, output, options, stage);
-}
-
-std::unique_ptr<MeshSink> openVtkLegacySink(const std::filesystem::path& file, Context& context) {
-  return openWriterSink<LegacyWriter<VtkText>>(file, context);
-}
-
-std::unique_ptr<MeshSink> openVtkLegacyBinarySink(const std::filesystem::path& file,
-                                                  Context& context) {
-  return openWriterSink<LegacyWriter<VtkBigBytes>>(file, context);
-}
+template struct VtkLegacyWriting<false>;
+template struct VtkLegacyWriting<true>;
 
 }  // namespace hexhex::io

@@ -127,18 +127,14 @@ std::string compressedHead(const VtkDataSet& data, std::span<const std::uint64_t
 /// Receives the bytes of an array and writes them as blocks, compressed by all threads.
 class CompressedArray {
  public:
-  /// @param position  of the file's end
-  CompressedArray(OutputFile& output, std::uint64_t position, std::uint64_t bytes, int threads)
+  CompressedArray(OutputFile& output, std::uint64_t bytes, int threads)
       : output_(output),
-        quiet_(threads),
-        stage_(quiet_, "compress"),
-        begin_(position),
+        lines_(output, threads),
+        begin_(output.position()),
         // Number of blocks, their size, size of a shorter last one; compressed sizes follow.
-        head_{blockCount(bytes, kBlockBytes), kBlockBytes, bytes % kBlockBytes},
-        compressed_(kBatch) {
+        head_{blockCount(bytes, kBlockBytes), kBlockBytes, bytes % kBlockBytes} {
     const std::vector<std::uint64_t> room(head_.size() + head_[0], 0);
     output_.writeBytes(room.data(), room.size() * sizeof(std::uint64_t));
-    end_ = position + room.size() * sizeof(std::uint64_t);
     collected_.resize(std::min<std::uint64_t>(kBatch, head_[0]) * kBlockBytes);
   }
 
@@ -155,12 +151,10 @@ class CompressedArray {
   }
 
   /// Writes the remaining bytes.
-  /// @return the position of the file's end
-  [[nodiscard]] std::uint64_t finish() {
+  void finish() {
     compress();
     output_.flush();
     output_.writeBytesAt(begin_, head_.data(), head_.size() * sizeof(std::uint64_t));
-    return end_;
   }
 
  private:
@@ -170,30 +164,26 @@ class CompressedArray {
   static constexpr std::size_t kBatch = 64;
 
   void compress() {
-    withThreadsHere(quiet_.threads(), [&] {
-      parallelBlocks(
-          stage_, used_, kBlockBytes, [&](std::size_t begin, std::size_t end, std::size_t block) {
-            compressed_[block].clear();
-            deflateBlock(std::span(collected_).subspan(begin, end - begin), compressed_[block]);
-          });
-    });
-    for (std::size_t block = 0; block < blockCount(used_, kBlockBytes); ++block) {
-      output_.writeBytes(compressed_[block].data(), compressed_[block].size());
-      head_.push_back(compressed_[block].size());
-      end_ += compressed_[block].size();
-    }
+    const std::size_t blocks = blockCount(used_, kBlockBytes);
+    const std::size_t known = head_.size();
+    head_.resize(known + blocks);
+    const auto deflate = [&](char* place, std::size_t i) {
+      const std::size_t size = std::min(kBlockBytes, used_ - i * kBlockBytes);
+      Array<char> deflated;
+      deflateBlock(std::span(collected_).subspan(i * kBlockBytes, size), deflated);
+      head_[known + i] = deflated.size();
+      return put(place, std::string_view(deflated.data(), deflated.size()));
+    };
+    lines_.write(blocks, 2 * kBlockBytes, deflate, nullptr);  // zlib never needs as much room
     used_ = 0;
   }
 
   OutputFile& output_;
-  Context quiet_;
-  Stage stage_;
+  LineWriter lines_;
   std::uint64_t begin_;
-  std::uint64_t end_ = 0;
   std::vector<std::uint64_t> head_;
   Array<char> collected_;  ///< not compressed yet
   std::size_t used_ = 0;
-  std::vector<Array<char>> compressed_;
 };
 
 // Bytes written between checks for cancellation: a few milliseconds of work.
@@ -227,15 +217,14 @@ void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
   std::vector<std::uint64_t> offsets(data.arrays().size(), 0);
   const std::size_t headBytes = compressedHead(data, offsets).size();
   output.write(std::string(headBytes, ' '));
-  std::uint64_t position = headBytes;
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const VtkArray& array = data.arrays()[i];
-    offsets[i] = position - headBytes;
-    CompressedArray blocks(output, position, array.bytes, threads);
+    offsets[i] = output.position() - headBytes;
+    CompressedArray blocks(output, array.bytes, threads);
     array.write(
         inSlices([&blocks](const void* from, std::size_t size) { blocks.writeBytes(from, size); },
                  progress));
-    position = blocks.finish();
+    blocks.finish();
   }
   const std::string head = compressedHead(data, offsets);
   output.flush();
@@ -422,14 +411,17 @@ Array<std::int32_t> segmentEnds(const PiecewiseLinearMesh& mesh) {
   return ends;
 }
 
-/// @param elements  Lines or Cells
-void writeArcs(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile& output,
-               Stage& stage) {
+}  // namespace
+
+template <bool polyData>
+void PiecewiseVtk<polyData>::writeArcs(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/,
+                                       OutputFile& output, Stage& stage) {
+  constexpr VtkSection kElements = polyData ? VtkSection::Lines : VtkSection::Cells;
   const Arcs& arcs = mesh.arcs;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t segments = arcs.segmentTet.size();
   const std::vector<PointPiece> points = pointsOf(mesh);
-  VtkDataSet data(vertices + arcs.points.size(), segments, elements);
+  VtkDataSet data(vertices + arcs.points.size(), segments, kElements);
   data.curved = true;
   addPoints(data, points);
   data.addComputed<std::int32_t>(
@@ -450,16 +442,18 @@ void writeArcs(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile&
   writeVtkXml(output, data, false, stage);
 }
 
-/// @param elements  Polys or Cells
-void writePatches(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFile& output,
-                  Stage& stage) {
+template <bool polyData>
+void PiecewiseVtk<polyData>::writePatches(const PiecewiseLinearMesh& mesh,
+                                          const TetMapView* /*map*/, OutputFile& output,
+                                          Stage& stage) {
+  constexpr VtkSection kElements = polyData ? VtkSection::Polys : VtkSection::Cells;
   const Patches& patches = mesh.patches;
   const std::size_t vertices = mesh.mesh.points.size();
   const std::size_t shared = vertices + mesh.arcs.points.size();
   const std::size_t polygons = patches.polygonTet.size();
   std::vector<PointPiece> points = pointsOf(mesh);
   points.push_back({0, patches.points, patches.generatorTet, patches.generatorCorners});
-  VtkDataSet data(shared + patches.points.size(), polygons, elements);
+  VtkDataSet data(shared + patches.points.size(), polygons, kElements);
   data.curved = true;
   addPoints(data, points);
   data.addComputed<std::uint8_t>(
@@ -477,23 +471,7 @@ void writePatches(const PiecewiseLinearMesh& mesh, VtkSection elements, OutputFi
   writeVtkXml(output, data, false, stage);
 }
 
-}  // namespace
-
-void writeArcsVtu(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
-                  Stage& stage) {
-  writeArcs(mesh, VtkSection::Cells, output, stage);
-}
-void writeArcsVtp(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
-                  Stage& stage) {
-  writeArcs(mesh, VtkSection::Lines, output, stage);
-}
-void writePatchesVtu(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
-                     Stage& stage) {
-  writePatches(mesh, VtkSection::Cells, output, stage);
-}
-void writePatchesVtp(const PiecewiseLinearMesh& mesh, const TetMapView* /*map*/, OutputFile& output,
-                     Stage& stage) {
-  writePatches(mesh, VtkSection::Polys, output, stage);
-}
+template struct PiecewiseVtk<false>;
+template struct PiecewiseVtk<true>;
 
 }  // namespace hexhex::io

@@ -1,6 +1,5 @@
 // Reads PLY, text and binary of both byte orders. Elements and properties other than vertices and
 // faces are skipped.
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -20,31 +19,42 @@
 namespace hexhex::io {
 namespace {
 
-enum class PlyType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+template <class T>
+double readPlyNumber(ByteCursor& cursor, bool bigEndian, const char* what) {
+  const char* const place = cursor.take(sizeof(T), what).data();
+  if constexpr (sizeof(T) > 1) {
+    if (bigEndian) return static_cast<double>(loadBig<T>(place));
+  }
+  return static_cast<double>(loadLittle<T>(place));
+}
 
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> kPlyTypes = {
-    {{"char", PlyType::Int8},
-     {"int8", PlyType::Int8},
-     {"uchar", PlyType::UInt8},
-     {"uint8", PlyType::UInt8},
-     {"short", PlyType::Int16},
-     {"int16", PlyType::Int16},
-     {"ushort", PlyType::UInt16},
-     {"uint16", PlyType::UInt16},
-     {"int", PlyType::Int32},
-     {"int32", PlyType::Int32},
-     {"uint", PlyType::UInt32},
-     {"uint32", PlyType::UInt32},
-     {"float", PlyType::Float32},
-     {"float32", PlyType::Float32},
-     {"double", PlyType::Float64},
-     {"float64", PlyType::Float64}}};
+/// A type of numbers, and how one is read from a binary file.
+struct PlyType {
+  std::string_view name;
+  double (*read)(ByteCursor& cursor, bool bigEndian, const char* what);
+};
+constexpr std::array<PlyType, 16> kPlyTypes = {{{"char", readPlyNumber<std::int8_t>},
+                                                {"int8", readPlyNumber<std::int8_t>},
+                                                {"uchar", readPlyNumber<std::uint8_t>},
+                                                {"uint8", readPlyNumber<std::uint8_t>},
+                                                {"short", readPlyNumber<std::int16_t>},
+                                                {"int16", readPlyNumber<std::int16_t>},
+                                                {"ushort", readPlyNumber<std::uint16_t>},
+                                                {"uint16", readPlyNumber<std::uint16_t>},
+                                                {"int", readPlyNumber<std::int32_t>},
+                                                {"int32", readPlyNumber<std::int32_t>},
+                                                {"uint", readPlyNumber<std::uint32_t>},
+                                                {"uint32", readPlyNumber<std::uint32_t>},
+                                                {"float", readPlyNumber<float>},
+                                                {"float32", readPlyNumber<float>},
+                                                {"double", readPlyNumber<double>},
+                                                {"float64", readPlyNumber<double>}}};
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::Float32;
+  const PlyType* type = nullptr;
   bool isList = false;
-  PlyType countType = PlyType::UInt8;
+  const PlyType* countType = nullptr;
 };
 
 struct PlyElement {
@@ -60,26 +70,8 @@ class PlyBytes {
       : cursor_(head.text().substr(head.position()), head.text(), head.fileName()),
         bigEndian_(bigEndian) {}
 
-  double number(PlyType type, const char* what) {
-    switch (type) {
-      case PlyType::Int8:
-        return cursor_.read<std::int8_t>(what);
-      case PlyType::UInt8:
-        return cursor_.read<std::uint8_t>(what);
-      case PlyType::Int16:
-        return ordered<std::int16_t>(what);
-      case PlyType::UInt16:
-        return ordered<std::uint16_t>(what);
-      case PlyType::Int32:
-        return ordered<std::int32_t>(what);
-      case PlyType::UInt32:
-        return ordered<std::uint32_t>(what);
-      case PlyType::Float32:
-        return double{ordered<float>(what)};
-      case PlyType::Float64:
-        break;
-    }
-    return ordered<double>(what);
+  double number(const PlyType* type, const char* what) {
+    return type->read(cursor_, bigEndian_, what);
   }
 
   template <class... Parts>
@@ -88,15 +80,6 @@ class PlyBytes {
   }
 
  private:
-  template <class T>
-  T ordered(const char* what) {
-    const std::string_view bytes = cursor_.take(sizeof(T), what);
-    if (!bigEndian_) return loadLittle<T>(bytes.data());
-    std::array<char, sizeof(T)> swapped{};
-    std::reverse_copy(bytes.begin(), bytes.end(), swapped.begin());
-    return loadLittle<T>(swapped.data());
-  }
-
   ByteCursor cursor_;
   bool bigEndian_;
 };
@@ -105,7 +88,7 @@ class PlyBytes {
 class PlyText {
  public:
   explicit PlyText(TextScanner& scanner) : scanner_(scanner) {}
-  double number(PlyType /*type*/, const char* what) { return scanner_.number(what); }
+  double number(const PlyType* /*type*/, const char* what) { return scanner_.number(what); }
   template <class... Parts>
   [[noreturn]] void fail(ErrorCode code, Parts... sentence) const {
     scanner_.fail(code, sentence...);
@@ -175,10 +158,10 @@ class PlyHead {
     property.name = scanner_.readToken();
   }
 
-  PlyType readType() {
+  const PlyType* readType() {
     const std::string_view word = scanner_.readToken();
-    for (const auto& [name, type] : kPlyTypes) {
-      if (word == name) return type;
+    for (const PlyType& type : kPlyTypes) {
+      if (word == type.name) return &type;
     }
     scanner_.fail(ErrorCode::FileSyntax, "expected the type of a property, found ", quoted(word),
                   ".");

@@ -1,16 +1,22 @@
-// Labels of a tet mesh's boundary: the axis that each triangle faces in a polycube.
+// What files tell of the polycube of a tet mesh: its vertices, in a second tet mesh, or the axis
+// that each triangle of the boundary faces.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <hexhex/error.hpp>
 #include <hexhex/io.hpp>
 
+#include <base/concat.hpp>
+#include <base/parallel.hpp>
 #include <base/sorted.hpp>
+#include <base/stage.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
@@ -19,6 +25,73 @@
 
 namespace hexhex::io {
 namespace {
+
+// A pair of tet meshes: the object and its polycube.
+
+constexpr std::size_t kTetPairGrain = std::size_t{1} << 13;
+
+/// How messages name the two meshes, and the error if they do not match.
+struct PairNames {
+  std::string tets;
+  std::string polycube;
+  ErrorCode mismatch;
+};
+
+std::string vertices(const Tet& tet) {
+  std::string text;
+  for (const Index vertex : tet) text += concat((text.empty() ? "" : " "), vertex);
+  return text;
+}
+
+void requireSame(std::size_t tets, std::size_t polycube, const char* what, const PairNames& names) {
+  if (tets == polycube) return;
+  throw Error(
+      names.mismatch,
+      concat(names.tets, " has ", tets, " ", what, ", but ", names.polycube, " has ", polycube,
+             ": the two meshes must have the same vertices and tets, in the same order."));
+}
+
+/// Whether two tets have the same corners, in any order.
+bool sameVertices(const Tet& a, const Tet& b) {
+  return std::is_permutation(a.begin(), a.end(), b.begin());
+}
+
+TetMap combine(const TetMesh& tets, const TetMesh& polycube, const PairNames& names, Stage& stage) {
+  requireSame(tets.points.size(), polycube.points.size(), "vertices", names);
+  requireSame(tets.tets.size(), polycube.tets.size(), "tets", names);
+  const std::size_t count = tets.tets.size();
+  const auto inRange = [&](const Tet& tet) {
+    return std::all_of(tet.begin(), tet.end(), [&](Index v) { return v < tets.points.size(); });
+  };
+  const std::size_t fault = firstFault(stage, count, [&](std::size_t t) {
+    return sameVertices(tets.tets[t], polycube.tets[t]) && inRange(tets.tets[t]);
+  });
+  if (fault < count) {
+    const Place place{PlaceKind::Tet, fault};
+    if (!inRange(tets.tets[fault])) {
+      throw Error(ErrorCode::IndexOutOfRange,
+                  concat("Tet ", fault, " of ", names.tets, " names a vertex that does not exist."),
+                  place);
+    }
+    throw Error(names.mismatch,
+                concat("Tet ", fault, " has the vertices ", vertices(tets.tets[fault]), " in ",
+                       names.tets, ", but ", vertices(polycube.tets[fault]), " in ", names.polycube,
+                       ": the two meshes must have the same tets, in the same order."),
+                place);
+  }
+  TetMap map;
+  map.points = tets.points;
+  map.tets = tets.tets;
+  map.features = tets.features;
+  map.regions = tets.regions;
+  map.parameters.resize(count);
+  parallelFor(stage, count, kTetPairGrain, [&](std::size_t t) {
+    for (std::size_t i = 0; i < 4; ++i) map.parameters[t][i] = polycube.points[map.tets[t][i]];
+  });
+  return map;
+}
+
+// Labels of the boundary.
 
 using Flags = std::vector<std::array<std::int8_t, 4>>;
 using SurfaceTriangle = std::array<Index, 3>;
@@ -110,7 +183,7 @@ std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
   return numbers;
 }
 
-/// Finds boundary vertices by position.
+/// Finds boundary vertices by position: sorted along a direction in which few are level.
 class Positions {
  public:
   Positions(const TetMesh& tets, const TetBoundary& boundary) : tets_(tets) {
@@ -119,47 +192,37 @@ class Positions {
       for (const double x : p) size = std::max(size, std::abs(x));
     }
     tolerance_ = std::max(kSamePosition * size, std::numeric_limits<double>::min());
-    for (const Index v : boundary.vertices()) buckets_[bucketOf(tets.points[v])].push_back(v);
+    for (const Index v : boundary.vertices()) places_.emplace_back(placeOf(tets.points[v]), v);
+    std::sort(places_.begin(), places_.end());
   }
 
   /// The nearest vertex within the tolerance.
   [[nodiscard]] std::optional<Index> find(const Vec3& p) const {
     std::optional<Index> best;
     double least = 1;
-    const Bucket middle = bucketOf(p);
-    for (int i = 0; i < 27; ++i) {
-      const auto bucket =
-          buckets_.find({middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1});
-      if (bucket == buckets_.end()) continue;
-      for (const Index v : bucket->second) {
-        double squared = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double d = (p[k] - tets_.points[v][k]) / tolerance_;
-          squared += d * d;
-        }
-        if (squared > least) continue;
-        least = squared;
-        best = v;
+    const double reach = 2 * tolerance_;  // the direction is shorter than that
+    auto at =
+        std::lower_bound(places_.begin(), places_.end(), std::pair(placeOf(p) - reach, Index{0}));
+    for (; at != places_.end() && at->first <= placeOf(p) + reach; ++at) {
+      double squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double d = (p[k] - tets_.points[at->second][k]) / tolerance_;
+        squared += d * d;
       }
+      if (squared > least) continue;
+      least = squared;
+      best = at->second;
     }
     return best;
   }
 
  private:
-  using Bucket = std::array<std::int64_t, 3>;
-  [[nodiscard]] Bucket bucketOf(const Vec3& p) const {
-    Bucket bucket{};
-    // All vertices are far below the limit; NaN is clamped as well.
-    constexpr double kLimit = 0x1p60;
-    for (std::size_t k = 0; k < 3; ++k) {
-      bucket[k] = std::llround(std::fmin(std::fmax(p[k] / tolerance_, -kLimit), kLimit));
-    }
-    return bucket;
-  }
+  // As no object is built along: the numbers are in no simple ratio.
+  static double placeOf(const Vec3& p) { return p[0] + 0.754877666 * p[1] + 0.569840291 * p[2]; }
 
   const TetMesh& tets_;
   double tolerance_ = 0;
-  std::map<Bucket, std::vector<Index>> buckets_;
+  std::vector<std::pair<double, Index>> places_;
 };
 
 /// Labels given per triangle of a surface.
@@ -221,6 +284,28 @@ Flags perFace(const std::vector<std::int64_t>& numbers, const FlagsFile& flags, 
 }  // namespace hexhex::io
 
 namespace hexhex {
+
+TetMap mapFromPair(const TetMesh& tets, const TetMesh& polycube, Context& context) {
+  const io::PairNames names = {"The mesh", "the polycube", ErrorCode::InvalidArgument};
+  constexpr std::array<WorkStep, 1> kOnly = {{{"pair meshes", 1}}};
+  return inSteps(context, "mapFromPair", kOnly, [&] {
+    return io::inStage(context, "pair meshes",
+                       [&](Stage& stage) { return io::combine(tets, polycube, names, stage); });
+  });
+}
+
+TetMap readMapPair(const std::filesystem::path& tets, const std::filesystem::path& polycube,
+                   Context& context) {
+  constexpr std::array<WorkStep, 3> kSteps = {
+      {{"readTetMesh", 1}, {"readTetMesh", 1}, {"pair meshes", 0.2}}};
+  return inSteps(context, "readMapPair", kSteps, [&] {
+    const TetMesh first = readTetMesh(tets, {}, context);
+    const TetMesh second = readTetMesh(polycube, {}, context);
+    const io::PairNames names = {tets.string(), polycube.string(), ErrorCode::FileUnsupported};
+    return io::inStage(context, "pair meshes",
+                       [&](Stage& stage) { return io::combine(first, second, names, stage); });
+  });
+}
 
 io::Flags readFlags(const FlagsFile& flags, const TetMesh& tets, Context& context) {
   const std::string extension = io::lowerCaseExtension(flags.file);
