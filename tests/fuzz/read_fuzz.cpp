@@ -25,7 +25,6 @@
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
-#include <io/surface/surface.hpp>
 
 #include "mutators.hpp"
 

@@ -56,6 +56,9 @@ inline constexpr CellKind kCellKind<4> = {4, "tetrahedron", "tetrahedra", 10, Pl
 template <>
 inline constexpr CellKind kCellKind<8> = {8, "hexahedron", "hexahedra", 12, PlaceKind::Cell};
 template <>
+inline constexpr CellKind kCellKind<20> = {20, "hexahedron with 20 nodes",
+                                           "hexahedra with 20 nodes", 25, PlaceKind::Cell};
+template <>
 inline constexpr CellKind kCellKind<27> = {27, "hexahedron with 27 nodes",
                                            "hexahedra with 27 nodes", 29, PlaceKind::Cell};
 

@@ -24,7 +24,6 @@
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/registry.hpp>
-#include <io/surface/surface.hpp>
 #include <mesh/lagrange_check.hpp>
 
 namespace hexhex::io {

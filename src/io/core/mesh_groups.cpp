@@ -2,14 +2,12 @@
 // normal.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <span>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -24,6 +22,7 @@
 #include <base/sorted.hpp>
 #include <base/vector3.hpp>
 #include <io/core/mesh_groups.hpp>
+#include <io/core/text_scanner.hpp>
 #include <mesh/smooth_patches.hpp>
 
 namespace hexhex::io {
@@ -123,9 +122,6 @@ void requireVertices(const HexMesh& mesh, const Vertices& vertices, const char* 
                        mesh.points.size(), " vertices."));
   }
 }
-
-std::array<Index, 1> verticesOf(const FeatureVertex& feature) { return {feature.vertex}; }
-std::array<Index, 2> verticesOf(const FeatureEdge& feature) { return feature.vertices; }
 
 /// Groups of all features except those with tag 0, which means "no feature".
 template <std::size_t n, class Feature>
@@ -422,8 +418,7 @@ std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension)
     if (negative) digits.remove_prefix(1);
     if (negative && digits.starts_with('-')) return {};  // only one sign is allowed
     std::int64_t tag = 0;
-    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), tag);
-    if (result.ec != std::errc{} || result.ptr != digits.data() + digits.size()) return {};
+    if (!parseInteger(digits, tag)) return {};
     tag = negative ? -tag : tag;
     if (tag == 0 || !std::in_range<std::int32_t>(tag)) return {};
     return prefix == "patch_" ? 0 : static_cast<std::int32_t>(tag);

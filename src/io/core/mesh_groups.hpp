@@ -159,13 +159,18 @@ void requireInt32(std::size_t count, const std::string& numbers,
 /// @param dimension  of the elements, if only their names count; -1: any
 [[nodiscard]] std::optional<std::int32_t> tagInGroupName(std::string_view name, int dimension = -1);
 
-/// The vertices of a feature in ascending order, to compare features.
-[[nodiscard]] inline std::array<std::uint32_t, 1> keyOf(const FeatureVertex& feature) {
+/// The vertices of a feature.
+[[nodiscard]] inline std::array<Index, 1> verticesOf(const FeatureVertex& feature) {
   return {feature.vertex};
 }
 template <class Feature>
+[[nodiscard]] const auto& verticesOf(const Feature& feature) {
+  return feature.vertices;
+}
+/// The same in ascending order, to compare features.
+template <class Feature>
 [[nodiscard]] auto keyOf(const Feature& feature) {
-  return sorted(feature.vertices);
+  return sorted(verticesOf(feature));
 }
 
 /// Keeps the first feature of each set of vertices, whatever the tags.

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -259,12 +258,8 @@ std::string TextWindow::token() {
 std::optional<std::uint64_t> TextWindow::count() {
   const std::string word = token();
   std::uint64_t number = 0;
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
   // The limit keeps products with a record's bytes from overflowing.
-  if (result.ec != std::errc{} || result.ptr != word.data() + word.size() ||
-      number > file_.size()) {
-    return {};
-  }
+  if (!parseInteger(word, number) || number > file_.size()) return {};
   return number;
 }
 

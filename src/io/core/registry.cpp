@@ -14,7 +14,6 @@
 #include <io/core/compressed_blocks.hpp>
 #include <io/core/registry.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/surface/surface.hpp>
 
 namespace hexhex::io {
 namespace {

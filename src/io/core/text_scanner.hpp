@@ -108,6 +108,14 @@ inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
 /// @param[out] value  set if the result is None
 [[nodiscard]] NumberProblem parseNumber(std::string_view token, double& value);
 
+/// Parses a whole word as an integer; false if it is none, or does not fit.
+template <class Integer>
+[[nodiscard]] bool parseInteger(std::string_view word, Integer& value) {
+  const char* const end = word.data() + word.size();
+  const auto result = std::from_chars(word.data(), end, value);
+  return result.ec == std::errc{} && result.ptr == end;
+}
+
 /// The double nearest to numerator / denominator, ties to even; infinity on overflow; subnormal or
 /// 0 on underflow.
 ///

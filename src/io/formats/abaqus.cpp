@@ -377,8 +377,7 @@ class AbaqusReader {
         const std::string_view word = takeField(rest);
         if (word.empty()) continue;
         std::uint64_t number = 0;
-        const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
-        if (result.ec == std::errc{} && result.ptr == word.data() + word.size()) {
+        if (parseInteger(word, number)) {
           set.items.push_back(number);
           continue;
         }
@@ -574,10 +573,7 @@ class AbaqusReader {
 
   [[nodiscard]] std::uint64_t integer(std::string_view word, const char* what) const {
     std::uint64_t number = 0;
-    const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (result.ec == std::errc{} && result.ptr == word.data() + word.size() && !word.empty()) {
-      return number;
-    }
+    if (parseInteger(word, number)) return number;
     fail(concat("expected ", what, ", found ", quoted(word)));
   }
   [[nodiscard]] double real(std::string_view word) const {

@@ -119,7 +119,7 @@ void takeFaces(const ElementLists& lists, const Array<std::uint64_t>& numbers, c
   addElements(lists.triangles, triangles);
 }
 
-std::vector<FeatureVertex> verticesOf(const ElementLists& lists) {
+std::vector<FeatureVertex> vertexTagsOf(const ElementLists& lists) {
   std::vector<FeatureVertex> vertices = lists.vertices;
   for (const NodeSet& set : lists.nodeSets) {
     if (set.nodes.size() != 1 && !set.name.starts_with("point_")) continue;
@@ -180,7 +180,7 @@ std::vector<FeatureEdge> edgesOf(const ElementLists& lists, std::size_t cells,
 template <class CellAt>
 HexFeatures hexFeaturesOf(ElementLists& lists, const Array<std::uint64_t>& numbers,
                           const CellAt& cellAt, std::vector<FeatureFace>& triangles) {
-  HexFeatures features = {verticesOf(lists), edgesOf(lists, numbers.size(), cellAt), {}, {}};
+  HexFeatures features = {vertexTagsOf(lists), edgesOf(lists, numbers.size(), cellAt), {}, {}};
   takeFaces(lists, numbers, cellAt, features.quads, triangles);
   features.names = namesOf(lists);
   return features;

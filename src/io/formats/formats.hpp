@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -216,8 +217,14 @@ ReadLabels readVtuLabels, readVtkLegacyLabels;
 using ReadTriangles = TriangleMesh(const Input& input, Stage& stage);
 /// `.vtp`, and the data set POLYDATA of `.vtk`. Lines and vertices are ignored; strips are refused.
 ReadTriangles readVtp, readVtkLegacySurface;
+ReadTriangles readStl, readObj, readOff, readPly;
 /// Whether a `.vtk` file holds a surface, from its first lines.
 bool holdsVtkLegacySurface(const Input& input);
+/// Adds the triangles of a polygon: those at its first corner if all its angles are convex,
+/// otherwise ears, cut off one by one.
+void addPolygon(TriangleMesh& mesh, std::span<const Index> corners);
+/// Merges vertices at the same position, and drops triangles with repeated corners.
+[[nodiscard]] TriangleMesh welded(const TriangleMesh& mesh);
 
 // `.ovm` and `.ovmb`: text and binary files of OpenVolumeMesh, with maps or hex meshes.
 //

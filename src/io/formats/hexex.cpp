@@ -193,12 +193,10 @@ class HexexReader {
 
 void requireFeaturesInRange(const TetMap& map) {
   Index largest = 0;
-  for (const FeatureVertex& feature : map.features.vertices) {
-    largest = std::max(largest, feature.vertex);
-  }
   const auto look = [&largest](const auto& feature) {
-    for (const Index v : feature.vertices) largest = std::max(largest, v);
+    for (const Index v : verticesOf(feature)) largest = std::max(largest, v);
   };
+  std::for_each(map.features.vertices.begin(), map.features.vertices.end(), look);
   std::for_each(map.features.edges.begin(), map.features.edges.end(), look);
   std::for_each(map.features.faces.begin(), map.features.faces.end(), look);
   if (map.features.empty() || largest < map.points.size()) return;
@@ -216,7 +214,7 @@ void writeFeatures(const Features& features, LineWriter& lines, OutputFile& outp
   const std::array<std::uint64_t, 3> counts = {count(features.vertices), count(features.edges),
                                                count(features.faces)};
   if (counts == std::array<std::uint64_t, 3>{}) return;
-  const auto write = [&](const auto& list, const auto& verticesOf) {
+  const auto write = [&](const auto& list) {
     lines.write(
         list.size(), 3 * (kNumberRoom + 1),
         [&](char* place, std::size_t i) {
@@ -226,9 +224,9 @@ void writeFeatures(const Features& features, LineWriter& lines, OutputFile& outp
         nullptr);
   };
   output.write(counts[0]).write(' ').write(counts[1]).write(' ').write(counts[2]).write('\n');
-  write(features.vertices, [](const FeatureVertex& v) { return std::array{v.vertex}; });
-  write(features.edges, [](const FeatureEdge& e) { return e.vertices; });
-  write(features.faces, [](const FeatureFace& f) { return f.vertices; });
+  write(features.vertices);
+  write(features.edges);
+  write(features.faces);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <base/parallel.hpp>
 #include <base/stage.hpp>
 #include <io/core/bytes.hpp>
+#include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/formats/formats.hpp>
@@ -404,15 +405,9 @@ class Gluer {
   }
   template <class Feature>
   static void sortOnce(std::vector<Feature>& features) {
-    const auto key = [](const Feature& feature) {
-      if constexpr (std::is_same_v<Feature, FeatureVertex>) {
-        return feature.vertex;
-      } else {
-        return feature.vertices;
-      }
-    };
-    std::stable_sort(features.begin(), features.end(),
-                     [&](const Feature& a, const Feature& b) { return key(a) < key(b); });
+    std::stable_sort(features.begin(), features.end(), [](const Feature& a, const Feature& b) {
+      return verticesOf(a) < verticesOf(b);
+    });
     features.erase(std::unique(features.begin(), features.end()), features.end());
   }
   [[noreturn]] void fail(const std::string& sentence) const {

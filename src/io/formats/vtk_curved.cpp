@@ -31,14 +31,7 @@ CellKind lagrangeCells(std::size_t nodes) {
 
 /// Order-2 cells with types of their own. The first lacks the last 7 nodes of the second, whose
 /// nodes are in the order of Lagrange cells.
-constexpr std::array<CellKind, 2> kQuadratic = {{{.corners = 20,
-                                                  .singular = "hexahedron with 20 nodes",
-                                                  .plural = "hexahedra with 20 nodes",
-                                                  .vtkType = 25},
-                                                 {.corners = 27,
-                                                  .singular = "hexahedron with 27 nodes",
-                                                  .plural = "hexahedra with 27 nodes",
-                                                  .vtkType = 29}}};
+constexpr std::array<CellKind, 2> kQuadratic = {kCellKind<20>, kCellKind<27>};
 
 std::size_t countCells(const VtkSource& source, const CellKind& kind) {
   return countVtkCells(source, kind, 0, source.cells);

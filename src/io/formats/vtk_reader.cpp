@@ -14,7 +14,6 @@
 #include <io/core/input_file.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/vtk_source.hpp>
-#include <io/surface/surface.hpp>
 
 namespace hexhex::io {
 

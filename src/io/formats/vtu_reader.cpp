@@ -447,8 +447,7 @@ class VtuFile final : public VtkSource {
   std::uint64_t readCount(const XmlTag& tag, std::string_view attribute) const {
     const std::string_view value = tag.attribute(attribute);
     std::uint64_t count = 0;
-    const auto result = std::from_chars(value.data(), value.data() + value.size(), count);
-    if (result.ec != std::errc{} || result.ptr != value.data() + value.size()) {
+    if (!parseInteger(value, count)) {
       tags_.fail(ErrorCode::FileSyntax, tag, "expected a whole number as ", attribute, ", found ",
                  quoted(value), ".");
     }

@@ -1,17 +1,15 @@
 // Reads Wavefront OBJ and OFF: vertices and polygons as text.
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <hexhex/error.hpp>
 
 #include <io/core/text_scanner.hpp>
-#include <io/surface/surface.hpp>
+#include <io/formats/formats.hpp>
 
 namespace hexhex::io {
 namespace {
@@ -52,14 +50,11 @@ class ObjReader {
   Index readCorner() {
     const std::string_view token = scanner_.readToken();
     const std::string_view number = token.substr(0, token.find('/'));
-    const char* const end = number.data() + number.size();
     std::int64_t vertex = 0;
-    const auto result = std::from_chars(number.data(), end, vertex);
+    const bool isInteger = parseInteger(number, vertex);
     const auto count = static_cast<std::int64_t>(mesh_.points.size());
     const std::int64_t place = vertex < 0 ? count + vertex : vertex - 1;
-    if (result.ec == std::errc{} && result.ptr == end && place >= 0 && place < count) {
-      return static_cast<Index>(place);
-    }
+    if (isInteger && place >= 0 && place < count) return static_cast<Index>(place);
     scanner_.fail(ErrorCode::FileSyntax, "a corner of a face is ", quoted(token),
                   ", which names no vertex before it.");
   }

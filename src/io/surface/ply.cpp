@@ -14,7 +14,7 @@
 #include <base/vector3.hpp>
 #include <io/core/bytes.hpp>
 #include <io/core/text_scanner.hpp>
-#include <io/surface/surface.hpp>
+#include <io/formats/formats.hpp>
 
 namespace hexhex::io {
 namespace {

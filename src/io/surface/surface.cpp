@@ -10,7 +10,7 @@
 #include <hexhex/error.hpp>
 
 #include <base/vector3.hpp>
-#include <io/surface/surface.hpp>
+#include <io/formats/formats.hpp>
 
 namespace hexhex::io {
 namespace {
