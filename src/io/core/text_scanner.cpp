@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <system_error>
@@ -30,8 +32,10 @@ bool allDigits(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), isDigit);
 }
 
-NumberProblem parseRational(std::string_view numerator, std::string_view denominator,
-                            double& value) {
+NumberProblem parseRational(std::string_view rational, double& value) {
+  const std::size_t slash = rational.find('/');
+  const std::string_view numerator = rational.substr(0, slash);
+  std::string_view denominator = rational.substr(slash + 1);
   const bool negative = takeSign(denominator);
   if (!allDigits(numerator) || !allDigits(denominator)) return NumberProblem::NotANumber;
   if (std::max(numerator.size(), denominator.size()) > kMaxRationalDigits) {
@@ -89,8 +93,9 @@ NumberProblem parseDecimal(std::string_view decimal, double& value) {
 }  // namespace
 
 NumberProblem parseNumber(std::string_view token, double& value) {
-  const std::size_t exponent = token.find_first_of("dDeE");
-  if (exponent != std::string_view::npos && lowerCase(token[exponent]) == 'd') {
+  const bool isRational = token.find('/') != std::string_view::npos;
+  const std::size_t exponent = isRational ? token.size() : token.find_first_of("dDeE");
+  if (exponent < token.size() && lowerCase(token[exponent]) == 'd') {
     std::string usual(token);
     usual[exponent] = 'e';
     return parseNumber(usual, value);
@@ -99,23 +104,20 @@ NumberProblem parseNumber(std::string_view token, double& value) {
   if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
     return NumberProblem::NotANumber;
   }
-  const std::size_t slash = token.find('/');
   double magnitude = 0;
   const NumberProblem problem =
-      slash == std::string_view::npos
-          ? parseDecimal(token, magnitude)
-          : parseRational(token.substr(0, slash), token.substr(slash + 1), magnitude);
+      isRational ? parseRational(token, magnitude) : parseDecimal(token, magnitude);
   if (problem == NumberProblem::None) value = negative ? -magnitude : magnitude;
   return problem;
 }
 
 namespace {
 
-/// A natural number: base 10^9, most significant limb first.
-using Natural = std::vector<std::uint32_t>;
+/// A natural number: base 10^18, most significant limb first.
+using Natural = std::vector<std::uint64_t>;
 
-constexpr std::uint32_t kBase = 1'000'000'000;
-constexpr std::size_t kLimbDigits = 9;
+constexpr std::uint64_t kBase = 1'000'000'000'000'000'000;
+constexpr std::size_t kLimbDigits = 18;
 
 /// Divides natural numbers digit by digit, as on paper.
 class LongDivision {
@@ -123,47 +125,54 @@ class LongDivision {
   /// @param dividend, divisor  digits, the first of which is not 0; as if a point stood behind it
   LongDivision(std::string_view dividend, std::string_view divisor)
       : limbs_(std::max(dividend.size(), divisor.size()) / kLimbDigits + 2),
-        remainder_(limbsOf(dividend)),
-        divisor_(limbsOf(divisor)) {}
+        remainder_(limbsOf(dividend)) {
+    const Natural one = limbsOf(divisor);
+    multiples_[0].resize(limbs_, 0);
+    for (std::size_t k = 1; k < multiples_.size(); ++k) {
+      multiples_[k] = multiples_[k - 1];
+      std::uint64_t carry = 0;
+      for (std::size_t i = limbs_; i-- > 0;) {
+        multiples_[k][i] += one[i] + carry;
+        carry = multiples_[k][i] / kBase;
+        multiples_[k][i] %= kBase;
+      }
+    }
+  }
 
   /// The next digit of the quotient; the first one stands before the point, and may be 0.
   [[nodiscard]] char nextDigit() {
-    char digit = '0';
-    for (; remainder_ >= divisor_; ++digit) subtractDivisor();
+    const auto above = std::upper_bound(multiples_.begin(), multiples_.end(), remainder_);
+    const Natural& taken = *std::prev(above);
+    std::uint64_t borrow = 0;
     std::uint64_t carry = 0;
     for (std::size_t i = limbs_; i-- > 0;) {
-      carry += std::uint64_t{10} * remainder_[i];
-      remainder_[i] = static_cast<std::uint32_t>(carry % kBase);
-      carry /= kBase;
+      const std::uint64_t less = taken[i] + borrow;
+      borrow = remainder_[i] < less ? 1 : 0;
+      const std::uint64_t tenfold = 10 * (remainder_[i] + borrow * kBase - less) + carry;
+      carry = tenfold / kBase;
+      remainder_[i] = tenfold % kBase;
     }
-    return digit;
+    return static_cast<char>('0' + (above - multiples_.begin() - 1));
   }
   /// Whether all further digits are 0.
-  [[nodiscard]] bool isDone() const { return remainder_ == Natural(limbs_, 0); }
+  [[nodiscard]] bool isDone() const { return remainder_ == multiples_[0]; }
 
  private:
   /// The first limb is 0: ten times the remainder needs it.
   [[nodiscard]] Natural limbsOf(std::string_view digits) const {
+    std::string padded(digits);
+    padded.resize((limbs_ - 1) * kLimbDigits, '0');
     Natural limbs(limbs_, 0);
-    for (std::size_t i = 0; i < (limbs_ - 1) * kLimbDigits; ++i) {
-      const char digit = i < digits.size() ? digits[i] : '0';
-      std::uint32_t& limb = limbs[1 + i / kLimbDigits];
-      limb = 10 * limb + static_cast<std::uint32_t>(digit - '0');
+    for (std::size_t i = 1; i < limbs_; ++i) {
+      const char* const end = padded.data() + i * kLimbDigits;
+      std::from_chars(end - kLimbDigits, end, limbs[i]);
     }
     return limbs;
-  }
-  void subtractDivisor() {
-    std::uint32_t borrow = 0;
-    for (std::size_t i = limbs_; i-- > 0;) {
-      const std::uint32_t taken = divisor_[i] + borrow;
-      borrow = remainder_[i] < taken ? 1 : 0;
-      remainder_[i] = remainder_[i] + borrow * kBase - taken;
-    }
   }
 
   std::size_t limbs_;
   Natural remainder_;
-  Natural divisor_;
+  std::array<Natural, 10> multiples_;  ///< of the divisor, from 0 on
 };
 
 }  // namespace
@@ -193,7 +202,7 @@ double nearestQuotient(std::string_view numerator, std::string_view denominator)
   };
   // Between the numbers that begin with these digits, there is rarely a point where rounding
   // changes.
-  constexpr std::size_t kFirstDigits = 18;
+  constexpr std::size_t kFirstDigits = 19;  // as fit in 64 bits
   std::string digits;
   while (digits.size() < kFirstDigits) digits += division.nextDigit();
   std::uint64_t first = 0;
