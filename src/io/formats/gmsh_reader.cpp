@@ -919,20 +919,7 @@ class GmshPieces {
   [[nodiscard]] bool look() {
     if (!lookAtFormat()) return false;
     for (std::string word = words_.token(); !word.empty(); word = words_.token()) {
-      if (word == "$Nodes") {
-        if (!lookInside([this] { return lookAtNodes(); })) return false;
-      } else if (word == "$Elements") {
-        if (!lookInside([this] { return lookAtElements(); })) return false;
-      } else if (word == "$Entities") {
-        // Entities only assign groups to whole blocks, which pieces do not carry.
-        GmshTags ignored;
-        if (!lookInside(
-                [&] { return readEntities(source_, GmshVersion::V41, false, ignored), true; })) {
-          return false;
-        }
-      } else if (word != "$PhysicalNames") {
-        return false;
-      }
+      if (!lookAtSection(word)) return false;
       const std::string end = "$End" + word.substr(1);
       for (word = words_.token(); word != end; word = words_.token()) {
         if (word.empty()) return false;
@@ -951,6 +938,16 @@ class GmshPieces {
     }
     return lookInside([this] { return source_.integer("the mark of the byte order") == 1; }) &&
            words_.token() == "$EndMeshFormat";
+  }
+
+  [[nodiscard]] bool lookAtSection(std::string_view name) {
+    if (name == "$Nodes") return lookInside([this] { return lookAtNodes(); });
+    if (name == "$Elements") return lookInside([this] { return lookAtElements(); });
+    if (name != "$Entities") return name == "$PhysicalNames";
+    // Entities only assign groups to whole blocks, which pieces do not carry.
+    GmshTags ignored;
+    return lookInside(
+        [&] { return readEntities(source_, GmshVersion::V41, false, ignored), true; });
   }
 
   /// Runs look() on the data that begins on the next line, and moves past it.

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -323,13 +322,8 @@ class PolyMeshWriter {
     const std::string note = concat("    note        \"nPoints:", mesh.points.size(),
                                     "  nCells:", mesh.cells.size(), "  nFaces:", poly.faces.size(),
                                     "  nInternalFaces:", poly.neighbours.size(), "\";\n");
-    const auto label = [](const Array<Index>& labels) {
-      return [&labels](char* place, std::size_t i) { return put(put(place, labels[i]), '\n'); };
-    };
-    list("labelList", "owner", poly.owners.size(), kNumberRoom + 1, note, progress,
-         label(poly.owners));
-    list("labelList", "neighbour", poly.neighbours.size(), kNumberRoom + 1, note, progress,
-         label(poly.neighbours));
+    writeLabels("owner", poly.owners, note, progress);
+    writeLabels("neighbour", poly.neighbours, note, progress);
   }
   void writeZones(const CellGroups& cells) {
     OutputFile& output = begin("regIOobject", "cellZones", "");
@@ -349,12 +343,16 @@ class PolyMeshWriter {
     output.write(")\n");
   }
   /// Writes a file with a list of labels.
-  /// @param labelOf  writes label i at a char* with room for a number, and returns its end
-  void writeLabels(std::string_view object, std::size_t n, Stage& stage,
-                   const std::function<char*(char*, std::size_t)>& labelOf) {
-    LoopProgress progress(stage, n);
-    list("labelList", object, n, kNumberRoom + 1, "", progress,
-         [&](char* place, std::size_t i) { return put(labelOf(place, i), '\n'); });
+  template <class Labels>
+  void writeLabels(std::string_view object, const Labels& labels, std::string_view note,
+                   LoopProgress& progress) {
+    list("labelList", object, labels.size(), kNumberRoom + 1, note, progress,
+         [&](char* place, std::size_t i) { return put(put(place, labels[i]), '\n'); });
+  }
+  template <class Labels>
+  void writeLabels(std::string_view object, const Labels& labels, Stage& stage) {
+    LoopProgress progress(stage, labels.size());
+    writeLabels(object, labels, "", progress);
   }
   void writeBoundary(const std::vector<PolyMesh::Patch>& patches) {
     OutputFile& output = begin("polyBoundaryMesh", "boundary", "");
@@ -773,13 +771,8 @@ class OpenFoamSink final : public PartSink {
     PolyMeshWriter writer(folder.temporary(), context_.threads());
     writer.write(part.mesh, faces.poly, stage);
     writer.writeZones(part.mesh.regions.empty() ? CellGroups{} : groupCells(part.mesh));
-    const auto label = [](const Array<std::uint64_t>& labels) {
-      return [&labels](char* place, std::size_t i) { return put(place, labels[i]); };
-    };
-    writer.writeLabels("pointProcAddressing", part.globalPoints.size(), stage,
-                       label(part.globalPoints));
-    writer.writeLabels("cellProcAddressing", part.globalCells.size(), stage,
-                       label(part.globalCells));
+    writer.writeLabels("pointProcAddressing", part.globalPoints, stage);
+    writer.writeLabels("cellProcAddressing", part.globalCells, stage);
     writer.commit();
     open_.push_back(std::move(faces.open));
   }
@@ -823,9 +816,9 @@ class OpenFoamSink final : public PartSink {
 
   /// Writes the files of a part that need global face numbers.
   void finishPart(const OpenPart& open, const OutputFolder& folder, Stage& stage) {
-    std::vector<std::int64_t> addresses = innerAddresses(open);
+    std::vector<std::int32_t> addresses = innerAddresses(open);
     std::vector<PolyMesh::Patch> patches;
-    std::vector<std::int64_t> patchAddresses;
+    std::vector<std::int32_t> patchAddresses;
     std::map<std::int32_t, std::string> names;
     std::vector<ElementGroup> groups;
     addMissingGroups(groups, info_.quadTags, true, "surface", "boundary");
@@ -839,7 +832,7 @@ class OpenFoamSink final : public PartSink {
                         [&](std::uint64_t number) { addresses.push_back(addressOf(number)); });
         ++own;
       }
-      patchAddresses.push_back(static_cast<std::int64_t>(patches.size()));
+      patchAddresses.push_back(static_cast<std::int32_t>(patches.size()));
       patches.push_back({names.at(tag), begin, addresses.size(), {}});
     }
     for (const OpenPart::Border& border : open.borders) {
@@ -855,26 +848,20 @@ class OpenFoamSink final : public PartSink {
     }
     PolyMeshWriter writer(folder.temporary(), context_.threads());
     writer.writeBoundary(patches);
-    const auto label = [](const std::vector<std::int64_t>& labels) {
-      return [&labels](char* place, std::size_t i) {
-        return put(place, static_cast<std::int32_t>(labels[i]));
-      };
-    };
-    writer.writeLabels("faceProcAddressing", addresses.size(), stage, label(addresses));
-    writer.writeLabels("boundaryProcAddressing", patchAddresses.size(), stage,
-                       label(patchAddresses));
+    writer.writeLabels("faceProcAddressing", addresses, stage);
+    writer.writeLabels("boundaryProcAddressing", patchAddresses, stage);
     writer.commit();
   }
 
   /// The addresses of faces between two cells of the part.
-  [[nodiscard]] std::vector<std::int64_t> innerAddresses(const OpenPart& open) const {
+  [[nodiscard]] std::vector<std::int32_t> innerAddresses(const OpenPart& open) const {
     std::vector<bool> isOuter(open.owned.count(), false);
     for (const OpenPart::Border& border : open.borders) {
       for (const std::uint64_t face : border.faces) {
         if (face != kOfOther) isOuter[face] = true;
       }
     }
-    std::vector<std::int64_t> addresses;
+    std::vector<std::int32_t> addresses;
     std::size_t face = 0;
     inner_.forEach(open.owned, [&](std::uint64_t number) {
       if (!isOuter[face++]) addresses.push_back(addressOf(number));
@@ -882,7 +869,7 @@ class OpenFoamSink final : public PartSink {
     return addresses;
   }
   /// From 1 on: a negative address means that the face is reversed.
-  static std::int64_t addressOf(std::uint64_t face) { return static_cast<std::int64_t>(face) + 1; }
+  static std::int32_t addressOf(std::uint64_t face) { return static_cast<std::int32_t>(face + 1); }
 
   /// Renames all folders to their targets; the marker comes last.
   void nameAll() {
