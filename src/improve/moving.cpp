@@ -28,7 +28,8 @@ constexpr double kFarChord = 2.5e-3;
 constexpr int kMostSpreads = 40;
 constexpr int kSpreadStalls = 4;
 /// Gaps are closed to this or, as no more can be had of chords, to half of the largest, until none
-/// is longer than the second one: below kOtherShape, since samples miss some of the distance.
+/// is longer than the second one: below kOtherShape, since samples miss some of the distance. Each
+/// round that comes no nearer was too much at once: after it, half as much is closed.
 /// Maximum number of rounds, and of consecutive rounds without a nearer mesh.
 constexpr double kClosed = 3.5e-3;
 constexpr double kCloseEnough = 4e-3;
@@ -253,6 +254,7 @@ class Moving {
     const std::vector<std::uint8_t> isHeld = heldOnSurface();
     Positions nearest = sweeps.positions();
     double limit = kOtherShape;
+    double cut = 0.5;
     for (int i = 0, stalls = -1; i < kMostClosings && stalls < kClosingStalls; ++i) {
       const BoundaryDistance now = distance({.gapsFrom = limit / 2});
       ++stalls;
@@ -260,9 +262,11 @@ class Moving {
         stalls = 0;
         best = now;
         nearest = sweeps.positions();
+      } else if (i > 0) {
+        cut /= 2;
       }
       if (now.largest.hausdorff() <= kCloseEnough) break;
-      limit = std::max(kClosed, best.largest.hausdorff() / 2);
+      limit = std::max(kClosed, (1 - cut) * best.largest.hausdorff());
       sweeps.shift(closingMoves(now.gaps, boundary_.quads, isHeld, limit * report_.diagonal),
                    options_.target);
     }

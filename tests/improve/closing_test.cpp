@@ -89,7 +89,7 @@ TEST(Closing, BringsABallNearerThanAnyMeshWithVerticesOnIt) {
   const double depth =
       (1 - 1 / std::tan((angle + 2 * std::numbers::pi) / 8)) / (2 * std::numbers::sqrt3);
   EXPECT_GT(onSphere, depth);
-  EXPECT_LT(report.distanceAfter.hausdorff(), 0.7 * depth);
+  EXPECT_LT(report.distanceAfter.hausdorff(), 0.6 * depth);
   EXPECT_TRUE(report.after.allPositive());
   EXPECT_GT(report.offSurface, 0U);
   HexMesh four = extracted(map, 1);
