@@ -78,9 +78,9 @@ void CurvedCells::measureSome(const Array<Vec3>& points, std::span<const Index> 
 }
 
 void CurvedCells::addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
-                           const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                           const Array<IdealBox>& boxes, TermKind kind, Scratch& scratch,
                            EnergyTerms& terms) const {
-  const LagrangeGrid& grid = bezier ? bezierGrid_ : grid_;
+  const LagrangeGrid& grid = kind == TermKind::Bezier ? bezierGrid_ : grid_;
   for (std::size_t first = 0; first < cells.size(); first += curved::kCellLanes) {
     const auto some = cells.subspan(first, std::min(curved::kCellLanes, cells.size() - first));
     MovingNode all{lanesOf(points, some), some.size(), {}, {}};

@@ -30,7 +30,7 @@ class CurvedCells final : public ImprovedCells {
 
   /// At (2 p)^3 places, or with (3 p)^3 Bezier coefficients.
   void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
-                const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                const Array<IdealBox>& boxes, TermKind kind, Scratch& scratch,
                 EnergyTerms& terms) const override;
 
  private:

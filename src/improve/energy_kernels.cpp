@@ -186,11 +186,20 @@ HEXHEX_INLINE void besideTerm(const Number& scale, const Vector& edge, const Vec
   term.normal = scaled(-scale, cofactor);
 }
 
-HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* terms) noexcept {
-  const LaneCells cells = laneCells(list);
-  const mesh::CellEdges<Number> edges = edgesOf(cells);
+/// Measures an edge, in units of the box, by its ideal length: that is near the mean of its own and
+/// of the box's (the same, with two derivatives, where these are equal), but 2/3 to 2 of the box's.
+/// With the mean itself, which takes a root, improving a ball of positive cells takes 12 % longer.
+HEXHEX_INLINE Number measuredByIdeal(Vector& edge) noexcept {
+  const Number square = dot(edge, edge);
+  const Number factor = (3 + square) / (2 + 2 * square);
+  edge = scaled(factor, edge);
+  return factor;
+}
+
+/// @param s  derivatives of the first edges with respect to the moving corner, negated
+HEXHEX_INLINE void addCornerTerms(const mesh::CellEdges<Number>& edges, const Vector& s,
+                                  const Number& weight, TermLanes* terms) noexcept {
   const auto& [u, v, w] = edges;
-  const Vector& s = cells.scale;
   const Vector vw = cross(v[0], w[0]);
   TermLanes& at = terms[0];
   at.square = dot(u[0], u[0]) + dot(v[0], v[0]) + dot(w[0], w[0]);
@@ -202,7 +211,24 @@ HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* te
   besideTerm(s[0], u[0], v[1], w[1], terms[1]);
   besideTerm(s[1], v[0], w[2], u[1], terms[2]);
   besideTerm(s[2], w[0], u[2], v[2], terms[3]);
-  for (std::size_t i = 0; i < kCornerTerms; ++i) terms[i].weight = cells.weight;
+  for (std::size_t i = 0; i < kTermCounts[0]; ++i) terms[i].weight = weight;
+}
+
+HEXHEX_INLINE void cornerTermsOf(std::span<const MovingCell> list, TermLanes* terms) noexcept {
+  const LaneCells cells = laneCells(list);
+  addCornerTerms(edgesOf(cells), cells.scale, cells.weight, terms);
+}
+
+HEXHEX_INLINE void ownCornerTermsOf(std::span<const MovingCell> list, TermLanes* terms) noexcept {
+  LaneCells cells = laneCells(list);
+  mesh::CellEdges<Number> edges = edgesOf(cells);
+  for (const std::size_t i : {2U, 1U, 0U}) {  // no fourth edge is at those corners
+    const Vector factors = {measuredByIdeal(edges.u[i]), measuredByIdeal(edges.v[i]),
+                            measuredByIdeal(edges.w[i])};
+    if (i > 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) cells.scale[k] *= factors[k];
+  }
+  addCornerTerms(edges, cells.scale, cells.weight, terms);
 }
 
 /// Values at places (a, b, c), each coordinate in halves of an axis: index a + 3 b + 9 c.
@@ -218,7 +244,7 @@ constexpr std::size_t placeAt(std::size_t a, std::size_t b, std::size_t c) noexc
 }
 
 /// Places whose coefficients depend on the corner at (0, 0, 0): at most one coordinate is 2.
-constexpr std::array<std::array<std::size_t, 3>, kBezierTerms> kPlaces = {
+constexpr std::array<std::array<std::size_t, 3>, kTermCounts[2]> kPlaces = {
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1},
      {1, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}, {0, 2, 0}, {1, 2, 0},
      {0, 2, 1}, {1, 2, 1}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {1, 1, 2}}};
@@ -343,7 +369,7 @@ HEXHEX_INLINE void bezierTermsOf(std::span<const MovingCell> list, TermLanes* te
   const Column u(edges.u, cells.scale[0]);
   const Column v(edges.v, cells.scale[1]);
   const Column w(edges.w, cells.scale[2]);
-  for (std::size_t i = 0; i < kBezierTerms; ++i) {
+  for (std::size_t i = 0; i < kTermCounts[2]; ++i) {
     const auto [a, b, c] = kPlaces[i];
     const std::size_t bc = b + 3 * c;
     const std::size_t ac = a + 3 * c;
@@ -362,8 +388,10 @@ HEXHEX_INLINE void bezierTermsOf(std::span<const MovingCell> list, TermLanes* te
 
 std::span<const EnergyKernels> energyKernels() noexcept {
   static constexpr std::array<EnergyKernels, 2> kBoth = {
-      {{cornerTermsOf, bezierTermsOf, energyOf, slopeOfAll},
-       {kWide<cornerTermsOf>, kWide<bezierTermsOf>, kWide<energyOf>, kWide<slopeOfAll>}}};
+      {{{cornerTermsOf, ownCornerTermsOf, bezierTermsOf}, energyOf, slopeOfAll},
+       {{kWide<cornerTermsOf>, kWide<ownCornerTermsOf>, kWide<bezierTermsOf>},
+        kWide<energyOf>,
+        kWide<slopeOfAll>}}};
   return runnable(kBoth);
 }
 

@@ -51,10 +51,9 @@ class ImprovedCells {
   [[nodiscard]] virtual Hex cornersOf(std::size_t cell) const = 0;
 
   /// Adds the terms of cells as functions of one of their points.
-  /// @param bezier  whether they are those of Bezier coefficients of the determinant instead of its
-  ///         values
+  /// @param kind  of curved cells, all but those of Bezier coefficients are values on a grid
   virtual void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
-                        const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                        const Array<IdealBox>& boxes, TermKind kind, Scratch& scratch,
                         EnergyTerms& terms) const = 0;
 
   /// Cells that take hardly longer to measure together than one.

@@ -24,9 +24,8 @@ class StraightCells final : public ImprovedCells {
 
   [[nodiscard]] Hex cornersOf(std::size_t cell) const override { return mesh_.cells[cell]; }
 
-  /// At the four corners whose determinants depend on the moving one.
   void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
-                const Array<IdealBox>& boxes, bool bezier, Scratch& scratch,
+                const Array<IdealBox>& boxes, TermKind kind, Scratch& scratch,
                 EnergyTerms& terms) const override {
     scratch.straight.clear();
     for (const Index cell : cells) {
@@ -39,11 +38,7 @@ class StraightCells final : public ImprovedCells {
       }
       scratch.straight.push_back(movingCell(corners, at, boxes[cell]));
     }
-    if (bezier) {
-      terms.addBezier(scratch.straight);
-    } else {
-      terms.addCorners(scratch.straight);
-    }
+    terms.addCells(scratch.straight, kind);
   }
 
  private:

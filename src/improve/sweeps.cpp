@@ -429,7 +429,7 @@ void Sweeps::raise(const Exchange& exchange, double slack) {
       ++round;
       const Exchange now = power > 1 ? exchange : Exchange{target, exchange.belowFloor};
       sweep(std::move(vertices), slack, [&](VertexMover& mover, Index v) {
-        if (mover.smooth(v, power, now) <= kStill) return;
+        if (mover.smooth(v, TermKind::Corners, power, now) <= kStill) return;
         for (const Index cell : all.around(v)) lastMove[cell] = round;
       });
     }
@@ -443,7 +443,7 @@ void Sweeps::smooth(int passes, double floor) {
   };
   for (int pass = 0; pass < passes; ++pass) {
     sweep(verticesThat(canMove), 0,
-          [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+          [&](VertexMover& mover, Index v) { mover.smooth(v, TermKind::OwnCorners, 1, {floor}); });
   }
 }
 
@@ -479,7 +479,7 @@ void Sweeps::smoothInside(double floor) {
     return places_.freedom[v] == Freedom::Free && !meshAround_(v).empty();
   };
   sweep(verticesThat(isInner), 0,
-        [&](VertexMover& mover, Index v) { mover.smooth(v, 1, {floor}); });
+        [&](VertexMover& mover, Index v) { mover.smooth(v, TermKind::OwnCorners, 1, {floor}); });
 }
 
 void Sweeps::spread(std::span<const Quad> quads, std::span<const double> errors, double even,

@@ -31,19 +31,12 @@ TermLanes* EnergyTerms::add(std::size_t blocks) {
   return blocks_.data() + first;
 }
 
-void EnergyTerms::addCells(std::span<const MovingCell> cells, std::size_t perCell,
-                           void (*termsOf)(std::span<const MovingCell>, TermLanes*)) {
+void EnergyTerms::addCells(std::span<const MovingCell> cells, TermKind kind) {
+  const auto at = static_cast<std::size_t>(kind);
   for (std::size_t first = 0; first < cells.size(); first += TermLanes::kCount) {
-    termsOf(cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first)), add(perCell));
+    const auto some = cells.subspan(first, std::min(TermLanes::kCount, cells.size() - first));
+    kernels().terms[at](some, add(kTermCounts[at]));
   }
-}
-
-void EnergyTerms::addCorners(std::span<const MovingCell> cells) {
-  addCells(cells, kCornerTerms, kernels().cornerTerms);
-}
-
-void EnergyTerms::addBezier(std::span<const MovingCell> cells) {
-  addCells(cells, kBezierTerms, kernels().bezierTerms);
 }
 
 double EnergyTerms::leastDeterminantAt(const Vec3& step) const noexcept {

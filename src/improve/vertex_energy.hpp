@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,16 @@ struct alignas(4 * sizeof(double)) TermLanes {
   Number weight;  ///< 1, or 0 where there is no term
 };
 
+/// Which places of cells contribute to the energy.
+enum class TermKind : std::uint8_t {
+  Corners,     ///< those four corners whose determinants depend on the moving one
+  OwnCorners,  ///< the same, with ideal edges halfway between those of the box and their own
+  /// Those Bezier coefficients of the determinant that depend on the moving corner, instead of
+  /// determinants at their places: if all coefficients are positive, so is the cell.
+  Bezier
+};
+inline constexpr std::array<std::size_t, 3> kTermCounts = {4, 4, 20};
+
 /// The contributions of all places of the cells around a vertex.
 class EnergyTerms {
  public:
@@ -55,12 +66,7 @@ class EnergyTerms {
   /// Appends blocks for the caller to fill.
   /// @return the first one
   [[nodiscard]] TermLanes* add(std::size_t blocks);
-  /// Adds the terms of those four corners of each cell whose determinants depend on the moving one.
-  void addCorners(std::span<const MovingCell> cells);
-  /// Adds the terms of those Bezier coefficients of the determinant that depend on the moving
-  /// corner, instead of determinants at their places: if all coefficients are positive, so is the
-  /// cell.
-  void addBezier(std::span<const MovingCell> cells);
+  void addCells(std::span<const MovingCell> cells, TermKind kind);
 
   [[nodiscard]] std::span<const TermLanes> blocks() const noexcept {
     return std::span(blocks_).first(size_);
@@ -68,9 +74,6 @@ class EnergyTerms {
   [[nodiscard]] double leastDeterminantAt(const Vec3& step) const noexcept;
 
  private:
-  void addCells(std::span<const MovingCell> cells, std::size_t perCell,
-                void (*termsOf)(std::span<const MovingCell>, TermLanes*));
-
   std::vector<TermLanes> blocks_;  ///< those beyond size_ are kept for reuse
   std::size_t size_ = 0;
 };

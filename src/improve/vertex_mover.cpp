@@ -130,10 +130,10 @@ double VertexMover::descend(Index vertex, const EnergyKind& kind, const Accept& 
   return 0;
 }
 
-void VertexMover::collect(Index vertex, bool bezier) {
+void VertexMover::collect(Index vertex, TermKind kind) {
   terms_.clear();
-  all_.cells.addTerms(all_.mesh.points, points_.around(vertex), vertex, all_.boxes, bezier,
-                      scratch_, terms_);
+  all_.cells.addTerms(all_.mesh.points, points_.around(vertex), vertex, all_.boxes, kind, scratch_,
+                      terms_);
 }
 
 double VertexMover::sizeAt(Index vertex) const {
@@ -175,7 +175,7 @@ bool VertexMover::isGoodAround(Index vertex, double least, const Exchange& excha
 }
 
 void VertexMover::untangle(Index vertex) {
-  collect(vertex, true);
+  collect(vertex, TermKind::Bezier);
   descend(vertex, untangling(terms_), [] { return true; });
 }
 
@@ -196,10 +196,10 @@ void VertexMover::keepMeasured(Index vertex) {
   for (std::size_t i = 0; i < cells.size(); ++i) all_.qualities[cells[i]] = measured_[i];
 }
 
-double VertexMover::smooth(Index vertex, int power, const Exchange& exchange) {
+double VertexMover::smooth(Index vertex, TermKind kind, int power, const Exchange& exchange) {
   const double before = leastQualityAt(vertex);
   if (!isCertified(before)) return 0;
-  collect(vertex, false);
+  collect(vertex, kind);
   const bool bounded = all_.places.freedom[vertex] != Freedom::Free;
   const double farthest = bounded ? farthestAt(vertex) : 0;
   const double moved = descend(vertex, EnergyKind{power, 0, 0}, [&] {

@@ -74,9 +74,10 @@ class VertexMover {
   /// Lowers the energy at corners if all cells around are certified; they remain so. No scaled
   /// Jacobian falls below the floor (unless `exchange` allows that) or, if already below it, below
   /// the least around the vertex; nor does the boundary leave the surface.
+  /// @param kind   of corners
   /// @param power  EnergyKind::power
   /// @return the distance moved, relative to the size of the cells
-  double smooth(Index vertex, int power, const Exchange& exchange);
+  double smooth(Index vertex, TermKind kind, int power, const Exchange& exchange);
 
   /// Moves a vertex to a place, or part of the way, as far as the bounds of smooth() allow: along
   /// the surface, or straight if it is off the surface and `isPulled` onto it.
@@ -100,7 +101,7 @@ class VertexMover {
   template <class Accept>
   double descend(Index vertex, const EnergyKind& kind, const Accept& isAccepted);
 
-  void collect(Index vertex, bool bezier);
+  void collect(Index vertex, TermKind kind);
   /// Suspects the worst cell to get worse.
   [[nodiscard]] double leastQualityAt(Index vertex);
   void keepMeasured(Index vertex);

@@ -81,13 +81,13 @@ TEST(ImproveCurved, TermsTellHowDeterminantsChange) {
       const Vec3 step = {0.1 * random.real(), -0.1 * random.real(), 0.05};
       Array<Vec3> moved = mesh.points;
       for (std::size_t k = 0; k < 3; ++k) moved[node][k] += step[k];
-      for (const bool bezier : {false, true}) {
+      for (const TermKind kind : {TermKind::Corners, TermKind::Bezier}) {
         EnergyTerms before;
         EnergyTerms after;
-        cells.addTerms(mesh.points, around, node, boxes, bezier, scratch, before);
-        cells.addTerms(moved, around, node, boxes, bezier, scratch, after);
+        cells.addTerms(mesh.points, around, node, boxes, kind, scratch, before);
+        cells.addTerms(moved, around, node, boxes, kind, scratch, after);
         ASSERT_EQ(before.blocks().size(), after.blocks().size());
-        const auto places = static_cast<std::size_t>((bezier ? 3 : 2) * order);
+        const auto places = static_cast<std::size_t>((kind == TermKind::Bezier ? 3 : 2) * order);
         ASSERT_EQ(before.blocks().size(), places * places * places);
         for (std::size_t t = 0; t < before.blocks().size(); ++t) {
           const TermLanes& term = before.blocks()[t];

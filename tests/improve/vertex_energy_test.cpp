@@ -45,20 +45,22 @@ MovingCell moving(const std::array<Vec3, 8>& corners, std::size_t place, const I
   return movingCell(pointers, place, box);
 }
 
-EnergyTerms cornerTerms(const std::array<Vec3, 8>& corners, std::size_t place,
-                        const IdealBox& box) {
+EnergyTerms termsOf(TermKind kind, const std::array<Vec3, 8>& corners, std::size_t place,
+                    const IdealBox& box) {
   EnergyTerms terms;
   const MovingCell cell = moving(corners, place, box);
-  terms.addCorners(std::span(&cell, 1));
+  terms.addCells(std::span(&cell, 1), kind);
   return terms;
+}
+
+EnergyTerms cornerTerms(const std::array<Vec3, 8>& corners, std::size_t place,
+                        const IdealBox& box) {
+  return termsOf(TermKind::Corners, corners, place, box);
 }
 
 EnergyTerms bezierTerms(const std::array<Vec3, 8>& corners, std::size_t place,
                         const IdealBox& box) {
-  EnergyTerms terms;
-  const MovingCell cell = moving(corners, place, box);
-  terms.addBezier(std::span(&cell, 1));
-  return terms;
+  return termsOf(TermKind::Bezier, corners, place, box);
 }
 
 }  // namespace
@@ -70,6 +72,35 @@ TEST(VertexEnergy, IsOneForEachTermOfTheIdealBox) {
   for (std::size_t moving = 0; moving < 8; ++moving) {
     EXPECT_NEAR(energyAt(cornerTerms(corners, moving, {2, 3, 0.5F}), {}, {}), 4, 1e-12);
     EXPECT_NEAR(energyAt(bezierTerms(corners, moving, {2, 3, 0.5F}), {}, {}), 20, 1e-12);
+  }
+}
+
+/// Each edge has its own: long ones beside short ones cost less than with the means of the cell.
+TEST(VertexEnergy, HasIdealEdgesHalfwayToTheirOwnLengths) {
+  Random random(7);
+  const auto energyOf = [](TermKind kind, const std::array<Vec3, 8>& corners, std::size_t place,
+                           const IdealBox& box) {
+    return energyAt(termsOf(kind, corners, place, box), {}, {});
+  };
+  std::array<Vec3, 8> corners = randomCell(random, 0);
+  for (Vec3& corner : corners) corner = {1.2 * corner[0], 0.8 * corner[1], corner[2]};
+  std::array<Vec3, 8> needle = randomCell(random, 0);
+  for (Vec3& corner : needle) corner[2] *= 100;
+  for (std::size_t place = 0; place < 8; ++place) {
+    EXPECT_NEAR(energyOf(TermKind::OwnCorners, corners, place, {1, 1, 1}),
+                energyOf(TermKind::Corners, corners, place, {1.1F, 0.9F, 1}), 3e-3);
+    // But twice the length of the box is the most.
+    const double longest = energyOf(TermKind::Corners, needle, place, {1, 1, 2});
+    EXPECT_NEAR(energyOf(TermKind::OwnCorners, needle, place, {1, 1, 1}), longest, 1e-3 * longest);
+  }
+  // A frustum: the mean of its horizontal edges is 1.
+  corners = randomCell(random, 0);
+  for (Vec3& corner : corners) {
+    for (std::size_t k = 0; k < 2; ++k) corner[k] *= 1.4 - 0.8 * corner[2];
+  }
+  for (std::size_t place = 0; place < 8; ++place) {
+    EXPECT_LT(energyOf(TermKind::OwnCorners, corners, place, {1, 1, 1}),
+              energyOf(TermKind::Corners, corners, place, {1, 1, 1}));
   }
 }
 
@@ -114,7 +145,8 @@ TEST(VertexEnergy, HasTheCurvatureOfDifferencesWhereItIsConvex) {
   Random random(4);
   for (int trial = 0; trial < 100; ++trial) {
     const std::array<Vec3, 8> corners = randomCell(random, 0.15);
-    const EnergyTerms terms = cornerTerms(corners, random.below(8), {1, 1, 1});
+    const TermKind corner = trial % 3 == 0 ? TermKind::OwnCorners : TermKind::Corners;
+    const EnergyTerms terms = termsOf(corner, corners, random.below(8), {1, 1, 1});
     const EnergyKind kind{trial % 2 == 0 ? 1 : 8, 0, 0};
     const EnergySlope slope = slopeOf(terms, kind);
     const Vec3 step = {1e-4 * random.real(), 1e-4 * random.real(), 1e-4 * random.real()};
@@ -144,9 +176,11 @@ TEST(VertexEnergy, IsTheSameBitsForAllWidthsOfRegisters) {
   const EnergyKind kind{2, 0.1, 0.1};
   const Vec3 step = {0.1, -0.2, 0.05};
   const auto results = [&](const EnergyKernels& kernels) {
-    std::array<TermLanes, kBezierTerms + kCornerTerms> terms;
-    kernels.bezierTerms(cells, terms.data());
-    kernels.cornerTerms(cells, &terms[kBezierTerms]);
+    std::array<TermLanes, kTermCounts[0] + kTermCounts[1] + kTermCounts[2]> terms;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < kTermCounts.size(); at += kTermCounts[i++]) {
+      kernels.terms[i](cells, &terms[at]);
+    }
     EnergySlope slope;
     kernels.slope(terms, kind, slope);
     return std::pair(kernels.energy(terms, kind, step), slope);
@@ -173,12 +207,12 @@ TEST(VertexEnergy, IsTheSumOverCells) {
     }
     const EnergyKind kind{4, 0.1, 0.1};
     EnergyTerms together;
-    together.addBezier(cells);
+    together.addCells(cells, TermKind::Bezier);
     double sum = 0;
     EnergyTerms terms;
     for (const MovingCell& cell : cells) {
       terms.clear();
-      terms.addBezier(std::span(&cell, 1));
+      terms.addCells(std::span(&cell, 1), TermKind::Bezier);
       sum += energyAt(terms, kind, {});
     }
     EXPECT_NEAR(energyAt(together, kind, {}), sum, 1e-12 * sum);
