@@ -13,8 +13,8 @@ void registerScales();
 /// density/: the same from few to many hexahedra per tet.
 void registerDensities();
 
-/// check/: verification, quality and certificates beside the extraction; command/: whole runs of
-/// the command.
+/// check/: verification, quality and certificates beside the extraction; command/ and ways/: whole
+/// runs of the command, the latter into files of all kinds.
 void registerMesh();
 
 /// Reading and writing maps and meshes.

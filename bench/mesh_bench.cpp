@@ -1,5 +1,6 @@
 // What the command does beside an extraction: verification, quality with certificates, and all of
 // it, from a file to a file.
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -222,16 +223,16 @@ void writing(benchmark::State& state, const Way& way, int threads) {
   state.counters["peak_bytes"] = sum.peakBytes / runs;
 }
 
-/// With 1, 2, 4, ... threads, as many as there are.
+/// With 1, 2, 4, ... threads, up to as many as there are.
 void addWays() {
   const std::vector<Way> ways = {{"memory", {}, "mesh.vtu"},
                                  {"stream", {"--stream"}, "mesh.vtu"},
                                  {"parts64", {"--parts", "64"}, "mesh.pvtu"}};
-  const int all = static_cast<int>(std::thread::hardware_concurrency());
+  const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   for (int threads = 1; threads <= all; threads *= 2) {
     for (const Way& way : ways) {
-      const std::string name = "ways/" + writtenMap().name + "/way:" + way.name +
-                               "/threads:" + std::to_string(threads);
+      const std::string name =
+          "ways/" + writtenMap().name + "/way:" + way.name + "/threads:" + std::to_string(threads);
       benchmark::RegisterBenchmark(
           name.c_str(), [way, threads](benchmark::State& state) { writing(state, way, threads); })
           ->UseManualTime()

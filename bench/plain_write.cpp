@@ -49,15 +49,18 @@ double secondsOfPlainWrite(std::uint64_t bytes, int threads) {
   std::atomic<std::uint64_t> next = 0;
   const auto writeSlices = [&] {
     for (std::uint64_t at = 0; (at = next.fetch_add(kSlice)) < bytes;) {
-      const std::uint64_t size = std::min(bytes - at, kSlice);
-      if (::pwrite(descriptor, slice.data(), size, static_cast<off_t>(at)) <= 0) return;
+      for (const std::uint64_t end = std::min(at + kSlice, bytes); at < end;) {
+        const ssize_t written =
+            ::pwrite(descriptor, slice.data(), end - at, static_cast<off_t>(at));
+        if (written <= 0) return;
+        at += static_cast<std::uint64_t>(written);
+      }
     }
   };
-  {
-    std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(writeSlices);
-    writeSlices();
-  }
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(writeSlices);
+  writeSlices();
+  for (std::thread& other : others) other.join();
   ::close(descriptor);
   const double seconds = secondsSince(begin);
   std::filesystem::remove(file);

@@ -36,7 +36,7 @@ FULL = [
     Step("ways", BENCH, "^ways/", 3),
 ]
 FULL_TEXT = ("full: medians of five repetitions, of seven for ablations, of three at scales above "
-             "8, of arcs and of files; extraction in three rounds")
+             "8, of arcs, of files and of ways to write; extraction in three rounds")
 
 QUICK = [
     Step("extract", BENCH, "^extract/(sphere_blocks|s17c|rockerarm)", 3, 0.01),

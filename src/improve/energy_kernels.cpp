@@ -1,7 +1,7 @@
 // Compiled for several register widths, like cell_measures.cpp: the entry points for each width
 // inline everything that they call.
 //
-// The terms of straight cells are those of lagrange_kernels.cpp for order 1. With these, balls of
+// But for OwnCorners, the terms are those of lagrange_kernels.cpp for order 1. With these, balls of
 // which a tenth of the cells is not positive would take 5 % longer for terms of Bezier
 // coefficients, and 40 % for terms of corners.
 #include <algorithm>
@@ -188,7 +188,7 @@ HEXHEX_INLINE void besideTerm(const Number& scale, const Vector& edge, const Vec
 
 /// Measures an edge, in units of the box, by its ideal length: that is near the mean of its own and
 /// of the box's (the same, with two derivatives, where these are equal), but 2/3 to 2 of the box's.
-/// With the mean itself, which takes a root, improving a ball of positive cells takes 12 % longer.
+/// With the mean itself, which takes a root, improving a ball of positive cells takes 13 % longer.
 HEXHEX_INLINE Number measuredByIdeal(Vector& edge) noexcept {
   const Number square = dot(edge, edge);
   const Number factor = (3 + square) / (2 + 2 * square);

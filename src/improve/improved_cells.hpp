@@ -51,7 +51,7 @@ class ImprovedCells {
   [[nodiscard]] virtual Hex cornersOf(std::size_t cell) const = 0;
 
   /// Adds the terms of cells as functions of one of their points.
-  /// @param kind  of curved cells, all but those of Bezier coefficients are values on a grid
+  /// @param kind  for curved cells, Corners and OwnCorners mean the same values on a grid
   virtual void addTerms(const Array<Vec3>& points, std::span<const Index> cells, Index moving,
                         const Array<IdealBox>& boxes, TermKind kind, Scratch& scratch,
                         EnergyTerms& terms) const = 0;

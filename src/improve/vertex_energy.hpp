@@ -49,14 +49,17 @@ struct alignas(4 * sizeof(double)) TermLanes {
   Number weight;  ///< 1, or 0 where there is no term
 };
 
-/// Which places of cells contribute to the energy.
+/// What contributes to the energy of the cells around a vertex.
 enum class TermKind : std::uint8_t {
-  Corners,     ///< those four corners whose determinants depend on the moving one
-  OwnCorners,  ///< the same, with ideal edges halfway between those of the box and their own
+  Corners,  ///< those four corners whose determinants depend on the moving one
+  /// The same, with ideal edges halfway between those of the box and their own, as they are when
+  /// the terms are made: their lengths do not follow the vertex.
+  OwnCorners,
   /// Those Bezier coefficients of the determinant that depend on the moving corner, instead of
   /// determinants at their places: if all coefficients are positive, so is the cell.
   Bezier
 };
+/// Per kind: terms of a straight cell.
 inline constexpr std::array<std::size_t, 3> kTermCounts = {4, 4, 20};
 
 /// The contributions of all places of the cells around a vertex.

@@ -104,6 +104,30 @@ TEST(VertexEnergy, HasIdealEdgesHalfwayToTheirOwnLengths) {
   }
 }
 
+/// Their lengths do not follow the vertex, so determinants and their normals are those of the box,
+/// by one factor each.
+TEST(VertexEnergy, HoldsIdealEdgesWhereTheVertexMoves) {
+  Random random(8);
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::array<Vec3, 8> corners = randomCell(random, 0.3);
+    const IdealBox box = {1, 1.5F, 0.7F};
+    const std::size_t place = random.below(8);
+    const EnergyTerms ofBox = termsOf(TermKind::Corners, corners, place, box);
+    const EnergyTerms own = termsOf(TermKind::OwnCorners, corners, place, box);
+    ASSERT_EQ(own.blocks().size(), ofBox.blocks().size());
+    for (std::size_t i = 0; i < own.blocks().size(); ++i) {
+      const TermLanes& a = ofBox.blocks()[i];
+      const TermLanes& b = own.blocks()[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(b.normal[k][0] * a.determinant[0], a.normal[k][0] * b.determinant[0], 1e-11);
+        // At the other corners, one edge moves.
+        if (i == 0) continue;
+        EXPECT_NEAR(b.slope[k][0] * a.growth[0], a.slope[k][0] * b.growth[0], 1e-11);
+      }
+    }
+  }
+}
+
 TEST(VertexEnergy, KnowsTheLeastBezierCoefficientWhereverTheVertexGoes) {
   Random random(2);
   for (int trial = 0; trial < 300; ++trial) {
