@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <adjacency/tet_topology.hpp>
 #include <gtest/gtest.h>
@@ -256,6 +259,17 @@ TEST_F(FlagFiles, BelongToTheTrianglesOfASurface) {
   for (const char* const place : {"v 1e300 0 0", "v -1e18 -1e18 1e18", "v 0 -1e308 1e-320"}) {
     const std::string moved = obj.substr(0, vertex) + place + obj.substr(obj.find('\n', vertex));
     EXPECT_EQ(codeOfSurface(moved), ErrorCode::FileUnsupported) << place;
+  }
+  // A vertex of the tets that is nowhere is that of no surface.
+  std::vector<Index> onBoundary;
+  forEachLabelled([&](int /*label*/, const std::array<Index, 3>& vertices) {
+    onBoundary.push_back(vertices[0]);
+  });
+  for (const Index v : onBoundary) {
+    double& y = input_.tets.points[v][1];
+    const double before = std::exchange(y, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(codeOfSurface(obj), ErrorCode::FileUnsupported);
+    y = before;
   }
 }
 

@@ -128,6 +128,7 @@ class CheckedSink : public MeshSink {
   Writer writer_;
 };
 
+/// A base class, so that the file is there before the writer.
 struct OwnedFile {
   OutputFile output;
 };

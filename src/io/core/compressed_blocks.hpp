@@ -42,9 +42,11 @@ inline constexpr std::size_t kLargestLzmaRatio = 8192;  // zeros reach 7,000
 /// @throws Error FileSyntax for a file that is damaged or incomplete; FileUnsupported without zlib
 [[nodiscard]] Array<char> inflateGzip(std::string_view compressed, const std::string& name);
 
-/// Appends a block compressed with zlib, or with libdeflate in the same format where that is
-/// installed, favouring speed over size.
+/// Appends a compressed block, favouring speed over size.
 /// @throws std::bad_alloc
+void deflateByZlib(std::span<const char> bytes, Array<char>& compressed);
+/// The same, by libdeflate where that is installed.
+/// @throws Error FileWrite if it is, but cannot be loaded
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed);
 
 }  // namespace hexhex::io

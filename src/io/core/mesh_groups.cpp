@@ -285,7 +285,7 @@ QuadGroups groupQuads(const HexMesh& mesh, double patchAngle, Stage& stage,
     requireVertices(mesh, mesh.features.edges[i].vertices, "edge", i);
   }
   QuadGroups result;
-  withThreadsHere(stage.context().threads(), [&] {
+  withThreads(stage.context().threads(), [&] {
     const TaggedQuads found = findQuads(mesh, patchAngle, stage, isInside, others);
     const Array<std::size_t> order = orderByTag(found.tags);
     result.groups =

@@ -45,8 +45,8 @@ class TextSource : public TextScanner {
              Comments comments = Comments::None)
       : TextScanner(text, std::move(fileName), comments), stage_(&stage) {}
 
-  /// Must come before what follows, except in a text with comments: one thread reads its elements,
-  /// and they cannot be skipped.
+  /// @pre of tokensLeft(), skipTokens(), room() and skip(). None is made of a text with comments:
+  /// one thread reads its elements, and they cannot be skipped.
   void makeIndex() {
     if (mayHaveComments() && text().find('#') != std::string_view::npos) return;
     index_ = std::make_shared<const TokenIndex>(text(), *stage_);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <concepts>
 #include <cstddef>
@@ -278,6 +279,7 @@ class LineWriter {
   /// @param progress  advanced by n unless null
   template <class Format>
   void write(std::size_t n, std::size_t room, const Format& format, LoopProgress* progress) {
+    assert(room <= kBlockBytes);
     writeBlocks(
         n, kBlockBytes / room,
         [&format](char* place, std::size_t begin, std::size_t end) {

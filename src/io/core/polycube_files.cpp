@@ -17,6 +17,7 @@
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
+#include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/text_scanner.hpp>
 #include <io/formats/formats.hpp>
@@ -182,7 +183,7 @@ std::vector<std::int64_t> readLabelNumbers(const Input& input, Stage& stage) {
   return numbers;
 }
 
-/// Finds boundary vertices by position: sorted along a direction in which few are level.
+/// Finds boundary vertices by position: sorted along a direction along which few are level.
 class Positions {
  public:
   Positions(const TetMesh& tets, const TetBoundary& boundary) : tets_(tets) {
@@ -191,7 +192,10 @@ class Positions {
       for (const double x : p) size = std::max(size, std::abs(x));
     }
     tolerance_ = std::max(kSamePosition * size, std::numeric_limits<double>::min());
-    for (const Index v : boundary.vertices()) places_.emplace_back(placeOf(tets.points[v]), v);
+    for (const Index v : boundary.vertices()) {
+      // One that is nowhere has no place in an order.
+      if (isFinite(tets.points[v])) places_.emplace_back(placeOf(tets.points[v]), v);
+    }
     std::sort(places_.begin(), places_.end());
   }
 
@@ -216,7 +220,7 @@ class Positions {
   }
 
  private:
-  // As no object is built along: the numbers are in no simple ratio.
+  // A direction that hardly any object is aligned with: its ratios are not simple.
   static double placeOf(const Vec3& p) { return p[0] + 0.754877666 * p[1] + 0.569840291 * p[2]; }
 
   const TetMesh& tets_;

@@ -209,7 +209,7 @@ double nearestQuotient(std::string_view numerator, std::string_view denominator)
   std::from_chars(digits.data(), digits.data() + digits.size(), first);
   const double low = nearest(first, kFirstDigits);
   if (division.isDone() || low == nearest(first + 1, kFirstDigits)) return low;
-  // Such points, halfway between doubles, have at most 767 digits other than leading zeros: what
+  // Such points, halfway between doubles, have at most 768 digits other than leading zeros: what
   // comes behind these only tells whether the quotient is larger.
   constexpr std::size_t kMostDigits = 770;
   while (digits.size() < kMostDigits) digits += division.nextDigit();

@@ -98,8 +98,8 @@ enum class NumberProblem {
   TooLong           ///< a rational with more digits than kMaxRationalDigits
 };
 
-/// Limit for numerators and denominators. Far beyond what exact maps contain (a few hundred
-/// digits); prevents a file of nothing but digits from taking hours.
+/// Limit for numerators and denominators, far beyond what exact maps contain (a few hundred
+/// digits).
 inline constexpr std::size_t kMaxRationalDigits = std::size_t{1} << 16;
 
 /// Parses one whole token: an optional sign; then a decimal number with or without a point and an
@@ -119,8 +119,7 @@ template <class Integer>
 /// The double nearest to numerator / denominator, ties to even; infinity on overflow; subnormal or
 /// 0 on underflow.
 ///
-/// Both consist of decimal digits, at least one, without a sign; the denominator is not 0. Time is
-/// quadratic in the number of digits.
+/// Both consist of decimal digits, at least one, without a sign; the denominator is not 0.
 [[nodiscard]] double nearestQuotient(std::string_view numerator, std::string_view denominator);
 
 /// Name of a number in messages: "the dimension", "a coordinate of vertex 12".

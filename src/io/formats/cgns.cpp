@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <concepts>
 #include <cstdint>
 #include <deque>
@@ -476,9 +477,10 @@ namespace {
 constexpr std::int32_t elementType(std::size_t nodes) {
   constexpr std::array<std::pair<std::size_t, std::int32_t>, 7> kTypes = {
       {{1, 2}, {2, 3}, {3, 4}, {4, 7}, {8, 17}, {9, 9}, {27, 19}}};
-  return std::find_if(kTypes.begin(), kTypes.end(),
-                      [nodes](const auto& type) { return type.first == nodes; })
-      ->second;
+  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(),
+                                         [nodes](const auto& type) { return type.first == nodes; });
+  assert(found != kTypes.end());
+  return found->second;
 }
 
 /// The nodes of order-2 cells, which replace the corners of straight ones.

@@ -127,7 +127,7 @@ struct ElementLists {
   /// @param place  where the file lists nodes, for messages: "*NODE section"
   /// @throws Error IndexOutOfRange
   void nameNodes(const NodeTags& nodes, const Input& input, std::string_view place);
-  /// Sets the region of each element in a block.
+  /// Sets the region of each element.
   void setRegions(const ElementTags& tags);
   /// Stores those names whose tag is used by an element of their dimension, 1 to 3.
   void addNamesInUse(const std::vector<TagName>& known);

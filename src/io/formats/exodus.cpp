@@ -326,7 +326,7 @@ class ExodusReader {
   [[nodiscard]] std::vector<std::string> texts(const std::string& name) const {
     std::vector<std::string> rows;
     const auto shape = has(name) ? file_->shape(name) : std::vector<std::uint64_t>();
-    if (shape.size() != 2 || shape[1] == 0) return rows;
+    if (shape.size() != 2 || shape[0] == 0 || shape[1] == 0) return rows;
     const std::string all = file_->text(name);
     for (std::size_t begin = 0; begin < all.size(); begin += static_cast<std::size_t>(shape[1])) {
       const std::string row = all.substr(begin, static_cast<std::size_t>(shape[1]));
@@ -396,7 +396,10 @@ class ExodusReader {
     if (has(prefix + "_prop1")) {
       groups.numbers = file_->integers(prefix + "_prop1");
     } else if (has(status)) {
-      groups.numbers.resize(file_->integers(status).size());
+      std::uint64_t count = 1;
+      for (const std::uint64_t size : file_->shape(status)) count *= size;
+      file_->requireStored(status);
+      groups.numbers.resize(count);
       std::iota(groups.numbers.begin(), groups.numbers.end(), 1);
     }
     return groups;

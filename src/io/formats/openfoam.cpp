@@ -544,9 +544,10 @@ void writeOpenFoam(const HexMesh& mesh, const std::filesystem::path& file,
   OutputFolder folder(isMarker(file) ? file.parent_path() / "constant" / "polyMesh" : file);
   std::optional<OutputFile> marker;
   if (isMarker(file)) marker.emplace(file);
+  const QuadGroups quads = groupQuads(mesh, options.patchAngle, stage);
   PolyMesh poly;
   withThreads(context.threads(), [&] { addInnerFaces(mesh, poly, stage); });
-  addPatches(groupQuads(mesh, options.patchAngle, stage), poly);
+  addPatches(quads, poly);
   requireInt32(mesh.points.size(), "OpenFOAM numbers vertices");
   requireInt32(poly.faces.size(), "OpenFOAM numbers faces");
   folder.run([&] {

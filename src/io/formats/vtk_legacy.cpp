@@ -535,8 +535,8 @@ std::unique_ptr<VtkSource> openVtkLegacyFile(const Input& input, bool withRegion
 }
 
 bool holdsVtkLegacySurface(const Input& input) {
-  constexpr std::size_t kTitleRoom =
-      1024;  // the title, which comes before, has at most 256 characters
+  // The title, which comes before, has at most 256 characters.
+  constexpr std::size_t kTitleRoom = 1024;
   return lowerCase(firstBytes(input, kTitleRoom)).find("dataset polydata") != std::string::npos;
 }
 

@@ -127,9 +127,10 @@ std::string compressedHead(const VtkDataSet& data, std::span<const std::uint64_t
 /// Receives the bytes of an array and writes them as blocks, compressed by all threads.
 class CompressedArray {
  public:
-  CompressedArray(OutputFile& output, std::uint64_t bytes, int threads)
+  /// @param lines  into the same file
+  CompressedArray(OutputFile& output, LineWriter& lines, std::uint64_t bytes)
       : output_(output),
-        lines_(output, threads),
+        lines_(lines),
         begin_(output.position()),
         // Number of blocks, their size, size of a shorter last one; compressed sizes follow.
         head_{blockCount(bytes, kBlockBytes), kBlockBytes, bytes % kBlockBytes} {
@@ -174,12 +175,12 @@ class CompressedArray {
       head_[known + i] = deflated.size();
       return put(place, std::string_view(deflated.data(), deflated.size()));
     };
-    lines_.write(blocks, 2 * kBlockBytes, deflate, nullptr);  // zlib never needs as much room
+    lines_.write(blocks, 2 * kBlockBytes, deflate, nullptr);  // no block becomes as large
     used_ = 0;
   }
 
   OutputFile& output_;
-  LineWriter lines_;
+  LineWriter& lines_;
   std::uint64_t begin_;
   std::vector<std::uint64_t> head_;
   Array<char> collected_;  ///< not compressed yet
@@ -217,10 +218,11 @@ void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
   std::vector<std::uint64_t> offsets(data.arrays().size(), 0);
   const std::size_t headBytes = compressedHead(data, offsets).size();
   output.write(std::string(headBytes, ' '));
+  LineWriter lines(output, threads);
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const VtkArray& array = data.arrays()[i];
     offsets[i] = output.position() - headBytes;
-    CompressedArray blocks(output, array.bytes, threads);
+    CompressedArray blocks(output, lines, array.bytes);
     array.write(
         inSlices([&blocks](const void* from, std::size_t size) { blocks.writeBytes(from, size); },
                  progress));
