@@ -121,7 +121,7 @@ struct ElementLists {
   void addName(int dimension, std::int32_t tag, std::string_view name);
   /// Adds a point, line, triangle or quad, by its number of corners, unless the tag is 0 or a
   /// corner is kNone.
-  void addFlat(std::span<const Index> corners, std::int32_t tag);
+  void addFlat(std::span<const Index> v, std::int32_t tag);
   void addFlat(const FlatElement& element, std::int32_t tag, const NodeTags& nodes);
   /// Sets the nodes of blocks that list their numbers in the file.
   /// @param place  where the file lists nodes, for messages: "*NODE section"
