@@ -475,11 +475,11 @@ namespace {
 
 /// CGNS element types by number of nodes, for orders 1 and 2.
 constexpr std::int32_t elementType(std::size_t nodes) {
-  constexpr std::array<std::pair<std::size_t, std::int32_t>, 7> kTypes = {
+  constexpr std::array<std::pair<std::size_t, std::int32_t>, 7> kSectionTypes = {
       {{1, 2}, {2, 3}, {3, 4}, {4, 7}, {8, 17}, {9, 9}, {27, 19}}};
-  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(),
+  const auto* const found = std::find_if(kSectionTypes.begin(), kSectionTypes.end(),
                                          [nodes](const auto& type) { return type.first == nodes; });
-  assert(found != kTypes.end());
+  assert(found != kSectionTypes.end());
   return found->second;
 }
 
