@@ -37,6 +37,12 @@ void measure(double& sum, const F& f) {
   sum += secondsSince(begin);
 }
 
+/// Adds a benchmark that says itself how long each run took.
+template <class F>
+void enter(const std::string& name, const F& f) {
+  benchmark::RegisterBenchmark(name.c_str(), f)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
 /// Seconds of the three, or of several runs together.
 struct Seconds {
   double extraction = 0;
@@ -233,10 +239,7 @@ void addWays() {
     for (const Way& way : ways) {
       const std::string name =
           "ways/" + writtenMap().name + "/way:" + way.name + "/threads:" + std::to_string(threads);
-      benchmark::RegisterBenchmark(
-          name.c_str(), [way, threads](benchmark::State& state) { writing(state, way, threads); })
-          ->UseManualTime()
-          ->Unit(benchmark::kMillisecond);
+      enter(name, [way, threads](benchmark::State& state) { writing(state, way, threads); });
     }
   }
 }
@@ -247,10 +250,7 @@ template <class F>
 void add(const std::string& family, const BenchMap& map, const F& f) {
   for (const int threads : {1, 2}) {
     const std::string name = family + "/" + map.name + "/threads:" + std::to_string(threads);
-    benchmark::RegisterBenchmark(
-        name.c_str(), [f, map, threads](benchmark::State& state) { f(state, map, threads); })
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
+    enter(name, [f, map, threads](benchmark::State& state) { f(state, map, threads); });
   }
 }
 

@@ -59,8 +59,10 @@ enum class TermKind : std::uint8_t {
   /// determinants at their places: if all coefficients are positive, so is the cell.
   Bezier
 };
-/// Per kind: terms of a straight cell.
-inline constexpr std::array<std::size_t, 3> kTermCounts = {4, 4, 20};
+/// Terms of a straight cell, and how many there are per kind.
+inline constexpr std::size_t kCornerTerms = 4;
+inline constexpr std::size_t kBezierTerms = 20;
+inline constexpr std::array kTermCounts = {kCornerTerms, kCornerTerms, kBezierTerms};
 
 /// The contributions of all places of the cells around a vertex.
 class EnergyTerms {

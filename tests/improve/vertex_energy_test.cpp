@@ -200,7 +200,7 @@ TEST(VertexEnergy, IsTheSameBitsForAllWidthsOfRegisters) {
   const EnergyKind kind{2, 0.1, 0.1};
   const Vec3 step = {0.1, -0.2, 0.05};
   const auto results = [&](const EnergyKernels& kernels) {
-    std::array<TermLanes, kTermCounts[0] + kTermCounts[1] + kTermCounts[2]> terms;
+    std::array<TermLanes, 2 * kCornerTerms + kBezierTerms> terms;
     std::size_t at = 0;
     for (std::size_t i = 0; i < kTermCounts.size(); at += kTermCounts[i++]) {
       kernels.terms[i](cells, &terms[at]);

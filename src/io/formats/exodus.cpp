@@ -398,7 +398,6 @@ class ExodusReader {
     } else if (has(status)) {
       std::uint64_t count = 1;
       for (const std::uint64_t size : file_->shape(status)) count *= size;
-      file_->requireStored(status);
       groups.numbers.resize(count);
       std::iota(groups.numbers.begin(), groups.numbers.end(), 1);
     }

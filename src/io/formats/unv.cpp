@@ -217,8 +217,9 @@ class UnvReader {
     for (const FlatElement& flat : flats_) lists_.addFlat(flat, tags.find(flat.number), nodes);
     std::vector<TagName> names;  // a group may contain elements of several kinds
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (const int dimension : {1, 2, 3})
+      for (const int dimension : {1, 2, 3}) {
         names.push_back({dimension, ofGroups[g], groups[g].name});
+      }
     }
     lists_.addNamesInUse(names);
     for (std::size_t s = 0; s < nodeSets_.size(); ++s) {
