@@ -18,7 +18,8 @@
 
 namespace hexhex::test {
 
-/// In diagonals of the object's bounding box; lower bounds of what all points would give.
+/// In diagonals of the object's bounding box, unless noted otherwise; lower bounds of what all
+/// points would give.
 struct SampledDistance {
   double fromMesh = 0;    ///< largest of points on boundary quads, from the object's boundary
   double fromObject = 0;  ///< largest of points on boundary triangles, from the mesh's boundary
@@ -132,8 +133,44 @@ inline std::vector<std::array<Index, 3>> boundaryOf(const TetMap& map) {
 inline Vec3 pointOf(const std::array<Vec3, 4>& quad, double s, double t) {
   return blend(1 - t, blend(1 - s, quad[0], s, quad[1]), t, blend(1 - s, quad[3], s, quad[2]));
 }
+inline std::array<Vec3, 4> cornersOf(const HexMesh& mesh, const Quad& quad) {
+  return {mesh.points[quad[0]], mesh.points[quad[1]], mesh.points[quad[2]], mesh.points[quad[3]]};
+}
+
+/// Quads as four triangles around their centres.
+inline Surface surfaceOf(const HexMesh& mesh) {
+  Surface surface;
+  for (const Quad& quad : boundaryOf(mesh)) {
+    const std::array<Vec3, 4> corners = cornersOf(mesh, quad);
+    const Vec3 centre = pointOf(corners, 0.5, 0.5);
+    for (std::size_t k = 0; k < 4; ++k) surface.add({corners[k], corners[(k + 1) % 4], centre});
+  }
+  return surface;
+}
+
+/// Largest distance of points on boundary quads from a surface.
+/// @param steps  sides of quads are divided into so many
+inline double farthest(const HexMesh& mesh, const Surface& surface, int steps) {
+  double most = 0;
+  for (const Quad& quad : boundaryOf(mesh)) {
+    const std::array<Vec3, 4> corners = cornersOf(mesh, quad);
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; j <= steps; ++j) {
+        most = std::max(most, surface.from(pointOf(corners, static_cast<double>(i) / steps,
+                                                   static_cast<double>(j) / steps)));
+      }
+    }
+  }
+  return most;
+}
 
 }  // namespace sampled
+
+/// Between the boundaries of two meshes, in the unit of their points.
+inline SampledDistance sampledDistance(const HexMesh& mesh, const HexMesh& object, int steps) {
+  return {sampled::farthest(mesh, sampled::surfaceOf(object), steps),
+          sampled::farthest(object, sampled::surfaceOf(mesh), steps)};
+}
 
 /// The reported distance looks at the points of quads at four steps; at vertices and centres of
 /// triangles, which are among those at six; and on their edges at points that are at most a quarter
@@ -157,24 +194,14 @@ inline SampledDistance sampledDistance(const HexMesh& mesh, const TetMap& map, i
     }
   }
   SampledDistance found;
-  Surface quads;
+  found.fromMesh = farthest(mesh, object, steps);
+  const Surface quads = surfaceOf(mesh);
   double quadEdges = 0;
   double quadEdgeCount = 0;
   for (const Quad& quad : boundaryOf(mesh)) {
-    std::array<Vec3, 4> corners{};
-    for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.points[quad[k]];
-    const Vec3 centre = pointOf(corners, 0.5, 0.5);
     for (std::size_t k = 0; k < 4; ++k) {
-      quads.add({corners[k], corners[(k + 1) % 4], centre});
-      quadEdges += distance(corners[k], corners[(k + 1) % 4]);
+      quadEdges += distance(mesh.points[quad[k]], mesh.points[quad[(k + 1) % 4]]);
       ++quadEdgeCount;
-    }
-    for (int i = 0; i <= steps; ++i) {
-      for (int j = 0; j <= steps; ++j) {
-        const Vec3 point =
-            pointOf(corners, static_cast<double>(i) / steps, static_cast<double>(j) / steps);
-        found.fromMesh = std::max(found.fromMesh, object.from(point));
-      }
     }
   }
   for (const Triangle& t : triangles) {
