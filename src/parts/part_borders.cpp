@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <vector>
 
@@ -46,13 +45,14 @@ constexpr std::array<lattice::CellCornerSet, 6> kSideCorners = [] {
   return sets;
 }();
 
+/// @param isShared  per vertex: 1 if it is
 void addSides(const Hex& corners, std::uint64_t number, Index cell, Index other,
-              const std::vector<bool>& isShared, std::vector<SharedSide>& sides) {
+              const Array<std::uint8_t>& isShared, Array<SharedSide>& sides) {
   lattice::CellCornerSet shared = 0;
   for (std::size_t k = 0; k < 8; ++k) {
-    if (corners[k] != kNone && isShared[corners[k]]) shared |= 1U << k;
+    if (corners[k] != kNone) shared |= lattice::CellCornerSet{isShared[corners[k]]} << k;
   }
-  if (std::popcount(shared) < 4) return;
+  if (shared == 0) return;
   for (std::uint8_t side = 0; side < 6; ++side) {
     if ((kSideCorners[side] & ~shared) != 0) continue;
     sides.push_back({nameOf(adjacency::faceVertices(corners, side)), number, side, cell, other});
@@ -67,7 +67,7 @@ class FacePairs {
   /// All faces between an own cell and a cell of another part. Usually only two cells have the same
   /// four vertices; where more do, because cells meet themselves, both parts pair them in the same
   /// order.
-  [[nodiscard]] std::vector<Pairing> find(std::vector<SharedSide>& sides) {
+  [[nodiscard]] std::vector<Pairing> find(Array<SharedSide>& sides) {
     std::sort(sides.begin(), sides.end(), [](const SharedSide& a, const SharedSide& b) {
       if (a.vertices != b.vertices) return a.vertices < b.vertices;
       return a.number != b.number ? a.number < b.number : a.side < b.side;
@@ -110,8 +110,8 @@ class FacePairs {
 };
 
 /// Lists the vertices shared with each part.
-/// @return per vertex of own cells: whether any other part has it
-std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> around) {
+/// @return per vertex of own cells: 1 if any other part has it
+Array<std::uint8_t> shareVertices(MeshPart& part, std::span<const BorderCell> around) {
   struct OfPart {
     std::uint32_t part;
     Index other;  ///< index in the list of other cells
@@ -123,8 +123,8 @@ std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> arou
     others.push_back({around[i].part, static_cast<Index>(i)});
   }
   std::sort(others.begin(), others.end());
-  std::vector<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the latest part seen
-  std::vector<bool> isShared(part.ownPoints, false);
+  Array<std::uint32_t> sharedWith(part.ownPoints, part.part);  // the latest part seen
+  Array<std::uint8_t> isShared(part.ownPoints, 0);
   for (const OfPart& each : others) {
     if (part.neighbours.empty() || part.neighbours.back().part != each.part) {
       part.neighbours.push_back({each.part, {}, {}});
@@ -132,7 +132,7 @@ std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> arou
     for (const Index v : around[each.other].corners) {
       if (v == kNone || sharedWith[v] == each.part) continue;
       sharedWith[v] = each.part;
-      isShared[v] = true;
+      isShared[v] = 1;
       part.neighbours.back().vertices.push_back(v);
     }
   }
@@ -146,8 +146,8 @@ std::vector<bool> shareVertices(MeshPart& part, std::span<const BorderCell> arou
 
 void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
   assert(std::ranges::is_sorted(around, {}, &BorderCell::number));
-  const std::vector<bool> isShared = shareVertices(part, around);
-  std::vector<SharedSide> sides;
+  const Array<std::uint8_t> isShared = shareVertices(part, around);
+  Array<SharedSide> sides;
   for (std::size_t c = 0; c < part.ownCells; ++c) {
     addSides(part.mesh.cells[c], part.globalCells[c], static_cast<Index>(c), kNone, isShared,
              sides);

@@ -148,7 +148,7 @@ class CornerTable {
   lattice::GridPoint first_{};
   std::array<std::size_t, 3> size_{};
   std::array<std::size_t, 3> strides_{};
-  std::vector<Number> vertices_;
+  Array<Number> vertices_;
 };
 
 /// Cells with consecutive numbers.
