@@ -155,18 +155,22 @@ double timeRuns(benchmark::State& state, const std::string& name, const std::fil
 /// A format, compressed or not.
 struct FormatVariant {
   std::string format;
-  bool compress = false;
+  Compression compress = Compression::None;
 
   /// Whether numbers are spelt or compressed.
   [[nodiscard]] bool isSlow() const {
     constexpr std::array<std::string_view, 8> kTexts = {"mesh",        "vtk", "ovm",  "msh41-ascii",
                                                         "msh22-ascii", "inp", "mfem", "openfoam"};
-    return compress || std::find(kTexts.begin(), kTexts.end(), format) != kTexts.end();
+    return compress != Compression::None ||
+           std::find(kTexts.begin(), kTexts.end(), format) != kTexts.end();
   }
   [[nodiscard]] const BenchMap& map() const { return isSlow() ? lessDenseMap() : denseMap(); }
   [[nodiscard]] const BenchMesh& mesh() const { return isSlow() ? lessDenseMesh() : denseMesh(); }
 
-  [[nodiscard]] std::string name() const { return format + (compress ? "-zlib" : ""); }
+  [[nodiscard]] std::string name() const {
+    if (compress == Compression::None) return format;
+    return format + (compress == Compression::Zlib ? "-zlib" : "-lz4");
+  }
   [[nodiscard]] WriteOptions writing() const {
     WriteOptions options;
     options.format = format;
@@ -327,7 +331,7 @@ void addFormat(const FileFormat& format, const FormatVariant& variant) {
     add("read_" + name, variant.map(),
         [variant](benchmark::State& state, int threads) { readingMesh(state, variant, threads); });
   }
-  if (format.streams && !variant.compress) {
+  if (format.streams && variant.compress == Compression::None) {
     add("copy_in_pieces_to_" + name, variant.map(),
         [variant](benchmark::State& state, int threads) {
           copyingInPieces(state, variant, threads);
@@ -351,7 +355,10 @@ void registerFiles() {
   benchmark::RegisterBenchmark("plain_write", writingPlainly)->Unit(benchmark::kMillisecond);
   for (const FileFormat& format : fileFormats()) {
     addFormat(format, {std::string(format.name)});
-    if (format.compresses) addFormat(format, {std::string(format.name), true});
+    if (!format.compresses) continue;
+    for (const Compression how : {Compression::Zlib, Compression::Lz4}) {
+      addFormat(format, {std::string(format.name), how});
+    }
   }
   add("summarize_vtu", denseMap(), summarizing);
 }

@@ -84,7 +84,7 @@ install_highs() {
 }
 
 # Optional parts: .vtkhdf, .cgns, repair, HiGHS. Without them these are left out.
-optional_packages=(libhdf5-dev libeigen3-dev libdeflate0 python3-venv)
+optional_packages=(libhdf5-dev libeigen3-dev libdeflate0 liblz4-1 python3-venv)
 # ... and what only tests need, which skip without it: VTK reads curved meshes. ParaView's Python has
 # VTK, too, and Debian has either of them installed.
 vtk_packages=(python3-vtk9)

@@ -186,7 +186,7 @@ void requireOutputs(const ExtractArguments& arguments) {
            "--ghosts and --partition say how a mesh is cut. Leave them out, or add --parts.");
   const WriteOptions writing = arguments.choice.options();
   if (arguments.parts.parts) {
-    refuseIf(writing.compress,
+    refuseIf(writing.compress != Compression::None,
              "Files of parts are not compressed. Leave out --parts or --compress.");
     requirePartFormat(arguments.output, writing, arguments.team != nullptr);
   } else if (arguments.order == 1) {

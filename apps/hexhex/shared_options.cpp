@@ -187,17 +187,26 @@ void addMeshOutput(CLI::App& parser, std::string& file) {
   addOutput(parser, file, "The mesh to write; `hexhex formats` lists the formats");
 }
 
+namespace {
+
+constexpr const char* kLz4 = "lz4";
+
+}  // namespace
+
 WriteOptions OutputChoice::options() const {
   WriteOptions options;
   options.format = solver.empty() ? format : solver;
-  options.compress = compress;
+  if (!compress.empty()) {
+    options.compress = compress == kLz4 ? Compression::Lz4 : Compression::Zlib;
+  }
   options.mapArray = mapArray;
   options.elementType = elementType;
   return options;
 }
 
 void OutputChoice::requireForCurved(const std::string& output, int order) const {
-  refuseIf(compress, "Files of meshes of higher order are not compressed. Leave out --compress.");
+  refuseIf(!compress.empty(),
+           "Files of meshes of higher order are not compressed. Leave out --compress.");
   refuseIf(!elementType.empty(), "--element-type is of straight cells. Leave it out.");
   requireLagrangeFormat(output, options().format, order);
 }
@@ -225,7 +234,12 @@ CLI::Option* addOutputChoice(CLI::App& parser, OutputChoice& choice) {
       addValue(parser, "--format", choice.format, "NAME",
                "Write this format, whatever the extension;\n`hexhex formats` lists them")
           ->check(formatName());
-  parser.add_flag("--compress", choice.compress, "Compress a .vtu file with zlib");
+  parser
+      .add_flag("--compress", choice.compress,
+                "Compress a .vtu file, by zlib, or faster, to a larger\nfile, by LZ4")
+      ->transform([](const std::string& how) { return how == "true" ? "zlib" : how; })
+      ->check(oneOf({"zlib", kLz4}))
+      ->option_text("[=zlib|lz4]");
   return format;
 }
 

@@ -74,7 +74,7 @@ struct OutputChoice {
   std::string solver;  ///< determines the format, unless empty
   std::string mapArray = "igm";
   std::string elementType;
-  bool compress = false;
+  std::string compress;  ///< how; empty: not at all
 
   [[nodiscard]] WriteOptions options() const;
   /// @param order  0: not known yet

@@ -29,7 +29,10 @@ WriteOptions writeOptions(const hexhex_write_options* options, std::size_t cells
   if (given.map_array != nullptr) result.mapArray = given.map_array;
   if (given.scaled_jacobians != nullptr) result.scaledJacobians = {given.scaled_jacobians, cells};
   result.patchAngle = given.patch_angle;
-  result.compress = given.compress != 0;
+  if (given.compress < 0 || given.compress > 2) {
+    throw Error(ErrorCode::InvalidArgument, "There is no such compression.");
+  }
+  result.compress = static_cast<Compression>(given.compress);
   return result;
 }
 

@@ -352,7 +352,9 @@ Json write(const Json& request, Context& context) {
   WriteOptions options;
   options.format = readOptions(request).format;
   take(request, "patchAngle", options.patchAngle);
-  take(request, "compress", options.compress);
+  bool compress = false;
+  take(request, "compress", compress);
+  if (compress) options.compress = Compression::Zlib;
   const auto file = request.at("file").get<std::string>();
   if (request.contains("map")) {
     writeMap(get<TetMap>(request, "map"), file, options, context);

@@ -19,12 +19,13 @@ using namespace nanobind::literals;
 namespace hexhex::python {
 namespace {
 
-WriteOptions writeOptions(const std::string& format, double patchAngle, bool compress,
+/// @param compress  a value of Compression
+WriteOptions writeOptions(const std::string& format, double patchAngle, int compress,
                           const std::string& mapArray) {
   WriteOptions options;
   options.format = format;
   options.patchAngle = patchAngle;
-  options.compress = compress;
+  options.compress = static_cast<Compression>(compress);
   options.mapArray = mapArray;
   return options;
 }
@@ -48,7 +49,7 @@ nb::list formats() {
 }
 
 void requireFormat(const std::string& what, const std::string& file, const std::string& format,
-                   double patchAngle, bool compress, const std::string& mapArray) {
+                   double patchAngle, int compress, const std::string& mapArray) {
   const WriteOptions options = writeOptions(format, patchAngle, compress, mapArray);
   if (what == "map") return requireMapFormat(file, options);
   if (what == "mesh") return requireHexMeshFormat(file, options);
@@ -150,7 +151,7 @@ void bindFiles(nb::module_& module) {
   module.def(
       "write_mesh",
       [](const HexMesh& mesh, const std::string& file, const std::string& format, double patchAngle,
-         bool compress, const In1<double>& scaledJacobians, int threads, const Progress& progress) {
+         int compress, const In1<double>& scaledJacobians, int threads, const Progress& progress) {
         WriteOptions writing = writeOptions(format, patchAngle, compress, "igm");
         writing.scaledJacobians = elements<double>(scaledJacobians);
         run(threads, progress,
@@ -160,7 +161,7 @@ void bindFiles(nb::module_& module) {
       "scaled_jacobians"_a.noconvert(), "threads"_a, "progress"_a.none());
   module.def(
       "write_map",
-      [](const ArrayMap& map, const std::string& file, const std::string& format, bool compress,
+      [](const ArrayMap& map, const std::string& file, const std::string& format, int compress,
          const std::string& mapArray, int threads, const Progress& progress) {
         run(threads, progress, [&](Context& context) {
           writeMap(map.copy(), file, writeOptions(format, 40, compress, mapArray), context);

@@ -132,6 +132,13 @@ struct FlagsFile {
                                                              const ReadOptions& options,
                                                              Context& context);
 
+/// How arrays are compressed.
+enum class Compression : std::uint8_t {
+  None,
+  Zlib,  ///< in builds with zlib
+  Lz4    ///< five times as fast as zlib, to files a quarter larger; by liblz4, if that is installed
+};
+
 /// Options for writers.
 struct WriteOptions {
   /// Result of scaledJacobians() for this mesh, if already available. Empty: writers compute it if
@@ -147,9 +154,9 @@ struct WriteOptions {
   /// group.
   double patchAngle = 40;
 
-  /// Compress the arrays of `.vtu` files with zlib. An error for other formats and in builds
-  /// without zlib.
-  bool compress = false;
+  /// Compress the arrays of `.vtu` files. Anything but None is an error for other formats, and
+  /// where the library for it is missing.
+  Compression compress = Compression::None;
 
   /// Name of the cell array that holds a map in `.vtu` and `.vtk` files; must not be empty.
   std::string_view mapArray = "igm";

@@ -1312,7 +1312,7 @@ class Convert(CommandTest):
     def test_maps_through_all_formats_and_back(self):
         self.generate("sphere", "--charts", "random", "--jitter", "0.3")
         files = self.files()
-        steps = [("a.vtu",), ("b.vtu", "--compress"), ("c.vtk",), ("d.vtk", "--format", "vtk-binary"),
+        steps = [("a.vtu",), ("b.vtu", "--compress"), ("b4.vtu", "--compress=lz4"), ("c.vtk",), ("d.vtk", "--format", "vtk-binary"),
                  ("e.ovm",), ("f.dat", "--format", "ovmb")]
         last, reading = "map.hexex", []
         for name, *options in steps:
@@ -1380,6 +1380,8 @@ class Convert(CommandTest):
         self.assert_fails("convert", "a.mesh", "./a.mesh", expect=BAD_USAGE, words=["same file"])
         self.assert_fails("extract", map_file, "-o", "b.mesh", "--compress", expect=FILE_PROBLEM,
                           words=["no compression"])
+        self.assert_fails("convert", "a.mesh", "b.vtu", "--compress=lzma", expect=BAD_USAGE,
+                          words=["zlib or lz4"])
 
     def test_formats(self):
         run = self.run_command("formats")

@@ -597,6 +597,9 @@ static void test_sizes_of_structs(const char* file) {
           hexhex_mesh_writer_create(file, &s, NULL, &writer, &error));
     WRONG(write_options, HEXHEX_WRITE_OPTIONS_INIT,
           hexhex_require_format(HEXHEX_OUTPUT_MESH, file, &s, &error));
+    hexhex_write_options compressed = HEXHEX_WRITE_OPTIONS_INIT;
+    for (compressed.compress = -1; compressed.compress <= 3; compressed.compress += 4)
+      REFUSED(hexhex_mesh_write(h.mesh, file, &compressed, NULL, &error));
     WRONG(mesh_arrays, HEXHEX_MESH_ARRAYS_INIT, hexhex_mesh_copy(&s, &mesh, &error));
     WRONG(mesh_arrays, HEXHEX_MESH_ARRAYS_INIT, hexhex_mesh_get_arrays(h.mesh, &s, &error));
     WRONG(file_format, format, hexhex_get_format(0, &s, &error));

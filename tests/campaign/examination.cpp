@@ -110,7 +110,7 @@ const FileFormat& drawFormat(const Fits& fits, Random& random) {
 WriteOptions drawWriting(const FileFormat& format, Random& random) {
   WriteOptions writing;
   writing.format = format.name;
-  writing.compress = format.compresses && random.below(2) == 0;
+  if (format.compresses && random.below(2) == 0) writing.compress = Compression::Zlib;
   return writing;
 }
 

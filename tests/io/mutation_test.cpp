@@ -11,6 +11,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <support/compressions.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
@@ -265,7 +266,7 @@ TEST(DamagedFiles, MapsInVtkFiles) {
              return readBytes<readVtkLegacyMap>(text, name, reading, ReadOptions{});
            });
   }
-  for (const bool compress : {false, hasZlib()}) {
+  for (const Compression compress : compressions()) {
     WriteOptions options;
     options.compress = compress;
     writeMap(smallMap(), folder / "a.vtu", options, context);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/compressions.hpp>
 
 #include <hexhex/curved.hpp>
 #include <hexhex/io.hpp>
@@ -28,7 +29,7 @@ namespace {
 
 struct Check {
   std::string program;
-  std::string format;  ///< as in WriteOptions; "-zlib" behind it: compressed
+  std::string format;  ///< as in WriteOptions; "-zlib" or "-lz4" behind it: compressed
   std::string file;
   std::string groups;  ///< what the program says of taggedGrid()
 };
@@ -44,10 +45,8 @@ TEST_P(OtherPrograms, ReadWhatWeWrite) {
   const TemporaryFolder folder;
   const HexMesh mesh = taggedGrid();
   Context context;
-  WriteOptions options;
-  options.compress = check.format.ends_with("-zlib");
-  options.format = std::string_view(check.format).substr(0, check.format.find("-zlib"));
-  if (options.compress && !hasZlib()) GTEST_SKIP() << "built without zlib";
+  const WriteOptions options = optionsNamed(check.format);
+  if (!isThere(options.compress)) GTEST_SKIP() << "the library for it is missing";
   writeHexMesh(mesh, folder / check.file, options, context);
 
   const std::string output = (folder / "out").string();
@@ -87,9 +86,10 @@ INSTANTIATE_TEST_SUITE_P(
         Check{"meshio", "mesh", "a.mesh", "0 29\n3 2\n7 2\n"}, Check{"meshio", "vtk", "a.vtk", ""},
         Check{"meshio", "vtk-binary", "a.vtk", ""}, Check{"vtk", "vtk-binary", "a.vtk", ""},
         Check{"vtk", "vtu", "a.vtu", ""}, Check{"vtk", "vtu-zlib", "a.vtu", ""},
-        Check{"meshio", "vtu", "a.vtu", ""}, Check{"meshio", "vtu-zlib", "a.vtu", ""},
-        Check{"vtk", "vtk", "a.vtk", ""}, Check{"mfem", "vtk", "a.vtk", "1 32\n"},
-        Check{"meshio", "inp", "a.inp", kNodeSets}, Check{"mfem", "mfem", "a.mesh", kNumbered}),
+        Check{"vtk", "vtu-lz4", "a.vtu", ""}, Check{"meshio", "vtu", "a.vtu", ""},
+        Check{"meshio", "vtu-zlib", "a.vtu", ""}, Check{"vtk", "vtk", "a.vtk", ""},
+        Check{"mfem", "vtk", "a.vtk", "1 32\n"}, Check{"meshio", "inp", "a.inp", kNodeSets},
+        Check{"mfem", "mfem", "a.mesh", kNumbered}),
     [](const auto& test) {
       std::string name = test.param.program + "_" + test.param.format;
       std::replace(name.begin(), name.end(), '-', '_');
@@ -127,12 +127,9 @@ TEST_P(OtherProgramsAndMaps, GiveBackWhatTheyGot) {
   std::string arguments = GetParam() + " '" + written.string() + "'";
   for (const std::string format : {"vtk", "vtk-binary", "vtu", "vtu-zlib"}) {
     Context context;
-    WriteOptions options;
-    options.compress = format == "vtu-zlib" && hasZlib();
-    const std::string_view name = std::string_view(format).substr(0, format.find("-zlib"));
-    options.format = name;
-    const std::filesystem::path file =
-        folder / (format + "." + std::string(name.substr(0, name.find('-'))));
+    WriteOptions options = optionsNamed(format);
+    if (!isThere(options.compress)) options.compress = Compression::None;
+    const std::filesystem::path file = folder / (format + "." + format.substr(0, 3));
     writeMap(map, file, options, context);
     arguments += " '" + file.string() + "'";
   }

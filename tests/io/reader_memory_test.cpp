@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/compressions.hpp>
 #include <support/status_bytes.hpp>
 
 #include <hexhex/curved.hpp>
@@ -751,9 +752,9 @@ TEST(ReaderCost, OfGoodFiles) {
   std::size_t files = 0;
   Context context;
   for (const FileFormat& format : fileFormats()) {
-    for (const bool compress : {false, true}) {
-      if (compress && !format.compresses) continue;
-      const std::string name = std::string(format.name) + (compress ? "-zip" : "");
+    for (const Compression compress : compressions()) {
+      if (compress != Compression::None && !format.compresses) continue;
+      const std::string name = std::string(format.name) + endingOf(compress);
       WriteOptions options;
       options.format = format.name;
       options.compress = compress;

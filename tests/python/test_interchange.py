@@ -198,6 +198,8 @@ def test_npz(tagged, mesh, tmp_path):
             hexhex.write(value, file, compress=compress)
             assert first == file.read_bytes()
     assert np.array_equal(np.load(tmp_path / "MapFalse.npz")["igm"], tagged.igm)
+    with pytest.raises(hexhex.ArgumentError, match="zlib alone"):
+        hexhex.write(mesh, tmp_path / "a.npz", compress="lz4")
     bare = hexhex.Map(tagged.points, tagged.tets, tagged.igm)
     hexhex.write(bare, tmp_path / "bare.any", format="npz")
     assert same_maps(hexhex.read(tmp_path / "bare.any", format="npz"), bare)

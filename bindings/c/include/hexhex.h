@@ -256,7 +256,7 @@ typedef struct hexhex_write_options {
   const char* format;             /**< name of the format; NULL: that of the extension */
   const char* map_array;          /**< for .vtu and .vtk files; NULL: "igm" */
   double patch_angle;             /**< for boundary groups, in degrees, 0 to 180 */
-  int compress;                   /**< 1: compress the arrays of .vtu files with zlib */
+  int compress;                   /**< the arrays of .vtu files. 1: with zlib; 2: with LZ4 */
   const double* scaled_jacobians; /**< one per cell, if already available; NULL: computed */
 } hexhex_write_options;
 #define HEXHEX_WRITE_OPTIONS_INIT \

@@ -143,6 +143,14 @@ def _one_of(names: tuple[str, ...], name: str, what: str) -> str:
     return name
 
 
+def _compression(how: bool | str) -> int:
+    """As in the C++ library: 0 for none, 1 for zlib, 2 for LZ4."""
+    if not isinstance(how, str):
+        return int(bool(how))
+    names = ("zlib", "lz4")
+    return 1 + names.index(_one_of(names, how, "compression"))
+
+
 def _options(scale: int, engine: str, tolerance: float, repair: bool, round: bool,
              curved_nodes: str = "blended") -> _hexhex.Options:
     _one_of(("atlas", "propeller"), engine, "engine")
@@ -1052,7 +1060,7 @@ def read(file: Path, *, format: str | None = None, map_array: str = "igm",
 
 
 def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
-          format: str | None = None, compress: bool = False, patch_angle: float = 40,
+          format: str | None = None, compress: bool | str = False, patch_angle: float = 40,
           map_array: str = "igm", map: Map | None = None,
           scaled_jacobians: npt.ArrayLike | None = None, threads: int | None = None,
           progress: Progress | None = None) -> None:
@@ -1067,7 +1075,9 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
         format: name of the format of a map or mesh, whatever the extension: see formats(), or
             "npz"; or the solver that will read a mesh: "dealii", "ngsolve" etc. (``hexhex formats``
             lists them).
-        compress: compress the arrays of a map or mesh with zlib, in .vtu and .npz files.
+        compress: "zlib" (or True) or "lz4": compress the arrays of a map or mesh in .vtu files;
+            LZ4, by liblz4 where that is installed, is faster, and files are larger. "zlib" also
+            in .npz files.
         patch_angle: for meshes, curved or not, without tagged quads, in formats with groups: a
             group ends where the boundary turns by more degrees; 0 to 180.
         map_array: name of the array that holds the map in .vtu and .vtk files.
@@ -1083,18 +1093,21 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
     """
     name, workers = os.fspath(file), _threads(threads)
     if _npz.is_npz(name, format):
-        return _npz.write(what, name, compress)
+        if compress == "lz4":
+            raise ArgumentError("Arrays of .npz files are compressed with zlib alone.",
+                                "InvalidArgument")
+        return _npz.write(what, name, bool(_compression(compress)))
     if isinstance(what, (Mesh, LagrangeMesh)) and format is None and name.lower().endswith(".html"):
         return _hexhex.write_page(what._handle, name, pathlib.Path(name).stem, workers, progress)
     tets = None if map is None else map._arrays()
     jacobians = _floats([] if scaled_jacobians is None else scaled_jacobians, (),
                         "scaled_jacobians")
     if isinstance(what, Map):
-        _hexhex.write_map(what._arrays(), name, format or "", compress, map_array, workers,
+        _hexhex.write_map(what._arrays(), name, format or "", _compression(compress), map_array, workers,
                           progress)
     elif isinstance(what, Mesh):
-        _hexhex.write_mesh(what._handle, name, format or "", patch_angle, compress, jacobians,
-                           workers, progress)
+        _hexhex.write_mesh(what._handle, name, format or "", patch_angle, _compression(compress),
+                           jacobians, workers, progress)
     elif compress or (format is not None and not isinstance(what, LagrangeMesh)):
         raise ArgumentError("Curved meshes are written without compress, arcs and patches also "
                             "without format.", "InvalidArgument")
@@ -1160,7 +1173,8 @@ def require_format(what: str, file: Path, *, format: str | None = None, compress
         ...
     FileError: ...
     """
-    _hexhex.require_format(what, os.fspath(file), format or "", patch_angle, compress, map_array)
+    _hexhex.require_format(what, os.fspath(file), format or "", patch_angle, _compression(compress),
+                           map_array)
 
 
 def formats() -> list[FileFormat]:

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <new>
 #include <string>
 
 #include <hexhex/error.hpp>
@@ -13,7 +14,6 @@
 #ifdef HEXHEX_HAS_ZLIB
 #include <limits>
 #include <memory>
-#include <new>
 #include <zlib.h>
 #endif
 
@@ -83,6 +83,41 @@ bool decodeLzmaBlock(std::string_view compressed, std::span<char> bytes) noexcep
       &memoryLimit, 0, nullptr, reinterpret_cast<const std::uint8_t*>(compressed.data()), &used,
       compressed.size(), reinterpret_cast<std::uint8_t*>(bytes.data()), &size, bytes.size());
   return status == 0 && size == bytes.size();
+}
+
+namespace {
+
+/// Of liblz4, which is not linked: readers do without it.
+struct Lz4 {
+  LoadedLibrary library{{"liblz4.so.1"}};
+  int (*bound)(int size) = library.find<int (*)(int)>("LZ4_compressBound");
+  int (*compress)(const char* in, char* out, int size, int room) =
+      library.find<int (*)(const char*, char*, int, int)>("LZ4_compress_default");
+};
+
+const Lz4& lz4() {
+  static const Lz4 loaded;
+  return loaded;
+}
+
+}  // namespace
+
+void requireLz4(const std::filesystem::path& file) {
+  if (lz4().library.problem().empty()) return;
+  throw Error(ErrorCode::FileUnsupported,
+              concat(file,
+                     ": compression with LZ4 takes the library liblz4, which cannot be loaded. "
+                     "Install liblz4-1, or compress with zlib."));
+}
+
+void compressByLz4(std::span<const char> bytes, Array<char>& compressed) {
+  const std::size_t before = compressed.size();
+  const auto size = static_cast<int>(bytes.size());
+  const int room = lz4().bound(size);
+  compressed.resize(before + static_cast<std::size_t>(room));
+  const int used = lz4().compress(bytes.data(), compressed.data() + before, size, room);
+  if (used == 0) throw std::bad_alloc();  // there is room for all
+  compressed.resize(before + static_cast<std::size_t>(used));
 }
 
 #ifdef HEXHEX_HAS_ZLIB

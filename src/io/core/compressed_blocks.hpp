@@ -49,4 +49,11 @@ void deflateByZlib(std::span<const char> bytes, Array<char>& compressed);
 /// @throws Error FileWrite if it is, but cannot be loaded
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed);
 
+/// Loads liblz4.
+/// @throws Error FileUnsupported if it is not installed
+void requireLz4(const std::filesystem::path& file);
+/// Appends a block of LZ4. @pre requireLz4() was called
+/// @param bytes  at most 2^30
+void compressByLz4(std::span<const char> bytes, Array<char>& compressed);
+
 }  // namespace hexhex::io

@@ -104,11 +104,14 @@ const Format& writableFormat(const std::filesystem::path& file, const WriteOptio
                        : "\" are read; they are written by `hexhex extract --parts` alone.")));
   }
   if (content == FileContent::HexMesh) requireOthers(file, format, othersOf(options));
-  if (options.compress && !format.compresses) {
+  if (options.compress != Compression::None && !format.compresses) {
     refuse(file,
            concat("the format \"", format.label.name, "\" knows no compression; only .vtu does."));
   }
-  if (options.compress) requireZlib(file, "compress files", "write the file without compression");
+  if (options.compress == Compression::Zlib) {
+    requireZlib(file, "compress files by zlib", "write the file without compression");
+  }
+  if (options.compress == Compression::Lz4) requireLz4(file);
   requireElementType(file, format, options);
   if (format.overHdf5) requireHdf5(file);
   return format;
@@ -418,7 +421,8 @@ std::unique_ptr<MeshSink> openMeshSink(const std::filesystem::path& file,
                                        const WriteOptions& options, Context& context) {
   io::refuseGzip(file);
   const io::Format& format = io::findFormat(file, options.format, io::FileContent::HexMesh);
-  if (options.compress) io::refuse(file, "a mesh in pieces cannot be written with compression.");
+  if (options.compress != Compression::None)
+    io::refuse(file, "a mesh in pieces cannot be written with compression.");
   io::requireElementType(file, format, options);
   if (format.pieces.openSink == nullptr) {
     io::refuse(file, "a mesh in pieces cannot be written in this format. Formats that can: " +

@@ -64,7 +64,7 @@ class PvtuSink final : public PartSink {
       if (i == 0 && head_.empty()) head_ = headOf(data);
       folder_.run([&] {
         OutputFile output(folder_.fileOf(parts[i].part));
-        writeVtkXml(output, data, false, stage);
+        writeVtkXml(output, data, Compression::None, stage);
         output.commit();
       });
     });

@@ -229,7 +229,7 @@ void writeLagrangeVtu(const LagrangeMesh& mesh, OutputFile& output, const WriteO
                                  [perCell](std::size_t i) { return perCell * (i + 1); });
   data.addComputed<std::uint8_t>(VtkSection::Cells, "types", data.cells,
                                  [type](std::size_t) { return type; });
-  writeVtkXml(output, data, false, stage);
+  writeVtkXml(output, data, Compression::None, stage);
 }
 
 }  // namespace hexhex::io

@@ -210,8 +210,8 @@ void addTags(VtkDataSet& data, const Features& features, std::span<const std::in
 /// Writes a VTK XML file, array by array. A single thread writes raw arrays straight from memory,
 /// which is as fast as the file system accepts bytes from one file. Compressed arrays are
 /// deflated in blocks by all threads; the result does not depend on their number.
-/// @param compress  with zlib, which must be available; the output must have positions
-void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage);
+/// @param compress  by a library that must be there; the output must then have positions
+void writeVtkXml(OutputFile& output, const VtkDataSet& data, Compression compress, Stage& stage);
 
 // Data sets of parts.
 

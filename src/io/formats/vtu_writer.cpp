@@ -53,14 +53,15 @@ std::string globalNumbersIn(const VtkDataSet& data, VtkSection section) {
 /// The header of a file, up to its data.
 /// @param offsets  of the arrays, counted from the beginning of the data
 std::string headOf(const VtkDataSet& data, std::span<const std::uint64_t> offsets,
-                   bool compressed) {
+                   Compression compress) {
   const bool isGrid = data.elements == VtkSection::Cells;
   const std::string type = isGrid ? "UnstructuredGrid" : "PolyData";
   const bool little = std::endian::native == std::endian::little;
   std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
                      "\" version=\"1.0\" byte_order=\"" + (little ? "LittleEndian" : "BigEndian") +
                      "\" header_type=\"UInt64\"";
-  if (compressed) head += " compressor=\"vtkZLibDataCompressor\"";
+  if (compress == Compression::Zlib) head += " compressor=\"vtkZLibDataCompressor\"";
+  if (compress == Compression::Lz4) head += " compressor=\"vtkLZ4DataCompressor\"";
   head += ">\n  <" + type + ">\n";
   const auto addSection = [&](std::string_view name, VtkSection section) {
     head.append("      <").append(name).append(globalNumbersIn(data, section)).append(">\n");
@@ -109,27 +110,32 @@ std::string plainHead(const VtkDataSet& data, std::vector<std::uint64_t>& positi
     positions.push_back(offset);
     offset += sizeof(array.bytes) + array.bytes;
   }
-  std::string head = headOf(data, positions, false);
+  std::string head = headOf(data, positions, Compression::None);
   for (std::uint64_t& position : positions) position += head.size() + sizeof(std::uint64_t);
   return head;
 }
 
 /// The header of a file with compressed arrays. Its size does not depend on the offsets.
-std::string compressedHead(const VtkDataSet& data, std::span<const std::uint64_t> offsets) {
+std::string compressedHead(const VtkDataSet& data, std::span<const std::uint64_t> offsets,
+                           Compression compress) {
   const std::vector<std::uint64_t> largest(offsets.size(), ~std::uint64_t{0});
-  const std::size_t size = headOf(data, largest, true).size();
-  std::string head = headOf(data, offsets, true);
+  const std::size_t size = headOf(data, largest, compress).size();
+  std::string head = headOf(data, offsets, compress);
   // Spaces before the '_' are ignored.
   head.insert(head.size() - 1, size - head.size(), ' ');
   return head;
 }
 
+using CompressBlock = void(std::span<const char> bytes, Array<char>& compressed);
+
 /// Receives the bytes of an array and writes them as blocks, compressed by all threads.
 class CompressedArray {
  public:
+  /// @param how    the function for a block
   /// @param lines  into the same file
-  CompressedArray(OutputFile& output, LineWriter& lines, std::uint64_t bytes)
-      : output_(output),
+  CompressedArray(CompressBlock& how, OutputFile& output, LineWriter& lines, std::uint64_t bytes)
+      : compressBlock_(how),
+        output_(output),
         lines_(lines),
         begin_(output.position()),
         // Number of blocks, their size, size of a shorter last one; compressed sizes follow.
@@ -168,17 +174,18 @@ class CompressedArray {
     const std::size_t blocks = blockCount(used_, kBlockBytes);
     const std::size_t known = head_.size();
     head_.resize(known + blocks);
-    const auto deflate = [&](char* place, std::size_t i) {
+    const auto putBlock = [&](char* place, std::size_t i) {
       const std::size_t size = std::min(kBlockBytes, used_ - i * kBlockBytes);
-      Array<char> deflated;
-      deflateBlock(std::span(collected_).subspan(i * kBlockBytes, size), deflated);
-      head_[known + i] = deflated.size();
-      return put(place, std::string_view(deflated.data(), deflated.size()));
+      Array<char> block;
+      compressBlock_(std::span(collected_).subspan(i * kBlockBytes, size), block);
+      head_[known + i] = block.size();
+      return put(place, std::string_view(block.data(), block.size()));
     };
-    lines_.write(blocks, 2 * kBlockBytes, deflate, nullptr);  // no block becomes as large
+    lines_.write(blocks, 2 * kBlockBytes, putBlock, nullptr);  // no block becomes as large
     used_ = 0;
   }
 
+  CompressBlock& compressBlock_;
   OutputFile& output_;
   LineWriter& lines_;
   std::uint64_t begin_;
@@ -213,22 +220,23 @@ void writePlain(OutputFile& output, const VtkDataSet& data, LoopProgress& progre
 }
 
 /// The header, with the offsets of the arrays, is written last, to the space reserved for it.
-void writeCompressed(OutputFile& output, const VtkDataSet& data, int threads,
+void writeCompressed(OutputFile& output, const VtkDataSet& data, Compression compress, int threads,
                      LoopProgress& progress) {
+  CompressBlock& compressBlock = compress == Compression::Lz4 ? compressByLz4 : deflateBlock;
   std::vector<std::uint64_t> offsets(data.arrays().size(), 0);
-  const std::size_t headBytes = compressedHead(data, offsets).size();
+  const std::size_t headBytes = compressedHead(data, offsets, compress).size();
   output.write(std::string(headBytes, ' '));
   LineWriter lines(output, threads);
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const VtkArray& array = data.arrays()[i];
     offsets[i] = output.position() - headBytes;
-    CompressedArray blocks(output, lines, array.bytes);
+    CompressedArray blocks(compressBlock, output, lines, array.bytes);
     array.write(
         inSlices([&blocks](const void* from, std::size_t size) { blocks.writeBytes(from, size); },
                  progress));
     blocks.finish();
   }
-  const std::string head = compressedHead(data, offsets);
+  const std::string head = compressedHead(data, offsets, compress);
   output.flush();
   output.writeBytesAt(0, head.data(), head.size());
 }
@@ -312,19 +320,20 @@ class VtuStream {
   std::uint64_t end_ = 0;        ///< of the last array
 };
 
-void requireCompressible(const OutputFile& output) {
+void requireCompressible(const OutputFile& output, Compression compress) {
+  if (compress == Compression::None) return;
   // The header is written last.
   output.requirePositions("to which no compressed .vtu file can be written");
 }
 
 }  // namespace
 
-void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stage& stage) {
+void writeVtkXml(OutputFile& output, const VtkDataSet& data, Compression compress, Stage& stage) {
   std::uint64_t bytes = 0;
   for (const VtkArray& array : data.arrays()) bytes += array.bytes;
   LoopProgress progress(stage, bytes);
-  if (compress) {
-    writeCompressed(output, data, stage.context().threads(), progress);
+  if (compress != Compression::None) {
+    writeCompressed(output, data, compress, stage.context().threads(), progress);
   } else {
     writePlain(output, data, progress);
   }
@@ -332,14 +341,14 @@ void writeVtkXml(OutputFile& output, const VtkDataSet& data, bool compress, Stag
 }
 
 void writeVtu(const HexMesh& mesh, OutputFile& output, const WriteOptions& options, Stage& stage) {
-  if (options.compress) requireCompressible(output);
+  requireCompressible(output, options.compress);
   VtkPiece piece;
   writeVtkXml(output, hexDataSet(mesh, options, piece), options.compress, stage);
 }
 
 void writeVtuMap(const TetMap& map, OutputFile& output, const WriteOptions& options, Stage& stage) {
   requirePlainName(options.mapArray);
-  if (options.compress) requireCompressible(output);
+  requireCompressible(output, options.compress);
   withThreads(stage.context().threads(), [&] { requireWritable(map, stage); });
   VtkPiece piece;
   piece.vertices.points = map.points;
@@ -441,7 +450,7 @@ void PiecewiseVtk<polyData>::writeArcs(const PiecewiseLinearMesh& mesh, const Te
   data.addComputed<std::int64_t>(data.elements, "offsets", segments,
                                  [](std::size_t i) { return 2 * (i + 1); });
   addTypes(data, kVtkLine);
-  writeVtkXml(output, data, false, stage);
+  writeVtkXml(output, data, Compression::None, stage);
 }
 
 template <bool polyData>
@@ -470,7 +479,7 @@ void PiecewiseVtk<polyData>::writePatches(const PiecewiseLinearMesh& mesh,
   data.addComputed<std::int64_t>(data.elements, "offsets", polygons,
                                  [&patches](std::size_t i) { return patches.cornerBegin[i + 1]; });
   addTypes(data, kVtkPolygon);
-  writeVtkXml(output, data, false, stage);
+  writeVtkXml(output, data, Compression::None, stage);
 }
 
 template struct PiecewiseVtk<false>;
