@@ -123,7 +123,8 @@ class Moving {
     // Near cells that cannot become positive, others would get worse.
     const bool canAtOnce =
         !subject_.isCurved() && report_.cannotBePositive.empty() && canMoveAtOnce();
-    const bool isFolded = canAtOnce && 2 * sweeps.standing(target).bad > subject_.mesh.cells.size();
+    const Sweeps::Standing initial = sweeps.standing(target);
+    const bool isFolded = canAtOnce && 2 * initial.bad > subject_.mesh.cells.size();
     if (isFolded) sweeps.moveAtOnce(target, slack_, true, [&] { return quadsTooFar(); });
     pull(sweeps);
     oneByOne(sweeps);
@@ -132,9 +133,10 @@ class Moving {
     double floor = lowest;
     const Sweeps::Standing standing = sweeps.standing(target);
     const std::size_t low = standing.bad + standing.below;
-    const bool isShort = canAtOnce && low > 0 && low <= kMostLowAtOnce;
-    if (isShort) atOnce(sweeps, wereBad);
-    if ((isFolded || isShort) && sweeps.standing(target).depth <= 1 - target) {
+    if (canAtOnce && low > 0 && low <= kMostLowAtOnce) atOnce(sweeps, wereBad);
+    // Cells that were good, but not as good as these can be, would take as long again.
+    const bool wasLow = initial.bad + initial.below > 0;
+    if (!subject_.isCurved() && wasLow && sweeps.standing(target).depth <= 1 - target) {
       floor = std::max(floor, raiseFurther(sweeps));
     }
     sweeps.smooth(options_.passes, floor);
