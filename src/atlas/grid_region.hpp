@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -56,27 +57,33 @@ class BoxedLines {
   [[nodiscard]] std::span<const LinePoints> of(const lattice::SweptLine& line);
 
  private:
-  /// The coordinates for which a result is known; it holds for no others.
+  /// Coordinates that are in the same boxes.
   struct Known {
-    std::int64_t first = 0;
-    std::int64_t end = 0;
+    std::int64_t first = std::numeric_limits<std::int64_t>::min();
+    std::int64_t end = std::numeric_limits<std::int64_t>::max();
 
     [[nodiscard]] bool holds(std::int64_t at) const noexcept { return first <= at && at < end; }
+  };
+  struct Rows {
+    Known known;
+    std::size_t firstRange;  ///< in `ranges_`
+    std::size_t endRange;
   };
   /// The boxes that contain a coordinate.
   /// @return the range in which they stay the same
   [[nodiscard]] Known select(std::span<const lattice::GridBox> from, std::size_t axis,
                              std::int64_t at, std::vector<lattice::GridBox>& selected) const;
+  [[nodiscard]] const Rows& rowsOf(const lattice::SweptLine& line);
   void join(std::size_t axis);
 
   std::span<const lattice::GridBox> boxes_;
   std::int32_t beyond_;
-  // Many successive lines are in the same boxes.
-  Known levels_;
-  Known rows_;
+  // Many successive levels, and rows of each, are in the same boxes.
+  Known levels_{0, 0};
   std::vector<lattice::GridBox> atLevel_;
   std::vector<lattice::GridBox> atRow_;
-  std::vector<lattice::GridRange> ranges_;  ///< along lines, ascending, disjoint
+  std::vector<Rows> rows_;                  ///< of the levels, as far as seen
+  std::vector<lattice::GridRange> ranges_;  ///< along lines; per row: ascending, disjoint
   std::vector<LinePoints> found_;
 };
 

@@ -38,7 +38,12 @@ bool enterVertices(Brick<Id>& brick, std::size_t place, std::ptrdiff_t stride, s
 template <class Id>
 std::span<const lattice::SweptLine> VertexGrid<Id>::linesOf(
     Index tet, std::vector<lattice::SweptLine>& scratch) const {
-  if (stored_) return stored_->of(tet);
+  if (stored_) {
+    if (region_ == nullptr) return stored_->of(tet);
+    const std::vector<Index>& tets = region_->tets;
+    const auto at = std::lower_bound(tets.begin(), tets.end(), tet);
+    if (at != tets.end() && *at == tet) return stored_->of(static_cast<Index>(at - tets.begin()));
+  }
   scratch.clear();
   lattice::TetRasterizer(map_.exact.corners[tet], map_.exact.unit)
       .append(lattice::kVertexGrid, scratch);
@@ -90,22 +95,26 @@ void VertexGrid<Id>::sweep(sweep::CellCenters& cells, Stage& stage, sweep::Sweep
   exclusiveScan(std::span(cells.begin));
 }
 
-/// Lists the bricks of a region. Only these are made, which leaves out claims beyond the boxes.
+/// Sweeps the tets of a region, and lists its bricks. Only these are made, which leaves out most
+/// claims beyond the boxes.
 template <class Id>
 void VertexGrid<Id>::collectRegion(Stage& stage) {
   assert(std::is_sorted(region_->tets.begin(), region_->tets.end()));
   assert(region_->begin.size() == region_->tets.size() + 1);
   const std::size_t tets = tetCount();
   keys_.resize(blockCount(tets, sweep::kSweepBlock));
+  stored_.emplace(tets);
   parallelBlocks(stage, tets, sweep::kSweepBlock,
                  [&](std::size_t begin, std::size_t end, std::size_t b) {
                    KeyFilter filter;
-                   std::vector<lattice::SweptLine> scratch;
+                   sweep::BlockLines lines(true);
                    std::vector<lattice::SweptLine> clipped;
                    for (std::size_t i = begin; i < end; ++i) {
+                     lattice::TetRasterizer(map_.exact.corners[tetAt(i)], map_.exact.unit)
+                         .append(lattice::kVertexGrid, lines.next());
                      clipped.clear();
                      BoxedLines boxed(region_->boxesOf(i), 0);
-                     for (const lattice::SweptLine& line : linesOf(tetAt(i), scratch)) {
+                     for (const lattice::SweptLine& line : lines.last()) {
                        for (const auto& [first, count] : boxed.of(line)) {
                          clipped.push_back(line);
                          clipped.back().first += static_cast<std::int32_t>(first);
@@ -114,6 +123,7 @@ void VertexGrid<Id>::collectRegion(Stage& stage) {
                      }
                      collectKeys(tetAt(i), clipped, filter, keys_[b]);
                    }
+                   stored_->store(b, lines);
                  });
 }
 
@@ -144,26 +154,18 @@ void VertexGrid<Id>::collectKeys(Index tet, std::span<const lattice::SweptLine> 
 
 template <class Id>
 template <class VisitRun, class VisitRow>
-void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, std::span<const lattice::GridBox> boxes,
-                                  const VisitRun& visitRun, const VisitRow& visitRow) const {
+void VertexGrid<Id>::forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
+                                  const VisitRow& visitRow) const {
   std::vector<lattice::SweptLine> scratch;
   const std::span<const lattice::SweptLine> lines = linesOf(tet, scratch);
   if (lines.empty()) return;
   const lattice::SweepAxes axes = lines.front().axes;
   const SweepFrame frame(charts_.gauge(tet), axes());
   const Index chart = charts_.chart[tet];
-  BoxedLines boxed(boxes, 0);
   sweep::TetNumbering numbering(map_, numbers_, tet, axes);
   numbering.run(lines, [&](const sweep::VertexRun& run) {
     visitRun(run);
-    for (const auto& [first, count] : boxed.of(*run.line)) {
-      sweep::VertexRun part = run;
-      part.offset = std::max(run.offset, first);
-      const std::uint32_t end = std::min(run.offset + run.count, first + count);
-      if (part.offset >= end) continue;
-      part.count = end - part.offset;
-      visitRow(rowOf(part, frame, chart), run.first + (part.offset - run.offset));
-    }
+    visitRow(rowOf(run, frame, chart), run.first);
   });
   if (faces == Faces::Owned) return;
   for (int face = 0; face < 4; ++face) {
@@ -231,10 +233,10 @@ void VertexGrid<Id>::fill(const VertexArrays& arrays, Stage& stage) {
     };
     for (std::size_t i = begin; i < end; ++i) {
       const Index tet = tetAt(i);
-      if (stored_ && stored_->areEmpty(tet)) continue;
+      if (stored_ && stored_->areEmpty(static_cast<Index>(i))) continue;
       std::optional<sweep::TetPositions> positions;
       forEachClaim(
-          tet, Faces::OwnedAndCut, boxesAt(i),
+          tet, Faces::OwnedAndCut,
           [&](const sweep::VertexRun& run) { write(run, tet, positions, arrays); }, enter);
     }
     if (overlapsHere) overlaps.store(true, std::memory_order_relaxed);
@@ -248,8 +250,7 @@ template <class Id>
 void VertexGrid<Id>::describe(Index tet, const VertexArrays& arrays) const {
   std::optional<sweep::TetPositions> positions;
   forEachClaim(
-      tet, Faces::Owned, {},
-      [&](const sweep::VertexRun& run) { write(run, tet, positions, arrays); },
+      tet, Faces::Owned, [&](const sweep::VertexRun& run) { write(run, tet, positions, arrays); },
       [](const ChartRow&, std::uint64_t) {});
 }
 
@@ -283,7 +284,7 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {
     scratch.clear();
     forEachClaim(
-        tetAt(tets[i]), Faces::All, boxesAt(tets[i]), [](const sweep::VertexRun&) {},
+        tetAt(tets[i]), Faces::All, [](const sweep::VertexRun&) {},
         [&](const ChartRow& row, std::uint64_t first) {
           scratch.push_back({row, first});
         });

@@ -118,9 +118,6 @@ class VertexGrid {
   [[nodiscard]] Index tetAt(std::size_t i) const noexcept {
     return region_ != nullptr ? region_->tets[i] : static_cast<Index>(i);
   }
-  [[nodiscard]] std::span<const lattice::GridBox> boxesAt(std::size_t i) const noexcept {
-    return region_ != nullptr ? region_->boxesOf(i) : std::span<const lattice::GridBox>();
-  }
   template <class Visit>
   void forEachBrick(Index tet, std::span<const lattice::SweptLine> lines, const Visit& visit) const;
   void collectKeys(Index tet, std::span<const lattice::SweptLine> lines, KeyFilter& filter,
@@ -129,8 +126,8 @@ class VertexGrid {
       Index tet, std::vector<lattice::SweptLine>& scratch) const;
 
   template <class VisitRun, class VisitRow>
-  void forEachClaim(Index tet, Faces faces, std::span<const lattice::GridBox> boxes,
-                    const VisitRun& visitRun, const VisitRow& visitRow) const;
+  void forEachClaim(Index tet, Faces faces, const VisitRun& visitRun,
+                    const VisitRow& visitRow) const;
   template <class VisitRow>
   void forEachForeignClaim(Index tet, int face, const VisitRow& visitRow) const;
 

@@ -196,19 +196,28 @@ class Describer {
     // Interior vertices are numbered in the order of the sweep, so the next one is found quickly.
     auto next = std::lower_bound(numbers_.begin() + static_cast<std::ptrdiff_t>(wanted.begin), last,
                                  run.first);
-    for (; next != last && *next < run.first + run.count; ++next) {
-      const auto i = static_cast<std::uint32_t>(*next - run.first);
-      const std::size_t at = first_ + static_cast<std::size_t>(next - numbers_.begin());
+    while (next != last && *next < run.first + run.count) {
+      // Consecutive ones at once.
+      const auto from = next;
+      const auto i = static_cast<std::uint32_t>(*from - run.first);
+      do {
+        ++next;
+      } while (next != last && *next < run.first + run.count && *next == *(next - 1) + 1);
+      const auto count = static_cast<std::uint32_t>(next - from);
+      const std::size_t at = first_ + static_cast<std::size_t>(from - numbers_.begin());
       const lattice::SweptLine& line = *run.line;
       if (run.simplex == lattice::kWholeTet) {
         positions.alongLine(line.level, line.row,
-                            line.first + static_cast<std::int32_t>(run.offset + i), 1,
+                            line.first + static_cast<std::int32_t>(run.offset + i), count,
                             &mesh_.points[at]);
       } else {
-        mesh_.points[at] = positions.at(run.simplex, line.point(run.offset + i));
+        for (std::uint32_t k = 0; k < count; ++k) {
+          mesh_.points[at + k] = positions.at(run.simplex, line.point(run.offset + i + k));
+        }
       }
-      mesh_.generatorTet[at] = wanted.tet;
-      mesh_.generatorCorners[at] = map_.input.callersCorners(run.simplex);
+      std::fill_n(mesh_.generatorTet.begin() + static_cast<std::ptrdiff_t>(at), count, wanted.tet);
+      std::fill_n(mesh_.generatorCorners.begin() + static_cast<std::ptrdiff_t>(at), count,
+                  map_.input.callersCorners(run.simplex));
     }
   }
 

@@ -35,8 +35,12 @@ void renumber(std::span<const Cell> from, const VertexSet& vertices, Hex* to) {
   Hex ranks{};
   for (const Cell& cell : from) {
     const Cell here = cell;
-    for (std::size_t k = 0; k < 8; ++k) {
-      ranks[k] = here[k] == before[k] + 1 ? ranks[k] + 1 : cache.rank(here[k]);
+    if (follows(here, before)) {
+      for (Index& rank : ranks) ++rank;
+    } else {
+      for (std::size_t k = 0; k < 8; ++k) {
+        ranks[k] = here[k] == before[k] + 1 ? ranks[k] + 1 : cache.rank(here[k]);
+      }
     }
     before = here;
     *to++ = ranks;
@@ -57,39 +61,31 @@ std::vector<std::int32_t> tagsOf(const Features& features) {
   return different(std::move(tags));
 }
 
-/// The cells of other parts around a part, layer by layer.
+/// Splits the cells of other parts around a part into layers: each consists of the cells in no
+/// layer so far that have a vertex of the part or of the previous layers.
+/// @param own  the part's vertices
 template <class Id>
-class GhostLayers {
- public:
-  /// @param own  the part's vertices; outlives this
-  GhostLayers(std::vector<NearbyCell<Id>> nearby, const VertexSet& own, Stage& stage)
-      : nearby_(std::move(nearby)), stage_(stage), reached_(&own) {}
-
-  /// The next layer: cells in no layer so far that have a vertex of the part or of the previous
-  /// layers.
-  [[nodiscard]] std::vector<NearbyCell<Id>> next() {
-    std::vector<NearbyCell<Id>> layer;
-    std::vector<std::array<Id, 8>> corners;
+std::vector<std::vector<NearbyCell<Id>>> layersOf(std::vector<NearbyCell<Id>> nearby,
+                                                  std::uint32_t count, const VertexSet& own,
+                                                  Stage& stage) {
+  std::vector<std::vector<NearbyCell<Id>>> layers(count);
+  VertexSet ofLayer;
+  for (std::vector<NearbyCell<Id>>& layer : layers) {
     std::vector<NearbyCell<Id>> rest;
-    VertexSet::Cache cache(*reached_);
-    for (const NearbyCell<Id>& cell : nearby_) {
-      const bool touches = cache.holdsAny(cell.corners);
-      (touches ? layer : rest).push_back(cell);
-      if (touches) corners.push_back(cell.corners);
+    // Everything farther away touches the previous layer.
+    VertexSet::Cache cache(&layer == &layers.front() ? own : ofLayer);
+    for (const NearbyCell<Id>& cell : nearby) {
+      (cache.holdsAny(cell.corners) ? layer : rest).push_back(cell);
     }
-    nearby_ = std::move(rest);
-    // Everything farther away touches this layer.
-    ofLayer_ = VertexSet(std::span<const std::array<Id, 8>>(corners), stage_);
-    reached_ = &ofLayer_;
-    return layer;
+    nearby = std::move(rest);
+    if (&layer == &layers.back()) break;
+    std::vector<std::array<Id, 8>> corners;
+    corners.reserve(layer.size());
+    for (const NearbyCell<Id>& cell : layer) corners.push_back(cell.corners);
+    ofLayer = VertexSet(std::span<const std::array<Id, 8>>(corners), stage);
   }
-
- private:
-  std::vector<NearbyCell<Id>> nearby_;
-  Stage& stage_;
-  VertexSet ofLayer_;  ///< the latest layer
-  const VertexSet* reached_;
-};
+  return layers;
+}
 
 template <class Id>
 class Maker final : public PartMaker {
@@ -137,9 +133,11 @@ class Maker final : public PartMaker {
       grid.enter(workspace.regions.find(number, around), stage);
       own = grid.ownCells(number, stage);
       vertices = VertexSet(std::span<const std::array<Id, 8>>(own.corners), stage);
-      GhostLayers<Id> ghosts(grid.nearbyCells(number, around == 1 ? &vertices : nullptr, stage),
-                             vertices, stage);
-      for (std::uint32_t i = 0; i < around; ++i) layers.push_back(ghosts.next());
+      if (around == 1) {
+        layers.push_back(grid.nearbyCells(number, &vertices, stage));
+      } else {
+        layers = layersOf(grid.nearbyCells(number, nullptr, stage), around, vertices, stage);
+      }
       grid.clear();  // frees memory for what follows
     });
     Assembly assembly{part, layers, vertices, stage};

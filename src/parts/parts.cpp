@@ -80,11 +80,11 @@ constexpr std::array<WorkStep, 9> kPartsSteps = {{{"prepare", 0.1},
                                                   {"repair", 0.3},
                                                   {"prepare", 0.1},
                                                   {"scaling", 0.1},
+                                                  {"verification", 0.1},
                                                   {"charts", 0.1},
                                                   {"sweep", 0.5},
                                                   {"partition", 0.2},
-                                                  {"parts", 4},
-                                                  {"verification", 1}}};
+                                                  {"parts", 5}}};
 
 void checkOptions(const PartOptions& options) {
   if (options.parts < 1 || options.parts > kMaxParts) {
@@ -110,14 +110,16 @@ class Collector final : public PartSink {
   std::vector<MeshPart>& parts_;
 };
 
-/// The most parts to make side by side: as many as there are threads, but no more than fit in a
-/// gigabyte, one at least. Making a part takes 145 bytes per cell (docs/results/scaling.md), and
-/// tables of some 40 bytes per tet that each needs for itself.
+/// The most parts to have in memory at once: with several threads twice as many as these, since
+/// some parts take twice as long as others; but no more than fit in a gigabyte, one at least.
+/// Making a part takes 145 bytes per cell (docs/results/scaling.md), and tables of some 40 bytes
+/// per tet that each needs for itself.
 std::uint32_t partsAtOnce(const PartsInfo& info, std::size_t tets) {
   constexpr std::uint64_t kBytes = std::uint64_t{1} << 30;
   const std::uint64_t ofOne = 145 * (info.cellCount / info.parts + 1) + 40 * tets;
   const auto threads = static_cast<std::uint64_t>(currentThreads());
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kBytes / ofOne, 1, threads));
+  const std::uint64_t most = threads > 1 ? 2 * threads : 1;
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kBytes / ofOne, 1, most));
 }
 
 /// Makes parts, and proves them if requested.
@@ -135,18 +137,13 @@ class ProvenParts {
   }
 
   [[nodiscard]] PartsInfo info() const { return maker_->info(); }
-  /// Makes consecutive parts side by side.
+  /// Makes consecutive parts side by side, and proves each at once.
   [[nodiscard]] std::vector<MeshPart> make(std::uint32_t first, std::uint32_t count) {
     std::vector<MeshPart> parts(count);
-    {
-      Stage stage(context_, "parts");
-      parallelFor(stage, count, 1, [&](std::size_t i) {
-        parts[i] = maker_->make(first + static_cast<std::uint32_t>(i), stage);
-      });
-    }
-    if (!expected_) return parts;
-    Stage stage(context_, "verification");
+    Stage stage(context_, "parts");
     parallelFor(stage, count, 1, [&](std::size_t i) {
+      parts[i] = maker_->make(first + static_cast<std::uint32_t>(i), stage);
+      if (!expected_) return;
       proofs_.with([&] { return verification::PartProof(map_, *expected_, maker_->counts()); },
                    [&](verification::PartProof& proof) { proof.compare(parts[i], stage); });
     });

@@ -18,6 +18,15 @@
 
 namespace hexhex::parts {
 
+/// Whether each corner of a cell follows that of the cell before. (All at once: compilers use
+/// vector instructions.)
+template <class Cell>
+[[nodiscard]] bool follows(const Cell& cell, const Cell& before) noexcept {
+  typename Cell::value_type differences = 0;
+  for (std::size_t k = 0; k < 8; ++k) differences |= cell[k] ^ (before[k] + 1);
+  return differences == 0;
+}
+
 class VertexSet {
  public:
   static constexpr std::uint64_t kPageBits = 1024;
@@ -28,13 +37,10 @@ class VertexSet {
     explicit Cache(const VertexSet& set) noexcept : set_(set) {}
     /// The rank of a number, or kNone if it is not in the set.
     [[nodiscard]] Index rank(std::uint64_t vertex) noexcept {
-      const Entry& entry = look(vertex / kPageBits);
-      if (entry.page == kNoPage) return kNone;
+      if (!holds(vertex)) return kNone;
       const std::size_t bit = vertex % kPageBits;
-      const Page& page = set_.pages_[entry.page];
-      const std::uint64_t word = page.bits[bit / 64];
-      if ((word >> (bit % 64) & 1U) == 0) return kNone;
-      const std::uint64_t below = word & ((std::uint64_t{1} << (bit % 64)) - 1);
+      const Page& page = set_.pages_[look(vertex / kPageBits).page];
+      const std::uint64_t below = page.bits[bit / 64] & ((std::uint64_t{1} << (bit % 64)) - 1);
       return page.before[bit / 64] + static_cast<Index>(std::popcount(below));
     }
 
@@ -42,11 +48,17 @@ class VertexSet {
     template <class Cell>
     [[nodiscard]] bool holdsAny(const Cell& cell) noexcept {
       return std::any_of(cell.begin(), cell.end(),
-                         [this](std::uint64_t vertex) { return rank(vertex) != kNone; });
+                         [this](std::uint64_t vertex) { return holds(vertex); });
     }
 
    private:
     friend class VertexSet;
+    [[nodiscard]] bool holds(std::uint64_t vertex) noexcept {
+      const Entry& entry = look(vertex / kPageBits);
+      if (entry.page == kNoPage) return false;
+      const std::size_t bit = vertex % kPageBits;
+      return (set_.pages_[entry.page].bits[bit / 64] >> (bit % 64) & 1U) != 0;
+    }
     static constexpr std::size_t kNoPage = ~std::size_t{0};
     struct Entry {
       std::uint64_t key = ~std::uint64_t{0};
@@ -108,19 +120,19 @@ class VertexSet {
   template <class Cell, class Visit>
   static void forEachRange(std::span<const Cell> cells, const Visit& visit) {
     if (cells.empty()) return;
-    for (std::size_t k = 0; k < 8; ++k) {
-      std::uint64_t first = cells[0][k];
-      std::uint64_t last = first;
-      for (const Cell& cell : cells.subspan(1)) {
-        if (cell[k] == last + 1) {
-          ++last;
-          continue;
+    Cell first = cells[0];
+    Cell last = cells[0];
+    for (const Cell& cell : cells.subspan(1)) {
+      if (!follows(cell, last)) {
+        for (std::size_t k = 0; k < 8; ++k) {
+          if (cell[k] == last[k] + 1) continue;
+          visit(first[k], last[k]);
+          first[k] = cell[k];
         }
-        visit(first, last);
-        first = last = cell[k];
       }
-      visit(first, last);
+      last = cell;
     }
+    for (std::size_t k = 0; k < 8; ++k) visit(first[k], last[k]);
   }
   /// Enters the numbers that belong to one word. Thread-safe.
   /// @return the first number beyond

@@ -163,26 +163,6 @@ struct ConsecutiveCells {
   }
 };
 
-/// Cells with explicit numbers, ascending.
-template <class Cell>
-struct NumberedCells {
-  std::span<const std::uint64_t> numbers;
-  std::span<const Cell> cells;
-  std::size_t next = 0;
-
-  /// The cells from a number on.
-  [[nodiscard]] NumberedCells from(std::uint64_t number) const {
-    assert(cells.size() == numbers.size());
-    const auto first = std::lower_bound(numbers.begin(), numbers.end(), number);
-    return {numbers, cells, static_cast<std::size_t>(first - numbers.begin())};
-  }
-  /// As above; numbers must be passed in ascending order.
-  [[nodiscard]] const Cell* find(std::uint64_t number) noexcept {
-    while (next < numbers.size() && numbers[next] < number) ++next;
-    return next < numbers.size() && numbers[next] == number ? &cells[next] : nullptr;
-  }
-};
-
 /// Steps 2 and 3 of the proof (proof.hpp), tet by tet. One per thread.
 template <class Cell>
 class CellChecker {

@@ -104,6 +104,7 @@ class PartProof {
   [[nodiscard]] std::vector<Index> tetsOf(const MeshPart& part, Faults& wrongPoints,
                                           Faults& wrongCells) const;
   void comparePoints(const MeshPart& part, Stage& stage, Faults& wrong) const;
+  template <class Cell>
   void compareCells(const MeshPart& part, Stage& stage, Faults& hints, Faults& wrong) const;
 
   const igm::PreparedMap& map_;
