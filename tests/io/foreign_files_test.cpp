@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -289,6 +290,41 @@ TEST(ForeignFiles, InstancesOfAbaqusAreWhereTheyArePut) {
                   ErrorCode::FileSyntax, "no direction");
 }
 
+TEST(ForeignFiles, AssembliesOfAbaqusHaveReferencePoints) {
+  const std::string file =
+      "*Part, name=P\n" + kInpNodes + kInpCells +
+      "*End Part\n*Assembly\n*Instance, name=P-1, part=P\n*End Instance\n*Node\n5, 5., 5., 5.\n"
+      "*Nset, nset=RP\n5\n*Nset, nset=in, instance=P-1\n4\n*Nset, nset=dot\nP-1.3\n"
+      "*Element, type=MASS\n1, 5\n*Surface, name=s\nP-1.left, S2\n*End Assembly\n";
+  const HexMesh mesh = abaqus(file);
+  EXPECT_EQ(mesh.points[13], (Vec3{5, 5, 5}));
+  std::map<std::string, Index> named;
+  for (const FeatureVertex& vertex : mesh.features.vertices) {
+    for (const TagName& name : mesh.features.names) {
+      if (name.dimension == 0 && name.tag == vertex.tag) named[name.name] = vertex.vertex;
+    }
+  }
+  EXPECT_EQ(named, (std::map<std::string, Index>{{"dot", 2}, {"in", 1}, {"rp", 13}}));
+  EXPECT_EQ(mesh.features.quads.size(), 2U);
+  expectFailureOf(abaqus, replaced(file, "MASS\n1, 5", "C3D4\n1, 5, 5, 5, 5"),
+                  ErrorCode::FileUnsupported, "several instances");
+}
+
+TEST(ForeignFiles, AbaqusAsOthersTypeIt) {
+  const auto typed = [](const std::string& type) {
+    return abaqus(kInpNodes + replaced(kInpCells, "c3d8i", type)).cells.size();
+  };
+  for (const char* const type : {"COH3D8", "Q3D8R", "F3D8", "CSS8", "DC3D8"}) {
+    EXPECT_EQ(typed(type), 2U) << type;
+  }
+  for (const char* const type : {"M3D4", "R3D4", "T3D2", "CONN3D2"}) EXPECT_EQ(typed(type), 1U);
+  std::string indented = "*node\n" + kInpNodes + kInpCells;
+  for (std::size_t i = 0; (i = indented.find('\n', i)) + 1 < indented.size(); ++i) {
+    indented.insert(i + 1, indented[i + 1] == '*' ? "  " : " \t");
+  }
+  EXPECT_EQ(abaqus(replaced(indented, "*NODE", "* NODE")).cells.size(), 2U);
+}
+
 TEST(ForeignFiles, SetsOfAbaqusWithoutSectionsAreRegions) {
   const auto regions = [](const std::string& sets) {
     const HexMesh mesh = abaqus(kInpNodes + kInpCells + sets);
@@ -339,12 +375,14 @@ TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
   expectFailure(replaced(good, "11,12,13,14", "11,12,13,15"), ErrorCode::IndexOutOfRange,
                 "element 4 names node 15");
   expectFailure(replaced(good, ",13,14\n", "\n"), ErrorCode::FileSyntax, "nodes of element 4");
+  expectFailure(replaced(good, "13,14\n", "13,14,11\n"), ErrorCode::FileSyntax,
+                "line 27: more nodes than the 8 of element 4");
   expectFailure(good + "*ngen\n1, 2, 1\n", ErrorCode::FileUnsupported, "line 28: the keyword");
   expectFailure(good + "*include, input=a.inp\n", ErrorCode::FileUnsupported, "cannot include");
   expectFailure(good + "*node, input=a.inp\n", ErrorCode::FileUnsupported, "INPUT=...");
   expectFailure(good + "*nset,nset=a,generate\n1,900000000000\n", ErrorCode::TooLarge, "line 29");
   expectFailure(good + "*elset,elset=a\nnone\n", ErrorCode::FileSyntax, "\"none\", which is no");
-  expectFailure(replaced(replaced(good, "c3d8i", "c3d6"), "C3D8R", "C3D6"),
+  expectFailure(kInpNodes + "*element, type=C3D6\n3, 5,4,3,1,9,8\n4, 1,9,8,11,12,13\n",
                 ErrorCode::FileUnsupported, "it holds 2 prisms");
 }
 
