@@ -197,6 +197,20 @@ TEST(ForeignFiles, CompressedFilesOfAnyFormat) {
                 ErrorCode::FileSyntax);
     }
   }
+  HexMesh zoned = mesh;
+  zoned.regions.assign(mesh.cells.size(), 4);
+  zoned.regions.front() = 5;
+  const auto poly = folder / "constant/polyMesh";
+  writeHexMesh(zoned, folder / "a.foam");
+  for (const char* const name : {"points", "faces", "owner", "neighbour", "cellZones"}) {
+    writeText(poly / (std::string(name) + ".gz"), gzipOf(contentOf(poly / name)));
+    std::filesystem::remove(poly / name);
+  }
+  EXPECT_EQ(readHexMesh(folder / "a.foam").regions, zoned.regions);
+  std::filesystem::rename(folder / "constant", folder / "processor0");
+  const auto decomposed = [&] { static_cast<void>(readHexMesh(folder / "a.foam")); };
+  EXPECT_NE(failureOf(decomposed).sentence.find("reconstructParMesh"), std::string::npos);
+
   const Failure failure = failureOf([&] { writeHexMesh(mesh, folder / "n.mesh.gz"); });
   EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
   EXPECT_NE(failure.sentence.find("read, but not written"), std::string::npos);
