@@ -127,6 +127,34 @@ TEST(ForeignFiles, GmshOfVersion40) {
   if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
 }
 
+TEST(ForeignFiles, ParametricNodesOfGmsh) {
+  const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+  const std::string names = "$PhysicalNames\n2\n 2\t7\t\"low\"\n3  5 \"all\"\n$EndPhysicalNames\n";
+  const std::string elements =
+      "$Elements\n2\n1 3 2 7 1 11 12 13 14\n"
+      "9 5 2 5 2 11 12 13 14 15 16 17 18\n$EndElements\n";
+  const HexMesh mesh =
+      gmsh(head + names +
+           "$ParametricNodes\n8\n11 0 0 0 0 1\n12 1 0 0 1 4 .5\n13 1 1 0 2 6 .1 .2\n"
+           "14 0 1 0 3 1\n15 0 0 1 0 5\n16 1 0 1 0 6\n17 1 1 1 0 7\n18 0 1 1 0 8\n"
+           "$EndParametricNodes\n" +
+           elements);
+  expectTaggedCube(mesh);
+  ASSERT_EQ(mesh.features.names.size(), 2U);
+  EXPECT_EQ(mesh.features.names[0].name, "low");
+  Bytes file;
+  file.text(replaced(head, "0 8", "1 8").substr(0, 20)).integers({1});
+  file.text("\n$EndMeshFormat\n$ParametricNodes\n8\n");
+  for (std::int32_t i = 0; i < 8; ++i) {
+    const Vec3& point = mesh.points[static_cast<std::size_t>(i)];
+    file.integers({11 + i}).reals({point[0], point[1], point[2]}).integers({i % 3, 1});
+    for (int k = 0; k < i % 3; ++k) file.reals({.5});
+  }
+  file.text("\n$EndParametricNodes\n$Elements\n2\n").integers({3, 1, 2, 1, 7, 1, 11, 12, 13, 14});
+  file.integers({5, 1, 2, 9, 5, 2, 11, 12, 13, 14, 15, 16, 17, 18}).text("\n$EndElements\n");
+  if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
+}
+
 TEST(ForeignFiles, PartitionedEntitiesOfGmsh) {
   const std::string box = "0 0 0 1 1 1 ";
   const std::string text =
