@@ -22,6 +22,7 @@
 #include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf_reader.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 #include <io/formats/netcdf.hpp>
 #include <io/io_test_support.hpp>
 
@@ -922,6 +923,34 @@ TEST(ForeignFiles, CubeOf27NodesOfVtk) {
             "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 27 double\n" +
                 listed(nodes, false) + "CELLS 1 28\n" + cell + "\nCELL_TYPES 1\n29\n");
   expectCubeOfOrder2(readLagrangeMesh(folder / "a.vtk", context));
+}
+
+TEST(ForeignFiles, LagrangeCellsOfLegacyVtk) {
+  constexpr std::array<std::pair<const char*, VtkEdges>, 2> kVersions = {
+      {{"5.1", VtkEdges::Around}, {"3.0", VtkEdges::RowByRow}}};
+  for (const auto& [version, edges] : kVersions) {
+    SCOPED_TRACE(version);
+    std::vector<Vec3> nodes;
+    std::string cell;
+    for (const std::uint32_t k : vtkNodeOrder(3, edges)) {
+      nodes.push_back({double(k % 4), double(k / 4 % 4), double(k / 16)});
+      cell += ' ' + std::to_string(nodes.size() - 1);
+    }
+    const bool isNew = edges == VtkEdges::Around;
+    const std::string text =
+        concat("# vtk DataFile Version ", version,
+               "\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 64 double\n", listed(nodes, false),
+               isNew ? "CELLS 2 64\nOFFSETS vtktypeint64\n0 64\nCONNECTIVITY vtktypeint64\n"
+                     : "CELLS 1 65\n64",
+               cell, "\nCELL_TYPES 1\n72\n");
+    Context context;
+    const LagrangeMesh mesh = readBytes<readCurvedVtkLegacy>(text, "a.vtk", context);
+    ASSERT_EQ(mesh.order, 3);
+    for (std::size_t k = 0; k < 64; ++k) {
+      EXPECT_EQ(mesh.points[mesh.nodes[k]],
+                (Vec3{double(k % 4), double(k / 4 % 4), double(k / 16)}));
+    }
+  }
 }
 
 /// An Exodus file of one cell, by NetCDF's writer.
