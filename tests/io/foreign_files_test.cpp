@@ -1012,6 +1012,11 @@ TEST(ForeignFiles, CubesOfExodus) {
             std::string::npos);
   EXPECT_NE(sentence("BEX_HEX").find("it holds 1 Bezier hexahedron."), std::string::npos);
   EXPECT_NE(sentence("LATTICE").find("\"lattice\" are not supported"), std::string::npos);
+  writeText(folder / "d.e", replaced(contentOf(folder / "c.e"), "connect1", "facconn1"));
+  EXPECT_NE(failureOf([&] {
+              static_cast<void>(readHexMesh(folder / "d.e"));
+            }).sentence.find("no elements but polyhedra"),
+            std::string::npos);
 }
 
 TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {

@@ -417,7 +417,10 @@ class ExodusReader {
       readBlock(name, tags[b], next);
       lists_.addName(3, tags[b], groups.nameOf(b));
     }
-    if (lists_.blocks.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no elements.");
+    if (lists_.blocks.empty()) {
+      input_.fail(ErrorCode::FileUnsupported, "the file has no elements",
+                  has("facconn1") ? " but polyhedra." : ".");
+    }
   }
 
   void readBlock(const std::string& name, std::int32_t region, std::uint64_t& next) {
