@@ -1042,6 +1042,17 @@ TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {
         readBytes<ExodusFormat::readMesh>("\x89HDF\r\n\x1a\n........", "a.e", context));
   });
   EXPECT_NE(hdf.sentence.find("HDF5"), std::string::npos) << hdf.sentence;
+  // An element that is not there: behind a variable's name, its head tells where it begins.
+  const std::size_t head = good.find("elem_ss1") + 32;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < (good[3] == 1 ? 4U : 8U); ++i) {
+    begin = 256 * begin + static_cast<unsigned char>(good[head + i]);
+  }
+  std::string wrong = good;
+  wrong.at(begin) = 1;
+  const Failure beyond = failureOf(
+      [&] { static_cast<void>(readBytes<ExodusFormat::readMesh>(wrong, "a.e", context)); });
+  EXPECT_NE(beyond.sentence.find("side set 1 names side"), std::string::npos) << beyond.sentence;
 }
 
 TEST(ForeignFiles, PublicOnes) {
