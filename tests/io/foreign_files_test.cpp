@@ -612,6 +612,9 @@ TEST(ForeignFiles, UniversalFilesWithGroups) {
   ASSERT_EQ(mesh.features.vertices.size(), 1U);
   EXPECT_EQ(mesh.features.vertices[0].vertex, 6U);
   EXPECT_EQ(mesh.features.vertices[0].tag, 4);
+  std::set<std::string> names;
+  for (const TagName& name : mesh.features.names) names.insert(name.name);
+  EXPECT_TRUE(names.contains("Solid with a name"));
 }
 
 TEST(ForeignFiles, MistakesInUniversalFilesAreToldWithTheirLine) {

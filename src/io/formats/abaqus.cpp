@@ -42,12 +42,6 @@ constexpr std::string_view kAbaqusHeading = "hexahedral mesh by hexhex";
 
 // Reading.
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
-  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 /// Removes and returns the next word of a line, up to a comma.
 std::string_view takeField(std::string_view& line) {
   const std::size_t comma = std::min(line.find(','), line.size());
@@ -394,13 +388,10 @@ class AbaqusReader {
         const std::string_view word = takeField(rest);
         if (word.empty()) continue;
         std::uint64_t number = 0;
-        if (parseInteger(word, number)) {
-          set.items.push_back(offset + number);
-          continue;
-        }
-        const std::string named = ofInstance(word);
-        if (parseInteger(named, number)) {
-          set.items.push_back(number);
+        const bool isPlain = parseInteger(word, number);
+        const std::string named = isPlain ? std::string() : ofInstance(word);
+        if (isPlain || parseInteger(named, number)) {
+          set.items.push_back((isPlain ? offset : 0) + number);
           continue;
         }
         const auto other = sets.find(named);
