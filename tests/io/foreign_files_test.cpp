@@ -934,6 +934,7 @@ TEST(ForeignFiles, LagrangeCellsOfLegacyVtk) {
   for (const auto& [version, edges] : kVersions) {
     SCOPED_TRACE(version);
     std::vector<Vec3> nodes;
+    nodes.reserve(64);
     std::string cell;
     for (const std::uint32_t k : vtkNodeOrder(3, edges)) {
       nodes.push_back({double(k % 4), double(k / 4 % 4), double(k / 16)});

@@ -305,7 +305,7 @@ class AbaqusReader {
     std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set].items;
     while (nextData()) {
       std::string_view rest = line_;
-      nodeNumbers_.push_back(ofAssembly_ + integer(takeField(rest), "the number of a node"));
+      nodeNumbers_.push_back(ofAssembly_ | integer(takeField(rest), "the number of a node"));
       Vec3 point{};
       for (double& coordinate : point) {
         if (rest.empty()) break;  // missing coordinates are 0
@@ -391,7 +391,7 @@ class AbaqusReader {
         const bool isPlain = parseInteger(word, number);
         const std::string named = isPlain ? std::string() : ofInstance(word);
         if (isPlain || parseInteger(named, number)) {
-          set.items.push_back((isPlain ? offset : 0) + number);
+          set.items.push_back((isPlain ? offset : 0) | number);
           continue;
         }
         const auto other = sets.find(named);
@@ -438,7 +438,7 @@ class AbaqusReader {
     if (step == 0 || last < first) fail("a range is \"first, last, step\", upwards");
     takeRoom((last - first) / step + 1);
     for (std::uint64_t i = first;; i += step) {
-      set.items.push_back(offset + i);
+      set.items.push_back(offset | i);
       if (last - i < step) break;
     }
   }
@@ -623,7 +623,7 @@ class AbaqusReader {
   int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
   std::string instance_;            ///< its name and a dot, as in front of its numbers and sets
-  std::uint64_t ofAssembly_ = 0;    ///< added to numbers of nodes outside of the instance
+  std::uint64_t ofAssembly_ = 0;    ///< bits of numbers of nodes outside of the instance
   std::vector<double> place_;       ///< of the instance, until all its nodes are known
   std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
   ElementLists lists_;
