@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -21,6 +22,7 @@
 #include <io/core/compressed_blocks.hpp>
 #include <io/core/hdf_reader.hpp>
 #include <io/formats/formats.hpp>
+#include <io/formats/lagrange_nodes.hpp>
 #include <io/formats/netcdf.hpp>
 #include <io/io_test_support.hpp>
 
@@ -126,6 +128,34 @@ TEST(ForeignFiles, GmshOfVersion40) {
   if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
 }
 
+TEST(ForeignFiles, ParametricNodesOfGmsh) {
+  const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+  const std::string names = "$PhysicalNames\n2\n 2\t7\t\"low\"\n3  5 \"all\"\n$EndPhysicalNames\n";
+  const std::string elements =
+      "$Elements\n2\n1 3 2 7 1 11 12 13 14\n"
+      "9 5 2 5 2 11 12 13 14 15 16 17 18\n$EndElements\n";
+  const HexMesh mesh =
+      gmsh(head + names +
+           "$ParametricNodes\n8\n11 0 0 0 0 1\n12 1 0 0 1 4 .5\n13 1 1 0 2 6 .1 .2\n"
+           "14 0 1 0 3 1\n15 0 0 1 0 5\n16 1 0 1 0 6\n17 1 1 1 0 7\n18 0 1 1 0 8\n"
+           "$EndParametricNodes\n" +
+           elements);
+  expectTaggedCube(mesh);
+  ASSERT_EQ(mesh.features.names.size(), 2U);
+  EXPECT_EQ(mesh.features.names[0].name, "low");
+  Bytes file;
+  file.text(replaced(head, "0 8", "1 8").substr(0, 20)).integers({1});
+  file.text("\n$EndMeshFormat\n$ParametricNodes\n8\n");
+  for (std::int32_t i = 0; i < 8; ++i) {
+    const Vec3& point = mesh.points[static_cast<std::size_t>(i)];
+    file.integers({11 + i}).reals({point[0], point[1], point[2]}).integers({i % 3, 1});
+    for (int k = 0; k < i % 3; ++k) file.reals({.5});
+  }
+  file.text("\n$EndParametricNodes\n$Elements\n2\n").integers({3, 1, 2, 1, 7, 1, 11, 12, 13, 14});
+  file.integers({5, 1, 2, 9, 5, 2, 11, 12, 13, 14, 15, 16, 17, 18}).text("\n$EndElements\n");
+  if constexpr (std::endian::native == std::endian::little) expectTaggedCube(gmsh(file.bytes));
+}
+
 TEST(ForeignFiles, PartitionedEntitiesOfGmsh) {
   const std::string box = "0 0 0 1 1 1 ";
   const std::string text =
@@ -196,6 +226,20 @@ TEST(ForeignFiles, CompressedFilesOfAnyFormat) {
                 ErrorCode::FileSyntax);
     }
   }
+  HexMesh zoned = mesh;
+  zoned.regions.assign(mesh.cells.size(), 4);
+  zoned.regions.front() = 5;
+  const auto poly = folder / "constant/polyMesh";
+  writeHexMesh(zoned, folder / "a.foam");
+  for (const char* const name : {"points", "faces", "owner", "neighbour", "cellZones"}) {
+    writeText(poly / (std::string(name) + ".gz"), gzipOf(contentOf(poly / name)));
+    std::filesystem::remove(poly / name);
+  }
+  EXPECT_EQ(readHexMesh(folder / "a.foam").regions, zoned.regions);
+  std::filesystem::rename(folder / "constant", folder / "processor0");
+  const auto decomposed = [&] { static_cast<void>(readHexMesh(folder / "a.foam")); };
+  EXPECT_NE(failureOf(decomposed).sentence.find("reconstructParMesh"), std::string::npos);
+
   const Failure failure = failureOf([&] { writeHexMesh(mesh, folder / "n.mesh.gz"); });
   EXPECT_EQ(failure.code, ErrorCode::FileUnsupported);
   EXPECT_NE(failure.sentence.find("read, but not written"), std::string::npos);
@@ -289,6 +333,41 @@ TEST(ForeignFiles, InstancesOfAbaqusAreWhereTheyArePut) {
                   ErrorCode::FileSyntax, "no direction");
 }
 
+TEST(ForeignFiles, AssembliesOfAbaqusHaveReferencePoints) {
+  const std::string file =
+      "*Part, name=P\n" + kInpNodes + kInpCells +
+      "*End Part\n*Assembly\n*Instance, name=P-1, part=P\n*End Instance\n*Node\n5, 5., 5., 5.\n"
+      "*Nset, nset=RP\n5\n*Nset, nset=in, instance=P-1\n4\n*Nset, nset=dot\nP-1.3\n"
+      "*Element, type=MASS\n1, 5\n*Surface, name=s\nP-1.left, S2\n*End Assembly\n";
+  const HexMesh mesh = abaqus(file);
+  EXPECT_EQ(mesh.points[13], (Vec3{5, 5, 5}));
+  std::map<std::string, Index> named;
+  for (const FeatureVertex& vertex : mesh.features.vertices) {
+    for (const TagName& name : mesh.features.names) {
+      if (name.dimension == 0 && name.tag == vertex.tag) named[name.name] = vertex.vertex;
+    }
+  }
+  EXPECT_EQ(named, (std::map<std::string, Index>{{"dot", 2}, {"in", 1}, {"rp", 13}}));
+  EXPECT_EQ(mesh.features.quads.size(), 2U);
+  expectFailureOf(abaqus, replaced(file, "MASS\n1, 5", "C3D4\n1, 5, 5, 5, 5"),
+                  ErrorCode::FileUnsupported, "several instances");
+}
+
+TEST(ForeignFiles, AbaqusAsOthersTypeIt) {
+  const auto typed = [](const std::string& type) {
+    return abaqus(kInpNodes + replaced(kInpCells, "c3d8i", type)).cells.size();
+  };
+  for (const char* const type : {"COH3D8", "Q3D8R", "F3D8", "CSS8", "DC3D8"}) {
+    EXPECT_EQ(typed(type), 2U) << type;
+  }
+  for (const char* const type : {"M3D4", "R3D4", "T3D2", "CONN3D2"}) EXPECT_EQ(typed(type), 1U);
+  std::string indented = "*node\n" + kInpNodes + kInpCells;
+  for (std::size_t i = 0; (i = indented.find('\n', i)) + 1 < indented.size(); ++i) {
+    indented.insert(i + 1, indented[i + 1] == '*' ? "  " : " \t");
+  }
+  EXPECT_EQ(abaqus(replaced(indented, "*NODE", "* NODE")).cells.size(), 2U);
+}
+
 TEST(ForeignFiles, SetsOfAbaqusWithoutSectionsAreRegions) {
   const auto regions = [](const std::string& sets) {
     const HexMesh mesh = abaqus(kInpNodes + kInpCells + sets);
@@ -339,12 +418,14 @@ TEST(ForeignFiles, AbaqusMistakesAreToldWithTheirLine) {
   expectFailure(replaced(good, "11,12,13,14", "11,12,13,15"), ErrorCode::IndexOutOfRange,
                 "element 4 names node 15");
   expectFailure(replaced(good, ",13,14\n", "\n"), ErrorCode::FileSyntax, "nodes of element 4");
+  expectFailure(replaced(good, "13,14\n", "13,14,11\n"), ErrorCode::FileSyntax,
+                "line 27: more nodes than the 8 of element 4");
   expectFailure(good + "*ngen\n1, 2, 1\n", ErrorCode::FileUnsupported, "line 28: the keyword");
   expectFailure(good + "*include, input=a.inp\n", ErrorCode::FileUnsupported, "cannot include");
   expectFailure(good + "*node, input=a.inp\n", ErrorCode::FileUnsupported, "INPUT=...");
   expectFailure(good + "*nset,nset=a,generate\n1,900000000000\n", ErrorCode::TooLarge, "line 29");
   expectFailure(good + "*elset,elset=a\nnone\n", ErrorCode::FileSyntax, "\"none\", which is no");
-  expectFailure(replaced(replaced(good, "c3d8i", "c3d6"), "C3D8R", "C3D6"),
+  expectFailure(kInpNodes + "*element, type=C3D6\n3, 5,4,3,1,9,8\n4, 1,9,8,11,12,13\n",
                 ErrorCode::FileUnsupported, "it holds 2 prisms");
 }
 
@@ -531,6 +612,9 @@ TEST(ForeignFiles, UniversalFilesWithGroups) {
   ASSERT_EQ(mesh.features.vertices.size(), 1U);
   EXPECT_EQ(mesh.features.vertices[0].vertex, 6U);
   EXPECT_EQ(mesh.features.vertices[0].tag, 4);
+  std::set<std::string> names;
+  for (const TagName& name : mesh.features.names) names.insert(name.name);
+  EXPECT_TRUE(names.contains("Solid with a name"));
 }
 
 TEST(ForeignFiles, MistakesInUniversalFilesAreToldWithTheirLine) {
@@ -844,6 +928,35 @@ TEST(ForeignFiles, CubeOf27NodesOfVtk) {
   expectCubeOfOrder2(readLagrangeMesh(folder / "a.vtk", context));
 }
 
+TEST(ForeignFiles, LagrangeCellsOfLegacyVtk) {
+  constexpr std::array<std::pair<const char*, VtkEdges>, 2> kVersions = {
+      {{"5.1", VtkEdges::Around}, {"3.0", VtkEdges::RowByRow}}};
+  for (const auto& [version, edges] : kVersions) {
+    SCOPED_TRACE(version);
+    std::vector<Vec3> nodes;
+    nodes.reserve(64);
+    std::string cell;
+    for (const std::uint32_t k : vtkNodeOrder(3, edges)) {
+      nodes.push_back({double(k % 4), double(k / 4 % 4), double(k / 16)});
+      cell += ' ' + std::to_string(nodes.size() - 1);
+    }
+    const bool isNew = edges == VtkEdges::Around;
+    const std::string text =
+        concat("# vtk DataFile Version ", version,
+               "\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 64 double\n", listed(nodes, false),
+               isNew ? "CELLS 2 64\nOFFSETS vtktypeint64\n0 64\nCONNECTIVITY vtktypeint64\n"
+                     : "CELLS 1 65\n64",
+               cell, "\nCELL_TYPES 1\n72\n");
+    Context context;
+    const LagrangeMesh mesh = readBytes<readCurvedVtkLegacy>(text, "a.vtk", context);
+    ASSERT_EQ(mesh.order, 3);
+    for (std::size_t k = 0; k < 64; ++k) {
+      EXPECT_EQ(mesh.points[mesh.nodes[k]],
+                (Vec3{double(k % 4), double(k / 4 % 4), double(k / 16)}));
+    }
+  }
+}
+
 /// An Exodus file of one cell, by NetCDF's writer.
 void writeExodusCube(const std::vector<Vec3>& nodes, const std::string& type, bool together,
                      const std::filesystem::path& path) {
@@ -903,6 +1016,11 @@ TEST(ForeignFiles, CubesOfExodus) {
             std::string::npos);
   EXPECT_NE(sentence("BEX_HEX").find("it holds 1 Bezier hexahedron."), std::string::npos);
   EXPECT_NE(sentence("LATTICE").find("\"lattice\" are not supported"), std::string::npos);
+  writeText(folder / "d.e", replaced(contentOf(folder / "c.e"), "connect1", "facconn1"));
+  EXPECT_NE(failureOf([&] {
+              static_cast<void>(readHexMesh(folder / "d.e"));
+            }).sentence.find("no elements but polyhedra"),
+            std::string::npos);
 }
 
 TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {
@@ -928,6 +1046,17 @@ TEST(ForeignFiles, ExodusFilesThatAreCutOffOrChanged) {
         readBytes<ExodusFormat::readMesh>("\x89HDF\r\n\x1a\n........", "a.e", context));
   });
   EXPECT_NE(hdf.sentence.find("HDF5"), std::string::npos) << hdf.sentence;
+  // An element that is not there: behind a variable's name, its head tells where it begins.
+  const std::size_t head = good.find("elem_ss1") + 32;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < (good[3] == 1 ? 4U : 8U); ++i) {
+    begin = 256 * begin + static_cast<unsigned char>(good[head + i]);
+  }
+  std::string wrong = good;
+  wrong.at(begin) = 1;
+  const Failure beyond = failureOf(
+      [&] { static_cast<void>(readBytes<ExodusFormat::readMesh>(wrong, "a.e", context)); });
+  EXPECT_NE(beyond.sentence.find("side set 1 names side"), std::string::npos) << beyond.sentence;
 }
 
 TEST(ForeignFiles, PublicOnes) {

@@ -232,6 +232,20 @@ std::string cornersOf(const HexMesh& mesh, Number first) {
   return bytes;
 }
 
+TEST(HdfFiles, OlderFilesOfCgnsAreToldByName) {
+  const TemporaryFolder folder;
+  try {
+    requireHdf5(folder / "a.cgns");
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  writeText(folder / "a.cgns",
+            "\xc0\xa8\xa3\xa9"
+            "ADF Database Version A02011>");  // as libcgns does
+  const Failure failure = failureOf([&] { static_cast<void>(readHexMesh(folder / "a.cgns")); });
+  EXPECT_NE(failure.sentence.find("adf2hdf"), std::string::npos) << failure.sentence;
+}
+
 /// Corners of cells and, in VTKHDF, offsets of cells are replaced by wrong numbers.
 TEST(HdfFiles, WrongNumbersNameNoVertexBeyondTheMesh) {
   const TemporaryFolder folder;

@@ -163,6 +163,12 @@ TEST(RoundTrips, OfTextsWithAByteOrderMark) {
     readHexMeshTo(sink, file, way.reading(), context);
     EXPECT_EQ(sink.result().cellChecksum, summarize(mesh, context).cellChecksum);
   }
+  const std::filesystem::path mfem = folder / "a.mesh";  // known by its first word
+  WriteOptions options;
+  options.format = "mfem";
+  writeHexMesh(mesh, mfem, options, context);
+  addByteOrderMark(mfem);
+  expectSameMeshes(readHexMesh(mfem), mesh);
 }
 
 TEST(RoundTrips, HexMeshesThroughEveryPairOfFormats) {

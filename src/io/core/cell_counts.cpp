@@ -108,7 +108,8 @@ std::string CellCounts::adviceOnCurved() const {
   bool hasCurved = false;
   bool hasOthers = !unknown_.empty();
   for (const auto& [plural, count] : counts_) {
-    const bool curved = plural == "hexahedra with 20 nodes" || plural == "hexahedra with 27 nodes";
+    const bool curved = plural == "Lagrange hexahedra" || (plural.starts_with("hexahedra with ") &&
+                                                           plural != "hexahedra with 24 nodes");
     if (count > 0) (curved ? hasCurved : hasOthers) = true;
   }
   if (!hasCurved) return {};
@@ -116,8 +117,9 @@ std::string CellCounts::adviceOnCurved() const {
     return " Hexahedra of order 2 are curved, and read where there are no other cells. Give the "
            "others a file of their own.";
   }
-  return " Cells of order 2 are curved: `hexhex view` and `hexhex improve` read them, and `hexhex "
-         "convert` writes them as .vtu, .msh, .meshb, .inp, .exo, .cgns or MFEM .mesh.";
+  return " Cells of order 2 and more are curved: `hexhex view` and `hexhex improve` read them, and "
+         "`hexhex convert` writes them as .vtu, .msh or MFEM .mesh, those of order 2 also as "
+         ".meshb, .inp, .exo or .cgns.";
 }
 
 void CellCounts::requireOnly(const CellKind& kind, const std::string& fileName,

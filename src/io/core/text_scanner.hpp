@@ -37,6 +37,13 @@ namespace hexhex::io {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
+/// Without white space at both ends.
+[[nodiscard]] constexpr std::string_view trimmed(std::string_view text) noexcept {
+  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 /// Lower case of ASCII letters, independent of the locale.
 [[nodiscard]] constexpr char lowerCase(char c) noexcept {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

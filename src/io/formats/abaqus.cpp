@@ -42,12 +42,6 @@ constexpr std::string_view kAbaqusHeading = "hexahedral mesh by hexhex";
 
 // Reading.
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
-  while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 /// Removes and returns the next word of a line, up to a comma.
 std::string_view takeField(std::string_view& line) {
   const std::size_t comma = std::min(line.find(','), line.size());
@@ -70,22 +64,27 @@ struct AbaqusKeyword {
   }
 };
 
-/// An element type. Names of volumes begin with "C3D" and a number of nodes, followed by letters
-/// for the formulation.
+/// An element type. Names of volumes have "3D" behind letters for the family and before the number
+/// of nodes, which letters for the formulation follow.
 struct AbaqusType {
-  const VolumeCells* cells = nullptr;  ///< null unless it is a volume
-  std::size_t nodes = 0;
+  const VolumeCells* cells = nullptr;  ///< null unless it is a volume that is known
+  std::size_t nodes = 0;               ///< 0 unless it is a volume
 };
 
 AbaqusType abaqusType(std::string_view name) {
-  const std::size_t place = name.find("c3d");
   for (const std::size_t corners : {6U, 8U}) {  // continuum shells are prisms and hexahedra
-    if (name.starts_with(concat("sc", corners))) return {&typeWith(corners), corners};
+    for (const char* const family : {"sc", "css"}) {
+      if (name.starts_with(concat(family, corners))) return {&typeWith(corners), corners};
+    }
   }
-  if (place == std::string_view::npos) return {};
-  AbaqusType type;
-  std::from_chars(name.data() + place + 3, name.data() + name.size(), type.nodes);
-  if (type.nodes > 27) return {};  // in an order that is not known
+  // C3D8, AC3D8, ...; cohesive COH3D8; Q3D8, F3D8; but not M3D4, R3D4, T3D2, CONN3D2
+  constexpr std::string_view kLastOfFamily = "chqf";
+  const std::size_t place = name.find("3d");
+  if (place == std::string_view::npos || place == 0) return {};
+  if (kLastOfFamily.find(name[place - 1]) == std::string_view::npos) return {};
+  AbaqusType type{nullptr, 1};
+  std::from_chars(name.data() + place + 2, name.data() + name.size(), type.nodes);
+  if (type.nodes > 27) return type;  // in an order that is not known
   for (const std::string_view noun : {"hexahedra", "tetrahedra", "prisms", "pyramids"}) {
     if (type.cells == nullptr) type.cells = volumeCells(noun, type.nodes);
   }
@@ -132,6 +131,7 @@ class AbaqusReader {
   };
   using Sets = std::map<std::string, Set>;
 
+  static constexpr std::uint64_t kOfAssembly = std::uint64_t{1} << 62;
   static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
 
@@ -158,8 +158,8 @@ class AbaqusReader {
   /// file
   bool nextLine() {
     while (scanner_->position() < scanner_->text().size()) {
-      line_ = scanner_->takeLine();
-      if (!line_.starts_with("**") && !trimmed(line_).empty()) return true;
+      line_ = trimmed(scanner_->takeLine());
+      if (!line_.starts_with("**") && !line_.empty()) return true;
     }
     return false;
   }
@@ -173,10 +173,11 @@ class AbaqusReader {
 
   AbaqusKeyword readKeyword() {
     begun_ = true;
-    std::string text(trimmed(line_));
-    while (text.ends_with(',') && nextLine()) text += trimmed(line_);
+    std::string text(line_);
+    while (text.ends_with(',') && nextLine()) text += line_;
     std::string_view rest = text;
     AbaqusKeyword keyword{lowerCase(takeField(rest)), {}};
+    std::erase_if(keyword.name, isSpace);  // "* Node" is "*NODE", and "*END INSTANCE" one word
     while (!rest.empty()) {
       const std::string_view word = takeField(rest);
       const std::size_t equals = std::min(word.find('='), word.size());
@@ -209,12 +210,14 @@ class AbaqusReader {
     } else if (keyword.name == "*surface") {
       readSurface(keyword);
     } else if (keyword.name == "*heading") {
-      isOwn_ = nextData() && trimmed(line_) == kAbaqusHeading;
-    } else if (keyword.name == "*solid section") {
+      isOwn_ = nextData() && line_ == kAbaqusHeading;
+    } else if (keyword.name == "*solidsection") {
       sections_.push_back(keyword.value("elset"));
+    } else if (keyword.name == "*assembly" || keyword.name == "*endassembly") {
+      ofAssembly_ = keyword.name == "*assembly" ? kOfAssembly : 0;
     } else if (keyword.name == "*instance") {
-      readInstance();
-    } else if (keyword.name == "*end instance") {
+      readInstance(keyword.value("name"));
+    } else if (keyword.name == "*endinstance") {
       placeInstance();
     } else {
       refuse(keyword.name);
@@ -225,7 +228,7 @@ class AbaqusReader {
   void refuse(const std::string& keyword) const {
     constexpr std::array<std::string_view, 8> kMakers = {
         "*ngen",  "*nfill",  "*ncopy",  "*nmap",
-        "*elgen", "*elcopy", "*system", "*symmetric model generation"};
+        "*elgen", "*elcopy", "*system", "*symmetricmodelgeneration"};
     if (std::find(kMakers.begin(), kMakers.end(), keyword) == kMakers.end()) return;
     fail("the keyword " + quoted(std::string_view(keyword)) +
              " makes or moves nodes or elements, which is not supported. Let the program that "
@@ -241,8 +244,9 @@ class AbaqusReader {
 
   /// Reads where an instance is: a translation, and behind it a rotation about the line through two
   /// points, by an angle in degrees.
-  void readInstance() {
-    if (++instances_ > 1) failAssembly();
+  void readInstance(const std::string& name) {
+    if (!std::exchange(instance_, name + '.').empty()) failAssembly();
+    ofAssembly_ = 0;
     for (const std::size_t count : {3U, 7U}) {
       if (!nextData()) return;
       std::string_view rest = line_;
@@ -254,6 +258,7 @@ class AbaqusReader {
   }
 
   void placeInstance() {
+    ofAssembly_ = kOfAssembly;
     const std::vector<double> place = std::exchange(place_, {});
     if (place.empty()) return;
     for (Vec3& point : lists_.points) point = plus(point, {place[0], place[1], place[2]});
@@ -300,7 +305,7 @@ class AbaqusReader {
     std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set].items;
     while (nextData()) {
       std::string_view rest = line_;
-      nodeNumbers_.push_back(integer(takeField(rest), "the number of a node"));
+      nodeNumbers_.push_back(ofAssembly_ | integer(takeField(rest), "the number of a node"));
       Vec3 point{};
       for (double& coordinate : point) {
         if (rest.empty()) break;  // missing coordinates are 0
@@ -319,12 +324,14 @@ class AbaqusReader {
     ElementBlock& block = lists_.blocks.emplace_back();
     block.type = type.cells;
     block.nodesEach = type.nodes;
+    if (ofAssembly_ != 0 && type.nodes > 0) failAssembly();
+    if (ofAssembly_ != 0) return;
     const std::string set = keyword.value("elset");
     if (!set.empty()) blockSets_.push_back(set);
     while (nextData()) {
       std::string_view rest = line_;
       const std::uint64_t number = integer(takeField(rest), "the number of an element");
-      if (type.cells == nullptr && name.find("c3d") == std::string::npos) {
+      if (type.nodes == 0) {
         readFacet(cornersOfFacet(name), number, rest, set);
         continue;
       }
@@ -341,6 +348,9 @@ class AbaqusReader {
           rest = line_;
         }
         block.listed.push_back(integer(takeField(rest), "a node of an element"));
+      }
+      if (!trimmed(rest).empty()) {
+        fail(concat("more nodes than the ", type.nodes, " of element ", number));
       }
       if (type.nodes == 27) putFacesInOrder(std::span(block.listed).last(7));
     }
@@ -367,21 +377,23 @@ class AbaqusReader {
   void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
     if (name.empty()) fail("the set has no name");
     Set& set = sets[name];
+    const std::uint64_t offset = keyword.has("instance") ? 0 : ofAssembly_;
     while (nextData()) {
       std::string_view rest = line_;
       if (keyword.has("generate")) {
-        addRange(rest, set);
+        addRange(rest, offset, set);
         continue;
       }
       while (!trimmed(rest).empty()) {
         const std::string_view word = takeField(rest);
         if (word.empty()) continue;
         std::uint64_t number = 0;
-        if (parseInteger(word, number)) {
-          set.items.push_back(number);
+        const bool isPlain = parseInteger(word, number);
+        const std::string named = isPlain ? std::string() : ofInstance(word);
+        if (isPlain || parseInteger(named, number)) {
+          set.items.push_back((isPlain ? offset : 0) | number);
           continue;
         }
-        const std::string named = lowerCase(unquoted(word));
         const auto other = sets.find(named);
         if (other == sets.end()) {
           if (&sets == &elementSets_ && addFacetSet(named, name)) continue;
@@ -409,13 +421,16 @@ class AbaqusReader {
     return true;
   }
 
-  static std::string_view unquoted(std::string_view word) {
+  /// The name of a set, or a number, without quotes and "INSTANCE." in front.
+  [[nodiscard]] std::string ofInstance(std::string_view word) const {
     const bool quotes = word.size() > 1 && word.front() == '"' && word.back() == '"';
-    return quotes ? word.substr(1, word.size() - 2) : word;
+    std::string name = lowerCase(quotes ? word.substr(1, word.size() - 2) : word);
+    if (!instance_.empty() && name.starts_with(instance_)) name.erase(0, instance_.size());
+    return name;
   }
 
   /// Adds a range "first, last, step" to a set.
-  void addRange(std::string_view rest, Set& set) {
+  void addRange(std::string_view rest, std::uint64_t offset, Set& set) {
     const std::uint64_t first = integer(takeField(rest), "the first of a range");
     const std::uint64_t last = integer(takeField(rest), "the last of a range");
     const std::string_view word = takeField(rest);
@@ -423,7 +438,7 @@ class AbaqusReader {
     if (step == 0 || last < first) fail("a range is \"first, last, step\", upwards");
     takeRoom((last - first) / step + 1);
     for (std::uint64_t i = first;; i += step) {
-      set.items.push_back(i);
+      set.items.push_back(offset | i);
       if (last - i < step) break;
     }
   }
@@ -442,12 +457,12 @@ class AbaqusReader {
     while (nextData()) {
       if (!type.empty() && type != "element") continue;
       std::string_view rest = line_;
-      const std::string_view elements = takeField(rest);
+      const std::string elements = ofInstance(takeField(rest));
       const std::string face = lowerCase(takeField(rest));
       // Others are the whole surface, or a side of a shell.
       if (face.size() != 2 || face[0] != 's' || face[1] < '1' || face[1] > '6') continue;
       const auto side = static_cast<std::uint8_t>(face[1] - '0');
-      const auto set = elementSets_.find(lowerCase(unquoted(elements)));
+      const auto set = elementSets_.find(elements);
       if (set == elementSets_.end()) {
         surface.sides.push_back({integer(elements, "an element or a set of them"), side, 0});
       } else {
@@ -586,7 +601,9 @@ class AbaqusReader {
   }
 
   void failIfFirst() const {
-    if (!begun_) fail("a file of Abaqus begins with a keyword like *NODE, found " + quoted(line_));
+    if (!begun_)
+      fail("a file of Abaqus begins with a keyword like *NODE, found " + quoted(line_) +
+           " (files of AVS have this extension, too, and are not read)");
   }
   /// Throws an error at the last line read.
   [[noreturn]] void fail(const std::string& sentence,
@@ -605,7 +622,8 @@ class AbaqusReader {
   bool isOwn_ = false;  ///< whether this library wrote the file
   int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
-  int instances_ = 0;
+  std::string instance_;            ///< its name and a dot, as in front of its numbers and sets
+  std::uint64_t ofAssembly_ = 0;    ///< bits of numbers of nodes outside of the instance
   std::vector<double> place_;       ///< of the instance, until all its nodes are known
   std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
   ElementLists lists_;

@@ -461,7 +461,7 @@ class CgnsReader {
 }  // namespace
 
 ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage) {
-  if (firstBytes(input).starts_with("@(#)")) {
+  if (firstBytes(input).ends_with("ADF ")) {
     input.fail(ErrorCode::FileUnsupported,
                "the file is in ADF, an older form of CGNS. Convert it to HDF5: "
                "adf2hdf FILE");

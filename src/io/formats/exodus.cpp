@@ -415,9 +415,13 @@ class ExodusReader {
       const std::string name = concat("connect", b + 1);
       if (!has(name)) continue;
       readBlock(name, tags[b], next);
+      elements_ = static_cast<std::int64_t>(next) - 1;
       lists_.addName(3, tags[b], groups.nameOf(b));
     }
-    if (lists_.blocks.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no elements.");
+    if (lists_.blocks.empty()) {
+      input_.fail(ErrorCode::FileUnsupported, "the file has no elements",
+                  has("facconn1") ? " but polyhedra." : ".");
+    }
   }
 
   void readBlock(const std::string& name, std::int32_t region, std::uint64_t& next) {
@@ -498,7 +502,11 @@ class ExodusReader {
       const std::int32_t tag = tags[s];
       lists_.addName(2, tag, groups.nameOf(s));
       for (std::size_t i = 0; i < sides.size(); ++i) {
-        if (sides[i] < 1 || sides[i] > 6 || elements[i] < 1) continue;  // of no known cell
+        if (sides[i] < 1 || sides[i] > 6 || elements[i] < 1 || elements[i] > elements_) {
+          input_.fail(ErrorCode::IndexOutOfRange, "side set ", s + 1, " names side ", sides[i],
+                      " of element ", elements[i], ", but there are ", elements_,
+                      " elements with at most 6 sides.");
+        }
         lists_.sides.push_back(
             {static_cast<std::uint64_t>(elements[i]), static_cast<std::uint8_t>(sides[i]), tag});
       }
@@ -519,6 +527,7 @@ class ExodusReader {
   }
 
   std::unique_ptr<HdfReader> file_;  ///< NetCDF's variables are datasets
+  std::int64_t elements_ = 0;        ///< of all blocks
   const Input& input_;
   ElementParts parts_;
   ElementLists lists_;

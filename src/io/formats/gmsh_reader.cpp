@@ -299,15 +299,18 @@ class GmshFile {
 void readNames(std::string_view section, GmshTags& tags) {
   while (!section.empty()) {
     const std::size_t length = std::min(section.find('\n'), section.size());
-    const std::string_view line = section.substr(0, length);
+    std::string_view line = section.substr(0, length);
     section.remove_prefix(std::min(length + 1, section.size()));
+    const auto read = [&line](std::int64_t& number) {
+      while (!line.empty() && isSpace(line.front())) line.remove_prefix(1);
+      const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
+      line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+      return error == std::errc{};
+    };
     GmshGroup group;
-    const char* const end = line.data() + line.size();
-    const auto dimension = std::from_chars(line.data(), end, group.first);
-    if (dimension.ec != std::errc{} || dimension.ptr == end || *dimension.ptr != ' ') continue;
-    const auto number = std::from_chars(dimension.ptr + 1, end, group.second);
+    if (!read(group.first) || !read(group.second)) continue;
     const std::size_t quote = line.find('"');
-    if (number.ec != std::errc{} || quote == std::string_view::npos) continue;
+    if (quote == std::string_view::npos) continue;
     const std::string_view name = line.substr(quote + 1);
     tags.addName(group, name.substr(0, std::min(name.find('"'), name.size())));
   }
@@ -397,6 +400,21 @@ class GmshNodes {
       tags[i] = readGmshTag(record, version_, "the number of a node");
       readPoint(record, i);
     });
+  }
+
+  /// Reads the section $ParametricNodes of version 2, where nodes tell their entities, too.
+  template <class Source>
+  void readParametric(Source& source, std::size_t count) {
+    requireRoom(source, count, {.integers = 3, .reals = 3}, "nodes");
+    resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      tags[i] = readGmshTag(source, version_, "the number of a node");
+      readPoint(source, i);
+      const std::int64_t dimension = readGmshEntity(source, GmshVersion::V41).first;
+      for (std::int64_t k = 0; k < dimension && dimension < 3; ++k) {
+        static_cast<void>(source.real("a parameter of a node"));
+      }
+    }
   }
 
   Array<std::uint64_t> tags;
@@ -607,7 +625,8 @@ class GmshReader {
     } else if (all && name == "PartitionedEntities" && hasEntities(file_.version())) {
       file_.withSource(
           [this](auto& source) { readEntities(source, file_.version(), true, tags_); });
-    } else if (all && name == (version1 ? "NOD" : "Nodes")) {
+    } else if (all && (name == (version1 ? "NOD" : "Nodes") ||
+                       (name == "ParametricNodes" && file_.version() == GmshVersion::V2))) {
       readNodes(name);
     } else {
       file_.skipSection(name);
@@ -711,7 +730,10 @@ class GmshReader {
       file_.withSource([&](auto& source) { nodes.readBlocks(source); });
     } else {
       const std::size_t count = file_.scanner().readCount("nodes", 8);
-      file_.withSource([&](auto& source) { nodes.readAll(source, count); });
+      file_.withSource([&](auto& source) {
+        name == "ParametricNodes" ? nodes.readParametric(source, count)
+                                  : nodes.readAll(source, count);
+      });
     }
     nodes_ = nodesByNumber(nodes.tags, input_);
   }

@@ -744,7 +744,9 @@ class FirstHexahedra {
 
 }  // namespace
 
-bool isMfem(const Input& input) { return firstBytes(input).starts_with("MFEM "); }
+bool isMfem(const Input& input) {
+  return withoutByteOrderMark(firstBytes(input)).starts_with("MFEM ");
+}
 
 namespace {
 

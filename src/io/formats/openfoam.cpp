@@ -89,7 +89,6 @@ class FoamFile {
     return labels;
   }
 
- private:
   static std::filesystem::path existing(const std::filesystem::path& file) {
     std::filesystem::path packed = file;
     packed += ".gz";
@@ -98,6 +97,8 @@ class FoamFile {
                ? packed
                : file;
   }
+
+ private:
   void clear(std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) text_[i] = text_[i] == '\n' ? '\n' : ' ';
   }
@@ -133,7 +134,13 @@ class PolyMeshReader {
   static std::filesystem::path polyMeshOf(const std::filesystem::path& file) {
     std::error_code unknown;
     if (std::filesystem::is_directory(file, unknown)) return file;
-    return file.parent_path() / "constant" / "polyMesh";
+    const std::filesystem::path folder = file.parent_path() / "constant" / "polyMesh";
+    if (std::filesystem::exists(file.parent_path() / "processor0", unknown) &&
+        !std::filesystem::exists(folder, unknown)) {
+      throw Error(ErrorCode::FileUnsupported,
+                  file.string() + ": the case is decomposed. Run `reconstructParMesh -constant`.");
+    }
+    return folder;
   }
 
   void readPoints() {
@@ -245,7 +252,7 @@ class PolyMeshReader {
   void readZones() {
     std::error_code unknown;
     const std::filesystem::path path = folder_ / "cellZones";
-    if (!std::filesystem::exists(path, unknown)) return;
+    if (!std::filesystem::exists(FoamFile::existing(path), unknown)) return;
     FoamFile file(path, "();", stage_);
     std::vector<std::pair<std::string, Array<Index>>> zones(file.readCount("zones", 4));
     GroupTags tags;

@@ -181,9 +181,8 @@ class UnvReader {
     skipNumbers(6);  // sets of loads and the like
     const std::uint64_t count = number("the number of members of a group");
     scanner_->takeLine();
-    TextScanner name(scanner_->takeLine(), input_.name());
     NodeSet nodes;
-    nodes.name = name.readToken();
+    nodes.name = trimmed(scanner_->takeLine());
     nodes.number = std::in_range<std::int32_t>(group) ? static_cast<std::int32_t>(group) : 0;
     std::vector<std::uint64_t> members;
     for (std::uint64_t i = 0; i < count; ++i) {

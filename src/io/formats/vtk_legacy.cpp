@@ -122,12 +122,14 @@ class VtkLegacyFile final : public VtkSource {
  private:
   void readHead() {
     constexpr std::string_view kMagic = "# vtk DataFile Version ";
-    if (!scanner_.takeLine().starts_with(kMagic)) {
+    const std::string_view first = scanner_.takeLine();
+    if (first.size() == kMagic.size() || !first.starts_with(kMagic)) {
       scanner_.moveTo(0);
       scanner_.fail(
           ErrorCode::FileSyntax,
           "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
     }
+    if (first[kMagic.size()] < '5') uprightEdges = VtkEdges::RowByRow;
     static_cast<void>(scanner_.takeLine());  // the title, any text
     const std::string encoding = readKeyword();
     binary_ = encoding == "binary";
