@@ -25,7 +25,8 @@ enum class PillowMode : std::uint8_t {
 
 struct ImproveOptions {
   /// Improve cells with a scaled Jacobian below this value until none is left or no vertex move
-  /// helps. 0 to 1; 0 only makes cells positive.
+  /// helps. Where none is left, the worst straight cells are raised further, unless there are no
+  /// passes. 0 to 1; 0 only makes cells positive.
   double target = 0.3;
   /// Final passes over all vertices, to raise the mean. 0 to 1000.
   int passes = 2;

@@ -136,7 +136,7 @@ struct FlagsFile {
 enum class Compression : std::uint8_t {
   None,
   Zlib,  ///< in builds with zlib
-  Lz4    ///< five times as fast as zlib, to files a quarter larger; by liblz4, if that is installed
+  Lz4    ///< ten times as fast, to files a quarter larger; by liblz4, where that is installed
 };
 
 /// Options for writers.

@@ -121,8 +121,8 @@ class PartSink {
 };
 
 /// Extracts the mesh of extract(), bit for bit, in parts; always uses the atlas engine. Memory
-/// holds the map and one part, or as many as there are threads if all of them fit in a gigabyte;
-/// nothing grows with the whole mesh.
+/// holds the map and one part, or with several threads up to twice as many parts as these if all
+/// of them fit in a gigabyte; nothing grows with the whole mesh.
 /// @throws Error  as extract(); InvalidArgument for options out of range, and for a method whose
 ///         library is not installed; TooLarge for a part with 2^32 vertices or cells
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,

@@ -1,7 +1,6 @@
 // Selects the points of lines that are in boxes.
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 #include <atlas/grid_region.hpp>
 

@@ -281,17 +281,38 @@ std::uint64_t VertexGrid<Id>::resolveOverlaps(Stage& stage) {
   // Listed once, as finding the owners of vertices takes longer than everything after that.
   std::vector<TetClaims> claims(tets.size());
   constexpr std::size_t kListedTets = 64;
-  const auto list = [&](std::size_t i, std::vector<Claim>& scratch) {
-    scratch.clear();
+  struct Listing {
+    BrickCache<Id> cache;
+    std::vector<Claim> claims;
+  };
+  const auto list = [&](std::size_t i, Listing& listing) {
+    std::vector<Claim>& listed = listing.claims;
+    listed.clear();
     forEachClaim(
         tetAt(tets[i]), Faces::All, [](const sweep::VertexRun&) {},
         [&](const ChartRow& row, std::uint64_t first) {
-          scratch.push_back({row, first});
+          if (region_ == nullptr) {
+            listed.push_back({row, first});
+            return;
+          }
+          // No more than the region needs, since a tet that moves gets bricks for all its claims.
+          row.forEachPart([&](const lattice::ChartPoint& c, std::uint32_t offset,
+                              std::uint32_t count, std::ptrdiff_t /*stride*/) {
+            if (listing.cache.find(row.chart, c) == nullptr) return;
+            ChartRow part = row;
+            part.start = c;
+            part.count = count;
+            listed.push_back({part, first + offset});
+          });
         });
-    claims[i] = {tetAt(tets[i]), scratch};
+    claims[i] = {tetAt(tets[i]), listed};
   };
   parallelForWith(
-      stage, tets.size(), kListedTets, [] { return std::vector<Claim>(); }, list);
+      stage, tets.size(), kListedTets,
+      [this] {
+        return Listing{BrickCache<Id>(grid_), {}};
+      },
+      list);
   return atlas::resolveOverlaps(map_, claims, charts_, grid_, stage);
 }
 

@@ -134,9 +134,10 @@ class Moving {
     const Sweeps::Standing standing = sweeps.standing(target);
     const std::size_t low = standing.bad + standing.below;
     if (canAtOnce && low > 0 && low <= kMostLowAtOnce) atOnce(sweeps, wereBad);
-    // Cells that were good, but not as good as these can be, would take as long again.
-    const bool wasLow = initial.bad + initial.below > 0;
-    if (!subject_.isCurved() && wasLow && sweeps.standing(target).depth <= 1 - target) {
+    // Meshes without low cells would take as long again. Without a target, cells need only be
+    // positive.
+    const bool isRaised = target > 0 && options_.passes > 0 && initial.bad + initial.below > 0;
+    if (!subject_.isCurved() && isRaised && sweeps.standing(target).depth <= 1 - target) {
       floor = std::max(floor, raiseFurther(sweeps));
     }
     sweeps.smooth(options_.passes, floor);

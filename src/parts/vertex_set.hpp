@@ -18,8 +18,7 @@
 
 namespace hexhex::parts {
 
-/// Whether each corner of a cell follows that of the cell before. (All at once: compilers use
-/// vector instructions.)
+/// Whether each corner of a cell follows that of the cell before.
 template <class Cell>
 [[nodiscard]] bool follows(const Cell& cell, const Cell& before) noexcept {
   typename Cell::value_type differences = 0;

@@ -7,6 +7,7 @@ Needs nothing but Python's standard library.
 """
 
 import base64
+import ctypes.util
 import hashlib
 import itertools
 import json
@@ -1312,8 +1313,10 @@ class Convert(CommandTest):
     def test_maps_through_all_formats_and_back(self):
         self.generate("sphere", "--charts", "random", "--jitter", "0.3")
         files = self.files()
-        steps = [("a.vtu",), ("b.vtu", "--compress"), ("b4.vtu", "--compress=lz4"), ("c.vtk",), ("d.vtk", "--format", "vtk-binary"),
+        steps = [("a.vtu",), ("b.vtu", "--compress"), ("c.vtk",), ("d.vtk", "--format", "vtk-binary"),
                  ("e.ovm",), ("f.dat", "--format", "ovmb")]
+        if ctypes.util.find_library("lz4"):
+            steps.insert(2, ("b4.vtu", "--compress=lz4"))
         last, reading = "map.hexex", []
         for name, *options in steps:
             run = self.run_command("convert", last, name, *options)

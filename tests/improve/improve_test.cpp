@@ -222,6 +222,28 @@ TEST(Improve, KeepsTaggedVerticesOfATorusOnItsSurface) {
   EXPECT_GE(report.after.quality.mean, report.before.quality.mean);
 }
 
+/// Minima were 0.46 and 0.31 where cells at the target were left there.
+TEST(Improve, RaisesTheWorstBeyondTheTargetWhereCellsWereBelowIt) {
+  for (const double jitter : {0.3, 0.4}) {
+    const TetMap map = generateSample(SampleKind::Star, {.cells = 2, .jitter = jitter}).map;
+    HexMesh mesh = extracted(map, 4);
+    HexMesh other = mesh;
+    const ImproveReport report = improvedOn(mesh, map);
+    expectNoWorse(report);
+    EXPECT_FALSE(report.before.allPositive());
+    EXPECT_GT(report.after.quality.minimum, 0.6);
+    // Without a target, or without passes, cells that are good enough stay.
+    Context context(2);
+    ImproveOptions options;
+    options.target = 0;
+    options.passes = 0;
+    const ImproveReport untangled = improve(other, map, options, context);
+    EXPECT_TRUE(untangled.after.allPositive());
+    EXPECT_LT(untangled.after.quality.minimum, 0.3);
+    EXPECT_LT(untangled.movedVertices, report.movedVertices / 2);
+  }
+}
+
 TEST(Improve, KeepsTaggedQuadsInsideWhereTheyAre) {
   const HexMesh grid = gridMesh(6);
   HexMesh mesh = grid;

@@ -236,7 +236,8 @@ TEST(ForeignFiles, CompressedFilesOfAnyFormat) {
     std::filesystem::remove(poly / name);
   }
   EXPECT_EQ(readHexMesh(folder / "a.foam").regions, zoned.regions);
-  std::filesystem::rename(folder / "constant", folder / "processor0");
+  std::filesystem::create_directory(folder / "processor0");
+  std::filesystem::rename(folder / "constant", folder / "processor0" / "constant");
   const auto decomposed = [&] { static_cast<void>(readHexMesh(folder / "a.foam")); };
   EXPECT_NE(failureOf(decomposed).sentence.find("reconstructParMesh"), std::string::npos);
 
@@ -353,6 +354,32 @@ TEST(ForeignFiles, AssembliesOfAbaqusHaveReferencePoints) {
                   ErrorCode::FileUnsupported, "several instances");
 }
 
+/// Parts and assemblies both call their first set "Set-1" where nobody names it.
+TEST(ForeignFiles, SetsOfAbaqusWithOneNameInPartAndAssembly) {
+  const HexMesh mesh =
+      abaqus("*Part, name=P\n" + kInpNodes + kInpCells +
+             "*Nset, nset=Set-1\n4\n*Elset, elset=E\n3\n*Solid section, elset=E\n*End Part\n"
+             "*Assembly\n*Instance, name=P-1, part=P\n*End Instance\n*Node\n5, 5., 5., 5.\n"
+             "*Nset, nset=Set-1\n5\n*Elset, elset=E, instance=P-1\n4\n"
+             "*Surface, name=s\nP-1.E, S1\n*Surface, name=t\nE, S2\n*End Assembly\n");
+  std::vector<Index> tagged;
+  for (const FeatureVertex& vertex : mesh.features.vertices) tagged.push_back(vertex.vertex);
+  EXPECT_EQ(tagged, (std::vector<Index>{1, 13}));
+  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{2, 0}));  // a section counts more than "Left"
+  EXPECT_EQ(mesh.features.quads.size(), 2U);
+}
+
+TEST(ForeignFiles, NodesBeyondThoseOfAnElementOfAbaqus) {
+  const auto ending = [](const std::string& end) {
+    return kInpNodes + replaced(kInpCells, "11,12,13,14", "11,12,13,14" + end);
+  };
+  EXPECT_EQ(abaqus(ending(", ,")).cells.size(), 2U);
+  expectFailureOf(abaqus, ending(",20"), ErrorCode::FileSyntax, "more nodes than the 8");
+  EXPECT_EQ(abaqus(replaced(ending(",20,20,20,20"), "c3d8i", "COH3D8P")).cells.size(), 2U);
+  expectFailureOf(abaqus, replaced(ending(""), "c3d8i", "coh3d8, offset=20"),
+                  ErrorCode::FileUnsupported, "OFFSET");
+}
+
 TEST(ForeignFiles, AbaqusAsOthersTypeIt) {
   const auto typed = [](const std::string& type) {
     return abaqus(kInpNodes + replaced(kInpCells, "c3d8i", type)).cells.size();
@@ -360,7 +387,8 @@ TEST(ForeignFiles, AbaqusAsOthersTypeIt) {
   for (const char* const type : {"COH3D8", "Q3D8R", "F3D8", "CSS8", "DC3D8"}) {
     EXPECT_EQ(typed(type), 2U) << type;
   }
-  for (const char* const type : {"M3D4", "R3D4", "T3D2", "CONN3D2"}) EXPECT_EQ(typed(type), 1U);
+  for (const char* const type : {"M3D4", "R3D4", "T3D2", "CONN3D2", "F3D4"})
+    EXPECT_EQ(typed(type), 1U);
   std::string indented = "*node\n" + kInpNodes + kInpCells;
   for (std::size_t i = 0; (i = indented.find('\n', i)) + 1 < indented.size(); ++i) {
     indented.insert(i + 1, indented[i + 1] == '*' ? "  " : " \t");
@@ -929,8 +957,8 @@ TEST(ForeignFiles, CubeOf27NodesOfVtk) {
 }
 
 TEST(ForeignFiles, LagrangeCellsOfLegacyVtk) {
-  constexpr std::array<std::pair<const char*, VtkEdges>, 2> kVersions = {
-      {{"5.1", VtkEdges::Around}, {"3.0", VtkEdges::RowByRow}}};
+  constexpr std::array<std::pair<const char*, VtkEdges>, 3> kVersions = {
+      {{"5.1", VtkEdges::Around}, {"5.0", VtkEdges::RowByRow}, {"3.0", VtkEdges::RowByRow}}};
   for (const auto& [version, edges] : kVersions) {
     SCOPED_TRACE(version);
     std::vector<Vec3> nodes;
@@ -955,6 +983,17 @@ TEST(ForeignFiles, LagrangeCellsOfLegacyVtk) {
                 (Vec3{double(k % 4), double(k / 4 % 4), double(k / 16)}));
     }
   }
+  // Where there are straight cells, these are the mesh.
+  const auto holdsCurved = [](const char* first) {
+    const std::string text =
+        concat("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n",
+               "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 2 18\n",
+               "8 0 1 2 3 4 5 6 7\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 2\n", first, "\n72\n");
+    Context context;
+    return readBytes<holdsCurvedVtkLegacy>(text, "a.vtk", context);
+  };
+  EXPECT_TRUE(holdsCurved("72"));
+  EXPECT_FALSE(holdsCurved("12"));
 }
 
 /// An Exodus file of one cell, by NetCDF's writer.
@@ -1019,7 +1058,7 @@ TEST(ForeignFiles, CubesOfExodus) {
   writeText(folder / "d.e", replaced(contentOf(folder / "c.e"), "connect1", "facconn1"));
   EXPECT_NE(failureOf([&] {
               static_cast<void>(readHexMesh(folder / "d.e"));
-            }).sentence.find("no elements but polyhedra"),
+            }).sentence.find("\"nfaced\" are not supported"),
             std::string::npos);
 }
 

@@ -3,6 +3,7 @@
 import base64
 import concurrent.futures
 import copy
+import ctypes.util
 import errno
 import gc
 import io
@@ -198,6 +199,12 @@ def test_npz(tagged, mesh, tmp_path):
             hexhex.write(value, file, compress=compress)
             assert first == file.read_bytes()
     assert np.array_equal(np.load(tmp_path / "MapFalse.npz")["igm"], tagged.igm)
+    for how, compressor in (("zlib", b"vtkZLib"), (True, b"vtkZLib"), ("lz4", b"vtkLZ4")):
+        if how == "lz4" and not ctypes.util.find_library("lz4"):
+            continue
+        hexhex.write(mesh, tmp_path / "a.vtu", compress=how)
+        assert compressor in (tmp_path / "a.vtu").read_bytes()[:200]
+        assert same_meshes(hexhex.read(tmp_path / "a.vtu"), mesh)
     with pytest.raises(hexhex.ArgumentError, match="zlib alone"):
         hexhex.write(mesh, tmp_path / "a.npz", compress="lz4")
     bare = hexhex.Map(tagged.points, tagged.tets, tagged.igm)

@@ -22,7 +22,7 @@ namespace hexhex::test {
 /// points would give.
 struct SampledDistance {
   double fromMesh = 0;    ///< largest of points on boundary quads, from the object's boundary
-  double fromObject = 0;  ///< largest of points on boundary triangles, from the mesh's boundary
+  double fromObject = 0;  ///< largest of points on its boundary, from the mesh's boundary
   [[nodiscard]] double largest() const { return std::max(fromMesh, fromObject); }
 };
 

@@ -1155,8 +1155,9 @@ def view(mesh: Mesh | LagrangeMesh, *, title: str = "mesh", threads: int | None 
         return ViewPage(pathlib.Path(file).read_text(encoding="utf-8"))
 
 
-def require_format(what: str, file: Path, *, format: str | None = None, compress: bool = False,
-                   patch_angle: float = 40, map_array: str = "igm") -> None:
+def require_format(what: str, file: Path, *, format: str | None = None,
+                   compress: bool | str = False, patch_angle: float = 40,
+                   map_array: str = "igm") -> None:
     """Does nothing if write() supports the file's extension or the format, and the options. Use it
     to detect unsupported formats before long work.
 

@@ -77,13 +77,15 @@ AbaqusType abaqusType(std::string_view name) {
       if (name.starts_with(concat(family, corners))) return {&typeWith(corners), corners};
     }
   }
-  // C3D8, AC3D8, ...; cohesive COH3D8; Q3D8, F3D8; but not M3D4, R3D4, T3D2, CONN3D2
+  // C3D8, AC3D8, ...; cohesive COH3D8; Q3D8, F3D8; but not M3D4, R3D4, T3D2, CONN3D2, and not F3D3
+  // and F3D4, which are faces of cavities
   constexpr std::string_view kLastOfFamily = "chqf";
   const std::size_t place = name.find("3d");
   if (place == std::string_view::npos || place == 0) return {};
   if (kLastOfFamily.find(name[place - 1]) == std::string_view::npos) return {};
   AbaqusType type{nullptr, 1};
   std::from_chars(name.data() + place + 2, name.data() + name.size(), type.nodes);
+  if (name[place - 1] == 'f' && type.nodes <= 4) return {};
   if (type.nodes > 27) return type;  // in an order that is not known
   for (const std::string_view noun : {"hexahedra", "tetrahedra", "prisms", "pyramids"}) {
     if (type.cells == nullptr) type.cells = volumeCells(noun, type.nodes);
@@ -213,8 +215,8 @@ class AbaqusReader {
       isOwn_ = nextData() && line_ == kAbaqusHeading;
     } else if (keyword.name == "*solidsection") {
       sections_.push_back(keyword.value("elset"));
-    } else if (keyword.name == "*assembly" || keyword.name == "*endassembly") {
-      ofAssembly_ = keyword.name == "*assembly" ? kOfAssembly : 0;
+    } else if (keyword.name == "*endassembly") {
+      ofAssembly_ = 0;
     } else if (keyword.name == "*instance") {
       readInstance(keyword.value("name"));
     } else if (keyword.name == "*endinstance") {
@@ -302,7 +304,9 @@ class AbaqusReader {
            ErrorCode::FileUnsupported);
     }
     const std::string set = keyword.value("nset");
-    std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set].items;
+    std::vector<std::uint64_t>* const items =
+        set.empty() ? nullptr : &setNamed(set, nodeSets_).items;
+    ofNodeSets_ |= ofAssembly_;
     while (nextData()) {
       std::string_view rest = line_;
       nodeNumbers_.push_back(ofAssembly_ | integer(takeField(rest), "the number of a node"));
@@ -324,10 +328,17 @@ class AbaqusReader {
     ElementBlock& block = lists_.blocks.emplace_back();
     block.type = type.cells;
     block.nodesEach = type.nodes;
-    if (ofAssembly_ != 0 && type.nodes > 0) failAssembly();
-    if (ofAssembly_ != 0) return;
     const std::string set = keyword.value("elset");
     if (!set.empty()) blockSets_.push_back(set);
+    if (ofAssembly_ != 0 && type.nodes > 0) failAssembly();
+    ofElementSets_ |= ofAssembly_;
+    if (ofAssembly_ != 0) return;  // masses, connectors and the like
+    if (type.nodes > 0 && keyword.has("offset")) {
+      fail(
+          "OFFSET makes nodes of elements, which is not supported. Let the program that made the "
+          "file write them",
+          ErrorCode::FileUnsupported);
+    }
     while (nextData()) {
       std::string_view rest = line_;
       const std::uint64_t number = integer(takeField(rest), "the number of an element");
@@ -349,7 +360,8 @@ class AbaqusReader {
         }
         block.listed.push_back(integer(takeField(rest), "a node of an element"));
       }
-      if (!trimmed(rest).empty()) {
+      const bool hasPressures = name.starts_with("coh3d");  // of pores, at further nodes
+      if (rest.find_first_not_of(", \t") != std::string_view::npos && !hasPressures) {
         fail(concat("more nodes than the ", type.nodes, " of element ", number));
       }
       if (type.nodes == 27) putFacesInOrder(std::span(block.listed).last(7));
@@ -376,8 +388,9 @@ class AbaqusReader {
 
   void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
     if (name.empty()) fail("the set has no name");
-    Set& set = sets[name];
-    const std::uint64_t offset = keyword.has("instance") ? 0 : ofAssembly_;
+    Set& set = setNamed(name, sets);
+    const std::uint64_t ofAssembly = &sets == &nodeSets_ ? ofNodeSets_ : ofElementSets_;
+    const std::uint64_t offset = keyword.has("instance") ? 0 : ofAssembly_ & ofAssembly;
     while (nextData()) {
       std::string_view rest = line_;
       if (keyword.has("generate")) {
@@ -389,7 +402,7 @@ class AbaqusReader {
         if (word.empty()) continue;
         std::uint64_t number = 0;
         const bool isPlain = parseInteger(word, number);
-        const std::string named = isPlain ? std::string() : ofInstance(word);
+        const std::string named = isPlain ? std::string() : ofInstance(word, sets);
         if (isPlain || parseInteger(named, number)) {
           set.items.push_back((isPlain ? offset : 0) | number);
           continue;
@@ -421,12 +434,32 @@ class AbaqusReader {
     return true;
   }
 
-  /// The name of a set, or a number, without quotes and "INSTANCE." in front.
-  [[nodiscard]] std::string ofInstance(std::string_view word) const {
+  /// The name of a set, or a number, without quotes; and without "INSTANCE." in front, unless
+  /// there is such a set.
+  [[nodiscard]] std::string ofInstance(std::string_view word, const Sets& sets) const {
     const bool quotes = word.size() > 1 && word.front() == '"' && word.back() == '"';
     std::string name = lowerCase(quotes ? word.substr(1, word.size() - 2) : word);
-    if (!instance_.empty() && name.starts_with(instance_)) name.erase(0, instance_.size());
+    const bool isLong = !instance_.empty() && name.starts_with(instance_);
+    if (isLong && !sets.contains(name)) name.erase(0, instance_.size());
     return name;
+  }
+
+  /// A set, added if it is not there. One of the assembly with the name of one of the part, as
+  /// programs choose by default, is another: that of the part gets "INSTANCE." in front.
+  Set& setNamed(const std::string& name, Sets& sets) {
+    std::set<std::string>& own = &sets == &nodeSets_ ? ownNodeSets_ : ownElementSets_;
+    const bool isFirst = ofAssembly_ != 0 && own.insert(name).second;
+    auto part = isFirst ? sets.extract(name) : Sets::node_type();
+    if (!part.empty()) {
+      part.key() = instance_ + name;
+      sets.insert(std::move(part));
+      if (&sets == &elementSets_) {
+        for (auto* const names : {&blockSets_, &sections_, &listedSets_}) {
+          std::replace(names->begin(), names->end(), name, instance_ + name);
+        }
+      }
+    }
+    return sets[name];
   }
 
   /// Adds a range "first, last, step" to a set.
@@ -457,7 +490,7 @@ class AbaqusReader {
     while (nextData()) {
       if (!type.empty() && type != "element") continue;
       std::string_view rest = line_;
-      const std::string elements = ofInstance(takeField(rest));
+      const std::string elements = ofInstance(takeField(rest), elementSets_);
       const std::string face = lowerCase(takeField(rest));
       // Others are the whole surface, or a side of a shell.
       if (face.size() != 2 || face[0] != 's' || face[1] < '1' || face[1] > '6') continue;
@@ -601,9 +634,9 @@ class AbaqusReader {
   }
 
   void failIfFirst() const {
-    if (!begun_)
-      fail("a file of Abaqus begins with a keyword like *NODE, found " + quoted(line_) +
-           " (files of AVS have this extension, too, and are not read)");
+    if (begun_) return;
+    fail("a file of Abaqus begins with a keyword like *NODE, found " + quoted(line_) +
+         " (files of AVS have this extension, too, and are not read)");
   }
   /// Throws an error at the last line read.
   [[noreturn]] void fail(const std::string& sentence,
@@ -622,8 +655,12 @@ class AbaqusReader {
   bool isOwn_ = false;  ///< whether this library wrote the file
   int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
-  std::string instance_;            ///< its name and a dot, as in front of its numbers and sets
-  std::uint64_t ofAssembly_ = 0;    ///< bits of numbers of nodes outside of the instance
+  std::string instance_;               ///< its name and a dot, as in front of its numbers and sets
+  std::uint64_t ofAssembly_ = 0;       ///< bits of numbers outside of the instance,
+  std::uint64_t ofNodeSets_ = 0;       ///< in sets if the assembly has nodes
+  std::uint64_t ofElementSets_ = 0;    ///< and elements
+  std::set<std::string> ownNodeSets_;  ///< of the assembly
+  std::set<std::string> ownElementSets_;
   std::vector<double> place_;       ///< of the instance, until all its nodes are known
   std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
   ElementLists lists_;

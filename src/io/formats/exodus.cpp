@@ -413,25 +413,27 @@ class ExodusReader {
     for (std::size_t b = 0; b < groups.size(); ++b) {
       // Empty blocks have no variable.
       const std::string name = concat("connect", b + 1);
-      if (!has(name)) continue;
+      if (!has(name)) {
+        if (has(concat("facconn", b + 1))) failOn("nfaced");
+        continue;
+      }
       readBlock(name, tags[b], next);
       elements_ = static_cast<std::int64_t>(next) - 1;
       lists_.addName(3, tags[b], groups.nameOf(b));
     }
-    if (lists_.blocks.empty()) {
-      input_.fail(ErrorCode::FileUnsupported, "the file has no elements",
-                  has("facconn1") ? " but polyhedra." : ".");
-    }
+    if (lists_.blocks.empty()) input_.fail(ErrorCode::FileUnsupported, "the file has no elements.");
+  }
+
+  [[noreturn]] void failOn(const std::string& type) const {
+    input_.fail(ErrorCode::FileUnsupported, "elements of the type \"", type,
+                "\" are not supported. Leave their block out.");
   }
 
   void readBlock(const std::string& name, std::int32_t region, std::uint64_t& next) {
     const std::string named = file_->attribute(name, "elem_type");
     const std::string type = lowerCase(named);
     const std::vector<std::uint64_t> shape = file_->shape(name);
-    if (type == "nsided" || type == "nfaced" || shape.size() != 2) {
-      input_.fail(ErrorCode::FileUnsupported, "elements of the type \"", named,
-                  "\" are not supported. Leave their block out.");
-    }
+    if (type == "nsided" || type == "nfaced" || shape.size() != 2) failOn(named);
     ElementBlock& block = lists_.blocks.emplace_back();
     const auto each = static_cast<std::size_t>(shape[1]);
     block.type = typeOf(type, each);
@@ -462,7 +464,7 @@ class ExodusReader {
     for (const auto& [word, noun] : kNouns) {
       if (!name.starts_with(word)) continue;
       const VolumeCells* const type = volumeCells(noun, nodes);
-      if (type != nullptr) return type;
+      if (type != nullptr && nodes <= kExodusPlaces.size()) return type;
       input_.fail(ErrorCode::FileUnsupported, noun, " with ", nodes,
                   " nodes are not known. Leave their block out.");
     }
@@ -504,8 +506,8 @@ class ExodusReader {
       for (std::size_t i = 0; i < sides.size(); ++i) {
         if (sides[i] < 1 || sides[i] > 6 || elements[i] < 1 || elements[i] > elements_) {
           input_.fail(ErrorCode::IndexOutOfRange, "side set ", s + 1, " names side ", sides[i],
-                      " of element ", elements[i], ", but there are ", elements_,
-                      " elements with at most 6 sides.");
+                      " of element ", elements[i], ", but elements are numbered up to ", elements_,
+                      " and have at most 6 sides.");
         }
         lists_.sides.push_back(
             {static_cast<std::uint64_t>(elements[i]), static_cast<std::uint8_t>(sides[i]), tag});

@@ -411,6 +411,9 @@ class GmshNodes {
       tags[i] = readGmshTag(source, version_, "the number of a node");
       readPoint(source, i);
       const std::int64_t dimension = readGmshEntity(source, GmshVersion::V41).first;
+      if (dimension < 0 || dimension > 3) {
+        source.fail(ErrorCode::FileSyntax, "an entity has the dimension ", dimension, ".");
+      }
       for (std::int64_t k = 0; k < dimension && dimension < 3; ++k) {
         static_cast<void>(source.real("a parameter of a node"));
       }

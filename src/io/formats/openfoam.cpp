@@ -134,9 +134,9 @@ class PolyMeshReader {
   static std::filesystem::path polyMeshOf(const std::filesystem::path& file) {
     std::error_code unknown;
     if (std::filesystem::is_directory(file, unknown)) return file;
-    const std::filesystem::path folder = file.parent_path() / "constant" / "polyMesh";
-    if (std::filesystem::exists(file.parent_path() / "processor0", unknown) &&
-        !std::filesystem::exists(folder, unknown)) {
+    std::filesystem::path folder = file.parent_path() / "constant" / "polyMesh";
+    const std::filesystem::path piece = file.parent_path() / "processor0" / "constant" / "polyMesh";
+    if (std::filesystem::exists(piece, unknown) && !std::filesystem::exists(folder, unknown)) {
       throw Error(ErrorCode::FileUnsupported,
                   file.string() + ": the case is decomposed. Run `reconstructParMesh -constant`.");
     }

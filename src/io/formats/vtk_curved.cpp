@@ -194,7 +194,8 @@ bool holdsLagrangeVtu(const Input& input, Stage& stage) {
 }
 
 bool holdsCurvedVtkLegacy(const Input& input, Stage& stage) {
-  return holdsVtkLagrange(*openVtkLegacyFile(input, false, stage));
+  const auto source = openVtkLegacyFile(input, false, stage);
+  return holdsVtkLagrange(*source) && countCells(*source, kCellKind<8>) == 0;
 }
 
 LagrangeMesh readCurvedVtkLegacy(const Input& input, Stage& stage) {

@@ -129,7 +129,9 @@ class VtkLegacyFile final : public VtkSource {
           ErrorCode::FileSyntax,
           "a .vtk file begins with \"# vtk DataFile Version\". If it is XML, name it .vtu.");
     }
-    if (first[kMagic.size()] < '5') uprightEdges = VtkEdges::RowByRow;
+    // Version 5.1 changed their order.
+    const std::string_view version = first.substr(kMagic.size());
+    if (version[0] < '5' || version.starts_with("5.0")) uprightEdges = VtkEdges::RowByRow;
     static_cast<void>(scanner_.takeLine());  // the title, any text
     const std::string encoding = readKeyword();
     binary_ = encoding == "binary";
