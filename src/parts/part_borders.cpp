@@ -47,7 +47,7 @@ constexpr std::array<lattice::CellCornerSet, 6> kSideCorners = [] {
 
 /// @param isShared  per vertex: 1 if it is
 void addSides(const Hex& corners, std::uint64_t number, Index cell, Index other,
-              const Array<std::uint8_t>& isShared, Array<SharedSide>& sides) {
+              const Array<std::uint8_t>& isShared, std::vector<SharedSide>& sides) {
   lattice::CellCornerSet shared = 0;
   for (std::size_t k = 0; k < 8; ++k) {
     if (corners[k] != kNone) shared |= lattice::CellCornerSet{isShared[corners[k]]} << k;
@@ -67,7 +67,7 @@ class FacePairs {
   /// All faces between an own cell and a cell of another part. Usually only two cells have the same
   /// four vertices; where more do, because cells meet themselves, both parts pair them in the same
   /// order.
-  [[nodiscard]] std::vector<Pairing> find(Array<SharedSide>& sides) {
+  [[nodiscard]] std::vector<Pairing> find(std::vector<SharedSide>& sides) {
     std::sort(sides.begin(), sides.end(), [](const SharedSide& a, const SharedSide& b) {
       if (a.vertices != b.vertices) return a.vertices < b.vertices;
       return a.number != b.number ? a.number < b.number : a.side < b.side;
@@ -147,7 +147,7 @@ Array<std::uint8_t> shareVertices(MeshPart& part, std::span<const BorderCell> ar
 void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
   assert(std::ranges::is_sorted(around, {}, &BorderCell::number));
   const Array<std::uint8_t> isShared = shareVertices(part, around);
-  Array<SharedSide> sides;
+  std::vector<SharedSide> sides;
   for (std::size_t c = 0; c < part.ownCells; ++c) {
     addSides(part.mesh.cells[c], part.globalCells[c], static_cast<Index>(c), kNone, isShared,
              sides);
