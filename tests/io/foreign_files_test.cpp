@@ -1152,11 +1152,7 @@ TEST(ForeignFiles, PublicCgns) {
       std::filesystem::path(chosen != nullptr ? chosen : HEXHEX_DATA_DIR) / "files" /
       "scorec_8hexs.cgns";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "there is no " << file;
-  try {
-    requireHdf5(file);
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
+  if (!hasHdf5()) GTEST_SKIP() << "built without HDF5, or it cannot be loaded";
   const HexMesh mesh = readHexMesh(file);
   EXPECT_EQ(mesh.cells.size(), 8U);
   EXPECT_EQ(mesh.points.size(), 27U);

@@ -190,11 +190,7 @@ TEST(HdfFiles, VtkHdfOfOthersOfOneAndOfTwoPartitions) {
 TEST(HdfFiles, VtkHdfComesBackWholeAndFromParts) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "a.vtkhdf";
-  try {
-    requireHdf5(file);
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
+  if (!hasHdf5()) GTEST_SKIP() << "built without HDF5, or it cannot be loaded";
   Context context;
   SampleOptions options;
   options.cells = 2;
@@ -234,11 +230,7 @@ std::string cornersOf(const HexMesh& mesh, Number first) {
 
 TEST(HdfFiles, OlderFilesOfCgnsAreToldByName) {
   const TemporaryFolder folder;
-  try {
-    requireHdf5(folder / "a.cgns");
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
+  if (!hasHdf5()) GTEST_SKIP() << "built without HDF5, or it cannot be loaded";
   writeText(folder / "a.cgns",
             "\xc0\xa8\xa3\xa9"
             "ADF Database Version A02011>");  // as libcgns does
@@ -249,11 +241,7 @@ TEST(HdfFiles, OlderFilesOfCgnsAreToldByName) {
 /// Corners of cells and, in VTKHDF, offsets of cells are replaced by wrong numbers.
 TEST(HdfFiles, WrongNumbersNameNoVertexBeyondTheMesh) {
   const TemporaryFolder folder;
-  try {
-    requireHdf5(folder / "a.cgns");
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
+  if (!hasHdf5()) GTEST_SKIP() << "built without HDF5, or it cannot be loaded";
   const HexMesh mesh = gridMesh(3, 2, 2);
   const std::array<std::int64_t, 8> odd = {-1,      0,          1,          37,
                                            1 << 16, 2147483647, 4294967296, 1LL << 62};

@@ -20,6 +20,7 @@
 #include <hexhex/types.hpp>
 
 #include <base/stage.hpp>
+#include <io/core/hdf_reader.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/output_file.hpp>
 
@@ -73,6 +74,16 @@ void writeBy(const std::filesystem::path& file, Context& context, const Write& w
   Stage stage(context, "write");
   write(output, stage);
   output.commit();
+}
+
+/// Whether this build has HDF5, and the library can be loaded.
+inline bool hasHdf5() {
+  try {
+    io::requireHdf5("a file");
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 /// A text with the first place that reads `from` changed.

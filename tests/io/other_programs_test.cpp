@@ -188,13 +188,7 @@ TEST(HigherOrder, GmshWritesOtherFormats) {
                                  "4.1 0 '" + source.string() + "' '" + file.string() + "'", errors);
       if (isMissing(code)) GTEST_SKIP() << "gmsh for " << interpreter() << " is not installed";
       ASSERT_EQ(code, 0) << contentOf(errors);
-      if (extension == "cgns") {
-        try {
-          requireHdf5(file);
-        } catch (const Error&) {
-          continue;
-        }
-      }
+      if (extension == "cgns" && !hasHdf5()) continue;
       ASSERT_EQ(holdsLagrangeCells(file, context), order == 2);
       const HexMesh straight =
           order == 2 ? straightMesh(readLagrangeMesh(file, context)) : readHexMesh(file);

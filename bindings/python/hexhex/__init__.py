@@ -1103,8 +1103,8 @@ def write(what: Map | Mesh | LagrangeMesh | Arcs | Patches, file: Path, *,
     jacobians = _floats([] if scaled_jacobians is None else scaled_jacobians, (),
                         "scaled_jacobians")
     if isinstance(what, Map):
-        _hexhex.write_map(what._arrays(), name, format or "", _compression(compress), map_array, workers,
-                          progress)
+        _hexhex.write_map(what._arrays(), name, format or "", _compression(compress), map_array,
+                          workers, progress)
     elif isinstance(what, Mesh):
         _hexhex.write_mesh(what._handle, name, format or "", patch_angle, _compression(compress),
                            jacobians, workers, progress)

@@ -115,8 +115,7 @@ std::string CellCounts::adviceOnCurved() const {
   if (!hasCurved) return {};
   if (hasOthers) {
     return " Hexahedra of order 2 and more are curved, and read where there are no other cells. "
-           "Give the "
-           "others a file of their own.";
+           "Give the others a file of their own.";
   }
   return " Cells of order 2 and more are curved: `hexhex view` and `hexhex improve` read them, and "
          "`hexhex convert` writes them as .vtu, .msh or MFEM .mesh, those of order 2 also as "

@@ -87,6 +87,15 @@ bool decodeLzmaBlock(std::string_view compressed, std::span<char> bytes) noexcep
 
 namespace {
 
+/// Appends what compress(place) writes, at most `most` bytes, and returns as their number.
+template <class Compress>
+void append(Array<char>& compressed, std::size_t most, const Compress& compress) {
+  const std::size_t before = compressed.size();
+  compressed.resize(before + most);
+  const std::size_t used = compress(compressed.data() + before);
+  compressed.resize(before + used);
+}
+
 /// Of liblz4, which is not linked: readers do without it.
 struct Lz4 {
   LoadedLibrary library{{"liblz4.so.1"}};
@@ -111,13 +120,13 @@ void requireLz4(const std::filesystem::path& file) {
 }
 
 void compressByLz4(std::span<const char> bytes, Array<char>& compressed) {
-  const std::size_t before = compressed.size();
   const auto size = static_cast<int>(bytes.size());
-  const int room = lz4().bound(size);
-  compressed.resize(before + static_cast<std::size_t>(room));
-  const int used = lz4().compress(bytes.data(), compressed.data() + before, size, room);
-  if (used == 0) throw std::bad_alloc();  // there is room for all
-  compressed.resize(before + static_cast<std::size_t>(used));
+  const int most = lz4().bound(size);
+  append(compressed, static_cast<std::size_t>(most), [&](char* place) {
+    const int used = lz4().compress(bytes.data(), place, size, most);
+    if (used == 0) throw std::bad_alloc();  // there is room for all
+    return static_cast<std::size_t>(used);
+  });
 }
 
 #ifdef HEXHEX_HAS_ZLIB
@@ -162,14 +171,14 @@ class Libdeflate {
 
   /// As deflateBlock().
   void deflate(std::span<const char> bytes, Array<char>& compressed) const {
-    const std::size_t before = compressed.size();
-    compressed.resize(before + bound_(nullptr, bytes.size()));
     const std::unique_ptr<Compressor, void (*)(Compressor*)> compressor(allocate_(kLevel), free_);
     if (compressor == nullptr) throw std::bad_alloc();
-    const std::size_t size = compress_(compressor.get(), bytes.data(), bytes.size(),
-                                       compressed.data() + before, compressed.size() - before);
-    assert(size > 0);  // there is room for it
-    compressed.resize(before + size);
+    const std::size_t most = bound_(nullptr, bytes.size());
+    append(compressed, most, [&](char* place) {
+      const std::size_t used = compress_(compressor.get(), bytes.data(), bytes.size(), place, most);
+      assert(used > 0);  // there is room for all
+      return used;
+    });
   }
 
  private:
@@ -218,14 +227,14 @@ Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
 }
 
 void deflateByZlib(std::span<const char> bytes, Array<char>& compressed) {
-  const std::size_t before = compressed.size();
   uLongf size = ::compressBound(static_cast<uLong>(bytes.size()));
-  compressed.resize(before + size);
-  const int status = ::compress2(reinterpret_cast<Bytef*>(compressed.data() + before), &size,
-                                 reinterpret_cast<const Bytef*>(bytes.data()),
-                                 static_cast<uLong>(bytes.size()), kLevel);
-  if (status != Z_OK) throw std::bad_alloc();  // the buffer is large enough, so memory ran out
-  compressed.resize(before + size);
+  append(compressed, size, [&](char* place) {
+    const int status = ::compress2(reinterpret_cast<Bytef*>(place), &size,
+                                   reinterpret_cast<const Bytef*>(bytes.data()),
+                                   static_cast<uLong>(bytes.size()), kLevel);
+    if (status != Z_OK) throw std::bad_alloc();  // there is room for all, so memory ran out
+    return std::size_t{size};
+  });
 }
 
 void deflateBlock(std::span<const char> bytes, Array<char>& compressed) {

@@ -126,6 +126,7 @@ class AbaqusReader {
  private:
   struct Set {
     std::vector<std::uint64_t> items;
+    bool isOfAssembly = false;
   };
   struct Surface {
     std::string name;
@@ -447,19 +448,20 @@ class AbaqusReader {
   /// A set, added if it is not there. One of the assembly with the name of one of the part, as
   /// programs choose by default, is another: that of the part gets "INSTANCE." in front.
   Set& setNamed(const std::string& name, Sets& sets) {
-    std::set<std::string>& own = &sets == &nodeSets_ ? ownNodeSets_ : ownElementSets_;
-    const bool isFirst = ofAssembly_ != 0 && own.insert(name).second;
-    auto part = isFirst ? sets.extract(name) : Sets::node_type();
-    if (!part.empty()) {
-      part.key() = instance_ + name;
-      sets.insert(std::move(part));
+    const auto found = sets.find(name);
+    if (ofAssembly_ != 0 && found != sets.end() && !found->second.isOfAssembly) {
+      auto ofPart = sets.extract(found);
+      ofPart.key() = instance_ + name;
+      sets.insert(std::move(ofPart));
       if (&sets == &elementSets_) {
         for (auto* const names : {&blockSets_, &sections_, &listedSets_}) {
           std::replace(names->begin(), names->end(), name, instance_ + name);
         }
       }
     }
-    return sets[name];
+    Set& set = sets[name];
+    set.isOfAssembly = ofAssembly_ != 0;
+    return set;
   }
 
   /// Adds a range "first, last, step" to a set.
@@ -655,14 +657,12 @@ class AbaqusReader {
   bool isOwn_ = false;  ///< whether this library wrote the file
   int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
-  std::string instance_;               ///< its name and a dot, as in front of its numbers and sets
-  std::uint64_t ofAssembly_ = 0;       ///< bits of numbers outside of the instance,
-  std::uint64_t ofNodeSets_ = 0;       ///< in sets if the assembly has nodes
-  std::uint64_t ofElementSets_ = 0;    ///< and elements
-  std::set<std::string> ownNodeSets_;  ///< of the assembly
-  std::set<std::string> ownElementSets_;
-  std::vector<double> place_;       ///< of the instance, until all its nodes are known
-  std::uint64_t itemsLeft_ = 1024;  ///< how many more members sets may have
+  std::string instance_;             ///< its name and a dot, as in front of its numbers and sets
+  std::uint64_t ofAssembly_ = 0;     ///< bits of numbers outside of the instance,
+  std::uint64_t ofNodeSets_ = 0;     ///< in sets if the assembly has nodes
+  std::uint64_t ofElementSets_ = 0;  ///< and elements
+  std::vector<double> place_;        ///< of the instance, until all its nodes are known
+  std::uint64_t itemsLeft_ = 1024;   ///< how many more members sets may have
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
   Sets nodeSets_;

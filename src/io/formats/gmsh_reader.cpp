@@ -302,7 +302,7 @@ void readNames(std::string_view section, GmshTags& tags) {
     std::string_view line = section.substr(0, length);
     section.remove_prefix(std::min(length + 1, section.size()));
     const auto read = [&line](std::int64_t& number) {
-      while (!line.empty() && isSpace(line.front())) line.remove_prefix(1);
+      line = trimmed(line);
       const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), number);
       line.remove_prefix(static_cast<std::size_t>(end - line.data()));
       return error == std::errc{};
@@ -410,10 +410,7 @@ class GmshNodes {
     for (std::size_t i = 0; i < count; ++i) {
       tags[i] = readGmshTag(source, version_, "the number of a node");
       readPoint(source, i);
-      const std::int64_t dimension = readGmshEntity(source, GmshVersion::V41).first;
-      if (dimension < 0 || dimension > 3) {
-        source.fail(ErrorCode::FileSyntax, "an entity has the dimension ", dimension, ".");
-      }
+      const std::int64_t dimension = readDimension(source, GmshVersion::V41);
       for (std::int64_t k = 0; k < dimension && dimension < 3; ++k) {
         static_cast<void>(source.real("a parameter of a node"));
       }
@@ -433,17 +430,24 @@ class GmshNodes {
     return {.integers = 1, .reals = reals};
   }
 
+  /// Reads an entity. @return its dimension, 0 to 3
+  template <class Source>
+  static std::int64_t readDimension(Source& source, GmshVersion version) {
+    const std::int64_t dimension = readGmshEntity(source, version).first;
+    if (dimension < 0 || dimension > 3) {
+      source.fail(ErrorCode::FileSyntax, "an entity has the dimension ", dimension, ".");
+    }
+    return dimension;
+  }
+
   /// Reads the nodes of one entity; version 4.1 lists all tags, then all points.
   /// @param done  number of nodes read before
   /// @return number of nodes in the block
   template <class Source>
   std::size_t readBlock(Source& source, std::size_t done) {
-    const std::int64_t dimension = readGmshEntity(source, version_).first;
+    const std::int64_t dimension = readDimension(source, version_);
     const bool parametric = source.integer("whether nodes have parameters") != 0;
     const std::uint64_t count = source.size("the number of nodes of a block");
-    if (dimension < 0 || dimension > 3) {
-      source.fail(ErrorCode::FileSyntax, "an entity has the dimension ", dimension, ".");
-    }
     if (count > points_.size() - done) {
       source.fail(ErrorCode::FileSyntax, "the blocks have more nodes than the ", points_.size(),
                   " of the section.");

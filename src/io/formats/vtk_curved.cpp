@@ -49,21 +49,17 @@ const CellKind* quadraticKind(const VtkSource& source) {
 /// The order of the cells, which must be equal for all.
 int findOrder(const VtkSource& source) {
   Array<std::int64_t> types(source.cells);
-  Array<std::int64_t> ends(source.cells);
+  const Array<std::int64_t> places = vtkCellPlaces(source, 0, source.cells);
   source.copy(source.types, 0, types.size(), types.data());
-  if (source.stride == 0) {
-    const bool withFirst = source.offsets.count > source.cells;
-    source.copy(source.offsets, withFirst ? 1 : 0, ends.size(), ends.data());
-  }
   std::int64_t nodes = 0;
   for (std::size_t c = 0; c < types.size(); ++c) {
-    if (source.stride > 0) ends[c] = static_cast<std::int64_t>(source.stride * (c + 1));
     if (types[c] != kVtkLagrangeHexahedron) continue;
-    const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
-    // The reader of cells reports invalid ends.
+    const std::int64_t begin = c == 0 ? 0 : places[c];
+    const std::int64_t end = places[c + 1];
+    // The reader of cells reports invalid places.
     const auto stored = static_cast<std::int64_t>(source.connectivity.count);
-    if (begin < 0 || ends[c] < begin || ends[c] > stored) break;
-    const std::int64_t count = ends[c] - begin - static_cast<std::int64_t>(source.gap);
+    if (begin < 0 || end < begin || end > stored) break;
+    const std::int64_t count = end - begin - static_cast<std::int64_t>(source.gap);
     const bool first = nodes == 0;
     if (first && orderOfNodes(static_cast<std::uint64_t>(count)) > 0) nodes = count;
     if (count == nodes) continue;

@@ -209,21 +209,12 @@ bool isOfKind(std::int64_t type, const CellKind& kind) {
 class CellTable {
  public:
   CellTable(const VtkSource& source, const CellKind& wanted, std::uint64_t first, std::size_t count)
-      : source_(source), wanted_(wanted), first_(first), types_(count), places_(count + 1, 0) {
+      : source_(source),
+        wanted_(wanted),
+        first_(first),
+        types_(count),
+        places_(vtkCellPlaces(source, first, count)) {
     source.copy(source.types, first, count, types_.data());
-    if (source.stride > 0) {
-      for (std::size_t i = 0; i <= count; ++i) {
-        places_[i] = static_cast<std::int64_t>(source.stride * (first + i));
-      }
-      return;
-    }
-    if (source.offsets.count > source.cells) {
-      source.copy(source.offsets, first, count + 1, places_.data());
-      return;
-    }
-    // A cell begins where the previous one ends.
-    const std::size_t before = first > 0 ? 1 : 0;
-    source.copy(source.offsets, first - before, count + before, places_.data() + 1 - before);
   }
 
   [[nodiscard]] bool isWanted(std::size_t i) const { return isOfKind(types_[i], wanted_); }
@@ -500,6 +491,22 @@ void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t 
       i = end;
     }
   }
+}
+
+Array<std::int64_t> vtkCellPlaces(const VtkSource& source, std::uint64_t first, std::size_t count) {
+  Array<std::int64_t> places(count + 1, 0);
+  if (source.stride > 0) {
+    for (std::size_t i = 0; i <= count; ++i) {
+      places[i] = static_cast<std::int64_t>(source.stride * (first + i));
+    }
+  } else if (source.offsets.count > source.cells) {
+    source.copy(source.offsets, first, count + 1, places.data());
+  } else {
+    // A cell begins where the previous one ends.
+    const std::size_t before = first > 0 ? 1 : 0;
+    source.copy(source.offsets, first - before, count + before, places.data() + 1 - before);
+  }
+  return places;
 }
 
 void failWithoutVtkCells(const VtkSource& source, const CellKind& cells) {

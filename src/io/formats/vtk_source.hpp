@@ -230,6 +230,10 @@ void readVtkCells(const VtkSource& source, const CellKind& cells,
 /// @param count  of the wanted ones
 void noteVtkCells(const VtkSource& source, const CellKind& cells, std::uint64_t count);
 
+/// Per cell (+1): where its numbers begin in `connectivity`, as the file says.
+[[nodiscard]] Array<std::int64_t> vtkCellPlaces(const VtkSource& source, std::uint64_t first,
+                                                std::size_t count);
+
 /// Throws the error for a file with cells, but no wanted ones.
 [[noreturn]] void failWithoutVtkCells(const VtkSource& source, const CellKind& cells);
 
