@@ -89,7 +89,7 @@ namespace {
 
 /// Appends what compress(place) writes, at most `most` bytes, and returns as their number.
 template <class Compress>
-void append(Array<char>& compressed, std::size_t most, const Compress& compress) {
+void appendBlock(Array<char>& compressed, std::size_t most, const Compress& compress) {
   const std::size_t before = compressed.size();
   compressed.resize(before + most);
   const std::size_t used = compress(compressed.data() + before);
@@ -122,7 +122,7 @@ void requireLz4(const std::filesystem::path& file) {
 void compressByLz4(std::span<const char> bytes, Array<char>& compressed) {
   const auto size = static_cast<int>(bytes.size());
   const int most = lz4().bound(size);
-  append(compressed, static_cast<std::size_t>(most), [&](char* place) {
+  appendBlock(compressed, static_cast<std::size_t>(most), [&](char* place) {
     const int used = lz4().compress(bytes.data(), place, size, most);
     if (used == 0) throw std::bad_alloc();  // there is room for all
     return static_cast<std::size_t>(used);
@@ -174,7 +174,7 @@ class Libdeflate {
     const std::unique_ptr<Compressor, void (*)(Compressor*)> compressor(allocate_(kLevel), free_);
     if (compressor == nullptr) throw std::bad_alloc();
     const std::size_t most = bound_(nullptr, bytes.size());
-    append(compressed, most, [&](char* place) {
+    appendBlock(compressed, most, [&](char* place) {
       const std::size_t used = compress_(compressor.get(), bytes.data(), bytes.size(), place, most);
       assert(used > 0);  // there is room for all
       return used;
@@ -228,7 +228,7 @@ Array<char> inflateGzip(std::string_view compressed, const std::string& name) {
 
 void deflateByZlib(std::span<const char> bytes, Array<char>& compressed) {
   uLongf size = ::compressBound(static_cast<uLong>(bytes.size()));
-  append(compressed, size, [&](char* place) {
+  appendBlock(compressed, size, [&](char* place) {
     const int status = ::compress2(reinterpret_cast<Bytef*>(place), &size,
                                    reinterpret_cast<const Bytef*>(bytes.data()),
                                    static_cast<uLong>(bytes.size()), kLevel);
