@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -96,8 +97,8 @@ struct PartsInfo {
   std::vector<std::int32_t> regions = {};
 };
 
-/// Receives the parts of a mesh one by one, from one thread at a time. An exception thrown by a
-/// sink ends the extraction and propagates to its caller.
+/// Receives the parts of a mesh one by one, in order and from one thread at a time unless it allows
+/// otherwise. An exception thrown by a sink ends the extraction and propagates to its caller.
 class PartSink {
  public:
   PartSink() = default;
@@ -106,13 +107,10 @@ class PartSink {
   virtual ~PartSink() = default;
 
   virtual void begin(const PartsInfo& info) = 0;
-  /// Called for each part in order, including empty ones.
+  /// Called for each part, including empty ones.
   virtual void part(MeshPart&& part) = 0;
-  /// The same for parts that were made side by side, for sinks that can take them side by side; by
-  /// default, calls part() for each.
-  virtual void parts(std::span<MeshPart> parts) {
-    for (MeshPart& each : parts) part(std::move(each));
-  }
+  /// Whether several threads may call part() at a time, for parts in any order.
+  [[nodiscard]] virtual bool takesAnyOrder() const { return false; }
   /// Called after the last part.
   virtual void end() = 0;
   /// Number of ghost layers that the sink needs: parts have at least as many, whatever was
@@ -121,8 +119,8 @@ class PartSink {
 };
 
 /// Extracts the mesh of extract(), bit for bit, in parts; always uses the atlas engine. Memory
-/// holds the map and one part, or with several threads up to twice as many parts as these if all
-/// of them fit in a gigabyte; nothing grows with the whole mesh.
+/// holds the map and one part, or with several threads as many parts as these, if all of them fit
+/// in a gigabyte; twice as many if the sink takes them in order. Nothing grows with the whole mesh.
 /// @throws Error  as extract(); InvalidArgument for options out of range, and for a method whose
 ///         library is not installed; TooLarge for a part with 2^32 vertices or cells
 void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& options,
@@ -157,7 +155,7 @@ class PartSummarySink final : public PartSink {
       : sink_(sink), team_(team) {}
   void begin(const PartsInfo& info) override;
   void part(MeshPart&& part) override;
-  void parts(std::span<MeshPart> parts) override;
+  [[nodiscard]] bool takesAnyOrder() const override { return sink_.takesAnyOrder(); }
   /// @throws Error VerificationFailed if parts are inconsistent; the other sink's end() is not
   ///         called then
   void end() override;
@@ -165,19 +163,24 @@ class PartSummarySink final : public PartSink {
     return sink_.neededGhostLayers();
   }
   /// Valid after end().
-  [[nodiscard]] const PartsSummary& result() const noexcept { return summary_; }
+  [[nodiscard]] const PartsSummary& result() const noexcept { return sums_.summary; }
 
  private:
-  void add(const MeshPart& part);
-  void addUp();
+  /// What is known of one part, or of several together.
+  struct Sums {
+    PartsSummary summary;
+    std::uint64_t cells = 0;     ///< sum of the numbers of all own cells
+    std::uint64_t vertices = 0;  ///< sum of the numbers of all owned vertices
+    std::uint64_t borders = 0;   ///< sum in which the entries of both neighbours cancel out
+    void add(const Sums& others);
+  };
+  static Sums sumsOf(const MeshPart& part);
 
   PartSink& sink_;
   ProcessTeam* team_;
   PartsInfo info_;
-  PartsSummary summary_;
-  std::uint64_t cellSum_ = 0;    ///< sum of the numbers of all own cells
-  std::uint64_t vertexSum_ = 0;  ///< sum of the numbers of all owned vertices
-  std::uint64_t borders_ = 0;    ///< sum in which the entries of both neighbours cancel out
+  std::mutex mutex_;  ///< for sums_
+  Sums sums_;
 };
 
 /// Opens files for the parts of a mesh; docs/user/parts.md lists the files of each format. The

@@ -20,6 +20,13 @@ class Stage {
     context_.throwIfCancelled();
     context_.begin(name_);
   }
+  /// Work that other threads do beside this one, all within another stage: without progress and
+  /// time of its own.
+  static constexpr struct Inner {
+  } kInner{};
+  Stage(Context& context, Inner /*tag*/) : context_(context), isInner_(true), finished_(true) {
+    context_.throwIfCancelled();
+  }
   ~Stage() { finish(); }
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
@@ -44,6 +51,7 @@ class Stage {
   Context& context_;
   std::string_view name_;
   std::chrono::steady_clock::time_point begin_;
+  bool isInner_ = false;
   bool finished_ = false;
   std::size_t total_ = 0;  ///< 0: each loop has its own total
   std::atomic<std::size_t> done_{0};
@@ -84,7 +92,7 @@ class LoopProgress {
  public:
   LoopProgress(Stage& stage, std::size_t total)
       : stage_(stage),
-        total_(stage.total_ != 0 ? stage.total_ : total),
+        total_(stage.isInner_ ? 0 : (stage.total_ != 0 ? stage.total_ : total)),
         done_(stage.total_ != 0 ? stage.done_ : own_) {}
 
   /// Counts `count` more elements as done. Thread-safe.
@@ -99,7 +107,7 @@ class LoopProgress {
 
  private:
   Stage& stage_;
-  std::size_t total_;
+  std::size_t total_;  ///< 0: nothing to report
   std::atomic<std::size_t> own_{0};
   std::atomic<std::size_t>& done_;
 };

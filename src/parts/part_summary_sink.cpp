@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
-#include <span>
+#include <bit>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -42,77 +43,74 @@ namespace hexhex {
 
 void PartSummarySink::begin(const PartsInfo& info) {
   info_ = info;
-  summary_ = {};
-  summary_.smallest = info.cellCount;
+  sums_ = {};
+  sums_.summary.smallest = info.cellCount;
   sink_.begin(info);
 }
 
 void PartSummarySink::part(MeshPart&& part) {
-  add(part);
+  const Sums ofPart = sumsOf(part);
+  {
+    const std::lock_guard lock(mutex_);
+    sums_.add(ofPart);
+  }
   sink_.part(std::move(part));
 }
 
-void PartSummarySink::parts(std::span<MeshPart> parts) {
-  for (const MeshPart& part : parts) add(part);
-  sink_.parts(parts);
-}
-
-void PartSummarySink::add(const MeshPart& part) {
-  summary_.cells += part.ownCells;
-  summary_.largest = std::max(summary_.largest, part.ownCells);
-  summary_.smallest = std::min(summary_.smallest, part.ownCells);
-  if (part.ownCells == 0) ++summary_.empty;
-  for (std::size_t c = 0; c < part.ownCells; ++c) cellSum_ += part.globalCells[c];
+PartSummarySink::Sums PartSummarySink::sumsOf(const MeshPart& part) {
+  Sums sums;
+  PartsSummary& summary = sums.summary;
+  summary.cells = summary.largest = summary.smallest = part.ownCells;
+  summary.empty = part.ownCells == 0 ? 1 : 0;
+  summary.mostNeighbours = part.neighbours.size();
+  for (std::size_t c = 0; c < part.ownCells; ++c) sums.cells += part.globalCells[c];
   for (std::size_t v = 0; v < part.ownPoints; ++v) {
     if (part.pointOwners[v] != part.part) continue;
-    ++summary_.vertices;
-    vertexSum_ += part.globalPoints[v];
+    ++summary.vertices;
+    sums.vertices += part.globalPoints[v];
   }
   std::vector<bool> shared(part.ownPoints, false);
   for (const PartNeighbour& neighbour : part.neighbours) {
-    borders_ ^= parts::borderOf(part, neighbour);
+    sums.borders ^= parts::borderOf(part, neighbour);
     for (const Index v : neighbour.vertices) shared[v] = true;
-    if (part.part < neighbour.part) summary_.sharedFaces += neighbour.faces.size();
+    if (part.part < neighbour.part) summary.sharedFaces += neighbour.faces.size();
   }
-  summary_.sharedVertices +=
+  summary.sharedVertices =
       static_cast<std::uint64_t>(std::count(shared.begin(), shared.end(), true));
-  summary_.mostNeighbours =
-      std::max<std::uint64_t>(summary_.mostNeighbours, part.neighbours.size());
+  return sums;
 }
 
-/// Combines the results of all processes.
-void PartSummarySink::addUp() {
-  const PartsSummary& own = summary_;
-  const std::array<std::uint64_t, 11> mine = {
-      own.cells,       own.vertices,       own.largest, own.smallest, own.empty, own.sharedVertices,
-      own.sharedFaces, own.mostNeighbours, cellSum_,    vertexSum_,   borders_};
-  const GatheredNumbers all = team_->gather(mine);
-  summary_ = {};
-  summary_.smallest = info_.cellCount;
-  cellSum_ = vertexSum_ = borders_ = 0;
-  for (std::uint32_t r = 0; r < team_->size(); ++r) {
-    const std::span<const std::uint64_t> numbers = all.of(r);
-    summary_.cells += numbers[0];
-    summary_.vertices += numbers[1];
-    summary_.largest = std::max(summary_.largest, numbers[2]);
-    summary_.smallest = std::min(summary_.smallest, numbers[3]);
-    summary_.empty += numbers[4];
-    summary_.sharedVertices += numbers[5];
-    summary_.sharedFaces += numbers[6];
-    summary_.mostNeighbours = std::max(summary_.mostNeighbours, numbers[7]);
-    cellSum_ += numbers[8];
-    vertexSum_ += numbers[9];
-    borders_ ^= numbers[10];
-  }
+void PartSummarySink::Sums::add(const Sums& others) {
+  const PartsSummary& other = others.summary;
+  summary.cells += other.cells;
+  summary.vertices += other.vertices;
+  summary.largest = std::max(summary.largest, other.largest);
+  summary.smallest = std::min(summary.smallest, other.smallest);
+  summary.empty += other.empty;
+  summary.sharedVertices += other.sharedVertices;
+  summary.sharedFaces += other.sharedFaces;
+  summary.mostNeighbours = std::max(summary.mostNeighbours, other.mostNeighbours);
+  cells += others.cells;
+  vertices += others.vertices;
+  borders ^= others.borders;
 }
 
 void PartSummarySink::end() {
-  if (team_ != nullptr) addUp();
-  const bool complete = summary_.cells == info_.cellCount &&
-                        summary_.vertices == info_.pointCount &&
-                        cellSum_ == parts::sumBelow(info_.cellCount) &&
-                        vertexSum_ == parts::sumBelow(info_.pointCount);
-  if (!complete || borders_ != 0) {
+  if (team_ != nullptr) {
+    using Numbers = std::array<std::uint64_t, sizeof(Sums) / sizeof(std::uint64_t)>;
+    const GatheredNumbers all = team_->gather(std::bit_cast<Numbers>(sums_));
+    for (std::uint32_t r = 0; r < team_->size(); ++r) {
+      if (r == team_->rank()) continue;
+      Numbers numbers{};
+      std::copy_n(all.of(r).begin(), numbers.size(), numbers.begin());
+      sums_.add(std::bit_cast<Sums>(numbers));
+    }
+  }
+  const bool complete = sums_.summary.cells == info_.cellCount &&
+                        sums_.summary.vertices == info_.pointCount &&
+                        sums_.cells == parts::sumBelow(info_.cellCount) &&
+                        sums_.vertices == parts::sumBelow(info_.pointCount);
+  if (!complete || sums_.borders != 0) {
     throw Error(ErrorCode::VerificationFailed,
                 std::string("The parts do not make up one mesh: ") +
                     (complete ? "neighbours disagree on what they share"

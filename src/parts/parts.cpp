@@ -1,6 +1,7 @@
 // Gives the map of one process to all processes of a team.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -110,15 +111,15 @@ class Collector final : public PartSink {
   std::vector<MeshPart>& parts_;
 };
 
-/// The most parts to have in memory at once: with several threads twice as many as these, since
-/// some parts take twice as long as others; but no more than fit in a gigabyte, one at least.
-/// Making a part takes 145 bytes per cell (docs/results/scaling.md), and tables of some 40 bytes
-/// per tet that each needs for itself.
-std::uint32_t partsAtOnce(const PartsInfo& info, std::size_t tets) {
+/// The most parts to have in memory at once: as many as threads, or twice as many if they are
+/// delivered in order, since some parts take twice as long as others; but no more than fit in a
+/// gigabyte, one at least. Making a part takes 145 bytes per cell (docs/results/scaling.md), and
+/// tables of some 40 bytes per tet that each needs for itself.
+std::uint32_t partsAtOnce(const PartsInfo& info, std::size_t tets, bool inOrder) {
   constexpr std::uint64_t kBytes = std::uint64_t{1} << 30;
   const std::uint64_t ofOne = 145 * (info.cellCount / info.parts + 1) + 40 * tets;
   const auto threads = static_cast<std::uint64_t>(currentThreads());
-  const std::uint64_t most = threads > 1 ? 2 * threads : 1;
+  const std::uint64_t most = threads > 1 && inOrder ? 2 * threads : threads;
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kBytes / ofOne, 1, most));
 }
 
@@ -137,20 +138,53 @@ class ProvenParts {
   }
 
   [[nodiscard]] PartsInfo info() const { return maker_->info(); }
-  /// Makes consecutive parts side by side, and proves each at once.
-  [[nodiscard]] std::vector<MeshPart> make(std::uint32_t first, std::uint32_t count) {
-    std::vector<MeshPart> parts(count);
+  /// Makes, proves and delivers all parts.
+  void deliverTo(PartSink& sink, std::size_t tets) {
     Stage stage(context_, "parts");
-    parallelFor(stage, count, 1, [&](std::size_t i) {
-      parts[i] = maker_->make(first + static_cast<std::uint32_t>(i), stage);
-      if (!expected_) return;
-      proofs_.with([&] { return verification::PartProof(map_, *expected_, maker_->counts()); },
-                   [&](verification::PartProof& proof) { proof.compare(parts[i], stage); });
+    const std::uint32_t parts = info().parts;
+    const bool inOrder = !sink.takesAnyOrder();
+    const std::uint32_t atOnce = partsAtOnce(info(), tets, inOrder);
+    LoopProgress progress(stage, parts);
+    if (inOrder) return deliverInOrder(sink, atOnce, progress);
+    // So that no more parts than these are in memory, whichever thread works on which.
+    std::atomic<std::uint32_t> next{0};
+    parallelBlocks(nullptr, atOnce, 1, [&](std::size_t, std::size_t, std::size_t) {
+      try {
+        for (std::uint32_t part = next++; part < parts; part = next++) {
+          sink.part(make(part));
+          progress.advance(1);
+        }
+      } catch (...) {
+        next = parts;  // the other threads need not go on
+        throw;
+      }
     });
-    return parts;
+  }
+
+  /// Thread-safe.
+  [[nodiscard]] MeshPart make(std::uint32_t which) {
+    Stage stage(context_, Stage::kInner);
+    MeshPart part = maker_->make(which, stage);
+    if (expected_) {
+      proofs_.with([&] { return verification::PartProof(map_, *expected_, maker_->counts()); },
+                   [&](verification::PartProof& proof) { proof.compare(part, stage); });
+    }
+    return part;
   }
 
  private:
+  void deliverInOrder(PartSink& sink, std::uint32_t atOnce, LoopProgress& progress) {
+    const std::uint32_t parts = info().parts;
+    std::vector<MeshPart> made(atOnce);
+    for (std::uint32_t first = 0; first < parts; first += atOnce) {
+      const std::uint32_t count = std::min(atOnce, parts - first);
+      parallelBlocks(&progress, count, 1, [&](std::size_t i, std::size_t, std::size_t) {
+        made[i] = make(first + static_cast<std::uint32_t>(i));
+      });
+      for (std::uint32_t i = 0; i < count; ++i) sink.part(std::move(made[i]));
+    }
+  }
+
   const igm::PreparedMap& map_;
   Context& context_;
   std::unique_ptr<PartMaker> maker_;
@@ -231,11 +265,7 @@ void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& o
   parts::runParts(nullptr, sink.neededGhostLayers(), map, options, parts, context, statistics,
                   [&](parts::ProvenParts& maker, const PartsInfo& info) {
                     sink.begin(info);
-                    const std::uint32_t most = parts::partsAtOnce(info, map.tets.size());
-                    for (std::uint32_t p = 0; p < parts.parts; p += most) {
-                      std::vector<MeshPart> made = maker.make(p, std::min(most, parts.parts - p));
-                      sink.parts(made);
-                    }
+                    maker.deliverTo(sink, map.tets.size());
                     sink.end();
                   });
 }
@@ -266,7 +296,7 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     parts::runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
                     [&](parts::ProvenParts& maker, const PartsInfo& info) {
                       checked.begin(info);
-                      checked.part(std::move(maker.make(team.rank(), 1).front()));
+                      checked.part(maker.make(team.rank()));
                       checked.end();
                     });
     if (summary != nullptr) *summary = checked.result();

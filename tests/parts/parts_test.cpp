@@ -1,5 +1,9 @@
 // Parts make up the mesh in one piece, whatever the map, the number of parts and that of threads.
+#include <algorithm>
+#include <mutex>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -198,6 +202,66 @@ TEST(Parts, ThatDoNotFitTogetherAreRefused) {
   EXPECT_TRUE(refusedWith([](MeshPart& part) {
     std::swap(part.neighbours[0].vertices[0], part.neighbours[0].vertices[1]);
   }));
+}
+
+/// Keeps what it receives, from any thread.
+class Receiver : public PartSink {
+ public:
+  explicit Receiver(bool anyOrder) : anyOrder_(anyOrder) {}
+  [[nodiscard]] bool takesAnyOrder() const override { return anyOrder_; }
+  void begin(const PartsInfo& /*info*/) override {}
+  void part(MeshPart&& part) override {
+    if (part.part == failing) throw Error(ErrorCode::FileWrite, "as if the disk were full");
+    const std::lock_guard lock(mutex_);
+    received.push_back(std::move(part));
+  }
+  void end() override { ended = true; }
+
+  std::uint32_t failing = kMaxParts;
+  bool ended = false;
+  std::vector<MeshPart> received;
+
+ private:
+  bool anyOrder_;
+  std::mutex mutex_;
+};
+
+TEST(Parts, ComeInOrderUnlessTheSinkTakesThemInAny) {
+  const TetMap map = generateSample(SampleKind::Sphere).map;
+  Context context(4);
+  const std::vector<MeshPart> expected = extractParts(map, {}, {23, 1}, context);
+  for (const bool anyOrder : {false, true}) {
+    Receiver sink(anyOrder);
+    PartSummarySink checked(sink);
+    extractParts(checked, map, {}, {23, 1}, context);
+    EXPECT_TRUE(sink.ended);
+    std::vector<MeshPart>& parts = sink.received;
+    ASSERT_EQ(parts.size(), 23U);
+    const auto comesFirst = [](const MeshPart& a, const MeshPart& b) { return a.part < b.part; };
+    if (anyOrder) std::sort(parts.begin(), parts.end(), comesFirst);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      EXPECT_EQ(parts[i].part, i);
+      EXPECT_EQ(parts[i].globalCells, expected[i].globalCells);
+      EXPECT_EQ(parts[i].mesh.cells, expected[i].mesh.cells);
+    }
+  }
+}
+
+TEST(Parts, EndWhereASinkFails) {
+  const TetMap map = generateSample(SampleKind::Sphere).map;
+  for (const bool anyOrder : {false, true}) {
+    Receiver sink(anyOrder);
+    sink.failing = 3;
+    Context context(2);
+    try {
+      extractParts(sink, map, {}, {1000}, context);
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::FileWrite);
+    }
+    EXPECT_FALSE(sink.ended);
+    EXPECT_LT(sink.received.size(), 500U);  // 3, and what the other thread did meanwhile
+  }
 }
 
 TEST(Parts, AreRefusedForOptionsOutOfRange) {

@@ -149,21 +149,20 @@ void OutputFolder::takeBack() noexcept {
   }
 }
 
-void FileSet::commit(const std::function<void(std::size_t i, OutputFile& file)>& change) {
+void FileSet::commit(const std::function<void(std::uint32_t part, OutputFile& file)>& change) {
   barrier(team_);  // wait until all files are written
-  std::size_t done = 0;
   try {
-    for (; done < files_.size(); ++done) {
-      OutputFile& output = *files_[done].output;
-      output.resume();
-      if (change) change(done, output);
-      output.commit();
+    for (auto& [part, file] : files_) {
+      file.output.resume();
+      if (change) change(part, file.output);
+      file.output.commit();
     }
     barrier(team_);
   } catch (...) {
     std::error_code unknown;
-    if (done < files_.size() && files_[done].output->isNamed()) ++done;
-    while (done-- > 0) std::filesystem::remove(files_[done].path, unknown);
+    for (auto& [part, file] : files_) {
+      if (file.output.isNamed()) std::filesystem::remove(file.path, unknown);
+    }
     throw;
   }
 }

@@ -1,19 +1,18 @@
 // Output folders that appear complete or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <map>
+#include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <hexhex/error.hpp>
-#include <hexhex/parts.hpp>
 #include <hexhex/team.hpp>
 
-#include <base/parallel.hpp>
 #include <io/core/output_file.hpp>
 
 namespace hexhex::io {
@@ -93,40 +92,33 @@ class FileSet {
  public:
   explicit FileSet(ProcessTeam* team) : team_(team) {}
 
-  /// Opens the file of the next part.
-  OutputFile& add(const std::filesystem::path& file) {
-    files_.push_back({file, std::make_unique<OutputFile>(file, OutputFile::Target::Regular)});
-    return *files_.back().output;
-  }
-  /// Suspends the last file.
-  void finishLast() { files_.back().output->suspend(); }
-  /// Writes the files of the next parts side by side: write(i, file).
-  /// @param nameOf  returns the path of a part's file
-  template <class NameOf, class Write>
-  void writeAll(std::span<const MeshPart> parts, Stage& stage, const NameOf& nameOf,
-                const Write& write) {
-    const std::size_t first = files_.size();
-    for (const MeshPart& part : parts) static_cast<void>(add(nameOf(part.part)));
-    parallelFor(stage, parts.size(), 1, [&](std::size_t i) {
-      OutputFile& output = *files_[first + i].output;
-      write(i, output);
-      output.suspend();
-    });
+  /// Writes the file of a part: write(file). Thread-safe.
+  template <class Write>
+  void write(std::uint32_t part, const std::filesystem::path& file, const Write& write) {
+    OutputFile& output = add(part, file);
+    write(output);
+    output.suspend();
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return files_.size(); }
-
-  /// Calls change(i, file), which may use writeBytesAt(), for each file and renames it. If a file
-  /// cannot be renamed, those before it are removed.
-  void commit(const std::function<void(std::size_t i, OutputFile& file)>& change = nullptr);
+  /// Calls change(part, file), which may use writeBytesAt(), for each file and renames it. If a
+  /// file cannot be renamed, those before it are removed.
+  void commit(const std::function<void(std::uint32_t part, OutputFile& file)>& change = nullptr);
 
  private:
   struct File {
+    explicit File(const std::filesystem::path& file)
+        : path(file), output(file, OutputFile::Target::Regular) {}
     std::filesystem::path path;
-    std::unique_ptr<OutputFile> output;
+    OutputFile output;
   };
+  OutputFile& add(std::uint32_t part, const std::filesystem::path& file) {
+    const std::lock_guard lock(mutex_);
+    return files_.try_emplace(part, file).first->second.output;
+  }
+
   ProcessTeam* team_;
-  std::vector<File> files_;
+  std::mutex mutex_;
+  std::map<std::uint32_t, File> files_;  ///< by part
 };
 
 /// The number of a part, zero-padded to the width of the last part's number.

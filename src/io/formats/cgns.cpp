@@ -719,7 +719,7 @@ class CgnsPartSink final : public PartSink {
   }
 
   void part(MeshPart&& part) override {
-    Stage stage(context_, "write mesh");
+    Stage stage(context_, Stage::kInner);
     std::optional<HdfObject>& zone = zones_.emplace_back();
     shared_.emplace_back();
     if (part.ownCells == 0) return;

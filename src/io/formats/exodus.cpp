@@ -759,59 +759,57 @@ class ExodusSink final : public PartSink {
     refuseGhosts(info.ghostLayers, "Exodus files");
     requireInt32(info.pointCount, "Exodus numbers vertices");
     requireInt32(info.cellCount, "Exodus numbers cells");
+    counts_.resize(info.parts);
   }
 
-  void part(MeshPart&& part) override { parts({&part, 1}); }
+  [[nodiscard]] bool takesAnyOrder() const override { return true; }
 
-  void parts(std::span<MeshPart> parts) override {
-    Stage stage(context_, "write mesh");
-    const std::size_t first = counts_.size();
-    counts_.resize(first + parts.size());
-    const auto nameOf = [this](std::uint32_t part) { return fileOf(part); };
-    files_.writeAll(parts, stage, nameOf, [&](std::size_t p, OutputFile& output) {
-      const MeshGroups groups = groupPart(parts[p], info_, stage);
-      const NemesisFile file(parts[p], info_, groups, stage);
+  void part(MeshPart&& part) override {
+    Stage stage(context_, Stage::kInner);
+    files_.write(part.part, fileOf(part.part), [&](OutputFile& output) {
+      const MeshGroups groups = groupPart(part, info_, stage);
+      const NemesisFile file(part, info_, groups, stage);
       file.write(output, context_.threads(), kMostExodusBytes);
-      counts_[first + p] = file.globalCounts(kMostExodusBytes);
+      counts_[part.part] = file.globalCounts(kMostExodusBytes);
     });
-    for (const std::vector<GlobalCounts>& counts : std::span(counts_).subspan(first)) {
-      for (std::size_t i = 0; i < counts.size(); ++i) {
-        const std::vector<std::uint64_t>& ofPart = counts[i].ofPart;
-        if (sums_.size() <= i) sums_.emplace_back(ofPart.size(), 0);
-        for (std::size_t k = 0; k < ofPart.size(); ++k) sums_[i][k] += ofPart[k];
-      }
-    }
   }
 
   void end() override {
     Stage stage(context_, "write mesh");
-    if (team_ != nullptr) addUp();
-    files_.commit([&](std::size_t p, OutputFile& file) {
-      for (std::size_t i = 0; i < counts_[p].size(); ++i) {
-        std::string bytes(sizeof(std::int32_t) * sums_[i].size(), '\0');
+    const std::vector<std::uint64_t> sums = addUp();
+    files_.commit([&](std::uint32_t part, OutputFile& file) {
+      auto sum = sums.begin();
+      for (const GlobalCounts& counts : counts_[part]) {
+        std::string bytes(sizeof(std::int32_t) * counts.ofPart.size(), '\0');
         char* place = bytes.data();
-        for (const std::uint64_t sum : sums_[i]) {
-          place = putBigBytes(place, static_cast<std::int32_t>(sum));
+        for (std::size_t k = 0; k < counts.ofPart.size(); ++k) {
+          place = putBigBytes(place, static_cast<std::int32_t>(*sum++));
         }
-        file.writeBytesAt(counts_[p][i].position, bytes.data(), bytes.size());
+        file.writeBytesAt(counts.position, bytes.data(), bytes.size());
       }
     });
   }
 
  private:
-  /// Adds up the sums of all processes; their lists have equal lengths.
-  void addUp() {
-    std::vector<std::uint64_t> mine;
-    for (const auto& sums : sums_) mine.insert(mine.end(), sums.begin(), sums.end());
-    const GatheredNumbers all = team_->gather(mine);
-    std::size_t next = 0;
-    for (auto& sums : sums_) {
-      for (std::uint64_t& sum : sums) {
-        sum = 0;
-        for (std::uint32_t r = 0; r < team_->size(); ++r) sum += all.of(r)[next];
-        ++next;
+  /// The sums over all parts, in all processes: as many numbers as any part has.
+  [[nodiscard]] std::vector<std::uint64_t> addUp() const {
+    std::vector<std::uint64_t> sums;
+    const auto add = [&sums](std::size_t i, std::uint64_t number) {
+      if (sums.size() <= i) sums.push_back(0);
+      sums[i] += number;
+    };
+    for (const std::vector<GlobalCounts>& ofPart : counts_) {
+      std::size_t i = 0;
+      for (const GlobalCounts& counts : ofPart) {
+        for (const std::uint64_t number : counts.ofPart) add(i++, number);
       }
     }
+    if (team_ == nullptr) return sums;
+    const GatheredNumbers all = team_->gather(std::exchange(sums, {}));
+    for (std::uint32_t r = 0; r < team_->size(); ++r) {
+      for (std::size_t i = 0; i < all.of(r).size(); ++i) add(i, all.of(r)[i]);
+    }
+    return sums;
   }
   [[nodiscard]] std::filesystem::path fileOf(std::uint32_t part) const {
     return concat(file_.string(), '.', info_.parts, '.', padded(part, info_.parts));
@@ -823,7 +821,6 @@ class ExodusSink final : public PartSink {
   PartsInfo info_;
   FileSet files_;
   std::vector<std::vector<GlobalCounts>> counts_;  ///< per part
-  std::vector<std::vector<std::uint64_t>> sums_;   ///< over all parts
 };
 
 }  // namespace

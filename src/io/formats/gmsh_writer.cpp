@@ -700,7 +700,7 @@ class OneGmshFile final : public GmshSink {
   }
 
   void part(MeshPart&& part) override {
-    Stage stage(context_, "write mesh");
+    Stage stage(context_, Stage::kInner);
     const GmshPart own = gmshPart(part, true, stage);
     if (team_ != nullptr) return writeTogether(own);
     share_.add(own.share());
@@ -772,17 +772,18 @@ class ManyGmshFiles final : public GmshSink {
       : GmshSink(context, team), file_(std::move(file)), files_(team) {}
 
   void part(MeshPart&& part) override {
-    Stage stage(context_, "write mesh");
+    Stage stage(context_, Stage::kInner);
     std::string file = file_.string();
     file.insert(file.size() - file_.extension().string().size(), concat('_', part.part + 1));
-    LineWriter lines(files_.add(file), context_.threads());
-    const GmshPart own = gmshPart(part, false, stage);
-    const GmshHeads heads = headsOf(own.share(), nextQuad_);
-    for (std::size_t k = 0; k < heads.size(); ++k) {
-      lines.write(heads[k]);
-      own.write(k, lines);
-    }
-    files_.finishLast();
+    files_.write(part.part, file, [&](OutputFile& output) {
+      LineWriter lines(output, context_.threads());
+      const GmshPart own = gmshPart(part, false, stage);
+      const GmshHeads heads = headsOf(own.share(), nextQuad_);
+      for (std::size_t k = 0; k < heads.size(); ++k) {
+        lines.write(heads[k]);
+        own.write(k, lines);
+      }
+    });
   }
   void end() override { files_.commit(); }
 

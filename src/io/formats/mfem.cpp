@@ -477,19 +477,16 @@ class MfemSink final : public PartSink {
     refuseGhosts(info.ghostLayers, "MFEM's files");
   }
 
-  void part(MeshPart&& part) override { parts({&part, 1}); }
+  [[nodiscard]] bool takesAnyOrder() const override { return true; }
 
-  void parts(std::span<MeshPart> parts) override {
-    Stage stage(context_, "write mesh");
-    const auto nameOf = [this](std::uint32_t part) {
-      constexpr std::size_t kDigits = 6;
-      std::string number = std::to_string(part);
-      number.insert(0, kDigits - std::min(kDigits, number.size()), '0');
-      return file_.string() + '.' + number;
-    };
-    files_.writeAll(parts, stage, nameOf, [&](std::size_t i, OutputFile& output) {
-      writeSerial(output, parts[i], stage);
-      writeShared(output, SharedByGroup(parts[i]).groups(), parts[i].part);
+  void part(MeshPart&& part) override {
+    Stage stage(context_, Stage::kInner);
+    constexpr std::size_t kDigits = 6;
+    std::string number = std::to_string(part.part);
+    number.insert(0, kDigits - std::min(kDigits, number.size()), '0');
+    files_.write(part.part, file_.string() + '.' + number, [&](OutputFile& output) {
+      writeSerial(output, part, stage);
+      writeShared(output, SharedByGroup(part).groups(), part.part);
     });
   }
   void end() override { files_.commit(); }

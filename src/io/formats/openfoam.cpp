@@ -752,7 +752,7 @@ class OpenFoamSink final : public PartSink {
   }
 
   void part(MeshPart&& part) override {
-    Stage stage(context_, "write mesh");
+    Stage stage(context_, Stage::kInner);
     folders_.emplace_back(folderOf(part.part));
     const OutputFolder& folder = folders_.back();
     folder.run([&] { withThreads(context_.threads(), [&] { writePart(part, folder, stage); }); });

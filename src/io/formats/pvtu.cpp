@@ -54,19 +54,17 @@ class PvtuSink final : public PartSink {
 
   void begin(const PartsInfo& info) override { info_ = info; }
 
-  void part(MeshPart&& part) override { parts({&part, 1}); }
+  [[nodiscard]] bool takesAnyOrder() const override { return true; }
 
-  void parts(std::span<MeshPart> parts) override {
-    Stage stage(context_, "write mesh");
-    parallelFor(stage, parts.size(), 1, [&](std::size_t i) {
-      VtkPiece piece;
-      const VtkDataSet data = partDataSet(parts[i], info_, piece);
-      if (i == 0 && head_.empty()) head_ = headOf(data);
-      folder_.run([&] {
-        OutputFile output(folder_.fileOf(parts[i].part));
-        writeVtkXml(output, data, Compression::None, stage);
-        output.commit();
-      });
+  void part(MeshPart&& part) override {
+    Stage stage(context_, Stage::kInner);
+    VtkPiece piece;
+    const VtkDataSet data = partDataSet(part, info_, piece);
+    if (part.part == 0) head_ = headOf(data);
+    folder_.run([&] {
+      OutputFile output(folder_.fileOf(part.part));
+      writeVtkXml(output, data, Compression::None, stage);
+      output.commit();
     });
   }
 

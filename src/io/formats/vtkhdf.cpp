@@ -238,7 +238,7 @@ class VtkHdfSink final : public PartSink {
   }
 
   void part(MeshPart&& part) override {
-    Stage stage(context_, "write mesh");
+    Stage stage(context_, Stage::kInner);
     VtkPiece piece;
     VtkDataSet data = partDataSet(part, info_, piece);
     addLayout(data, part.mesh.cells);
