@@ -703,7 +703,7 @@ TEST(ReaderCost, OfBombs) {
   if (kSanitized) GTEST_SKIP();
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "small");
-  constexpr std::size_t kContent = std::size_t{4} << 20;
+  constexpr std::size_t kContent = std::size_t{2} << 20;
   for (const Bomb& bomb : allBombs()) {
     const std::filesystem::path small = folder.path() / "small" / bomb.name;
     writeText(folder / bomb.name, bomb.make(kContent));

@@ -301,12 +301,21 @@ const Format* formatWith(std::string_view key, Word wordOf, FileContent content)
                                               ".");
 }
 
+/// Extensions of meshes that meshio converts.
+constexpr std::array<std::string_view, 10> kReadByMeshio = {
+    ".avs", ".bdf", ".f3grid", ".fem", ".mdpa", ".med", ".nas", ".su2", ".xdmf", ".xmf"};
+
 /// Advice for a file that holds something other than the requested content.
 std::string adviceOn(const std::string& extension, FileContent content) {
   const Format* const surface = formatWith(extension, extensionOf, FileContent::Triangles);
   if (surface != nullptr && surface->triangles.isIn == nullptr) {
     return ' ' + extension +
            " files hold surfaces: `hexhex mesh` fills them with tets and makes hexahedra of these.";
+  }
+  if (std::find(kReadByMeshio.begin(), kReadByMeshio.end(), extension) != kReadByMeshio.end()) {
+    return " meshio converts " + extension +
+           " files: `pip install meshio[all]`, then `meshio convert NAME" + std::string(extension) +
+           " NAME.vtu`.";
   }
   if (extension == ".fra") {
     return " .fra files hold frame fields, not maps: `hexhex map` makes a map of the tets alone.";
