@@ -3,11 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -751,53 +751,62 @@ class OpenFoamSink final : public PartSink {
     boundary_[0];
   }
 
+  [[nodiscard]] bool takesAnyOrder() const override { return true; }
+
   void part(MeshPart&& part) override {
     Stage stage(context_, Stage::kInner);
-    folders_.emplace_back(folderOf(part.part));
-    const OutputFolder& folder = folders_.back();
-    folder.run([&] { withThreads(context_.threads(), [&] { writePart(part, folder, stage); }); });
+    WrittenPart& written = add(part.part);
+    written.folder.run(
+        [&] { withThreadsHere(context_.threads(), [&] { writePart(part, written, stage); }); });
   }
 
   void end() override {
     Stage stage(context_, "write mesh");
     numberFaces();
-    for (std::size_t p = 0; p < open_.size(); ++p) {
-      folders_[p].run([&] { finishPart(open_[p], folders_[p], stage); });
+    for (const auto& [number, part] : parts_) {
+      part.folder.run([&] { finishPart(part.open, part.folder, stage); });
     }
     barrier(team_);  // wait until all parts are written
     nameAll();
   }
 
  private:
-  [[nodiscard]] std::filesystem::path folderOf(std::uint32_t part) const {
-    return case_ / (concat("processor", part)) / "constant" / "polyMesh";
+  struct WrittenPart {
+    explicit WrittenPart(const std::filesystem::path& target) : folder(target) {}
+    OutputFolder folder;
+    OpenPart open;
+  };
+  [[nodiscard]] WrittenPart& add(std::uint32_t part) {
+    const std::lock_guard lock(mutex_);
+    const std::filesystem::path folder = case_ / (concat("processor", part));
+    return parts_.try_emplace(part, folder / "constant" / "polyMesh").first->second;
   }
 
-  void writePart(const MeshPart& part, const OutputFolder& folder, Stage& stage) {
+  void writePart(const MeshPart& part, WrittenPart& written, Stage& stage) {
     PartFaces faces(part, stage);
     faces.run();
-    PolyMeshWriter writer(folder.temporary(), context_.threads());
+    PolyMeshWriter writer(written.folder.temporary(), context_.threads());
     writer.write(part.mesh, faces.poly, stage);
     writer.writeZones(part.mesh.regions.empty() ? CellGroups{} : groupCells(part.mesh));
     writer.writeLabels("pointProcAddressing", part.globalPoints, stage);
     writer.writeLabels("cellProcAddressing", part.globalCells, stage);
     writer.commit();
-    open_.push_back(std::move(faces.open));
+    written.open = std::move(faces.open);
   }
 
   void numberFaces() {
-    for (const OpenPart& open : open_) {
-      inner_.add(open.owned);
-      for (const auto& [tag, faces] : open.patches) boundary_.at(tag).add(faces);
+    for (const auto& [number, part] : parts_) {
+      inner_.add(part.open.owned);
+      for (const auto& [tag, faces] : part.open.patches) boundary_.at(tag).add(faces);
     }
     std::uint64_t next = inner_.finish(0, team_);
     for (auto& [tag, numbers] : boundary_) next = numbers.finish(next, team_);
     requireInt32(next, "OpenFOAM numbers faces");
-    for (const OpenPart& open : open_) {
-      for (const OpenPart::Border& border : open.borders) {
-        std::vector<std::uint64_t>& numbers = borders_[{open.part, border.part}];
+    for (const auto& [number, part] : parts_) {
+      for (const OpenPart::Border& border : part.open.borders) {
+        std::vector<std::uint64_t>& numbers = borders_[{number, border.part}];
         for (const std::uint64_t face : border.faces) {
-          numbers.push_back(face == kOfOther ? kOfOther : inner_.of(open.owned, face));
+          numbers.push_back(face == kOfOther ? kOfOther : inner_.of(part.open.owned, face));
         }
       }
     }
@@ -881,9 +890,13 @@ class OpenFoamSink final : public PartSink {
 
   /// Renames all folders to their targets; the marker comes last.
   void nameAll() {
-    std::size_t done = 0;
+    std::vector<OutputFolder*> done;
+    done.reserve(parts_.size());
     try {
-      for (; done < folders_.size(); ++done) folders_[done].commit();
+      for (auto& [number, part] : parts_) {
+        part.folder.commit();
+        done.push_back(&part.folder);
+      }
       barrier(team_);
       if (marker_) marker_->commit();
       barrier(team_);
@@ -893,7 +906,7 @@ class OpenFoamSink final : public PartSink {
       if (isNamed && team_ == nullptr) throw;
       std::error_code unknown;
       if (isNamed) std::filesystem::remove(file_, unknown);
-      while (done-- > 0) folders_[done].takeBack();
+      for (; !done.empty(); done.pop_back()) done.back()->takeBack();
       throw;
     }
   }
@@ -908,8 +921,8 @@ class OpenFoamSink final : public PartSink {
   ProcessTeam* team_;
   std::optional<OutputFile> marker_;  ///< first process only
   PartsInfo info_;
-  std::deque<OutputFolder> folders_;
-  std::vector<OpenPart> open_;  ///< parts of this process
+  std::mutex mutex_;                            ///< for parts_
+  std::map<std::uint32_t, WrittenPart> parts_;  ///< of this process
   FaceNumbers inner_;
   std::map<std::int32_t, FaceNumbers, Before> boundary_;  ///< by tag
   /// By sending and receiving part: numbers of their shared faces whose smaller cell the sender
