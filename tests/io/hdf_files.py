@@ -7,7 +7,9 @@ KIND is exodus: by the library of NetCDF (netCDF4), a file of NetCDF-4 with name
 and node sets, compressed as SEACAS does; exodus27: a block of HEX27; exodus-lies: a block whose
 elements are not in the file. cgns: by h5py, a file as the CGNS library maps it to HDF5: two cubes with
 conditions; cgns-mixed: in one section of all; cgns20, cgns27: a cell of order 2; cgns-zones, cgns-apart:
-a zone for each cube, with and without a connection; cgns-structured, cgns-beyond: to be refused, as
+a zone for each cube, with and without a connection; cgns-blocks: two structured zones, whose axes differ,
+with a range as their connection, cgns-lists: with lists, cgns-loop: periodic, too; cgns-ring: a structured
+zone around a hole; cgns-rind, cgns-flat, cgns-far, cgns-faces, cgns-beyond: to be refused, as
 cgns-link, cgns-raw, cgns-virtual, whose coordinates are in another file, FILE.other. vtkhdf: by VTK,
 the two cubes; vtkhdf-parts: by h5py, each cube in a partition, with numbers of single precision and
 no global numbers; vtkhdf-image, vtkhdf-short, vtkhdf-steps: to be refused.
@@ -88,7 +90,7 @@ def write_cgns(file, kind):
 
     def zone_of(base, name, points, sections):
         zone = node(base, name, "Zone_t", "I8", numpy.array([[len(points)], [len(sections)], [0]], dtype=numpy.int64))
-        node(zone, "ZoneType", "ZoneType_t", "C1", "Structured" if kind == "cgns-structured" else "Unstructured")
+        node(zone, "ZoneType", "ZoneType_t", "C1", "Unstructured")
         grid = node(zone, "GridCoordinates", "GridCoordinates_t")
         for axis in range(3):
             column = numpy.array(points, dtype=float)[:, axis]
@@ -120,6 +122,68 @@ def write_cgns(file, kind):
         node(to, "PointList", "IndexArray_t", "I4", numpy.array([[p] for p in here], dtype=numpy.int32))
         node(to, "PointListDonor", "IndexArray_t", "I4", numpy.array([[p] for p in there], dtype=numpy.int32))
 
+    def integers(numbers):
+        return numpy.array(numbers, dtype=numpy.int32)
+
+    def block(base, name, places):
+        """A structured zone with a vertex at each of an array of places by i, j and k."""
+        size = places.shape[:3]
+        if kind == "cgns-far" and name == "First":
+            size = (3, 1 << 16, 1 << 15)
+        sizes = [size, [n - 1 for n in size], [0, 0, 0]] if kind != "cgns-flat" else [size[:2], [2, 2], [0, 0]]
+        zone = node(base, name, "Zone_t", "I4", integers(sizes))
+        node(zone, "ZoneType", "ZoneType_t", "C1", "Structured")
+        grid = node(zone, "GridCoordinates", "GridCoordinates_t")
+        if kind == "cgns-rind":
+            places = places[1:]
+        for axis in range(3):
+            node(grid, "Coordinate" + "XYZ"[axis], "DataArray_t", "R8", places[..., axis].transpose(2, 1, 0))
+        return zone
+
+    def match(zone, donor, here, there, transform, periodic=False):
+        all_of_it = zone.get("Connectivity") or node(zone, "Connectivity", "ZoneGridConnectivity_t")
+        label = "GridConnectivity_t" if kind == "cgns-lists" else "GridConnectivity1to1_t"
+        to = node(all_of_it, f"to{len(all_of_it)}", label, "C1", donor)
+        if kind == "cgns-lists":
+            node(to, "GridConnectivityType", "GridConnectivityType_t", "C1", "Abutting1to1")
+            places = [(j, k) for j in (1, 2, 3) for k in (1, 2)]
+            lists = ([[3, j, k] for j, k in places], [[4 - j, 3 - k, 1] for j, k in places])
+            node(to, "PointList", "IndexArray_t", "I4", integers(lists[donor == "First"]))
+            node(to, "PointListDonor", "IndexArray_t", "I4", integers(lists[donor == "Second"]))
+            return
+        node(to, "PointRange", "IndexRange_t", "I4", integers(here))
+        node(to, "PointRangeDonor", "IndexRange_t", "I4", integers(there))
+        node(to, "Transform", '"int[IndexDimension]"', "I4", integers(transform))
+        if periodic:
+            node(node(to, "Property", "GridConnectivityProperty_t"), "Periodic", "Periodic_t")
+
+    def write_blocks(base):
+        if kind == "cgns-ring":
+            angles = numpy.linspace(0, -2 * numpy.pi, 9)[:, None, None]
+            radii, heights = numpy.arange(1.0, 4)[None, :, None], numpy.arange(2.0)[None, None, :]
+            ring = numpy.stack([radii * numpy.cos(angles) + 0 * heights, radii * numpy.sin(angles) + 0 * heights,
+                                heights + 0 * angles * radii], axis=-1)
+            match(block(base, "Ring", ring), "Ring", [[1, 1, 1], [1, 3, 2]], [[9, 1, 1], [9, 3, 2]], [1, 2, 3])
+            return
+        places = numpy.stack(numpy.meshgrid(*(numpy.arange(float(n)) for n in (5, 3, 2)), indexing="ij"), axis=-1)
+        first = block(base, "First", places[:3])
+        # Its axes are -y, -z and x.
+        second = block(base, "Second", places[2:, ::-1, ::-1].transpose(1, 2, 0, 3))
+        match(first, "Second", [[3, 1, 1], [3, 3, 2]], [[3, 2, 1], [1, 1, 1]], [3, -1, -2])
+        match(second, "First", [[1, 1, 1], [3, 2, 1]], [[3, 3, 2], [3, 1, 1]], [-2, -3, 1])
+        if kind == "cgns-loop":
+            match(first, "Second", [[1, 1, 1], [1, 3, 2]], [[3, 2, 3], [1, 1, 3]], [3, -1, -2], periodic=True)
+        side = "FaceCenter" if kind == "cgns-faces" else "KFaceCenter"
+        for zone, name, location, array, numbers in (
+                (first, "west", "Vertex", "Range", [[1, 1, 1], [1, 3, 2]]),
+                (second, "north", "IFaceCenter", "List", [[1, 1, 1], [1, 1, 2]]),
+                (second, "east", side, "Range", [[1, 1, 3], [2, 1, 3]]),
+                (first, "corner", "Vertex", "List", [[1, 3, 2]])):
+            bc = node(zone.get("ZoneBC") or node(zone, "ZoneBC", "ZoneBC_t"), name, "BC_t", "C1", "BCWall")
+            label = {"Range": "IndexRange_t", "List": "IndexArray_t"}[array]
+            node(bc, "Point" + array, label, "I4", integers(numbers))
+            node(bc, "GridLocation", "GridLocation_t", "C1", location)
+
     points = CORNERS + [(2, 0, 0), (2, 1, 0), (2, 0, 1), (2, 1, 1)]
     cells = [[1, 2, 3, 4, 5, 6, 7, 8], [2, 9, 10, 3, 6, 11, 12, 7]]
     with h5py.File(file, "w", track_order=True) as data:
@@ -130,7 +194,9 @@ def write_cgns(file, kind):
             node(node(base, family, "Family_t"), "inflow", "FamilyName_t", "C1", "inflow")
         else:
             node(base, family, "Family_t")
-        if kind in ("cgns20", "cgns27"):
+        if kind[5:] in ("blocks", "lists", "loop", "ring", "rind", "flat", "far", "faces"):
+            write_blocks(base)
+        elif kind in ("cgns20", "cgns27"):
             # As the standard (SIDS) numbers the nodes: corners, edges at the bottom, upright and at the
             # top, faces from the bottom on around the cell to the top, and the middle.
             edges = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 5), (2, 6), (3, 7), (4, 5), (5, 6), (6, 7), (7, 4)]

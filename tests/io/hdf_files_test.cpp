@@ -156,9 +156,92 @@ TEST(HdfFiles, CgnsOfOrder2AndOfSeveralZones) {
     return failureOf([&] { static_cast<void>(readHexMesh(file)); }).sentence;
   };
   EXPECT_NE(sentence("cgns-apart").find("nothing says which vertices"), std::string::npos);
-  EXPECT_NE(sentence("cgns-structured").find("not unstructured"), std::string::npos);
   EXPECT_NE(sentence("cgns-beyond").find("names vertex 13, but its zone has 12"),
             std::string::npos);
+}
+
+TEST(HdfFiles, StructuredCgns) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.cgns";
+  Context context;
+  for (const std::string kind : {"cgns-blocks", "cgns-lists", "cgns-loop"}) {
+    SCOPED_TRACE(kind);
+    if (const std::string why = makeFile(kind, file); !why.empty()) GTEST_SKIP() << why;
+    EXPECT_FALSE(holdsLagrangeCells(file, context));
+    const HexMesh mesh = readHexMesh(file);
+    EXPECT_EQ(mesh.points.size(), 5U * 3 * 2);
+    ASSERT_EQ(mesh.cells.size(), 8U);
+    EXPECT_EQ(mesh.cells[1], (Hex{1, 2, 5, 4, 10, 11, 14, 13}));  // i is fastest
+    EXPECT_EQ(mesh.cells[4][0], 17U);  // the first of the second zone is one of the first zone
+    EXPECT_EQ(mesh.points[17], (Vec3{2, 2, 1}));
+    for (const double measure : scaledJacobians(mesh, context)) EXPECT_NEAR(measure, 1, 1e-12);
+    EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 1, 1, 1, 2, 2, 2, 2}));
+    // Tags exactly the quads on the three sides.
+    std::array<std::size_t, 4> counts{};
+    for (const FeatureQuad& quad : mesh.features.quads) {
+      ++counts.at(static_cast<std::size_t>(quad.tag));
+      for (const Index v : quad.vertices) {
+        const Vec3& p = mesh.points[v];
+        EXPECT_EQ(quad.tag == 1 ? p[0] : quad.tag == 2 ? p[1] - 2 : p[0] - 4, 0);
+      }
+    }
+    EXPECT_EQ(counts, (std::array<std::size_t, 4>{0, 2, 2, 2}));
+    ASSERT_EQ(mesh.features.vertices.size(), 1U);
+    EXPECT_EQ(mesh.points[mesh.features.vertices[0].vertex], (Vec3{0, 2, 1}));
+    std::string names;
+    for (const TagName& name : mesh.features.names) names += name.name + ' ';
+    EXPECT_EQ(names, "First Second west north east corner ");
+  }
+  ASSERT_EQ(makeFile("cgns-ring", file), "");
+  const HexMesh ring = readHexMesh(file);
+  EXPECT_EQ(ring.points.size(), 8U * 3 * 2);
+  EXPECT_EQ(ring.cells.size(), 8U * 2);
+  EXPECT_TRUE(ring.regions.empty());
+  for (const double measure : scaledJacobians(ring, context)) EXPECT_GT(measure, 0.5);
+  const auto sentence = [&](const char* kind) {
+    EXPECT_EQ(makeFile(kind, file), "");
+    return failureOf([&] { static_cast<void>(readHexMesh(file)); }).sentence;
+  };
+  EXPECT_NE(sentence("cgns-rind").find("has 12 vertices, but its size is 3 x 3 x 2"),
+            std::string::npos);
+  EXPECT_NE(sentence("cgns-far").find("has 18 vertices, but its size is 3 x 65536 x 32768"),
+            std::string::npos);
+  EXPECT_NE(sentence("cgns-faces").find("across which axis"), std::string::npos);
+  EXPECT_NE(sentence("cgns-flat").find("does not have three axes"), std::string::npos);
+}
+
+/// Sizes, ranges and axes of structured zones are replaced by others.
+TEST(HdfFiles, WrongNumbersOfStructuredZones) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.cgns";
+  if (const std::string why = makeFile("cgns-blocks", file); !why.empty()) GTEST_SKIP() << why;
+  const std::string good = contentOf(file);
+  const std::vector<std::vector<std::int32_t>> lists = {
+      {3, 3, 2, 2, 2, 1, 0, 0, 0}, {3, 1, 1, 3, 3, 2}, {3, 2, 1, 1, 1, 1}, {3, -1, -2},
+      {1, 1, 1, 1, 3, 2},          {1, 1, 3, 2, 1, 3}};
+  std::size_t refused = 0;
+  for (const std::vector<std::int32_t>& list : lists) {
+    const std::size_t place =
+        good.find({reinterpret_cast<const char*>(list.data()), 4 * list.size()});
+    ASSERT_NE(place, std::string::npos);
+    for (const std::int32_t number : {-2147483647 - 1, -1, 0, 1, 2, 4, 1 << 20, 2147483647}) {
+      for (std::size_t i = 0; i < std::min<std::size_t>(list.size(), 6); ++i) {
+        std::string bytes = good;
+        std::memcpy(bytes.data() + place + 4 * i, &number, 4);
+        writeText(file, bytes);
+        try {
+          const HexMesh read = readHexMesh(file);
+          for (const Hex& cell : read.cells) {
+            for (const Index corner : cell) EXPECT_LT(corner, read.points.size());
+          }
+        } catch (const Error& error) {
+          EXPECT_NE(error.code(), ErrorCode::Internal) << error.what();
+          ++refused;
+        }
+      }
+    }
+  }
+  EXPECT_GE(refused, 150U);
 }
 
 TEST(HdfFiles, VtkHdfOfOthersOfOneAndOfTwoPartitions) {

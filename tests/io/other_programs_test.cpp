@@ -203,6 +203,35 @@ TEST(HigherOrder, GmshWritesOtherFormats) {
   }
 }
 
+/// Structured zones of CGNS by Gmsh, whose axes are left-handed.
+TEST(OtherProgramsAndZones, GmshWritesStructuredZones) {
+  if (!hasHdf5()) GTEST_SKIP() << "built without HDF5, or it cannot be loaded";
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.cgns").string();
+  const std::string errors = (folder / "errors").string();
+  const int code = runScript("gmsh_files.py", "boxes '" + file + "'", errors);
+  if (isMissing(code)) GTEST_SKIP() << "gmsh for " << interpreter() << " is not installed";
+  ASSERT_EQ(code, 0) << contentOf(errors);
+  HexMesh mesh = readHexMesh(file);
+  EXPECT_EQ(mesh.points.size(), 7U * 4 * 4);
+  ASSERT_EQ(mesh.cells.size(), 2U * 27);
+  Context context;
+  reorient(mesh, context);
+  for (const double measure : scaledJacobians(mesh, context)) EXPECT_NEAR(measure, 1, 1e-9);
+  const auto& names = mesh.features.names;
+  const auto inflow = std::find_if(names.begin(), names.end(),
+                                   [](const TagName& name) { return name.name == "inflow"; });
+  ASSERT_NE(inflow, names.end());
+  std::size_t quads = 0;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    if (quad.tag != inflow->tag) continue;
+    ++quads;
+    for (const Index v : quad.vertices) EXPECT_EQ(mesh.points[v][0], 0);
+  }
+  EXPECT_EQ(quads, 9U);
+  EXPECT_EQ(std::count(mesh.regions.begin(), mesh.regions.end(), 1), 27);
+}
+
 /// Nodes of order 2 come back from MFEM: by vertices, edges, faces and cells, and cell by cell; as
 /// coordinates of each node, or axis by axis.
 TEST(HigherOrder, MfemNumbersNodesInItsWay) {

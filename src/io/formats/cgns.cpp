@@ -35,6 +35,7 @@
 #include <io/core/output_file.hpp>
 #include <io/core/output_folder.hpp>
 #include <io/core/text_scanner.hpp>
+#include <io/formats/cgns_structured.hpp>
 #include <io/formats/element_lists.hpp>
 #include <io/formats/formats.hpp>
 #include <io/formats/lagrange_nodes.hpp>
@@ -43,8 +44,8 @@ namespace hexhex::io {
 
 namespace {
 
-// Reading: zones with sections of elements, boundary conditions that name elements, and connections
-// between zones.
+// Reading: zones with sections of elements or structured ones, boundary conditions that name
+// elements or vertices, and connections between zones.
 
 constexpr std::int64_t kCgnsMixed = 20;
 constexpr std::int64_t kCgnsPolygons = 22;
@@ -102,8 +103,14 @@ class CgnsReader {
     std::string path;
     std::size_t firstPoint = 0;
     std::size_t points = 0;
+    std::size_t axes = 1;      ///< 3: structured
+    ZoneGrid grid = {};        ///< of its vertices
     std::uint64_t before = 0;  ///< offset of its element numbers
     std::uint64_t last = 0;    ///< largest element number in the file
+
+    [[nodiscard]] Index vertexAt(const ZonePlace& place) const {
+      return static_cast<Index>(firstPoint + grid.numberOf(place));
+    }
   };
   /// A named set of elements, numbered uniquely across zones.
   struct Group {
@@ -158,17 +165,53 @@ class CgnsReader {
   }
 
   void readZone(Zone& zone) {
-    if (const std::string type = textIn(zone.path, "ZoneType_t"); type != "Unstructured") {
+    const std::string type = textIn(zone.path, "ZoneType_t");
+    const bool isStructured = type == "Structured";
+    if (!isStructured && type != "Unstructured") {
       input_.fail(ErrorCode::FileUnsupported, "the zone \"", zone.path,
-                  "\" is not unstructured. Convert it to lists of "
-                  "elements first.");
+                  "\" is neither structured nor unstructured.");
     }
     zone.before = lastNumber_;
     zone.firstPoint = lists_.points.size();
     if (parts_ == ElementParts::All) readPoints(zone);
-    for (const std::string& section : nodes(zone.path, "Elements_t")) readSection(zone, section);
+    zone.grid.size[0] = static_cast<std::int64_t>(zone.points);
+    if (isStructured) {
+      readCells(zone);
+    } else {
+      for (const std::string& section : nodes(zone.path, "Elements_t")) readSection(zone, section);
+    }
     lastNumber_ = zone.before + zone.last;
     if (parts_ == ElementParts::All) readConditions(zone);
+  }
+
+  /// The cells of a structured zone, whose sizes are numbers of vertices and, behind them, of cells
+  /// along the axes.
+  void readCells(Zone& zone) {
+    const std::vector<std::int64_t> sizes = file_->integers(zone.path + "/ data");
+    zone.axes = 3;
+    if (sizes.size() != 9 || *std::min_element(sizes.begin(), sizes.begin() + 3) < 2) {
+      input_.fail(ErrorCode::FileUnsupported, "the structured zone \"", zone.path,
+                  "\" does not have three axes with two vertices or more, so it has no hexahedra.");
+    }
+    if (parts_ == ElementParts::Types) return;
+    const auto points = static_cast<std::int64_t>(zone.points);
+    std::copy_n(sizes.begin(), 3, zone.grid.size.begin());
+    if (points / sizes[0] / sizes[1] / sizes[2] != 1 || sizes[0] * sizes[1] * sizes[2] != points) {
+      input_.fail(ErrorCode::FileSyntax, "the structured zone \"", zone.path, "\" has ", points,
+                  " vertices, but its size is ", sizes[0], " x ", sizes[1], " x ", sizes[2],
+                  ". Planes of rind are not read.");
+    }
+    ElementBlock& block = lists_.blocks[lists_.blockOf(volumeCells("hexahedra"), 8)];
+    const ZoneRange cells = {{1, 1, 1}, zone.grid.between().size};
+    cells.forEach([&](ZonePlace corner) {
+      block.numbers.push_back(zone.before + ++zone.last);
+      for (std::size_t layer = 0; layer < 2; ++layer, ++corner[2]) {
+        const Quad v = zone.grid.faceAt(zone.firstPoint, 2, corner);
+        block.nodes.insert(block.nodes.end(), v.begin(), v.end());
+      }
+    });
+    volumeGroups_.push_back(
+        {nameByFamily(zone, zone.path), {{zone.before + 1, zone.before + zone.last}}});
   }
 
   void readPoints(Zone& zone) {
@@ -274,7 +317,11 @@ class CgnsReader {
     for (const std::string& all : nodes(zone.path, "ZoneBC_t")) {
       for (const std::string& condition : nodes(all, "BC_t")) {
         const std::string location = textIn(condition, "GridLocation_t");
-        Group group{nameOfCondition(zone, condition), {}};
+        Group group{nameByFamily(zone, condition), {}};
+        if (zone.axes == 3) {
+          readStructured(zone, condition, location, std::move(group));
+          continue;
+        }
         const bool ofVertices = location.empty() || location == "Vertex";
         readRanges(condition, "Point", ofVertices ? zone.points : zone.last, group);
         if (ofVertices && !group.ranges.empty()) {
@@ -293,8 +340,56 @@ class CgnsReader {
     }
   }
 
+  /// Conditions of structured zones name faces, by the vertices of a plane or by their lowest
+  /// corners; or other vertices; or cells.
+  void readStructured(const Zone& zone, const std::string& condition, const std::string& location,
+                      Group group) {
+    const bool ofVertices = location.empty() || location == "Vertex";
+    const bool ofCells = location == "CellCenter";
+    if (!ofVertices && !ofCells && !location.ends_with("FaceCenter")) return;
+    Group faces{group.name, {}};
+    for (const ZoneRange& named : rangesIn(zone.axes, condition, "Point")) {
+      ZoneRange range = named.ascending();
+      const std::optional<std::size_t> across =
+          ofCells ? std::nullopt : axisOf(condition, location, range);
+      const ZoneGrid grid = ofVertices ? zone.grid : zone.grid.between(across);
+      if (!grid.has(range.first) || !grid.has(range.last)) failCondition(condition);
+      takeMembers(2 * range.count());  // faces take more memory
+      if (!across) {
+        range.forEach([&](const ZonePlace& place) {
+          const std::uint64_t number = grid.numberOf(place) + 1 + (ofVertices ? 0 : zone.before);
+          group.ranges.emplace_back(number, number);
+        });
+        continue;
+      }
+      // Vertices of a plane: all but the last ones are the lowest corners of faces.
+      if (ofVertices) range.last = ZoneGrid{range.last}.between(across).size;
+      range.forEach([&](const ZonePlace& corner) {
+        const Quad v = zone.grid.faceAt(zone.firstPoint, *across, corner);
+        flats_.push_back({++lastFace_, v.size(), v});
+        faces.ranges.emplace_back(lastFace_, lastFace_);
+      });
+    }
+    if (ofVertices && !group.ranges.empty()) addNodes(zone, group);
+    if (ofCells) volumeGroups_.push_back(std::move(group));
+    if (!faces.ranges.empty()) flatGroups_.push_back(std::move(faces));
+  }
+
+  /// The axis across which a condition names faces; nothing if it names vertices.
+  [[nodiscard]] std::optional<std::size_t> axisOf(const std::string& condition,
+                                                  const std::string& location,
+                                                  const ZoneRange& range) const {
+    const bool ofFaces = location.ends_with("FaceCenter");
+    const std::size_t letter = std::string_view("IJK").find(location.substr(0, 1));
+    if (ofFaces && letter < 3) return letter;
+    const std::optional<std::size_t> flat = range.flatAxis();
+    if (flat || !ofFaces) return flat;
+    input_.fail(ErrorCode::FileUnsupported, "the condition \"", condition,
+                "\" does not say across which axis its faces are (IFaceCenter).");
+  }
+
   /// The name of its family, or of the one that this belongs to, as do Gmsh's, or its own.
-  [[nodiscard]] std::string nameOfCondition(const Zone& zone, const std::string& condition) const {
+  [[nodiscard]] std::string nameByFamily(const Zone& zone, const std::string& condition) const {
     const std::string family = textIn(condition, "FamilyName_t");
     if (family.empty()) return nameOf(condition);
     const std::string base = zone.path.substr(0, zone.path.rfind('/'));
@@ -310,25 +405,47 @@ class CgnsReader {
 
   void readRanges(const std::string& condition, const std::string& what, std::uint64_t most,
                   Group& group) {
-    const auto add = [&](std::int64_t first, std::int64_t last) {
-      const auto end = static_cast<std::uint64_t>(last);
-      if (first < 1 || last < first || end > most) {
-        input_.fail(ErrorCode::IndexOutOfRange, "the condition \"", condition,
-                    "\" names elements or vertices that its zone does "
-                    "not have.");
-      }
-      group.ranges.emplace_back(static_cast<std::uint64_t>(first), end);
-      members_ += end - static_cast<std::uint64_t>(first) + 1;
-    };
-    const std::vector<std::int64_t> range = integersIn(condition, "IndexRange_t", what + "Range");
-    if (range.size() == 2) add(range[0], range[1]);
-    for (const std::int64_t i : integersIn(condition, "IndexArray_t", what + "List")) add(i, i);
-    // A range takes few bytes, however many elements it has.
-    constexpr std::uint64_t kMostTimes = 8;
-    if (members_ > kMostTimes * (lastNumber_ + lists_.points.size())) {
-      input_.fail(ErrorCode::TooLarge,
-                  "conditions have far more members than the file has elements.");
+    const ZoneGrid all = {{static_cast<std::int64_t>(most), 1, 1}};
+    for (const auto& [first, last] : rangesIn(1, condition, what)) {
+      if (!all.has(first) || !all.has(last) || last < first) failCondition(condition);
+      group.ranges.emplace_back(all.numberOf(first) + 1, all.numberOf(last) + 1);
+      takeMembers(group.ranges.back().second - group.ranges.back().first + 1);
     }
+  }
+  /// The range and the list that a node has.
+  /// @param what  "Point" or "Element"
+  /// @param suffix  "Donor" for those in another zone
+  [[nodiscard]] std::vector<ZoneRange> rangesIn(std::size_t axes, const std::string& node,
+                                                const std::string& what,
+                                                const std::string& suffix = {}) const {
+    std::vector<ZoneRange> ranges;
+    const std::vector<std::int64_t> range =
+        integersIn(node, "IndexRange_t", what + "Range" + suffix);
+    if (range.size() == 2 * axes) {
+      ZoneRange& added = ranges.emplace_back();
+      std::copy_n(range.begin(), axes, added.first.begin());
+      std::copy_n(range.begin() + static_cast<std::ptrdiff_t>(axes), axes, added.last.begin());
+    }
+    const std::vector<std::int64_t> list = integersIn(node, "IndexArray_t", what + "List" + suffix);
+    for (std::size_t i = 0; i + axes <= list.size(); i += axes) {
+      ZoneRange& added = ranges.emplace_back();
+      std::copy_n(list.begin() + static_cast<std::ptrdiff_t>(i), axes, added.first.begin());
+      added.last = added.first;
+    }
+    return ranges;
+  }
+  [[noreturn]] void failCondition(const std::string& condition) const {
+    input_.fail(ErrorCode::IndexOutOfRange, "the condition \"", condition,
+                "\" names elements or vertices that its zone does not have.");
+  }
+  /// Bounds the members of conditions and connections: a range takes few bytes, however many it
+  /// has.
+  void takeMembers(std::uint64_t count) {
+    if (count > 1) members_ += count;
+    constexpr std::uint64_t kMostTimes = 8;
+    if (members_ <= kMostTimes * (lists_.points.size() + lastNumber_)) return;
+    input_.fail(ErrorCode::TooLarge,
+                "conditions and connections have far more members than the file has elements.");
   }
 
   void addNodes(const Zone& zone, const Group& group) {
@@ -345,19 +462,21 @@ class CgnsReader {
 
   /// Merges the vertices that connections identify.
   void connect() {
-    if (zones_.size() == 1) return;
+    if (zones_.size() == 1 && zones_[0].axes == 1) return;
     DisjointSets same(lists_.points.size());
     for (const Zone& zone : zones_) {
       std::size_t found = 0;
       for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
-        for (const std::string& to : nodes(all, "GridConnectivity_t")) {
-          for (const auto& [a, b] : sharedBy(zone, to)) {
-            ++found;
-            same.unite(a, b);
+        for (const char* const label : {"GridConnectivity_t", "GridConnectivity1to1_t"}) {
+          for (const std::string& to : nodes(all, label)) {
+            for (const auto& [a, b] : sharedBy(zone, to, label[16] == '1')) {
+              ++found;
+              same.unite(a, b);
+            }
           }
         }
       }
-      if (found > 0) continue;
+      if (found > 0 || zones_.size() == 1) continue;
       input_.fail(ErrorCode::FileUnsupported,
                   "the file has several zones, and nothing says which vertices \"", zone.path,
                   "\" shares with others (Abutting1to1). Merge them into one zone.");
@@ -378,35 +497,76 @@ class CgnsReader {
   }
 
   /// Pairs of vertices identified by a connection; none for a periodic one.
+  /// @param byRange  between ranges of two structured zones
   [[nodiscard]] std::vector<std::pair<Index, Index>> sharedBy(const Zone& zone,
-                                                              const std::string& path) const {
+                                                              const std::string& path,
+                                                              bool byRange) {
     const std::string location = textIn(path, "GridLocation_t");
     const bool ofVertices = location.empty() || location == "Vertex";
-    if (!ofVertices || textIn(path, "GridConnectivityType_t") != "Abutting1to1") return {};
+    const bool abuts = byRange || textIn(path, "GridConnectivityType_t") == "Abutting1to1";
+    if (!ofVertices || !abuts) return {};
     for (const std::string& property : nodes(path, "GridConnectivityProperty_t")) {
       if (!nodes(property, "Periodic_t").empty()) return {};
     }
-    const std::string donor = nameOf(textOf(path));
-    const auto other = std::find_if(zones_.begin(), zones_.end(),
-                                    [&](const Zone& each) { return nameOf(each.path) == donor; });
-    const std::vector<std::int64_t> here = integersIn(path, "IndexArray_t", "PointList");
-    const std::vector<std::int64_t> there = integersIn(path, "IndexArray_t", "PointListDonor");
-    const auto isIn = [](const std::vector<std::int64_t>& list, const Zone& of) {
-      return std::all_of(list.begin(), list.end(), [&of](std::int64_t i) {
-        return i >= 1 && static_cast<std::uint64_t>(i) <= of.points;
-      });
-    };
-    if (other == zones_.end() || here.size() != there.size() || !isIn(here, zone) ||
-        !isIn(there, *other)) {
-      input_.fail(ErrorCode::FileSyntax, "the connection \"", path,
-                  "\" does not name vertices of two zones in pairs.");
+    const std::string donor = withoutSpaces(nameOf(textOf(path)));
+    const auto other = std::find_if(zones_.begin(), zones_.end(), [&](const Zone& each) {
+      return withoutSpaces(nameOf(each.path)) == donor;
+    });
+    if (other == zones_.end()) failConnection(path);
+    const std::vector<ZoneRange> ranges = rangesIn(zone.axes, path, "Point");
+    const std::vector<ZoneRange> donors = rangesIn(other->axes, path, "Point", "Donor");
+    const std::vector<Index> here = verticesOf(zone, ranges, path);
+    std::vector<Index> there = verticesOf(*other, donors, path);
+    if (here.size() != there.size() || (byRange && ranges.size() * donors.size() != 1)) {
+      failConnection(path);
     }
-    std::vector<std::pair<Index, Index>> pairs;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      pairs.emplace_back(zone.firstPoint + static_cast<std::size_t>(here[i]) - 1,
-                         other->firstPoint + static_cast<std::size_t>(there[i]) - 1);
-    }
+    if (byRange) there = transformed(ranges[0], *other, donors[0], path);
+    std::vector<std::pair<Index, Index>> pairs(here.size());
+    for (std::size_t i = 0; i < here.size(); ++i) pairs[i] = {here[i], there[i]};
     return pairs;
+  }
+  [[nodiscard]] std::vector<Index> verticesOf(const Zone& zone,
+                                              const std::vector<ZoneRange>& ranges,
+                                              const std::string& path) {
+    std::vector<Index> vertices;
+    for (const ZoneRange& range : ranges) {
+      if (!zone.grid.has(range.first) || !zone.grid.has(range.last)) failConnection(path);
+      takeMembers(range.count());
+      range.forEach([&](const ZonePlace& place) { vertices.push_back(zone.vertexAt(place)); });
+    }
+    return vertices;
+  }
+  /// The vertices of a range, in the order of one in the zone connected with it: for each axis
+  /// there, "Transform" has the number of the one here, negative if it runs the other way.
+  [[nodiscard]] std::vector<Index> transformed(const ZoneRange& there, const Zone& zone,
+                                               const ZoneRange& range,
+                                               const std::string& path) const {
+    std::vector<std::int64_t> axes = integersIn(path, "\"int[IndexDimension]\"", "Transform");
+    if (axes.empty()) axes = {1, 2, 3};
+    axes.resize(3);
+    std::vector<Index> vertices;
+    there.forEach([&](const ZonePlace& from) {
+      ZonePlace place = range.first;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (const std::int64_t axis : {1, 2, 3}) {
+          const std::int64_t sign = axes[k] == axis ? 1 : axes[k] == -axis ? -1 : 0;
+          place[static_cast<std::size_t>(axis) - 1] += sign * (from[k] - there.first[k]);
+        }
+      }
+      if (!zone.grid.has(place)) failConnection(path);
+      vertices.push_back(zone.vertexAt(place));
+    });
+    if (vertices.back() != zone.vertexAt(range.last)) failConnection(path);
+    return vertices;
+  }
+  [[noreturn]] void failConnection(const std::string& path) const {
+    input_.fail(ErrorCode::FileSyntax, "the connection \"", path,
+                "\" does not name vertices of two zones in pairs.");
+  }
+  /// Gmsh names a zone with underscores where connections to it have spaces.
+  [[nodiscard]] static std::string withoutSpaces(std::string name) {
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
   }
 
   // Tags.
@@ -452,7 +612,8 @@ class CgnsReader {
   ElementLists lists_;
   std::vector<Zone> zones_;
   std::uint64_t lastNumber_ = 0;
-  std::uint64_t members_ = 0;  ///< of all boundary conditions
+  std::uint64_t members_ = 0;  ///< of all ranges of conditions and connections
+  std::uint64_t lastFace_ = std::uint64_t{1} << 62;  ///< number of a structured zone's last face
   std::vector<Flat> flats_;
   std::vector<Group> volumeGroups_;
   std::vector<Group> flatGroups_;

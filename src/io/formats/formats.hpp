@@ -353,12 +353,13 @@ OpenPartSink openExodusPartSink;
 WriteMesh writeCgns;
 /// Order 2 only: sections HEXA_27, QUAD_9 and BAR_3.
 WriteCurved writeQuadraticCgns;
-/// Reads unstructured zones; several only if 1-to-1 connections identify their shared vertices.
-/// Sections of cells are regions if there are several, or if this library named them. Boundary
-/// conditions on faces and edges tag these, and those on cells are regions. A group is named by the
-/// family of its condition, or by the condition itself; its tag comes from a name written by this
-/// library, otherwise it is the position of the group. Conditions on vertices are treated as node
-/// sets in hexMeshOf(). Hexahedra with 20 and 27 nodes are curved cells; other volume elements are
+/// Reads zones, structured ones with i fastest; several only if 1-to-1 connections identify their
+/// shared vertices. Sections of cells and structured zones are regions if there are several, or if
+/// this library named them. Boundary conditions on faces and edges tag these, and those on cells
+/// are regions. A group is named by the family of its condition or zone, or by these themselves;
+/// its tag comes from a name written by this library, otherwise it is the position of the group.
+/// Conditions on vertices are treated as node sets in hexMeshOf(), unless they are planes of a
+/// structured zone. Hexahedra with 20 and 27 nodes are curved cells; other volume elements are
 /// counted.
 [[nodiscard]] ElementLists readCgns(const Input& input, ElementParts parts, Stage& stage);
 using CgnsFormat = ElementFormat<readCgns>;
