@@ -780,12 +780,96 @@ TEST(ForeignFiles, NodesOfMfem) {
   rows[8][0] = 0.5;
   expectFailureOf(mfem, mfemWithNodes(two, "L2_T1_3D_P1", rows, 12), ErrorCode::FileUnsupported,
                   "periodic");
-  expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P3", nodes, 8), ErrorCode::FileUnsupported,
-                  "\"H1_3D_P3\"");
+  expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P3", nodes, 8), ErrorCode::FileSyntax, "64");
+  for (const std::string space : {"Cubic", "H1_3D_P0", "H1_3D_P10", "L2_3D_P2", "H1Pos_3D_P2"}) {
+    expectFailureOf(mfem, mfemWithNodes(one, space, nodes, 8), ErrorCode::FileUnsupported,
+                    "\"" + space + "\"");
+  }
   nodes.pop_back();
   expectFailureOf(mfem, mfemWithNodes(one, "H1_3D_P2", nodes, 8), ErrorCode::FileSyntax, "27");
   expectFailureOf(mfem, mfemWithNodes("1\n1 6 0 1 2 3 4 5\n", "H1_3D_P2", nodes, 6),
                   ErrorCode::FileUnsupported, "a file of their own");
+}
+
+/// The nodes of a cube of order 3 at the points of Gauss and Lobatto, as MFEM lists them: of
+/// vertices, of edges from their smaller vertex on, of faces, and inside.
+std::vector<Vec3> lobattoCube() {
+  std::vector<Vec3> nodes(kCorners.begin(), kCorners.end());
+  const std::array<double, 2> places = {(1 - 1 / std::sqrt(5.0)) / 2, (1 + 1 / std::sqrt(5.0)) / 2};
+  const auto add = [&](std::size_t from, std::size_t to, double s, std::size_t side, double t) {
+    Vec3& node = nodes.emplace_back(kCorners[from]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      node[k] +=
+          s * (kCorners[to][k] - kCorners[from][k]) + t * (kCorners[side][k] - kCorners[from][k]);
+    }
+  };
+  const std::array<std::array<std::size_t, 2>, 12> edges = {{{0, 1},
+                                                             {1, 2},
+                                                             {2, 3},
+                                                             {0, 3},
+                                                             {4, 5},
+                                                             {5, 6},
+                                                             {6, 7},
+                                                             {4, 7},
+                                                             {0, 4},
+                                                             {1, 5},
+                                                             {2, 6},
+                                                             {3, 7}}};
+  for (const auto& [from, to] : edges) {
+    for (const double s : places) add(from, to, s, from, 0);
+  }
+  const std::array<std::array<std::size_t, 3>, 6> faces = {
+      {{3, 2, 0}, {0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}, {4, 5, 7}}};
+  for (const auto& [from, to, side] : faces) {
+    for (const double t : places) {
+      for (const double s : places) add(from, to, s, side, t);
+    }
+  }
+  for (const double z : places) {
+    for (const double y : places) {
+      for (const double x : places) nodes.push_back({2 * x, 2 * y, 2 * z});
+    }
+  }
+  return nodes;
+}
+
+TEST(ForeignFiles, NodesOfMfemOfHigherOrder) {
+  Context context;
+  std::vector<Vec3> nodes = lobattoCube();
+  std::vector<Vec3> rows;  // of the cell alone, x fastest
+  const std::array<double, 4> places = {0, nodes[8][0], 2 - nodes[8][0], 2};
+  for (const double z : places) {
+    for (const double y : places) {
+      for (const double x : places) rows.push_back({x, y, z});
+    }
+  }
+  const std::string one = "1\n" + kMfemCube;
+  for (const std::string& text :
+       {mfemWithNodes(one, "H1_3D_P3", nodes, 8), mfemWithNodes(one, "L2_T1_3D_P3", rows, 8)}) {
+    EXPECT_TRUE(readBytes<MfemFormat::holdsCurved>(text, "m.mesh", context));
+    const LagrangeMesh mesh = readBytes<MfemFormat::readCurved>(text, "m.mesh", context);
+    ASSERT_EQ(mesh.order, 3);
+    ASSERT_EQ(mesh.points.size(), 64U);
+    for (std::size_t i = 0; i < 64; ++i) {
+      const std::array<std::size_t, 3> place = {i % 4, i / 4 % 4, i / 16};
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(mesh.points[mesh.nodes[i]][k], 2 * static_cast<double>(place[k]) / 3,
+                    1e-5)  // texts have six digits
+            << i;
+      }
+    }
+    EXPECT_EQ(mesh.points[mesh.nodes[63]], (Vec3{2, 2, 2}));
+  }
+  // A second cell with the vertices of a face, but other edges.
+  const std::string crossed = "2\n" + kMfemCube + "1 5 1 5 6 2 8 9 10 11\n";
+  const std::string bent = replaced(crossed, "1 5 6 2", "1 6 5 2");
+  nodes.resize(112);
+  EXPECT_EQ(readBytes<MfemFormat::readCurved>(mfemWithNodes(crossed, "H1_3D_P3", nodes, 12),
+                                              "m.mesh", context)
+                .points.size(),
+            112U);
+  expectFailureOf(mfem, mfemWithNodes(bent, "H1_3D_P3", nodes, 12), ErrorCode::FileSyntax,
+                  "not its edges");
 }
 
 TEST(ForeignFiles, SectionsOfMeditThatGoOn) {

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Reads a mesh of order 2 with MFEM and writes it again.
+"""Reads a mesh of higher order with MFEM and writes it again.
 
 usage: mfem_files.py SPACE ORDERING IN OUT
 
-SPACE is H1 or L2; ORDERING 0: coordinates axis by axis, 1: node by node. Exit code 77: MFEM is not installed.
+SPACE is H1 or L2, with nodes at the points of Gauss and Lobatto, or H1@U, at the same distances; ORDERING 0: coordinates axis by axis, 1: node by node. Exit code 77: MFEM is not installed.
 """
 
 import sys
@@ -15,7 +15,13 @@ def rewrite(space, ordering, source, target):
     import mfem.ser as mfem
 
     mesh = mfem.Mesh(source)
-    mesh.SetCurvature(2, space == "L2", 3, int(ordering))
+    order = mesh.GetNodalFESpace().GetMaxElementOrder()
+    if space in ("H1", "L2"):
+        mesh.SetCurvature(order, space == "L2", 3, int(ordering))
+    else:
+        collection = mfem.H1_FECollection(order, 3, mfem.BasisType.ClosedUniform)
+        nodes = mfem.FiniteElementSpace(mesh, collection, 3, int(ordering))
+        mesh.SetNodalFESpace(nodes)
     mesh.Print(target, 17)
 
 

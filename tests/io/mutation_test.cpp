@@ -149,13 +149,13 @@ TEST(DamagedFiles, Mfem) {
   options.format = "mfem";
   writeHexMesh(mesh, folder / "a.mesh", options, context);
   damage(contentOf(folder / "a.mesh"), parse<MfemFormat::readMesh>);
-  for (const std::string space : {"H1_3D_P2", "L2_T1_3D_P2"}) {
+  for (const std::string space : {"H1_3D_P2", "L2_T1_3D_P2", "H1_3D_P3", "L2_T1_3D_P3"}) {
     std::string text =
         "MFEM mesh v1.3\ndimension\n3\nelements\n1\n1 5 0 1 2 3 4 5 6 7\nattribute_sets\n1\n"
         "\"a\" 1 1\nboundary\n0\nvertices\n8\nnodes\nFiniteElementSpace\n"
         "FiniteElementCollection: " +
         space + "\nVDim: 3\nOrdering: 0\n";
-    for (int i = 0; i < 81; ++i) text += std::to_string(i) + '\n';
+    for (int i = 0; i < (space.ends_with('2') ? 81 : 192); ++i) text += std::to_string(i) + '\n';
     damage(text, parse<MfemFormat::readCurved>);
   }
 }

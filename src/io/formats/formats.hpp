@@ -372,8 +372,9 @@ OpenPartSink openCgnsPartSink;
 // boundary quads and tagged interior quads (attribute: the number of their group), and vertices.
 //
 // Reads conforming meshes, v1.0 to 1.3. Attributes are regions and tags unless all are 1; those
-// with a set of their own have its name. Nodes of order 1 are vertices; with nodes of order 2,
-// cells are curved. Other orders, periodic meshes, and nodes of other cells are refused.
+// with a set of their own have its name. Nodes of order 1 are vertices; with nodes of order 2
+// to 9, in H1 or in L2 with closed bases, cells are curved. Periodic meshes and nodes of other cells
+// are refused.
 [[nodiscard]] ElementLists readMfem(const Input& input, ElementParts parts, Stage& stage);
 using MfemFormat = ElementFormat<readMfem>;
 /// Whether a regular file, or bytes, begin as MFEM's meshes do.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +20,7 @@
 #include <base/parallel.hpp>
 #include <base/sorted.hpp>
 #include <base/stage.hpp>
+#include <base/vector3.hpp>
 #include <io/core/input_file.hpp>
 #include <io/core/mesh_groups.hpp>
 #include <io/core/output_file.hpp>
@@ -41,29 +44,65 @@ struct MfemGeometry {
 constexpr std::array<MfemGeometry, 8> kMfemGeometries = {
     {{1}, {2}, {3}, {4}, {4, "tetrahedra"}, {8, "hexahedra"}, {6, "prisms"}, {5, "pyramids"}}};
 
-/// A space of nodes: of vertices, edges, faces and cells; or of each cell, x fastest.
+/// A space of nodes: of vertices, edges, faces and cells; or of each cell, x fastest. Nodes are at
+/// the points of Gauss and Lobatto, or at the same distances; up to order 2, these are the same.
 struct MfemSpace {
-  std::string_view name;
-  int order;
+  std::string_view name;  ///< but for the order
   bool perCell = false;
+  bool isEqual = false;
+  int order = 0;
 };
-constexpr std::array<MfemSpace, 8> kMfemSpaces = {{{"Linear", 1},
-                                                   {"H1_3D_P1", 1},
-                                                   {"Quadratic", 2},
-                                                   {"H1_3D_P2", 2},
-                                                   {"L2_T1_3D_P1", 1, true},
-                                                   {"L2_T4_3D_P1", 1, true},
-                                                   {"L2_T1_3D_P2", 2, true},
-                                                   {"L2_T4_3D_P2", 2, true}}};
+constexpr std::array<MfemSpace, 6> kMfemSpaces = {{{"Linear", false, true, 1},
+                                                   {"Quadratic", false, true, 2},
+                                                   {"H1_3D_P"},
+                                                   {"H1@U_3D_P", false, true},
+                                                   {"L2_T1_3D_P", true},
+                                                   {"L2_T4_3D_P", true, true}}};
 
-const MfemSpace* mfemSpace(std::string_view name) {
-  const auto* const found = std::find_if(kMfemSpaces.begin(), kMfemSpaces.end(),
-                                         [&](const auto& space) { return space.name == name; });
-  return found == kMfemSpaces.end() ? nullptr : found;
+std::optional<MfemSpace> mfemSpace(std::string_view name) {
+  for (MfemSpace space : kMfemSpaces) {
+    if (!name.starts_with(space.name)) continue;
+    const std::string_view digit = name.substr(space.name.size());
+    if (space.order > 0 && digit.empty()) return space;
+    space.order = digit.size() == 1 ? digit[0] - '0' : 0;
+    if (space.order >= 1 && space.order <= kMaxOrder) return space;
+  }
+  return std::nullopt;
 }
 
-constexpr std::string_view kMfemCollection = "FiniteElementCollection:";
-constexpr std::size_t kFewestBytesOfNode = 6;  // "0 0 0" and the line's end
+std::size_t mfemNodes(int order) {
+  const auto n = static_cast<std::size_t>(order) + 1;
+  return n * n * n;
+}
+
+/// Row i: the polynomials that are 1 at one of the points of Gauss and Lobatto in [0, 1] and 0 at
+/// the others, at i / order.
+std::vector<double> valuesFromLobatto(int order) {
+  const auto n = static_cast<std::size_t>(order) + 1;
+  std::vector<double> points(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    double x = -std::cos(std::numbers::pi * static_cast<double>(i) / order);
+    constexpr int kSteps = 20;  // of Newton's method, to the zeros of (1 - x^2) P'(x)
+    for (int step = 0; step < kSteps; ++step) {
+      double before = 1;  // Legendre's polynomials
+      double last = x;
+      for (int k = 2; k <= order; ++k) {
+        before = std::exchange(last, ((2 * k - 1) * x * last - (k - 1) * before) / k);
+      }
+      x -= (x * last - before) / ((order + 1) * last);
+    }
+    points[i] = (1 + x) / 2;
+  }
+  std::vector<double> values(n * n, 1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t row = i / n;
+    const double place = static_cast<double>(row) / order;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (k != i % n) values[i] *= (place - points[k]) / (points[i % n] - points[k]);
+    }
+  }
+  return values;
+}
 
 /// Numbers elements in the order in which they are first met.
 template <class Element>
@@ -78,6 +117,90 @@ class FirstMet {
  private:
   std::map<Element, Index> numbers_;
 };
+
+/// Numbers the nodes inside edges and faces of cells as MFEM does, from 0 on for each: from the
+/// smaller vertex of an edge, and as the first cell of a face lists its vertices.
+class NodeNumbers {
+ public:
+  explicit NodeNumbers(int order) : order_(order), slots_(mfemNodes(order)) {
+    const std::vector<std::uint32_t> places = vtkNodeOrder(order);
+    for (std::size_t k = 0; k < places.size(); ++k) slots_[places[k]] = k;
+  }
+  [[nodiscard]] std::size_t ofEdges() const { return edges_.size() * inner(); }
+  [[nodiscard]] std::size_t ofFaces() const { return faces_.size() * inner() * inner(); }
+
+  /// @param corners  of a cell
+  /// @param[out] nodes  of the cell, in VTK's order
+  void numberEdges(const Index* corners, Index* nodes) {
+    for (std::size_t e = 0; e < 12; ++e) {  // around the bottom, around the top, upright
+      std::size_t from = e % 4 + (e / 4 == 1 ? 4 : 0);
+      std::size_t to = e < 8 ? (e % 4 + 1) % 4 + (e < 4 ? 0 : 4) : from + 4;
+      if (corners[from] > corners[to]) std::swap(from, to);
+      number(nodes, {from, to, from}, inner() * edges_.number({corners[from], corners[to]}));
+    }
+  }
+  /// @return  false if a cell before has the vertices of a face, but not its edges
+  [[nodiscard]] bool numberFaces(const Index* corners, Index* nodes) {
+    constexpr std::array<std::array<std::uint8_t, 4>, 6> kFaces = {
+        {{3, 2, 1, 0}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}};
+    for (const auto& face : kFaces) {
+      const Quad v = {corners[face[0]], corners[face[1]], corners[face[2]], corners[face[3]]};
+      const Index met = faces_.number(v);
+      if (met == begins_.size()) begins_.push_back({v[0], v[1], v[3]});
+      const auto& [a, b, d] = begins_[met];
+      const auto at = static_cast<std::size_t>(std::find(v.begin(), v.end(), a) - v.begin());
+      std::array<std::size_t, 2> sides = {(at + 1) % 4, (at + 3) % 4};
+      if (v[sides[0]] != b) std::swap(sides[0], sides[1]);
+      if (v[sides[0]] != b || v[sides[1]] != d) return false;
+      number(nodes, {face[at], face[sides[0]], face[sides[1]]}, inner() * inner() * met);
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::size_t inner() const { return static_cast<std::size_t>(order_) - 1; }
+
+  /// Numbers the nodes from a corner to another and, of a face, row by row to a third one.
+  /// @param corners  the third is the first, of an edge
+  void number(Index* nodes, const std::array<std::size_t, 3>& corners, std::size_t first) const {
+    const int at = placeOf(corners[0]);
+    const int lastRow = corners[2] == corners[0] ? 0 : order_ - 1;
+    for (int j = std::min(1, lastRow); j <= lastRow; ++j) {
+      for (int i = 1; i < order_; ++i) {
+        const int place =
+            order_ * at + i * (placeOf(corners[1]) - at) + j * (placeOf(corners[2]) - at);
+        nodes[slots_[static_cast<std::size_t>(place)]] = static_cast<Index>(first++);
+      }
+    }
+  }
+  /// With x fastest, of a cell of one step.
+  [[nodiscard]] int placeOf(std::size_t k) const {
+    const Node node = corner(k, 0, 1);
+    return node[0] + (order_ + 1) * (node[1] + (order_ + 1) * node[2]);
+  }
+
+  int order_;
+  std::vector<std::size_t> slots_;  ///< in VTK's order, of nodes with x fastest
+  FirstMet<std::array<Index, 2>> edges_;
+  FirstMet<Quad> faces_;
+  std::vector<std::array<Index, 3>> begins_;  ///< of faces: a vertex and its neighbours
+};
+
+/// Replaces nodes of a cell, x fastest, by the values of rows of polynomials along each axis.
+void evaluate(const std::vector<double>& rows, std::size_t n, std::vector<Vec3>& nodes) {
+  for (const std::size_t stride : {std::size_t{1}, n, n * n}) {
+    const std::vector<Vec3> from = std::exchange(nodes, std::vector<Vec3>(nodes.size()));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::size_t at = i / stride % n;
+      for (std::size_t k = 0; k < n; ++k) {
+        nodes[i] = plus(nodes[i], times(rows[at * n + k], from[i - at * stride + k * stride]));
+      }
+    }
+  }
+}
+
+constexpr std::string_view kMfemCollection = "FiniteElementCollection:";
+constexpr std::size_t kFewestBytesOfNode = 6;  // "0 0 0" and the line's end
 
 class MfemReader {
  public:
@@ -106,9 +229,9 @@ class MfemReader {
     const std::string_view text = scanner_.text();
     const std::size_t at = text.find(kMfemCollection);
     if (at < text.size()) scanner_.moveTo(at + kMfemCollection.size());
-    const MfemSpace* const space = at < text.size() ? mfemSpace(scanner_.readToken()) : nullptr;
-    const bool quadratic = space != nullptr && space->order == 2;
-    const std::size_t nodesEach = quadratic ? 27 : 8;
+    std::optional<MfemSpace> space;
+    if (at < text.size()) space = mfemSpace(scanner_.readToken());
+    const std::size_t nodesEach = mfemNodes(space ? space->order : 1);
     const std::size_t block = lists_.blockOf(volumeCells("hexahedra", nodesEach), nodesEach);
     lists_.blocks[block].numbers = {0};
     return std::move(lists_);
@@ -207,11 +330,11 @@ class MfemReader {
     };
     take("FiniteElementSpace");
     take(kMfemCollection);
-    const MfemSpace* const space = mfemSpace(scanner_.readToken());
-    if (space == nullptr) {
+    const std::optional<MfemSpace> space = mfemSpace(scanner_.readToken());
+    if (!space) {
       scanner_.fail(ErrorCode::FileUnsupported, "nodes of the space ",
                     quoted(scanner_.currentToken()),
-                    " are not read, only those of order 1 and 2 in H1 and, with closed bases, in "
+                    " are not read, only those of orders 1 to 9 in H1 and, with closed bases, in "
                     "L2: use Mesh::SetCurvature(2).");
     }
     take("VDim:");
@@ -223,35 +346,45 @@ class MfemReader {
 
   /// Reads the nodes, and makes the cells list them.
   void placeNodes(const MfemSpace& space, bool byNode) {
-    const std::size_t each = space.order == 1 ? 8 : 27;
-    if (space.order == 2 || space.perCell) requireHexahedraOnly();
+    const std::size_t each = mfemNodes(space.order);
+    if (space.order > 1 || space.perCell) requireHexahedraOnly();
     ElementBlock none;
     ElementBlock& cells = lists_.blocks.empty() ? none : lists_.blocks[0];
-    if (space.order == 2) addNodes(cells);
+    if (space.order > 1) addNodes(cells, space.order);
     const std::size_t dofs = space.perCell ? each * cells.count() : lists_.points.size();
-    const std::size_t room = (scanner_.text().size() - scanner_.position()) / kFewestBytesOfNode;
-    if (dofs > room) {
-      scanner_.fail(ErrorCode::FileSyntax, lacksRoom(std::to_string(dofs), "nodes", room));
-    }
+    requireRoom(dofs);
     std::vector<double> numbers(3 * dofs);
     for (double& x : numbers) x = scanner_.number("a coordinate of a node");
     const auto nodeAt = [&](std::size_t i) {
       if (byNode) return Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
       return Vec3{numbers[i], numbers[dofs + i], numbers[2 * dofs + i]};
     };
-    if (!space.perCell) {
-      for (std::size_t i = 0; i < dofs; ++i) lists_.points[i] = nodeAt(i);
-      return;
-    }
+    for (std::size_t i = 0; i < dofs && !space.perCell; ++i) lists_.points[i] = nodeAt(i);
+    const bool moves = space.order > 2 && !space.isEqual;
+    if (!space.perCell && !moves) return;
+    const std::vector<double> rows = valuesFromLobatto(space.order);
     const std::vector<std::uint32_t> order = vtkNodeOrder(space.order);
     std::vector<bool> known(lists_.points.size(), false);
-    for (std::size_t i = 0; i < cells.nodes.size(); ++i) {
-      const Vec3 place = nodeAt(i - i % each + order[i % each]);
-      Vec3& point = lists_.points[cells.nodes[i]];
-      if (!known[cells.nodes[i]]) point = place;
-      known[cells.nodes[i]] = true;
-      requireSame(point, place);
+    std::vector<Vec3> nodes(each);
+    for (std::size_t c = 0; c < cells.count(); ++c) {
+      const Index* const row = cells.nodes.data() + each * c;
+      for (std::size_t k = 0; k < each; ++k) {
+        nodes[order[k]] = nodeAt(space.perCell ? each * c + order[k] : row[k]);
+      }
+      if (moves) evaluate(rows, static_cast<std::size_t>(space.order) + 1, nodes);
+      for (std::size_t k = 0; k < each; ++k) {
+        Vec3& point = lists_.points[row[k]];
+        if (!known[row[k]]) point = nodes[order[k]];
+        known[row[k]] = true;
+        if (space.perCell) requireSame(point, nodes[order[k]]);
+      }
     }
+  }
+
+  void requireRoom(std::size_t nodes) const {
+    const std::size_t room = (scanner_.text().size() - scanner_.position()) / kFewestBytesOfNode;
+    if (nodes <= room) return;
+    scanner_.fail(ErrorCode::FileSyntax, lacksRoom(std::to_string(nodes), "nodes", room));
   }
 
   void requireHexahedraOnly() const {
@@ -273,43 +406,38 @@ class MfemReader {
     }
   }
 
-  /// Adds nodes of edges, faces and cells, in this order, as MFEM numbers them.
-  void addNodes(ElementBlock& cells) {
-    constexpr std::array<std::array<std::uint8_t, 4>, 6> kFaces = {
-        {{3, 2, 1, 0}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}};
-    constexpr std::array<std::size_t, 6> kVtkFaces = {24, 22, 21, 23, 20, 25};
-    constexpr std::size_t kEach = 27;
+  /// Adds nodes of edges, faces and cells, in this order.
+  void addNodes(ElementBlock& cells, int order) {
+    const std::size_t each = mfemNodes(order);
+    const auto inner = static_cast<std::size_t>(order) - 1;  // nodes of an edge
     const Array<Index> corners = std::exchange(cells.nodes, {});
     const std::size_t count = cells.count();
-    cells.nodes.resize(kEach * count);
-    FirstMet<std::array<Index, 2>> edges;
-    FirstMet<Quad> faces;
+    requireRoom(inner * inner * inner * count);
+    cells.nodes.resize(each * count);
+    NodeNumbers numbers(order);
     for (std::size_t c = 0; c < count; ++c) {
       const Index* const cell = corners.data() + 8 * c;
-      Index* const row = cells.nodes.data() + kEach * c;
+      Index* const row = cells.nodes.data() + each * c;
       std::copy_n(cell, 8, row);
-      for (std::size_t e = 0; e < 12; ++e) {  // around the bottom, around the top, upright
-        const std::size_t from = e % 4 + (e / 4 == 1 ? 4 : 0);
-        const std::size_t to = e < 8 ? (e % 4 + 1) % 4 + (e < 4 ? 0 : 4) : from + 4;
-        row[8 + e] = edges.number({cell[from], cell[to]});
-      }
-      for (std::size_t f = 0; f < 6; ++f) {
-        const auto& [a, b, d, e] = kFaces[f];
-        row[kVtkFaces[f]] = faces.number({cell[a], cell[b], cell[d], cell[e]});
-      }
+      numbers.numberEdges(cell, row);
+      if (numbers.numberFaces(cell, row)) continue;
+      scanner_.fail(ErrorCode::FileSyntax,
+                    "two cells have the vertices of a face in common, but not its edges.");
     }
     const std::size_t firstEdge = lists_.points.size();
-    const std::size_t firstFace = firstEdge + edges.size();
-    const std::size_t firstCell = firstFace + faces.size();
+    const std::size_t firstFace = firstEdge + numbers.ofEdges();
+    std::size_t end = firstFace + numbers.ofFaces();
     for (std::size_t c = 0; c < count; ++c) {
-      Index* const row = cells.nodes.data() + kEach * c;
-      for (std::size_t k = 8; k < 20; ++k) row[k] += static_cast<Index>(firstEdge);
-      for (std::size_t k = 20; k < 26; ++k) row[k] += static_cast<Index>(firstFace);
-      row[26] = static_cast<Index>(firstCell + c);
+      Index* const row = cells.nodes.data() + each * c;
+      Index* const onFaces = row + 8 + 12 * inner;
+      Index* const inside = onFaces + 6 * inner * inner;
+      for (Index* node = row + 8; node < onFaces; ++node) *node += static_cast<Index>(firstEdge);
+      for (Index* node = onFaces; node < inside; ++node) *node += static_cast<Index>(firstFace);
+      for (Index* node = inside; node < row + each; ++node) *node = static_cast<Index>(end++);
     }
-    cells.type = volumeCells("hexahedra", kEach);
-    cells.nodesEach = kEach;
-    lists_.points.resize(firstCell + count);
+    cells.type = volumeCells("hexahedra", each);
+    cells.nodesEach = each;
+    lists_.points.resize(end);
   }
 
   /// Clears attributes that are all 1, as of meshes without regions or tags.
