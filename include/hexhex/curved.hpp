@@ -210,15 +210,16 @@ void writeLagrangeMesh(const LagrangeMesh& mesh, const std::filesystem::path& fi
 /// Whether a file contains cells for readLagrangeMesh(): VTK_LAGRANGE_HEXAHEDRON in `.vtu` and
 /// `.vtkhdf`, and hexahedra with 20 or 27 nodes in these, `.vtk`, `.inp`, `.unv`, `.cgns`, `.exo`
 /// and `.e`; in VTK formats, only if there are no straight hexahedra. In `.mesh` and `.meshb`, with
-/// 27 nodes, and `.msh`, which may also have order 3 to 9, the first hexahedra decide.
+/// 27 nodes, and `.msh`, the first hexahedra decide. `.msh` and MFEM's `.mesh` may also have order
+/// 3 to 9.
 /// @throws Error FileNotFound, FileSyntax, FileUnsupported
 [[nodiscard]] bool holdsLagrangeCells(const std::filesystem::path& file, Context& context);
 
 /// Reads cells of order 2 from these formats, placing the nodes missing in 20-node hexahedra
-/// according to their shape functions; or the Lagrange hexahedra of a `.vtu`, `.vtkhdf` or `.msh`
-/// file, all of the same order, with nodes in the order of VTK 9. Files from writeLagrangeMesh()
-/// are restored node by node, with generators, tags and regions. For other files, corner nodes are
-/// numbered first, and tags on other nodes are dropped.
+/// according to their shape functions; or the Lagrange hexahedra of a `.vtu`, `.vtkhdf`, `.msh` or
+/// MFEM file, all of the same order, with nodes in the order of VTK 9. Files from
+/// writeLagrangeMesh() are restored node by node, with generators, tags and regions. For other
+/// files, corner nodes are numbered first, and tags on other nodes are dropped.
 /// @throws Error FileNotFound, FileSyntax, IndexOutOfRange, NotFinite; FileUnsupported if there are
 ///         no such cells, for other volume cells beside them, for orders that differ or exceed
 ///         kMaxOrder, and for other extensions; TooLarge

@@ -351,7 +351,75 @@ TEST(ForeignFiles, AssembliesOfAbaqusHaveReferencePoints) {
   EXPECT_EQ(named, (std::map<std::string, Index>{{"dot", 2}, {"in", 1}, {"rp", 13}}));
   EXPECT_EQ(mesh.features.quads.size(), 2U);
   expectFailureOf(abaqus, replaced(file, "MASS\n1, 5", "C3D4\n1, 5, 5, 5, 5"),
-                  ErrorCode::FileUnsupported, "several instances");
+                  ErrorCode::FileUnsupported, "elements of its own");
+}
+
+/// Two instances of a part, one of them turned, and one of another, whose nodes and elements have
+/// the same numbers.
+TEST(ForeignFiles, AbaqusInstancesOfSeveralParts) {
+  const std::string cube =
+      "*Element, type=C3D8\n3, 5, 4, 3, 2, 1, 9, 8, 7\n*Elset, elset=body\n3\n"
+      "*Solid section, elset=body, material=m\n";
+  const std::string file =
+      "*Part, name=P\n" + kInpNodes + kInpCells + "*Surface, name=low\nleft, S1\n*End Part\n" +
+      "*Part, name=Q\n" + kInpNodes + cube +
+      "*End Part\n*Part, name=Unused\n*Node\n1, 0., 0., 0.\n" +
+      "*End Part\n*Assembly\n*Instance, name=P-1, part=P\n*End Instance\n" +
+      "*Instance, name=Q-1, part=Q\n0., 0., 7.\n*End Instance\n" +
+      "*Instance, name=P-2, part=P\n10.\n10., 0., 0., 10., 0., 3., 90.\n*End Instance\n" +
+      "*Node\n5, 5., 5., 5.\n*Nset, nset=RP\n5\n*Nset, nset=one, instance=P-2\n4\n" +
+      "*Nset, nset=two\nQ-1.4\n*Elset, elset=face, instance=P-2\n4\n*Elset, "
+      "elset=face\nP-1.left\n" +
+      "*Surface, name=top\nface, S2\n*Surface, name=side\nQ-1.3, S3\n*End Assembly\n";
+  const HexMesh mesh = abaqus(file);
+  const std::size_t each = 13;
+  ASSERT_EQ(mesh.points.size(), 3 * each + 1);  // nothing is merged
+  ASSERT_EQ(mesh.cells.size(), 5U);
+  for (std::size_t i = 0; i < each; ++i) {
+    const Vec3& p = mesh.points[i];
+    EXPECT_EQ(mesh.points[each + i], plus(p, {0, 0, 7}));
+    EXPECT_LT(length(minus(mesh.points[2 * each + i], {10 - p[1], p[0], p[2]})), 1e-12);
+  }
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_EQ(mesh.cells[2][k], mesh.cells[0][k] + each);
+    EXPECT_EQ(mesh.cells[3][k], mesh.cells[0][k] + 2 * each);
+  }
+  const auto nameOf = [&](int dimension, std::int32_t tag) {
+    for (const TagName& name : mesh.features.names) {
+      if (name.dimension == dimension && name.tag == tag) return name.name;
+    }
+    return std::string("-");
+  };
+  std::string regions;
+  for (const std::int32_t region : mesh.regions) regions += nameOf(3, region) + ' ';
+  EXPECT_EQ(regions, "p-1.left - body p-2.left - ");  // those of P need their instance
+  std::multiset<std::string> faces;
+  for (const FeatureQuad& quad : mesh.features.quads) {
+    const Index v = *std::min_element(quad.vertices.begin(), quad.vertices.end());
+    faces.insert(nameOf(2, quad.tag) + concat(' ', v));
+  }
+  EXPECT_EQ(faces,
+            (std::multiset<std::string>{"p-1.low 0", "p-2.low 26", "side 13", "top 34", "top 4"}));
+  std::set<std::string> vertices;
+  for (const FeatureVertex& vertex : mesh.features.vertices) {
+    vertices.insert(nameOf(0, vertex.tag) + concat(' ', vertex.vertex));
+  }
+  EXPECT_EQ(vertices, (std::set<std::string>{"one 27", "rp 39", "two 14"}));
+  expectFailureOf(abaqus, replaced(file, "name=P-2", "name=P-1"), ErrorCode::FileSyntax,
+                  "two instances");
+  expectFailureOf(abaqus, replaced(file, "P-2, part=P", "P-2, part=R"), ErrorCode::FileSyntax,
+                  "no part above");
+  expectFailureOf(abaqus, replaced(file, "instance=P-2\n4\n*Nset", "instance=P-3\n4\n*Nset"),
+                  ErrorCode::FileSyntax, "no instance \"p-3\"");
+  expectFailureOf(abaqus, replaced(file, "3, 5, 4, 3, 2, 1", "3, 99, 4, 3, 2, 1"),
+                  ErrorCode::IndexOutOfRange, "element 3 names node 99");
+  std::string many = file.substr(0, file.find("*Node\n5"));
+  for (int i = 0; i < 1000; ++i)
+    many += concat("*Instance, name=x", i, ", part=P\n*End Instance\n");
+  EXPECT_EQ(abaqus(many).cells.size(), 2005U);
+  many = "*Part, name=P\n" + std::string(100000, '*') + "\n*Node\n1, 0., 0., 0.\n*End Part\n";
+  for (int i = 0; i < 200; ++i) many += concat("*Instance, name=x", i, ", part=P\n*End Instance\n");
+  expectFailureOf(abaqus, many, ErrorCode::TooLarge, "128 times the file");
 }
 
 /// Parts and assemblies both call their first set "Set-1" where nobody names it.

@@ -160,6 +160,20 @@ TEST(DamagedFiles, Mfem) {
   }
 }
 
+TEST(DamagedFiles, AssembliesOfAbaqus) {
+  std::string text = "*Part, name=P\n*Node\n";
+  for (int i = 1; i <= 8; ++i) {
+    text += std::to_string(i) + ", " + std::to_string(i % 4 / 2) + ", " + std::to_string(i / 2 % 2);
+    text += ", " + std::to_string(i / 5) + '\n';
+  }
+  text += "*Element, type=C3D8, elset=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n*End Part\n*Assembly\n";
+  for (const std::string name : {"A", "B"}) {
+    text += "*Instance, name=" + name + ", part=P\n1.\n0, 0, 0, 0, 0, 1, 90.\n*End Instance\n";
+  }
+  damage(text + "*Nset, nset=N, instance=B\n7\n*Surface, name=S\nB.E, S2\nA.1, S1\n",
+         parse<AbaqusFormat::readMesh>);
+}
+
 TEST(DamagedFiles, OpenFoam) {
   const TemporaryFolder folder;
   HexMesh mesh = gridMesh(2, 1, 1);

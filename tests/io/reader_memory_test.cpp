@@ -659,6 +659,29 @@ void addGmshBombs(std::vector<Bomb>& bombs) {
       {"nameless.msh", [=](std::size_t n) { return head41 + repeated("$ $End\n", n); }});
 }
 
+void addAbaqusBombs(std::vector<Bomb>& bombs) {
+  const std::string cube =
+      "*Part, "
+      "name=P\n*Node\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+      "*Element, type=C3D8\n1,1,2,3,4,5,6,7,8\n";
+  const auto instances = [](std::size_t count) {
+    std::string text = "*End Part\n*Assembly\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      text += "*Instance, name=" + std::to_string(i) + ", part=P\n*End Instance\n";
+    }
+    return text;
+  };
+  constexpr std::size_t kCopies = 100;
+  bombs.push_back({"copies.inp", [=](std::size_t n) {
+                     return cube + repeated("9,1,2,3,4,5,6,7,8\n", n / kCopies) +
+                            instances(kCopies);
+                   }});
+  bombs.push_back({"instances.inp", [=](std::size_t n) { return cube + instances(n / 150); }});
+  bombs.push_back({"parts.inp", [=](std::size_t n) {
+                     return repeated("*Part\n", n / 2) + cube + instances(n / 300);
+                   }});
+}
+
 std::vector<Bomb> allBombs() {
   std::vector<Bomb> bombs;
   addHexexBombs(bombs);
@@ -668,6 +691,7 @@ std::vector<Bomb> allBombs() {
   addOvmBombs(bombs);
   addOvmbBombs(bombs);
   addGmshBombs(bombs);
+  addAbaqusBombs(bombs);
   return bombs;
 }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <numbers>
@@ -114,33 +115,50 @@ std::size_t cornersOfFacet(std::string_view name) {
 class AbaqusReader {
  public:
   AbaqusReader(const Input& input, ElementParts parts, Stage& stage)
-      : input_(input), parts_(parts), stage_(stage) {}
+      : input_(input), wanted_(parts), stage_(stage) {}
 
   ElementLists read() {
     Array<char> room;
-    readFile(input_.text(room, stage_, "*"), input_.name(), input_.path());
-    if (parts_ == ElementParts::All) finish();
+    readFile({input_.text(room, stage_, "*"), input_.name(), input_.path()});
+    for (std::size_t i = 0; instances_.empty() && i < parts_.size(); ++i) readPart(parts_[i]);
+    if (wanted_ == ElementParts::All) finish();
     return std::move(lists_);
   }
 
  private:
-  struct Set {
-    std::vector<std::uint64_t> items;
-    bool isOfAssembly = false;
+  struct File {
+    std::string_view text;
+    std::string name;
+    std::filesystem::path path;
+    Array<char> bytes = {};  ///< of an included one
+  };
+  /// Lines that each instance reads, with numbers and names of its own.
+  struct Part {
+    const File* file = nullptr;
+    std::size_t begin = 0;
+    std::size_t end = 0;
   };
   struct Surface {
     std::string name;
     std::vector<ElementSide> sides;
   };
-  using Sets = std::map<std::string, Set>;
+  using Sets = std::map<std::string, std::vector<std::uint64_t>>;
 
   static constexpr std::uint64_t kOfAssembly = std::uint64_t{1} << 62;
+  static constexpr std::uint64_t kOfInstance = std::uint64_t{1} << 40;  ///< times its position
   static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
 
-  void readFile(std::string_view text, const std::string& name, const std::filesystem::path& path) {
-    itemsLeft_ += kItemsPerByte * text.size();
-    TextScanner scanner(text, name);
+  void readFile(File&& opened) {
+    const File& file = files_.emplace_back(std::move(opened));
+    textSize_ += file.text.size();
+    readLines({&file, 0, file.text.size()});
+  }
+
+  void readLines(const Part& lines) {
+    itemsLeft_ += kItemsPerByte * (lines.end - lines.begin);
+    TextScanner scanner(lines.file->text.substr(0, lines.end), lines.file->name);
+    scanner.moveTo(lines.begin);
     TextScanner* const outer = std::exchange(scanner_, &scanner);
     while (nextLine()) {
       if (!line_.starts_with("*")) {
@@ -149,12 +167,41 @@ class AbaqusReader {
       }
       const AbaqusKeyword keyword = readKeyword();
       if (keyword.name == "*include") {
-        include(keyword, path);
+        include(keyword, lines.file->path);
+      } else if (keyword.name == "*part" && wanted_ == ElementParts::All) {
+        skipPart(keyword.value("name"), *lines.file);
       } else {
         readBlock(keyword);
       }
     }
     scanner_ = outer;
+  }
+
+  /// Instances read the part later.
+  void skipPart(const std::string& name, const File& file) {
+    const std::size_t begin = scanner_->position();
+    std::size_t end = begin;
+    for (; nextLine(); end = scanner_->position()) {
+      if (!line_.starts_with("*")) continue;
+      std::string keyword = lowerCase(line_.substr(0, line_.find(',')));
+      std::erase_if(keyword, isSpace);
+      if (keyword == "*endpart") break;
+      if (keyword != "*part" && keyword != "*assembly") continue;
+      scanner_->moveTo(end);
+      break;
+    }
+    partNumbers_.emplace(name, parts_.size());
+    parts_.push_back({&file, begin, end});
+  }
+
+  void readPart(const Part& part) {
+    constexpr std::uint64_t kMostTimes = 128;
+    copied_ += part.end - part.begin;
+    if (copied_ > kMostTimes * textSize_) {
+      fail(concat("instances repeat parts to more than ", kMostTimes, " times the file"),
+           ErrorCode::TooLarge);
+    }
+    readLines(part);
   }
 
   /// Moves to the next line that is neither blank nor a comment. @return false at the end of the
@@ -200,7 +247,7 @@ class AbaqusReader {
       fail("data lines in a file of their own (INPUT=...) are not read. Put the file's lines here",
            ErrorCode::FileUnsupported);
     }
-    if (parts_ == ElementParts::Types && keyword.name != "*element") return;
+    if (wanted_ == ElementParts::Types && keyword.name != "*element") return;
     if (keyword.name == "*node") {
       readNodes(keyword);
     } else if (keyword.name == "*element") {
@@ -209,17 +256,17 @@ class AbaqusReader {
       readSet(keyword, keyword.value("nset"), nodeSets_);
     } else if (keyword.name == "*elset") {
       readSet(keyword, keyword.value("elset"), elementSets_);
-      if (!keyword.has("internal")) listedSets_.push_back(keyword.value("elset"));
+      if (!keyword.has("internal")) listedSets_.push_back(keyOf(keyword.value("elset")));
     } else if (keyword.name == "*surface") {
       readSurface(keyword);
     } else if (keyword.name == "*heading") {
       isOwn_ = nextData() && line_ == kAbaqusHeading;
     } else if (keyword.name == "*solidsection") {
-      sections_.push_back(keyword.value("elset"));
+      sections_.push_back(prefix_ + keyword.value("elset"));
     } else if (keyword.name == "*endassembly") {
-      ofAssembly_ = 0;
+      if (instances_.size() < 2) scope_ = 0;
     } else if (keyword.name == "*instance") {
-      readInstance(keyword.value("name"));
+      readInstance(keyword);
     } else if (keyword.name == "*endinstance") {
       placeInstance();
     } else {
@@ -238,40 +285,46 @@ class AbaqusReader {
              "made the file write all nodes and elements",
          ErrorCode::FileUnsupported);
   }
-  [[noreturn]] void failAssembly() const {
-    fail(
-        "the file is an assembly of several instances of parts. Export it as one mesh, without "
-        "parts",
-        ErrorCode::FileUnsupported);
-  }
 
   /// Reads where an instance is: a translation, and behind it a rotation about the line through two
-  /// points, by an angle in degrees.
-  void readInstance(const std::string& name) {
-    if (!std::exchange(instance_, name + '.').empty()) failAssembly();
-    ofAssembly_ = 0;
+  /// points, by an angle in degrees; and its part.
+  void readInstance(const AbaqusKeyword& keyword) {
+    const std::string name = keyword.value("name");
+    if (!prefix_.empty()) fail("*END INSTANCE is missing above");
+    scope_ = kOfInstance * instances_.size();
+    if (scope_ >= kOfAssembly) fail("the assembly has too many instances", ErrorCode::TooLarge);
+    if (!instances_.emplace(name, scope_).second) {
+      fail("two instances have the name " + quoted(std::string_view(name)));
+    }
+    const auto part = partNumbers_.find(keyword.value("part"));
+    if (part == partNumbers_.end() && keyword.has("part")) fail("the instance is of no part above");
+    prefix_ = name + '.';
+    firstPoint_ = lists_.points.size();
     for (const std::size_t count : {3U, 7U}) {
-      if (!nextData()) return;
+      if (!nextData()) break;
       std::string_view rest = line_;
       for (std::size_t k = 0; k < count; ++k) {
         const std::string_view word = takeField(rest);
         place_.push_back(word.empty() ? 0 : real(word));
       }
     }
+    if (part != partNumbers_.end()) readPart(parts_[part->second]);
   }
 
   void placeInstance() {
-    ofAssembly_ = kOfAssembly;
+    scope_ = kOfAssembly;
+    prefix_.clear();
     const std::vector<double> place = std::exchange(place_, {});
     if (place.empty()) return;
-    for (Vec3& point : lists_.points) point = plus(point, {place[0], place[1], place[2]});
+    const auto points = std::span(lists_.points).subspan(firstPoint_);
+    for (Vec3& point : points) point = plus(point, {place[0], place[1], place[2]});
     if (place.size() == 3) return;
     const Vec3 begin{place[3], place[4], place[5]};
     const Vec3 along = minus(Vec3{place[6], place[7], place[8]}, begin);
     if (!(length(along) > 0)) fail("the axis of the instance's rotation has no direction");
     const Vec3 axis = times(1 / length(along), along);
     const double angle = place[9] * std::numbers::pi / 180;
-    for (Vec3& point : lists_.points) {  // the formula of Rodrigues
+    for (Vec3& point : points) {  // the formula of Rodrigues
       const Vec3 arm = minus(point, begin);
       const Vec3 middle = times(dot(axis, arm) * (1 - std::cos(angle)), axis);
       const Vec3 turned =
@@ -293,9 +346,10 @@ class AbaqusReader {
       fail("there is no file " + quoted(std::string_view(file.string())) + " to include",
            ErrorCode::FileNotFound);
     }
-    const Array<char> bytes = readWholeFile(file, stage_);
+    Array<char> bytes = readWholeFile(file, stage_);
+    const std::string_view text = withoutByteOrderMark(asText(bytes));
     ++depth_;
-    readFile(withoutByteOrderMark(asText(bytes)), file.string(), file);
+    readFile({text, file.string(), file, std::move(bytes)});
     --depth_;
   }
 
@@ -304,13 +358,12 @@ class AbaqusReader {
       fail("nodes in cylindrical or spherical coordinates are not supported",
            ErrorCode::FileUnsupported);
     }
-    const std::string set = keyword.value("nset");
-    std::vector<std::uint64_t>* const items =
-        set.empty() ? nullptr : &setNamed(set, nodeSets_).items;
-    ofNodeSets_ |= ofAssembly_;
+    const std::string set = keyOf(keyword.value("nset"));
+    std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set];
+    ofNodeSets_ |= scope_;
     while (nextData()) {
       std::string_view rest = line_;
-      nodeNumbers_.push_back(ofAssembly_ | integer(takeField(rest), "the number of a node"));
+      nodeNumbers_.push_back(scoped(takeField(rest), "the number of a node"));
       Vec3 point{};
       for (double& coordinate : point) {
         if (rest.empty()) break;  // missing coordinates are 0
@@ -329,11 +382,14 @@ class AbaqusReader {
     ElementBlock& block = lists_.blocks.emplace_back();
     block.type = type.cells;
     block.nodesEach = type.nodes;
-    const std::string set = keyword.value("elset");
+    const std::string set = keyOf(keyword.value("elset"));
     if (!set.empty()) blockSets_.push_back(set);
-    if (ofAssembly_ != 0 && type.nodes > 0) failAssembly();
-    ofElementSets_ |= ofAssembly_;
-    if (ofAssembly_ != 0) return;  // masses, connectors and the like
+    if (scope_ == kOfAssembly && type.nodes > 0) {
+      fail("the assembly has elements of its own, which are not read. Give them a part",
+           ErrorCode::FileUnsupported);
+    }
+    ofElementSets_ |= scope_;
+    if (scope_ == kOfAssembly) return;  // masses, connectors and the like
     if (type.nodes > 0 && keyword.has("offset")) {
       fail(
           "OFFSET makes nodes of elements, which is not supported. Let the program that made the "
@@ -342,7 +398,7 @@ class AbaqusReader {
     }
     while (nextData()) {
       std::string_view rest = line_;
-      const std::uint64_t number = integer(takeField(rest), "the number of an element");
+      const std::uint64_t number = scoped(takeField(rest), "the number of an element");
       if (type.nodes == 0) {
         readFacet(cornersOfFacet(name), number, rest, set);
         continue;
@@ -352,18 +408,18 @@ class AbaqusReader {
              ErrorCode::FileUnsupported);
       }
       block.numbers.push_back(number);
-      if (parts_ == ElementParts::Types) return;
-      if (!set.empty()) elementSets_[set].items.push_back(number);
+      if (wanted_ == ElementParts::Types) return;
+      if (!set.empty()) elementSets_[set].push_back(number);
       for (std::size_t k = 0; k < type.nodes; ++k) {
         if (trimmed(rest).empty()) {
-          if (!nextData()) fail(concat("the nodes of element ", number, " are missing"));
+          if (!nextData()) fail(concat("the nodes of element ", number ^ scope_, " are missing"));
           rest = line_;
         }
-        block.listed.push_back(integer(takeField(rest), "a node of an element"));
+        block.listed.push_back(scoped(takeField(rest), "a node of an element"));
       }
       const bool hasPressures = name.starts_with("coh3d");  // of pores, at further nodes
       if (rest.find_first_not_of(", \t") != std::string_view::npos && !hasPressures) {
-        fail(concat("more nodes than the ", type.nodes, " of element ", number));
+        fail(concat("more nodes than the ", type.nodes, " of element ", number ^ scope_));
       }
       if (type.nodes == 27) putFacesInOrder(std::span(block.listed).last(7));
     }
@@ -379,49 +435,55 @@ class AbaqusReader {
 
   void readFacet(std::size_t nodes, std::uint64_t number, std::string_view rest,
                  const std::string& set) {
-    if (nodes == 0 || parts_ == ElementParts::Types) return;
+    if (nodes == 0 || wanted_ == ElementParts::Types) return;
     FlatElement& facet = facets_.emplace_back(FlatElement{number, nodes, {}});
     for (std::size_t k = 0; k < nodes; ++k) {
-      facet.nodes[k] = integer(takeField(rest), "a node of an element");
+      facet.nodes[k] = scoped(takeField(rest), "a node of an element");
     }
-    if (!set.empty()) facetSets_[set].items.push_back(number);
+    if (!set.empty()) facetSets_[set].push_back(number);
   }
 
   void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
     if (name.empty()) fail("the set has no name");
-    Set& set = setNamed(name, sets);
+    const std::string key = keyOf(name);
+    std::vector<std::uint64_t>& set = sets[key];
     const std::uint64_t ofAssembly = &sets == &nodeSets_ ? ofNodeSets_ : ofElementSets_;
-    const std::uint64_t offset = keyword.has("instance") ? 0 : ofAssembly_ & ofAssembly;
+    Scope scope = {prefix_, instances_.size() > 1 ? scope_ : scope_ & ofAssembly};
+    // Flattened files still name what they were of.
+    if (keyword.has("instance") && !instances_.empty()) scope = scopeOf(keyword.value("instance"));
     while (nextData()) {
       std::string_view rest = line_;
       if (keyword.has("generate")) {
-        addRange(rest, offset, set);
+        addRange(rest, scope.numbers, set);
         continue;
       }
       while (!trimmed(rest).empty()) {
         const std::string_view word = takeField(rest);
         if (word.empty()) continue;
         std::uint64_t number = 0;
-        const bool isPlain = parseInteger(word, number);
-        const std::string named = isPlain ? std::string() : ofInstance(word, sets);
-        if (isPlain || parseInteger(named, number)) {
-          set.items.push_back((isPlain ? offset : 0) | number);
+        if (parseInteger(word, number)) {
+          set.push_back(scope.numbers | number);
           continue;
         }
-        const auto other = sets.find(named);
+        const Named named = nameOf(word, scope, sets);
+        if (parseInteger(named.word, number)) {
+          set.push_back(named.scope | number);
+          continue;
+        }
+        const auto other = sets.find(named.key);
         if (other == sets.end()) {
-          if (&sets == &elementSets_ && addFacetSet(named, name)) continue;
+          if (&sets == &elementSets_ && addFacetSet(named.key, key)) continue;
           fail("the set names " + quoted(word) + ", which is no number, and no set above");
         }
-        append(other->second.items, set);
+        append(other->second, set);
       }
     }
   }
 
   /// @param items  a copy: a set may name itself
-  void append(std::vector<std::uint64_t> items, Set& set) {
+  void append(std::vector<std::uint64_t> items, std::vector<std::uint64_t>& set) {
     takeRoom(items.size());
-    set.items.insert(set.items.end(), items.begin(), items.end());
+    set.insert(set.end(), items.begin(), items.end());
   }
 
   /// Elements that are no cells have sets of their own; those of other types are not kept.
@@ -431,41 +493,51 @@ class AbaqusReader {
     if (facets == facetSets_.end()) {
       return std::find(blockSets_.begin(), blockSets_.end(), named) != blockSets_.end();
     }
-    append(facets->second.items, facetSets_[name]);
+    append(facets->second, facetSets_[name]);
     return true;
   }
 
-  /// The name of a set, or a number, without quotes; and without "INSTANCE." in front, unless
-  /// there is such a set.
-  [[nodiscard]] std::string ofInstance(std::string_view word, const Sets& sets) const {
+  /// Where numbers and names without an instance in front belong.
+  struct Scope {
+    std::string prefix;  ///< of names
+    std::uint64_t numbers;
+  };
+  [[nodiscard]] Scope scopeOf(std::string_view instance) const {
+    const auto found = instances_.find(std::string(instance));
+    if (found == instances_.end()) fail("there is no instance " + quoted(instance));
+    return {found->first + '.', found->second};
+  }
+  /// A word of a set or surface: a number, or a set by its key.
+  struct Named {
+    std::string word;  ///< without the instance
+    std::uint64_t scope;
+    std::string key;
+  };
+  [[nodiscard]] Named nameOf(std::string_view word, Scope scope, const Sets& sets) const {
     const bool quotes = word.size() > 1 && word.front() == '"' && word.back() == '"';
     std::string name = lowerCase(quotes ? word.substr(1, word.size() - 2) : word);
-    const bool isLong = !instance_.empty() && name.starts_with(instance_);
-    if (isLong && !sets.contains(name)) name.erase(0, instance_.size());
-    return name;
-  }
-
-  /// A set, added if it is not there. One of the assembly with the name of one of the part, as
-  /// programs choose by default, is another: that of the part gets "INSTANCE." in front.
-  Set& setNamed(const std::string& name, Sets& sets) {
-    const auto found = sets.find(name);
-    if (ofAssembly_ != 0 && found != sets.end() && !found->second.isOfAssembly) {
-      auto ofPart = sets.extract(found);
-      ofPart.key() = instance_ + name;
-      sets.insert(std::move(ofPart));
-      if (&sets == &elementSets_) {
-        for (auto* const names : {&blockSets_, &sections_, &listedSets_}) {
-          std::replace(names->begin(), names->end(), name, instance_ + name);
-        }
-      }
+    for (std::size_t dot = name.find('.'); dot < name.size(); dot = name.find('.', dot + 1)) {
+      const auto found = instances_.find(name.substr(0, dot));
+      if (found == instances_.end() || sets.contains(scope.prefix + name)) continue;
+      scope = {found->first + '.', found->second};
+      name.erase(0, dot + 1);
+      break;
     }
-    Set& set = sets[name];
-    set.isOfAssembly = ofAssembly_ != 0;
-    return set;
+    std::string key = scope.prefix + name;
+    // A set of the only part.
+    if (instances_.size() == 1 && !sets.contains(key)) key = instances_.begin()->first + '.' + name;
+    return {name, scope.numbers, key};
+  }
+  /// The name of a set or surface, if it has one, with the instance in front.
+  std::string keyOf(const std::string& name) {
+    if (name.empty()) return {};
+    std::string key = prefix_ + name;
+    if (plainNames_.emplace(key, name).second) ++uses_[name];
+    return key;
   }
 
   /// Adds a range "first, last, step" to a set.
-  void addRange(std::string_view rest, std::uint64_t offset, Set& set) {
+  void addRange(std::string_view rest, std::uint64_t offset, std::vector<std::uint64_t>& set) {
     const std::uint64_t first = integer(takeField(rest), "the first of a range");
     const std::uint64_t last = integer(takeField(rest), "the last of a range");
     const std::string_view word = takeField(rest);
@@ -473,7 +545,7 @@ class AbaqusReader {
     if (step == 0 || last < first) fail("a range is \"first, last, step\", upwards");
     takeRoom((last - first) / step + 1);
     for (std::uint64_t i = first;; i += step) {
-      set.items.push_back(offset | i);
+      set.push_back(offset | i);
       if (last - i < step) break;
     }
   }
@@ -488,21 +560,23 @@ class AbaqusReader {
 
   void readSurface(const AbaqusKeyword& keyword) {
     const std::string type = keyword.value("type");
-    Surface& surface = surfaces_.emplace_back(Surface{keyword.value("name"), {}});
+    Surface& surface = surfaces_.emplace_back(Surface{keyOf(keyword.value("name")), {}});
+    const Scope scope = {prefix_, instances_.size() > 1 ? scope_ : 0};
     while (nextData()) {
       if (!type.empty() && type != "element") continue;
       std::string_view rest = line_;
-      const std::string elements = ofInstance(takeField(rest), elementSets_);
+      const Named elements = nameOf(takeField(rest), scope, elementSets_);
       const std::string face = lowerCase(takeField(rest));
       // Others are the whole surface, or a side of a shell.
       if (face.size() != 2 || face[0] != 's' || face[1] < '1' || face[1] > '6') continue;
       const auto side = static_cast<std::uint8_t>(face[1] - '0');
-      const auto set = elementSets_.find(elements);
+      const auto set = elementSets_.find(elements.key);
       if (set == elementSets_.end()) {
-        surface.sides.push_back({integer(elements, "an element or a set of them"), side, 0});
+        const std::uint64_t number = integer(elements.word, "an element or a set of them");
+        surface.sides.push_back({elements.scope | number, side, 0});
       } else {
-        takeRoom(kItemsPerSide * set->second.items.size());
-        for (const std::uint64_t element : set->second.items) {
+        takeRoom(kItemsPerSide * set->second.size());
+        for (const std::uint64_t element : set->second) {
           surface.sides.push_back({element, side, 0});
         }
       }
@@ -514,24 +588,31 @@ class AbaqusReader {
     if (nodeNumbers_.empty()) {
       input_.fail(ErrorCode::FileUnsupported, "the file has no *NODE section.");
     }
-    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_);
-    lists_.nameNodes(nodes, input_, "*NODE section");
+    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_, kOfInstance - 1);
+    lists_.nameNodes(nodes, input_, "*NODE section", kOfInstance - 1);
     tagRegions();
     tagSurfaces();
     for (const std::size_t corners : {4U, 3U, 2U}) tagFacets(corners, nodes);
     for (auto& [name, set] : nodeSets_) {
       NodeSet& added = lists_.nodeSets.emplace_back(
           NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
-      for (const std::uint64_t number : set.items) {
+      for (const std::uint64_t number : set) {
         const Index node = nodes.find(number);
         if (node != kNone) added.nodes.push_back(node);
       }
-      set.items = {};
+      set = {};
     }
   }
 
-  /// The name of a group without the prefix "E_", "N_" or "S_" that the writer adds.
-  [[nodiscard]] std::string ownName(const std::string& name) const {
+  /// The name of a set or surface without its instance, unless another would have the same.
+  [[nodiscard]] const std::string& plainName(const std::string& key) const {
+    const auto plain = plainNames_.find(key);
+    return plain != plainNames_.end() && uses_.at(plain->second) == 1 ? plain->second : key;
+  }
+
+  /// The plain name of a group without the prefix "E_", "N_" or "S_" that the writer adds.
+  [[nodiscard]] std::string ownName(const std::string& key) const {
+    const std::string& name = plainName(key);
     const bool prefixed = name.size() > 2 && name[1] == '_' &&
                           std::string_view("ens").find(name[0]) != std::string_view::npos;
     return prefixed && (isOwn_ || tagInGroupName(name.substr(2))) ? name.substr(2) : name;
@@ -548,12 +629,12 @@ class AbaqusReader {
     volumes.sort();
     std::vector<std::string> names;
     for (const std::string& name : listedSets_) {
-      const auto& items = elementSets_.at(name).items;
+      const auto& items = elementSets_.at(name);
       const auto isVolume = [&](std::uint64_t element) { return volumes.find(element) != 0; };
       if (std::all_of(items.begin(), items.end(), isVolume)) names.push_back(name);
     }
     std::stable_sort(names.begin(), names.end(), [this](const auto& a, const auto& b) {
-      return elementSets_.at(a).items.size() > elementSets_.at(b).items.size();
+      return elementSets_.at(a).size() > elementSets_.at(b).size();
     });
     return names;
   }
@@ -565,7 +646,7 @@ class AbaqusReader {
     const std::vector<std::string> later = sections_.empty() ? volumeSets() : sections_;
     names.insert(names.end(), later.begin(), later.end());
     for (const auto& [name, set] : elementSets_) {
-      if (ownName(name) != name) names.push_back(name);
+      if (ownName(name) != plainName(name)) names.push_back(name);
     }
     GroupTags tags;
     for (const std::string& name : names) tags.reserve(ownName(name));
@@ -577,7 +658,7 @@ class AbaqusReader {
       if (!done.insert(name).second) continue;
       const std::int32_t tag = tags.next(ownName(name));
       lists_.addName(3, tag, ownName(name));
-      for (const std::uint64_t element : set->second.items) regions.add(element, tag);
+      for (const std::uint64_t element : set->second) regions.add(element, tag);
     }
     regions.sort();
     lists_.setRegions(regions);
@@ -606,14 +687,14 @@ class AbaqusReader {
     for (const Sets* sets : {&elementSets_, &facetSets_}) {
       for (const auto& [name, set] : *sets) {
         const auto isUntagged = [&](std::uint64_t number) { return facets[number].second == 0; };
-        if (!std::all_of(set.items.begin(), set.items.end(),
+        if (!std::all_of(set.begin(), set.end(),
                          [&](std::uint64_t number) { return facets.contains(number); }) ||
-            std::none_of(set.items.begin(), set.items.end(), isUntagged)) {
+            std::none_of(set.begin(), set.end(), isUntagged)) {
           continue;
         }
-        const std::int32_t tag = facetTags_.next(name);
-        lists_.addName(corners == 2 ? 1 : 2, tag, name);
-        for (const std::uint64_t number : set.items) {
+        const std::int32_t tag = facetTags_.next(plainName(name));
+        lists_.addName(corners == 2 ? 1 : 2, tag, plainName(name));
+        for (const std::uint64_t number : set) {
           if (isUntagged(number)) facets[number].second = tag;
         }
       }
@@ -625,6 +706,11 @@ class AbaqusReader {
     std::uint64_t number = 0;
     if (parseInteger(word, number)) return number;
     fail(concat("expected ", what, ", found ", quoted(word)));
+  }
+  [[nodiscard]] std::uint64_t scoped(std::string_view word, const char* what) const {
+    const std::uint64_t number = integer(word, what);
+    if (number < kOfInstance || instances_.empty()) return scope_ | number;
+    fail(concat(number, " is no number for ", what));
   }
   [[nodiscard]] double real(std::string_view word) const {
     double value = 0;
@@ -649,7 +735,7 @@ class AbaqusReader {
   }
 
   const Input& input_;
-  ElementParts parts_;
+  ElementParts wanted_;
   Stage& stage_;
   TextScanner* scanner_ = nullptr;
   std::string_view line_;
@@ -657,12 +743,21 @@ class AbaqusReader {
   bool isOwn_ = false;  ///< whether this library wrote the file
   int depth_ = 0;       ///< nesting depth of *INCLUDE
   int includes_ = 0;
-  std::string instance_;             ///< its name and a dot, as in front of its numbers and sets
-  std::uint64_t ofAssembly_ = 0;     ///< bits of numbers outside of the instance,
+  std::vector<Part> parts_;
+  std::map<std::string, std::size_t> partNumbers_;
+  std::deque<File> files_;
+  std::uint64_t textSize_ = 0;                      ///< of all files
+  std::uint64_t copied_ = 0;                        ///< text of parts that instances have read
+  std::map<std::string, std::uint64_t> instances_;  ///< and what their numbers begin with
+  std::string prefix_;               ///< of names: the instance that is read, and a dot
+  std::uint64_t scope_ = 0;          ///< what numbers begin with,
   std::uint64_t ofNodeSets_ = 0;     ///< in sets if the assembly has nodes
   std::uint64_t ofElementSets_ = 0;  ///< and elements
+  std::size_t firstPoint_ = 0;       ///< of the instance
   std::vector<double> place_;        ///< of the instance, until all its nodes are known
-  std::uint64_t itemsLeft_ = 1024;   ///< how many more members sets may have
+  std::map<std::string, std::string> plainNames_;  ///< of sets and surfaces, by key
+  std::map<std::string, std::size_t> uses_;        ///< how many have a plain name
+  std::uint64_t itemsLeft_ = 1024;                 ///< how many more members sets may have
   ElementLists lists_;
   Array<std::uint64_t> nodeNumbers_;
   Sets nodeSets_;

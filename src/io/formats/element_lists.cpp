@@ -376,25 +376,28 @@ std::vector<std::int32_t> tagsOfGroups(const std::vector<NumberedGroup>& groups,
   return merges ? numbers : named;
 }
 
-NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input) {
+NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input,
+                       std::uint64_t digits) {
   requireIndexable(numbers.size(), input.name());
   NodeTags nodes(numbers);
   if (const Index repeated = nodes.repeated(); repeated != kNone) {
-    input.fail(ErrorCode::FileSyntax, "two nodes have the number ", numbers[repeated],
+    input.fail(ErrorCode::FileSyntax, "two nodes have the number ", numbers[repeated] & digits,
                ". If the file has several parts, export it as one mesh, without parts.");
   }
   return nodes;
 }
 
-void ElementLists::nameNodes(const NodeTags& nodes, const Input& input, std::string_view place) {
+void ElementLists::nameNodes(const NodeTags& nodes, const Input& input, std::string_view place,
+                             std::uint64_t digits) {
   for (ElementBlock& block : blocks) {
     const std::vector<std::uint64_t> numbers = std::exchange(block.listed, {});
     block.nodes.resize(numbers.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       block.nodes[i] = nodes.find(numbers[i]);
       if (block.nodes[i] != kNone) continue;
-      input.fail(ErrorCode::IndexOutOfRange, "element ", block.numbers[i / block.nodesEach],
-                 " names node ", numbers[i], ", which is in no ", place, ".");
+      input.fail(ErrorCode::IndexOutOfRange, "element ",
+                 block.numbers[i / block.nodesEach] & digits, " names node ", numbers[i] & digits,
+                 ", which is in no ", place, ".");
     }
   }
 }

@@ -101,6 +101,8 @@ struct NodeSet {
   std::vector<Index> nodes;
 };
 
+inline constexpr std::uint64_t kAllDigits = ~std::uint64_t{0};
+
 struct ElementLists {
   Array<Vec3> points;
   std::vector<ElementBlock> blocks;
@@ -125,8 +127,10 @@ struct ElementLists {
   void addFlat(const FlatElement& element, std::int32_t tag, const NodeTags& nodes);
   /// Sets the nodes of blocks that list their numbers in the file.
   /// @param place  where the file lists nodes, for messages: "*NODE section"
+  /// @param digits  bits of numbers that are the file's, for messages
   /// @throws Error IndexOutOfRange
-  void nameNodes(const NodeTags& nodes, const Input& input, std::string_view place);
+  void nameNodes(const NodeTags& nodes, const Input& input, std::string_view place,
+                 std::uint64_t digits = kAllDigits);
   /// Sets the region of each element.
   void setRegions(const ElementTags& tags);
   /// Stores those names whose tag is used by an element of their dimension, 1 to 3.
@@ -172,8 +176,10 @@ class GroupTags {
 };
 
 /// Builds the map from node numbers in the file to indices.
+/// @param digits  as for nameNodes()
 /// @throws Error FileSyntax if two nodes have the same number
-[[nodiscard]] NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input);
+[[nodiscard]] NodeTags nodesByNumber(const Array<std::uint64_t>& numbers, const Input& input,
+                                     std::uint64_t digits = kAllDigits);
 
 /// Tags of elements by number. The last tag given to an element counts.
 class ElementTags {

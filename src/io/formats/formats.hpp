@@ -294,7 +294,8 @@ OpenPartSink openGmshPartSink, openSplitGmshPartSink;
 // Reads nodes; C3D8 elements and their variants, continuum shells, and hexahedra with 20 nodes as
 // curved cells; other volume elements are counted. A region is a set named by *ELEMENT or *SOLID
 // SECTION; an element surface becomes tagged quads. The tag comes from a name written by this
-// library, otherwise it is the position of the set in the file. *INCLUDE is followed.
+// library, otherwise it is the position of the set in the file. *INCLUDE is followed. Instances
+// have vertices of their own; sets with the same name in two of them have the instance in front.
 [[nodiscard]] ElementLists readAbaqus(const Input& input, ElementParts parts, Stage& stage);
 using AbaqusFormat = ElementFormat<readAbaqus>;
 WriteMesh writeAbaqus;
@@ -373,8 +374,8 @@ OpenPartSink openCgnsPartSink;
 //
 // Reads conforming meshes, v1.0 to 1.3. Attributes are regions and tags unless all are 1; those
 // with a set of their own have its name. Nodes of order 1 are vertices; with nodes of order 2
-// to 9, in H1 or in L2 with closed bases, cells are curved. Periodic meshes and nodes of other cells
-// are refused.
+// to 9, in H1 or in L2 with closed bases, cells are curved. Periodic meshes and nodes of other
+// cells are refused.
 [[nodiscard]] ElementLists readMfem(const Input& input, ElementParts parts, Stage& stage);
 using MfemFormat = ElementFormat<readMfem>;
 /// Whether a regular file, or bytes, begin as MFEM's meshes do.
