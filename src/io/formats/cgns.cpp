@@ -467,9 +467,10 @@ class CgnsReader {
     for (const Zone& zone : zones_) {
       std::size_t found = 0;
       for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
-        for (const char* const label : {"GridConnectivity_t", "GridConnectivity1to1_t"}) {
+        for (const bool byRange : {false, true}) {
+          const char* const label = byRange ? "GridConnectivity1to1_t" : "GridConnectivity_t";
           for (const std::string& to : nodes(all, label)) {
-            for (const auto& [a, b] : sharedBy(zone, to, label[16] == '1')) {
+            for (const auto& [a, b] : sharedBy(zone, to, byRange)) {
               ++found;
               same.unite(a, b);
             }
