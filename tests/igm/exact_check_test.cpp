@@ -88,7 +88,7 @@ bool expectTheSameVerdict(const TetMap& map, const CheckReport& report) {
 TEST(ExactCheck, AgreesWithTheDefinitionOnDamagedMaps) {
   int valid = 0;
   int undecided = 0;
-  const int count = cases(600);
+  const int count = cases(300);
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE("seed " + std::to_string(i));
     MapDamage damage(static_cast<std::uint64_t>(i));
