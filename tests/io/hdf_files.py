@@ -7,10 +7,11 @@ KIND is exodus: by the library of NetCDF (netCDF4), a file of NetCDF-4 with name
 and node sets, compressed as SEACAS does; exodus27: a block of HEX27; exodus-lies: a block whose
 elements are not in the file. cgns: by h5py, a file as the CGNS library maps it to HDF5: two cubes with
 conditions; cgns-mixed: in one section of all; cgns20, cgns27: a cell of order 2; cgns-zones, cgns-apart:
-a zone for each cube, with and without a connection; cgns-blocks: two structured zones, whose axes differ,
-with a range as their connection, cgns-lists: with lists, cgns-loop: periodic, too; cgns-ring: a structured
-zone around a hole; cgns-rind, cgns-flat, cgns-far, cgns-faces, cgns-beyond: to be refused, as
-cgns-link, cgns-raw, cgns-virtual, whose coordinates are in another file, FILE.other. vtkhdf: by VTK,
+a zone for each cube, with and without a connection; cgns-both: one of them structured; cgns-blocks: two
+structured zones, whose axes differ, with a range as their connection, cgns-lists: with lists, cgns-loop:
+periodic, too; cgns-ring: a structured zone around a hole; cgns-rind, cgns-flat, cgns-far, cgns-faces,
+cgns-beyond: to be refused, as cgns-link, cgns-raw, cgns-virtual, whose coordinates are in another file,
+FILE.other. vtkhdf: by VTK,
 the two cubes; vtkhdf-parts: by h5py, each cube in a partition, with numbers of single precision and
 no global numbers; vtkhdf-image, vtkhdf-short, vtkhdf-steps: to be refused.
 Exit code 77: a package is not installed.
@@ -88,6 +89,9 @@ def write_cgns(file, kind):
             group.create_dataset(" data", data=data)
         return group
 
+    def integers(numbers):
+        return numpy.array(numbers, dtype=numpy.int32)
+
     def zone_of(base, name, points, sections):
         zone = node(base, name, "Zone_t", "I8", numpy.array([[len(points)], [len(sections)], [0]], dtype=numpy.int64))
         node(zone, "ZoneType", "ZoneType_t", "C1", "Unstructured")
@@ -119,11 +123,8 @@ def write_cgns(file, kind):
         all_of_it = node(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
         to = node(all_of_it, "to", "GridConnectivity_t", "C1", donor)
         node(to, "GridConnectivityType", "GridConnectivityType_t", "C1", "Abutting1to1")
-        node(to, "PointList", "IndexArray_t", "I4", numpy.array([[p] for p in here], dtype=numpy.int32))
-        node(to, "PointListDonor", "IndexArray_t", "I4", numpy.array([[p] for p in there], dtype=numpy.int32))
-
-    def integers(numbers):
-        return numpy.array(numbers, dtype=numpy.int32)
+        for name, places in (("PointList", here), ("PointListDonor", there)):
+            node(to, name, "IndexArray_t", "I4", integers(places).reshape(len(places), -1))
 
     def block(base, name, places):
         """A structured zone with a vertex at each of an array of places by i, j and k."""
@@ -206,6 +207,13 @@ def write_cgns(file, kind):
                       for p in [(1, 1, 0), (1, 0, 1), (2, 1, 1), (1, 2, 1), (0, 1, 1), (1, 1, 2), (1, 1, 1)]]
             nodes = nodes[: int(kind[4:])]
             zone_of(base, "Zone", nodes, [("Cells", {20: 18, 27: 19}[len(nodes)], [range(1, len(nodes) + 1)])])
+        elif kind == "cgns-both":
+            first = zone_of(base, "First", CORNERS, [("Left", 17, [range(1, 9)])])
+            x, y, z = numpy.meshgrid([1.0, 2.0], [0.0, 1.0], [0.0, 1.0], indexing="ij")
+            second = block(base, "Second", numpy.stack([x, y, z], axis=-1))
+            face = [(1, 1, 1), (1, 2, 1), (1, 1, 2), (1, 2, 2)]
+            connect(first, "Second", [2, 3, 6, 7], face)
+            connect(second, "First", face, [2, 3, 6, 7])
         elif kind in ("cgns-zones", "cgns-apart"):
             first = zone_of(base, "First", CORNERS, [("Left", 17, [range(1, 9)])])
             there = [(1, 0, 0), (2, 0, 0), (2, 1, 0), (1, 1, 0), (1, 0, 1), (2, 0, 1), (2, 1, 1), (1, 1, 1)]

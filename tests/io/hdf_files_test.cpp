@@ -146,11 +146,14 @@ TEST(HdfFiles, CgnsOfOrder2AndOfSeveralZones) {
     ASSERT_EQ(mesh.points.size(), 27U);
     EXPECT_TRUE(certify(mesh, context).allPositive());
   }
-  ASSERT_EQ(makeFile("cgns-zones", file), "");
-  const HexMesh mesh = readHexMesh(file);
-  EXPECT_EQ(mesh.points.size(), 12U);
-  EXPECT_EQ(mesh.cells, (Array<Hex>{{0, 1, 2, 3, 4, 5, 6, 7}, {1, 8, 9, 2, 5, 10, 11, 6}}));
-  EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 2}));
+  for (const std::string kind : {"cgns-zones", "cgns-both"}) {
+    SCOPED_TRACE(kind);
+    ASSERT_EQ(makeFile(kind, file), "");
+    const HexMesh mesh = readHexMesh(file);
+    EXPECT_EQ(mesh.points.size(), 12U);
+    EXPECT_EQ(mesh.cells, (Array<Hex>{{0, 1, 2, 3, 4, 5, 6, 7}, {1, 8, 9, 2, 5, 10, 11, 6}}));
+    EXPECT_EQ(mesh.regions, (Array<std::int32_t>{1, 2}));
+  }
   const auto sentence = [&](const char* kind) {
     EXPECT_EQ(makeFile(kind, file), "");
     return failureOf([&] { static_cast<void>(readHexMesh(file)); }).sentence;

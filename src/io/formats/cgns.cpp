@@ -201,8 +201,12 @@ class CgnsReader {
                   " vertices, but its size is ", sizes[0], " x ", sizes[1], " x ", sizes[2],
                   ". Planes of rind are not read.");
     }
-    ElementBlock& block = lists_.blocks[lists_.blockOf(volumeCells("hexahedra"), 8)];
     const ZoneRange cells = {{1, 1, 1}, zone.grid.between().size};
+    ElementBlock& block = lists_.blocks.emplace_back();
+    block.type = volumeCells("hexahedra");
+    block.nodesEach = 8;
+    block.nodes.reserve(8 * static_cast<std::size_t>(cells.count()));
+    block.numbers.reserve(static_cast<std::size_t>(cells.count()));
     cells.forEach([&](ZonePlace corner) {
       block.numbers.push_back(zone.before + ++zone.last);
       for (std::size_t layer = 0; layer < 2; ++layer, ++corner[2]) {
