@@ -763,7 +763,8 @@ class OpenFoamSink final : public PartSink {
   void end() override {
     Stage stage(context_, "write mesh");
     numberFaces();
-    for (const auto& [number, part] : parts_) {
+    for (const auto& entry : parts_) {
+      const WrittenPart& part = entry.second;  // clang 14 captures no structured bindings
       part.folder.run([&] { finishPart(part.open, part.folder, stage); });
     }
     barrier(team_);  // wait until all parts are written
