@@ -171,7 +171,8 @@ def write_cgns(file, kind):
         # Its axes are -y, -z and x.
         second = block(base, "Second", places[2:, ::-1, ::-1].transpose(1, 2, 0, 3))
         match(first, "Second", [[3, 1, 1], [3, 3, 2]], [[3, 2, 1], [1, 1, 1]], [3, -1, -2])
-        match(second, "First", [[1, 1, 1], [3, 2, 1]], [[3, 3, 2], [3, 1, 1]], [-2, -3, 1])
+        if kind != "cgns-once":
+            match(second, "First", [[1, 1, 1], [3, 2, 1]], [[3, 3, 2], [3, 1, 1]], [-2, -3, 1])
         if kind == "cgns-loop":
             match(first, "Second", [[1, 1, 1], [1, 3, 2]], [[3, 2, 3], [1, 1, 3]], [3, -1, -2], periodic=True)
         side = "FaceCenter" if kind == "cgns-faces" else "KFaceCenter"
@@ -195,7 +196,7 @@ def write_cgns(file, kind):
             node(node(base, family, "Family_t"), "inflow", "FamilyName_t", "C1", "inflow")
         else:
             node(base, family, "Family_t")
-        if kind[5:] in ("blocks", "lists", "loop", "ring", "rind", "flat", "far", "faces"):
+        if kind[5:] in ("blocks", "lists", "once", "loop", "ring", "rind", "flat", "far", "faces"):
             write_blocks(base)
         elif kind in ("cgns20", "cgns27"):
             # As the standard (SIDS) numbers the nodes: corners, edges at the bottom, upright and at the

@@ -167,7 +167,7 @@ TEST(HdfFiles, StructuredCgns) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "a.cgns";
   Context context;
-  for (const std::string kind : {"cgns-blocks", "cgns-lists", "cgns-loop"}) {
+  for (const std::string kind : {"cgns-blocks", "cgns-lists", "cgns-once", "cgns-loop"}) {
     SCOPED_TRACE(kind);
     if (const std::string why = makeFile(kind, file); !why.empty()) GTEST_SKIP() << why;
     EXPECT_FALSE(holdsLagrangeCells(file, context));

@@ -107,6 +107,7 @@ class CgnsReader {
     ZoneGrid grid = {};        ///< of its vertices
     std::uint64_t before = 0;  ///< offset of its element numbers
     std::uint64_t last = 0;    ///< largest element number in the file
+    bool isJoined = false;     ///< with another zone
 
     [[nodiscard]] Index vertexAt(const ZonePlace& place) const {
       return static_cast<Index>(firstPoint + grid.numberOf(place));
@@ -468,20 +469,18 @@ class CgnsReader {
   void connect() {
     if (zones_.size() == 1 && zones_[0].axes == 1) return;
     DisjointSets same(lists_.points.size());
-    for (const Zone& zone : zones_) {
-      std::size_t found = 0;
+    for (Zone& zone : zones_) {
       for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
         for (const bool byRange : {false, true}) {
           const char* const label = byRange ? "GridConnectivity1to1_t" : "GridConnectivity_t";
           for (const std::string& to : nodes(all, label)) {
-            for (const auto& [a, b] : sharedBy(zone, to, byRange)) {
-              ++found;
-              same.unite(a, b);
-            }
+            for (const auto& [a, b] : sharedBy(zone, to, byRange)) same.unite(a, b);
           }
         }
       }
-      if (found > 0 || zones_.size() == 1) continue;
+    }
+    for (const Zone& zone : zones_) {
+      if (zone.isJoined || zones_.size() == 1) continue;
       input_.fail(ErrorCode::FileUnsupported,
                   "the file has several zones, and nothing says which vertices \"", zone.path,
                   "\" shares with others (Abutting1to1). Merge them into one zone.");
@@ -503,8 +502,7 @@ class CgnsReader {
 
   /// Pairs of vertices identified by a connection; none for a periodic one.
   /// @param byRange  between ranges of two structured zones
-  [[nodiscard]] std::vector<std::pair<Index, Index>> sharedBy(const Zone& zone,
-                                                              const std::string& path,
+  [[nodiscard]] std::vector<std::pair<Index, Index>> sharedBy(Zone& zone, const std::string& path,
                                                               bool byRange) {
     const std::string location = textIn(path, "GridLocation_t");
     const bool ofVertices = location.empty() || location == "Vertex";
@@ -528,6 +526,8 @@ class CgnsReader {
     if (byRange) there = transformed(ranges[0], *other, donors[0], path);
     std::vector<std::pair<Index, Index>> pairs(here.size());
     for (std::size_t i = 0; i < here.size(); ++i) pairs[i] = {here[i], there[i]};
+    // Some programs name a connection on one side only.
+    if (&*other != &zone && !pairs.empty()) zone.isJoined = other->isJoined = true;
     return pairs;
   }
   [[nodiscard]] std::vector<Index> verticesOf(const Zone& zone,
